@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// Up to @p count names of @p candidates that are closest to @p name (edit distance, ignoring case),
+  /// best first; names that have nothing in common with it are left out.
+  std::vector<std::string>
+  nearest_names(const std::string              &name,
+                const std::vector<std::string> &candidates,
+                unsigned int                    count = 3);
+
+  /// "a", "b" or "c": a list in quotation marks as it stands in a sentence.
+  std::string
+  quoted_list(const std::vector<std::string> &names);
+} // namespace crawler

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <vector>
+
+namespace crawler
+{
+  /**
+   * Tables of the Lagrange element of degree q on the Gauss-Lobatto nodes of [0,1] (deal.II's FE_Q, nodes from left
+   * to right) and of the Gauss formula with q + 1 points. Cells of a line are affine, so these numbers and a cell's
+   * size are all that integration needs; FEValues is not in the hot path.
+   */
+  struct ReferenceElement
+  {
+    static constexpr unsigned int highest_degree = 8;
+
+    /// @param degree 1 to highest_degree.
+    explicit ReferenceElement(unsigned int degree);
+
+    unsigned int        degree;
+    unsigned int        n;           ///< degree + 1: number of nodes, and of quadrature points
+    std::vector<double> nodes;       ///< [n]
+    std::vector<double> points;      ///< [n] quadrature points
+    std::vector<double> weights;     ///< [n] quadrature weights, their sum is 1
+    std::vector<double> values;      ///< [n points][n nodes] shape functions
+    std::vector<double> derivatives; ///< [n points][n nodes] their derivatives
+    std::vector<double> left_derivatives;  ///< [n nodes] derivatives at 0
+    std::vector<double> right_derivatives; ///< [n nodes] derivatives at 1
+    std::vector<double> stiffness;   ///< [n nodes][n nodes] sum of weight derivative derivative
+  };
+} // namespace crawler

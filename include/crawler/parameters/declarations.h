@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dealii
+{
+  class ParameterHandler;
+}
+
+namespace crawler
+{
+  /// The admissible values of a number: an interval whose ends may be left out.
+  struct Range
+  {
+    double lower          = -std::numeric_limits<double>::infinity();
+    double upper          = std::numeric_limits<double>::infinity();
+    bool   lower_included = false;
+    bool   upper_included = false;
+
+    bool
+    contains(double value) const;
+    std::string
+    in_words() const;
+  };
+
+  Range
+  any_number();
+  Range
+  positive();
+  Range
+  between(double lower, double upper);
+
+  /// What a user can read about one entry of the parameter file.
+  struct EntryInfo
+  {
+    std::string path; ///< "Section/Subsection/Entry"
+    std::string default_value;
+    std::string expected; ///< the admissible values in words
+    std::string unit;     ///< empty for words and counts
+    std::string documentation;
+  };
+
+  /**
+   * The list of all entries of the parameter file. A parameter struct declares its members here, each
+   * with its default, range, unit and a sentence; from then on the member follows the entry.
+   * Values are kept and printed by dealii::ParameterHandler. Names are unique and have one spelling.
+   */
+  class Declarations
+  {
+  public:
+    Declarations();
+    ~Declarations();
+
+    void
+    enter(const std::string &section);
+    void
+    leave();
+
+    void
+    number(const std::string &name,
+           double            &value,
+           const Range       &range,
+           const std::string &documentation,
+           const std::string &unit);
+    /// Like number(), but the word "automatic" (an empty optional) is admissible as well.
+    void
+    number(const std::string     &name,
+           std::optional<double> &value,
+           const Range           &range,
+           const std::string     &documentation,
+           const std::string     &unit);
+    void
+    whole_number(const std::string &name,
+                 unsigned int      &value,
+                 unsigned int       lower,
+                 unsigned int       upper,
+                 const std::string &documentation);
+    void
+    whole_number(const std::string           &name,
+                 std::optional<unsigned int> &value,
+                 unsigned int                 lower,
+                 unsigned int                 upper,
+                 const std::string           &documentation);
+    void
+    numbers(const std::string   &name,
+            std::vector<double> &value,
+            const std::string   &documentation,
+            const std::string   &unit);
+    void
+    choice(const std::string              &name,
+           std::string                    &value,
+           const std::vector<std::string> &words,
+           const std::string              &documentation);
+    void
+    flag(const std::string &name, bool &value, const std::string &documentation);
+    void
+    text(const std::string &name,
+         std::string       &value,
+         const std::string &expected,
+         const std::string &documentation,
+         const std::string &unit = "");
+
+    /// Sets the entry with the full name @p path. Throws InputError (naming the entry, what was found and
+    /// what was expected, with the nearest names) if there is no such entry or the value does not fit.
+    void
+    set(const std::string &path, const std::string &value);
+
+    /// Throws InputError with the nearest names unless @p path is a declared section.
+    void
+    require_section(const std::string &path) const;
+
+    const std::vector<EntryInfo> &
+    entries() const
+    {
+      return entries_;
+    }
+
+    /// The present value of the entry with number @p index of entries().
+    std::string
+    value(unsigned int index) const;
+
+    /// The present values as a .prm file with every entry explained.
+    void
+    print_prm(std::ostream &out) const;
+    /// The same list as JSON (an array of objects: entry, default, expected, unit, documentation).
+    void
+    print_json(std::ostream &out) const;
+    /// The same list as a Markdown page.
+    void
+    print_markdown(std::ostream &out) const;
+
+  private:
+    void
+    declare(const std::string                              &name,
+            const std::string                              &default_value,
+            const std::string                              &expected,
+            const std::function<bool(const std::string &)> &match,
+            const std::function<void(const std::string &)> &assign,
+            const std::string                              &documentation,
+            const std::string                              &unit);
+    std::string
+    path_of(const std::string &name) const;
+
+    std::unique_ptr<dealii::ParameterHandler> handler_;
+    std::vector<std::string>                  section_; ///< where declarations go at present
+    std::vector<EntryInfo>                    entries_;
+    std::vector<std::string>                  sections_;
+  };
+
+  /// The words of a path: "A/B/c" -> {"A", "B", "c"}, without blanks around them.
+  std::vector<std::string>
+  split_path(const std::string &path);
+
+  /// Text without blanks at both ends.
+  std::string
+  trimmed(const std::string &text);
+
+  /// A finite number if the whole text is one (a decimal or scientific literal), else nothing.
+  std::optional<double>
+  to_number(const std::string &text);
+
+  /// The shortest text from which to_number() gives back exactly @p value.
+  std::string
+  to_text(double value);
+} // namespace crawler

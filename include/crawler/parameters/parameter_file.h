@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  class Declarations;
+  class InputError;
+
+  /// One line "set Entry = value" of a file or one --set of the command line, with its place.
+  struct Assignment
+  {
+    std::string path;  ///< "Section/Entry"
+    std::string value; ///< without blanks around it and without the comment
+    std::string place; ///< "fig_2.prm, line 12" or "--set"
+  };
+
+  /**
+   * A parameter file in deal.II's .prm format (subsection ... end, set name = value, # comments, \ at a
+   * line's end continues it, include FILE) and the overrides that stand above it. All reading of input
+   * goes through here, so that every error names its file and line.
+   */
+  class ParameterFile
+  {
+  public:
+    /// Reads a file; "-" is standard input. Throws FileError if it cannot be read and InputError with
+    /// file and line if it is not a parameter file.
+    static ParameterFile
+    read(const std::string &file_name);
+
+    /// The same from a text; @p name stands for the file's name in messages.
+    static ParameterFile
+    from_text(const std::string &text, const std::string &name);
+
+    /// Adds an override "Section/Entry=value", stronger than the file and all earlier overrides.
+    void
+    add_override(const std::string &assignment);
+
+    /// Sets all entries; throws InputError with the place in the message.
+    void
+    apply(Declarations &declarations) const;
+
+    /// The same error with the place of the entry that it names in front, if the entry was set at all.
+    InputError
+    with_place(const InputError &error) const;
+
+    const std::string &
+    name() const
+    {
+      return name_;
+    }
+    const std::string &
+    text() const
+    {
+      return text_;
+    }
+    const std::vector<std::string> &
+    overrides() const
+    {
+      return overrides_;
+    }
+
+  private:
+    void
+    parse(const std::string &text, const std::string &name, unsigned int depth);
+
+    std::string              name_;
+    std::string              text_;
+    std::vector<std::string> overrides_;
+
+    struct Section
+    {
+      std::string path, place;
+    };
+    std::vector<Assignment> assignments_;
+    std::vector<Section>    sections_;
+  };
+} // namespace crawler

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <iosfwd>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace crawler
+{
+  /// Evaluates an active stress at points that do not change (the quadrature points of a mesh).
+  class ActiveStressAtPoints
+  {
+  public:
+    virtual ~ActiveStressAtPoints() = default;
+
+    /// Writes m(s_i, t) [force] at all points into @p m (as long as the list of points).
+    virtual void
+    values(double t, std::span<double> m) = 0;
+  };
+
+  /**
+   * A generator of active stress. It answers one question: what is the active stress m(s,t) [force] at
+   * the material point 0 <= s <= L [length] and time t >= 0? To add one, see doc/developer_guide.md.
+   */
+  class ActiveStress
+  {
+  public:
+    virtual ~ActiveStress() = default;
+
+    /// An evaluator at @p points [length] that may keep whatever does not depend on time.
+    virtual std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &points) const = 0;
+
+    /// Writes lines for the log and for `crawler check`: what this generator chose. Nothing by default.
+    virtual void
+    report(std::ostream &out) const;
+  };
+} // namespace crawler

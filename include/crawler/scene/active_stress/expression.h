@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/active_stress.h>
+
+#include <string>
+#include <utility>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// Section "Active stress/Expression".
+  struct ExpressionParameters
+  {
+    std::string active_stress = "0.1*sin(2*pi*(s+t))";
+    std::string constants     = "";
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /**
+   * An active stress m(s,t) that the user writes as a formula (muParser), with variables s and t, the
+   * constants pi, L (the body length) and T (the end time) and the user's own.
+   */
+  class Expression : public ActiveStress
+  {
+  public:
+    static constexpr const char *description = "a formula of s and t";
+
+    /**
+     * Throws InputError with the position if the formula or the list of constants has an error, or if the
+     * formula is not a finite number somewhere in 0 <= s <= length, 0 <= t <= end_time (looked at on a grid).
+     */
+    Expression(const ExpressionParameters &parameters, double length, double end_time);
+
+    std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &points) const override;
+
+  private:
+    std::string                                 formula_;
+    std::vector<std::pair<std::string, double>> constants_;
+  };
+} // namespace crawler

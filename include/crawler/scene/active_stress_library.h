@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/active_stress.h>
+#include <crawler/scene/active_stress/expression.h>
+#include <crawler/scene/active_stress/optimal_wave.h>
+
+namespace crawler
+{
+  /// Section "Active stress": the generator's name, and the section of each generator.
+  struct ActiveStressParameters
+  {
+    std::string           generator = "optimal wave";
+    OptimalWaveParameters optimal_wave;
+    ExpressionParameters  expression;
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /// The generator that the parameters name. Throws InputError if its own parameters do not make sense.
+  std::unique_ptr<ActiveStress>
+  create_active_stress(const ActiveStressParameters &parameters, const Body &body, double end_time);
+} // namespace crawler

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <span>
+
+namespace crawler
+{
+  /**
+   * Resistance of the ground per reference length and velocity, g(w), as a function of the stretch
+   * w = zeta_s > 0. The friction force per reference length is g(w) zeta_t.
+   */
+  class FrictionLaw
+  {
+  public:
+    virtual ~FrictionLaw() = default;
+
+    /// g [force time/length^2] at all stretches @p w (spans of one length).
+    virtual void
+    values(std::span<const double> w, std::span<double> g) const = 0;
+
+    /// g and its derivative dg/dw at all stretches @p w (spans of one length).
+    virtual void
+    values_and_derivatives(std::span<const double> w,
+                           std::span<double>       g,
+                           std::span<double>       dg) const = 0;
+  };
+
+  /// The p-model of Santhosh and Serra, Phys. Rev. E 106, 024610 (2022): g(w) = gamma w^a, a = 1 - p.
+  class PowerFriction : public FrictionLaw
+  {
+  public:
+    /// @param gamma friction coefficient [force time/length^2]; @param a exponent [1].
+    PowerFriction(double gamma, double a);
+
+    void
+    values(std::span<const double> w, std::span<double> g) const override;
+    void
+    values_and_derivatives(std::span<const double> w,
+                           std::span<double>       g,
+                           std::span<double>       dg) const override;
+
+  private:
+    const double gamma_;
+    const double a_;
+    const bool   a_is_small_integer_; ///< then powers are products, which are much cheaper than pow()
+  };
+} // namespace crawler

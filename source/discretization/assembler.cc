@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/discretization/assembler.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace crawler
+{
+  namespace
+  {
+    /// The entry of the rank with the smallest key, on all ranks.
+    StretchAt
+    reduce_minimum(const StretchAt own, const double sign, const Discretization &discretization)
+    {
+      const unsigned int size = discretization.n_ranks();
+      if (size == 1)
+        return own;
+      const double        sent[2] = {own.value, own.s};
+      std::vector<double> all(2 * size);
+      MPI_Allgather(sent, 2, MPI_DOUBLE, all.data(), 2, MPI_DOUBLE, discretization.communicator());
+      StretchAt best{all[0], all[1]};
+      for (unsigned int r = 1; r < size; ++r)
+        if (sign * all[2 * r] < sign * best.value || (std::isnan(all[2 * r]) && !std::isnan(best.value)))
+          best = {all[2 * r], all[2 * r + 1]};
+      return best;
+    }
+  } // namespace
+
+  Assembler::Assembler(const Scene &scene, const Discretization &discretization)
+    : scene_(scene)
+    , discretization_(discretization)
+    , kernels_(cell_kernels(discretization.element().degree))
+    , stress_(scene.active_stress->at(discretization.quadrature_points()))
+    , end_stress_(scene.active_stress->at({0., scene.body.length}))
+    , m_(discretization.n_local_cells() * discretization.element().n)
+    , m_time_(std::numeric_limits<double>::quiet_NaN())
+  {}
+
+  CellInput
+  Assembler::input(const double t, const std::span<const double> u, const std::span<const double> v)
+  {
+    if (t != m_time_)
+      {
+        stress_->values(t, m_);
+        m_time_ = t;
+      }
+    const auto local_u = discretization_.to_local(u, u_local_);
+    const auto local_v = v.data() == nullptr ? v : discretization_.to_local(v, v_local_);
+    return {discretization_.n_local_cells(),
+            discretization_.cell_size().data(),
+            &discretization_.element(),
+            scene_.friction.get(),
+            scene_.body.elastic_modulus,
+            local_u.data(),
+            local_v.data(),
+            m_.data()};
+  }
+
+  bool
+  Assembler::residual(const double                  t,
+                      const std::span<const double> u,
+                      const std::span<const double> v,
+                      const std::span<double>       F)
+  {
+    const CellInput in   = input(t, u, v);
+    const bool      one  = discretization_.n_active_ranks() == 1;
+    double         *data = F.data();
+    if (one)
+      std::fill(F.begin(), F.end(), 0.);
+    else
+      {
+        F_local_.assign(discretization_.n_local(), 0.);
+        data = F_local_.data();
+      }
+    const long bad = kernels_.residual(in, data);
+    if (!one)
+      discretization_.add_to_owned(F_local_, F);
+
+    StretchAt found{std::numeric_limits<double>::infinity(), 0.};
+    if (bad >= 0)
+      {
+        const auto         &element = discretization_.element();
+        const unsigned int  cell = static_cast<unsigned int>(bad) / element.n, point = static_cast<unsigned int>(bad) % element.n;
+        const double        h = discretization_.cell_size()[cell];
+        double              w = 1.;
+        for (unsigned int i = 0; i < element.n; ++i)
+          w += element.derivatives[point * element.n + i] / h * in.u[cell * element.degree + i];
+        found = {w, discretization_.cell_left()[cell] + h * element.points[point]};
+      }
+    int any = bad >= 0;
+    if (discretization_.n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, discretization_.communicator());
+    if (any == 0)
+      return true;
+    bad_stretch_ = reduce_minimum(found, 1., discretization_);
+    return false;
+  }
+
+  void
+  Assembler::jacobian(const double                  t,
+                      const std::span<const double> u,
+                      const std::span<const double> v,
+                      const double                  sigma,
+                      ChainMatrix                  &A)
+  {
+    kernels_.jacobian(input(t, u, v), sigma, A.blocks().data());
+  }
+
+  bool
+  Assembler::velocity(const double t, const std::span<const double> u, const std::span<double> v)
+  {
+    if (!mass_)
+      mass_ = std::make_unique<ChainMatrix>(discretization_);
+    if (!residual(t, u, {}, v))
+      return false;
+    for (double &value : v)
+      value = -value;
+    kernels_.mass(input(t, u, {}), mass_->blocks().data());
+    if (!mass_->factorize())
+      return false;
+    mass_->solve(v, v);
+    return true;
+  }
+
+  CellIntegrals
+  Assembler::integrals(const double t, const std::span<const double> u, const std::span<const double> v)
+  {
+    CellIntegrals sum;
+    kernels_.integrals(input(t, u, v), sum);
+    static_assert(sizeof(CellIntegrals) % sizeof(double) == 0);
+    if (discretization_.n_ranks() == 1)
+      return sum;
+    MPI_Allreduce(MPI_IN_PLACE,
+                  &sum,
+                  sizeof(CellIntegrals) / sizeof(double),
+                  MPI_DOUBLE,
+                  MPI_SUM,
+                  discretization_.communicator());
+    return sum;
+  }
+
+  StretchRange
+  Assembler::stretch_range(const std::span<const double> u)
+  {
+    const auto     local   = discretization_.to_local(u, u_local_);
+    const auto    &element = discretization_.element();
+    const unsigned n = element.n, q = element.degree;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    StretchRange     range{{infinity, 0.}, {-infinity, 0.}};
+    for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+      {
+        const double h = discretization_.cell_size()[c];
+        const auto   look = [&](const double *derivatives, const double x) {
+          double w = 0.;
+          for (unsigned int i = 0; i < n; ++i)
+            w += derivatives[i] * local[c * q + i];
+          w = 1. + w / h;
+          if (w < range.min.value || (std::isnan(w) && !std::isnan(range.min.value)))
+            range.min = {w, discretization_.cell_left()[c] + h * x};
+          if (w > range.max.value)
+            range.max = {w, discretization_.cell_left()[c] + h * x};
+        };
+        look(element.left_derivatives.data(), 0.);
+        for (unsigned int p = 0; p < n; ++p)
+          look(&element.derivatives[p * n], element.points[p]);
+        look(element.right_derivatives.data(), 1.);
+      }
+    range.min = reduce_minimum(range.min, 1., discretization_);
+    range.max = reduce_minimum(range.max, -1., discretization_);
+    return range;
+  }
+
+  std::pair<double, double>
+  Assembler::end_stress(const double t)
+  {
+    std::array<double, 2> m{};
+    end_stress_->values(t, m);
+    return {m[0], m[1]};
+  }
+
+  double
+  Assembler::end_power(const double t, const std::span<const double> v)
+  {
+    const auto [m_left, m_right] = end_stress(t);
+    double power                 = 0.;
+    if (discretization_.rank() == 0)
+      power -= m_left * v.front();
+    if (discretization_.n_local() > 0 && !discretization_.has_right_neighbour())
+      power += m_right * v.back();
+    if (discretization_.n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+    return power;
+  }
+} // namespace crawler

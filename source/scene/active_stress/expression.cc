@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/expression.h>
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    const std::string formula_entry   = "Active stress/Expression/Active stress";
+    const std::string constants_entry = "Active stress/Expression/Constants";
+
+    /// The parser and the two variables it is bound to; neither can be copied.
+    class FormulaAtPoints : public ActiveStressAtPoints
+    {
+    public:
+      FormulaAtPoints(const std::string                                 &formula,
+                      const std::vector<std::pair<std::string, double>> &constants,
+                      std::vector<double>                                points)
+        : points_(std::move(points))
+      {
+        // What users of formulas expect besides muParser's own functions.
+        parser_.DefineFun("pow", [](const double x, const double y) { return std::pow(x, y); });
+        parser_.DefineFun("floor", [](const double x) { return std::floor(x); });
+        parser_.DefineFun("ceil", [](const double x) { return std::ceil(x); });
+        parser_.DefineFun("mod", [](const double x, const double y) { return x - y * std::floor(x / y); });
+        parser_.DefineFun("erf", [](const double x) { return std::erf(x); });
+        parser_.DefineFun("erfc", [](const double x) { return std::erfc(x); });
+        for (const auto &[name, value] : constants)
+          parser_.DefineConst(name, value);
+        parser_.DefineVar("s", &s_);
+        parser_.DefineVar("t", &t_);
+        parser_.SetExpr(formula);
+        parser_.Eval(); // finds syntax errors now
+      }
+
+      void
+      values(const double t, const std::span<double> m) override
+      {
+        t_ = t;
+        for (std::size_t i = 0; i < points_.size(); ++i)
+          {
+            s_   = points_[i];
+            m[i] = parser_.Eval();
+          }
+      }
+
+    private:
+      std::vector<double> points_;
+      double              s_ = 0., t_ = 0.;
+      mu::Parser          parser_;
+    };
+
+    std::vector<std::pair<std::string, double>>
+    parse_constants(const std::string &text, const double length, const double end_time)
+    {
+      std::vector<std::pair<std::string, double>> constants = {{"pi", std::numbers::pi},
+                                                               {"L", length},
+                                                               {"T", end_time}};
+      if (trimmed(text).empty())
+        return constants;
+      std::istringstream in(text + ",");
+      std::string        item;
+      while (std::getline(in, item, ','))
+        {
+          const auto        equals = item.find('=');
+          const std::string name   = trimmed(item.substr(0, equals));
+          const auto value = equals == std::string::npos ? std::nullopt : to_number(trimmed(item.substr(equals + 1)));
+          const bool is_name =
+            !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) &&
+            std::all_of(name.begin(), name.end(), [](const unsigned char c) { return std::isalnum(c) || c == '_'; });
+          if (!is_name || !value)
+            throw InputError(fmt::format("found \"{}\" among the constants of the formula, but \"name=number, "
+                                         "name=number, ...\" is expected",
+                                         trimmed(item)),
+                             constants_entry);
+          if (name == "s" || name == "t")
+            throw InputError(fmt::format("\"{}\" is a variable of the formula and cannot be a constant", name),
+                             constants_entry);
+          for (const auto &[other, ignored] : constants)
+            if (other == name)
+              throw InputError(fmt::format("the constant \"{}\" is already defined", name), constants_entry);
+          constants.emplace_back(name, *value);
+        }
+      return constants;
+    }
+  } // namespace
+
+
+  void
+  ExpressionParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Expression");
+    declarations.text("Active stress",
+                      active_stress,
+                      "a formula of s and t",
+                      "The active stress m(s,t): s is the material coordinate, t the time; pi, L (body length) "
+                      "and T (end time) are known, and sin, cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, "
+                      "sign, min, max, pow, mod, floor, ceil, erf, erfc, ^, comparisons and a ? b : c.",
+                      "force");
+    declarations.text("Constants",
+                      constants,
+                      "name=number, name=number, ...",
+                      "Constants that the formula may use.");
+    declarations.leave();
+  }
+
+  Expression::Expression(const ExpressionParameters &parameters,
+                         const double                length,
+                         const double                end_time)
+    : formula_(parameters.active_stress)
+    , constants_(parse_constants(parameters.constants, length, end_time))
+  {
+    if (formula_.empty())
+      throw InputError("the formula of the active stress is empty; an expression of s and t is expected",
+                       formula_entry);
+    constexpr unsigned int n = 16;
+    std::vector<double>    points(n + 1), m(n + 1);
+    for (unsigned int i = 0; i <= n; ++i)
+      points[i] = length * i / n;
+    try
+      {
+        const auto at_points = at(points);
+        for (unsigned int j = 0; j <= n; ++j)
+          {
+            const double t = end_time * j / n;
+            at_points->values(t, m);
+            for (unsigned int i = 0; i <= n; ++i)
+              if (!std::isfinite(m[i]))
+                throw InputError(fmt::format("the formula \"{}\" gives {} at s = {}, t = {}; a finite number is expected",
+                                             formula_,
+                                             m[i],
+                                             points[i],
+                                             t),
+                                 formula_entry);
+          }
+      }
+    catch (const mu::ParserError &error)
+      {
+        throw InputError(fmt::format("error in the formula \"{}\" at position {}: {}",
+                                     formula_,
+                                     error.GetPos() + 1,
+                                     error.GetMsg()),
+                         formula_entry);
+      }
+  }
+
+  std::unique_ptr<ActiveStressAtPoints>
+  Expression::at(const std::vector<double> &points) const
+  {
+    return std::make_unique<FormulaAtPoints>(formula_, constants_, points);
+  }
+} // namespace crawler

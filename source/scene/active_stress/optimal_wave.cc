@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/optimal_wave.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ostream>
+
+namespace crawler
+{
+  namespace
+  {
+    const std::string section = "Active stress/Optimal wave/";
+
+    /// One harmonic; the parts that depend on s are computed once.
+    struct Harmonic
+    {
+      double              q, a, b;
+      std::vector<double> sine, cosine; ///< of q s at the points
+    };
+
+    class WaveAtPoints : public ActiveStressAtPoints
+    {
+    public:
+      WaveAtPoints(const std::vector<double> &points,
+                   const WaveShape           &shape,
+                   const Body                &body,
+                   const double               chi,
+                   const double               c)
+        : body_(body)
+        , chi_(chi)
+        , c_(c)
+      {
+        for (unsigned int n = 1; n <= shape.a.size(); ++n)
+          {
+            if (shape.power(n) == 0.)
+              continue;
+            Harmonic harmonic{2. * std::numbers::pi * n / body.length, shape.a[n - 1], shape.b[n - 1], {}, {}};
+            for (const double s : points)
+              {
+                harmonic.sine.push_back(std::sin(harmonic.q * s));
+                harmonic.cosine.push_back(std::cos(harmonic.q * s));
+              }
+            harmonics_.push_back(std::move(harmonic));
+          }
+      }
+
+      void
+      values(const double t, const std::span<double> m) override
+      {
+        std::fill(m.begin(), m.end(), 0.);
+        for (const Harmonic &wave : harmonics_)
+          {
+            // The class formula with sin q(s+ct) and cos q(s+ct) expanded: constant + cosine cos qs + sine sin qs.
+            const double theta = wave.q * c_ * t;
+            const double st = std::sin(theta), ct = std::cos(theta);
+            const double half = std::sin(0.5 * theta), ct_minus_1 = -2. * half * half;
+            const double friction = chi_ * body_.friction_coefficient / wave.q;
+            const double elastic  = chi_ * body_.elastic_modulus / c_;
+            const double constant = friction * (wave.a * ct - wave.b * st);
+            const double cosine   = -constant - elastic * (wave.a * st + wave.b * ct_minus_1);
+            const double sine     = friction * (wave.a * st + wave.b * ct) - elastic * (wave.a * ct_minus_1 - wave.b * st);
+            for (std::size_t i = 0; i < m.size(); ++i)
+              m[i] += constant + cosine * wave.cosine[i] + sine * wave.sine[i];
+          }
+      }
+
+    private:
+      const Body            body_;
+      const double          chi_, c_;
+      std::vector<Harmonic> harmonics_;
+    };
+  } // namespace
+
+
+  void
+  OptimalWaveParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Optimal wave");
+    declarations.number("Perturbation parameter",
+                        perturbation_parameter,
+                        any_number(),
+                        "Perturbation parameter chi: the active stress is proportional to it, the displacement to "
+                        "its square.",
+                        "1");
+    declarations.numbers("Sine coefficients",
+                         sine_coefficients,
+                         "Fourier coefficients a_1, a_2, ... of the velocity wave.",
+                         "length/time");
+    declarations.numbers("Cosine coefficients",
+                         cosine_coefficients,
+                         "Fourier coefficients b_1, b_2, ... of the velocity wave: as many as there are sine "
+                         "coefficients, or a single 0 for none.",
+                         "length/time");
+    declarations.choice("Choose wave by",
+                        choose_wave_by,
+                        {"energy", "wave speed"},
+                        "Whether the wave is given by its speed, or is one of those that spend a given energy.");
+    declarations.number("Energy",
+                        energy,
+                        positive(),
+                        "Energy H that the wave spends until the end time (chi^2 H in all). Used if the wave is "
+                        "chosen by energy.",
+                        "force length");
+    declarations.choice("Root",
+                        root,
+                        {"largest admissible displacement", "largest displacement", "index"},
+                        "Which of the waves of that energy: the one that goes farthest among those whose "
+                        "leading-order stretch stays positive, or among all, or the one with the number Root index.");
+    declarations.whole_number("Root index",
+                              root_index,
+                              1,
+                              100000,
+                              "Number of the wave, the slowest being 1 (crawler check lists them). Used if Root is "
+                              "index.");
+    declarations.number("Wave speed",
+                        wave_speed,
+                        any_number(),
+                        "Wave speed c, not 0; a positive one runs from s = L to s = 0. Used if the wave is chosen by "
+                        "wave speed.",
+                        "length/time");
+    declarations.leave();
+  }
+
+  OptimalWave::OptimalWave(const OptimalWaveParameters &parameters, const Body &body, const double end_time)
+    : body_(body)
+    , chi_(parameters.perturbation_parameter)
+    , end_time_(end_time)
+    , shape_{parameters.sine_coefficients, parameters.cosine_coefficients}
+  {
+    if (shape_.b.size() == 1 && shape_.b[0] == 0.)
+      shape_.b.assign(shape_.a.size(), 0.);
+    if (shape_.a.size() == 1 && shape_.a[0] == 0.)
+      shape_.a.assign(shape_.b.size(), 0.);
+    if (shape_.a.size() != shape_.b.size())
+      throw InputError(fmt::format("{} sine and {} cosine coefficients; as many of the one as of the other are "
+                                   "expected, or a single 0",
+                                   shape_.a.size(),
+                                   shape_.b.size()),
+                       section + "Cosine coefficients");
+    if (shape_.delta_2() == 0.)
+      throw InputError("all coefficients of the wave are 0; at least one that is not is expected (for a body at "
+                       "rest set Active stress/Generator = none)",
+                       section + "Sine coefficients");
+    if (parameters.choose_wave_by == "energy")
+      choose_by_energy(parameters);
+    else if (parameters.wave_speed == 0.)
+      throw InputError("the wave speed is 0, but a number that is not 0 is expected", section + "Wave speed");
+    else
+      wave_ = describe_wave(body_, shape_, chi_, end_time_, parameters.wave_speed);
+  }
+
+  void
+  OptimalWave::choose_by_energy(const OptimalWaveParameters &parameters)
+  {
+    const bool by_index = parameters.root == "index";
+    roots_ = find_wave_roots(
+      body_, shape_, chi_, end_time_, parameters.energy, by_index ? std::max(25u, parameters.root_index) : 25);
+    const auto &list = roots_->roots;
+    if (list.empty())
+      throw InputError(
+        fmt::format("no wave spends the energy H = {}; H from the smallest, {}, to below {} is expected",
+                    parameters.energy,
+                    roots_->smallest_energy,
+                    roots_->largest_energy),
+        section + "Energy");
+    if (by_index)
+      {
+        if (parameters.root_index > list.size())
+          throw InputError(fmt::format("Root index is {}, but only {} waves spend this energy",
+                                       parameters.root_index,
+                                       list.size()),
+                           section + "Root index");
+        chosen_ = parameters.root_index - 1;
+      }
+    else
+      {
+        const bool any   = parameters.root == "largest displacement";
+        bool       found = false;
+        for (std::size_t i = 0; i < list.size(); ++i)
+          if ((any || list[i].admissible()) && (!found || list[i].displacement > list[chosen_].displacement))
+            {
+              chosen_ = i;
+              found   = true;
+            }
+        if (!found)
+          throw InputError(fmt::format("none of the {} waves of energy H = {} is admissible: the leading-order stretch "
+                                       "of each becomes negative; a smaller Perturbation parameter is expected",
+                                       list.size(),
+                                       parameters.energy),
+                           section + "Root");
+      }
+    wave_ = list[chosen_];
+  }
+
+  std::unique_ptr<ActiveStressAtPoints>
+  OptimalWave::at(const std::vector<double> &points) const
+  {
+    return std::make_unique<WaveAtPoints>(points, shape_, body_, chi_, wave_.speed);
+  }
+
+  void
+  OptimalWave::report(std::ostream &out) const
+  {
+    out << fmt::format("Optimal wave: speed c = {:.10g}, multiplier alpha = {:.10g}, leading-order displacement "
+                       "{:.8g}, stretch {:.4g} to {:.4g}{}\n",
+                       wave_.speed,
+                       wave_.multiplier,
+                       wave_.displacement,
+                       wave_.min_stretch,
+                       wave_.max_stretch,
+                       wave_.admissible() ? "" : " (NOT admissible: the body would invert)");
+    if (!roots_)
+      return;
+    const auto &list = roots_->roots;
+    out << fmt::format("Waves of this energy, slowest first{}{}:\n"
+                       "    index         speed    multiplier  displacement  min stretch  max stretch\n",
+                       roots_->double_roots ? " (double roots: this is the smallest energy)" : "",
+                       roots_->complete ? "" : fmt::format("; the first {} of more", list.size()));
+    // Long lists: the slowest, those around the chosen one, and the last.
+    constexpr std::size_t around = 12;
+    bool                  gap    = false;
+    for (std::size_t i = 0; i < list.size(); ++i)
+      {
+        const bool shown = list.size() <= 60 || i < around || i + 3 > list.size() ||
+                           (i + around > chosen_ && i < chosen_ + around);
+        if (shown)
+          out << fmt::format("  {:>7}  {:>12.6f}  {:>12.6f}  {:>12.6g}  {:>11.4g}  {:>11.4g}{}{}\n",
+                             i + 1,
+                             list[i].speed,
+                             list[i].multiplier,
+                             list[i].displacement,
+                             list[i].min_stretch,
+                             list[i].max_stretch,
+                             list[i].admissible() ? "" : "  inadmissible",
+                             i == chosen_ ? "  <- chosen" : "");
+        else if (!gap)
+          out << "      ...\n";
+        gap = !shown;
+      }
+  }
+} // namespace crawler

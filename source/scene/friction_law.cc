@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/scene/friction_law.h>
+
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /// w^n by repeated squaring.
+    inline double
+    integer_power(double w, unsigned int n)
+    {
+      double result = 1.;
+      for (; n > 0; n >>= 1, w *= w)
+        if (n & 1)
+          result *= w;
+      return result;
+    }
+  } // namespace
+
+  PowerFriction::PowerFriction(const double gamma, const double a)
+    : gamma_(gamma)
+    , a_(a)
+    , a_is_small_integer_(a == std::round(a) && std::abs(a) <= 64)
+  {}
+
+  void
+  PowerFriction::values(const std::span<const double> w, const std::span<double> g) const
+  {
+    if (a_is_small_integer_)
+      {
+        const auto n = static_cast<unsigned int>(std::abs(a_));
+        for (std::size_t i = 0; i < w.size(); ++i)
+          g[i] = gamma_ * integer_power(a_ < 0 ? 1. / w[i] : w[i], n);
+      }
+    else
+      for (std::size_t i = 0; i < w.size(); ++i)
+        g[i] = gamma_ * std::pow(w[i], a_);
+  }
+
+  void
+  PowerFriction::values_and_derivatives(const std::span<const double> w,
+                                        const std::span<double>       g,
+                                        const std::span<double>       dg) const
+  {
+    values(w, g);
+    for (std::size_t i = 0; i < w.size(); ++i)
+      dg[i] = a_ == 0. ? 0. : a_ * g[i] / w[i];
+  }
+} // namespace crawler

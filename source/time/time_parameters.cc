@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/time/integrators.h>
+#include <crawler/time/time_parameters.h>
+
+#include <fmt/format.h>
+
+namespace crawler
+{
+  void
+  TimeParameters::add_parameters(Declarations &declarations)
+  {
+    std::vector<std::string> names;
+    for (const Integrator &entry : integrators())
+      names.push_back(entry.name);
+    declarations.enter("Time");
+    declarations.number("End time", end_time, positive(), "Duration T; the body starts at rest at time 0.", "time");
+    declarations.text("Integrator",
+                      integrator,
+                      quoted_list(names),
+                      "Time integrator (PETSc TS). Integrators of PETSc that are not sound for this equation are refused "
+                      "with the reason.");
+    declarations.whole_number("Order", order, 1, 5, "Order of bdf; the other integrators have their own.");
+    declarations.choice("Step control",
+                        step_control,
+                        {"adaptive", "fixed"},
+                        "Whether step sizes follow the estimated error, or all are Initial step (shortened to end on "
+                        "output times).");
+    declarations.number("Tolerance",
+                        tolerance,
+                        positive(),
+                        "Estimated error of the displacement that is admissible in a step (root mean square over the "
+                        "body). Automatic: chosen from Accuracy.",
+                        "length");
+    declarations.number("Initial step",
+                        initial_step,
+                        positive(),
+                        "Size of the first step. Automatic: chosen from Accuracy.",
+                        "time");
+    declarations.whole_number("Maximum number of steps",
+                              max_steps,
+                              1,
+                              999999999,
+                              "The run stops after so many steps.");
+    declarations.leave();
+  }
+
+  void
+  TimeParameters::validate() const
+  {
+    bool known = false;
+    std::vector<std::string> names;
+    for (const Integrator &entry : integrators())
+      {
+        names.push_back(entry.name);
+        known = known || entry.name == integrator;
+      }
+    if (!known)
+      {
+        const std::string reason = reason_against(integrator);
+        if (!reason.empty())
+          throw InputError(fmt::format("the integrator \"{}\" is refused: {}; {} is expected", integrator, reason, quoted_list(names)),
+                           "Time/Integrator");
+        throw InputError(fmt::format("unknown integrator \"{}\"; {} is expected", integrator, quoted_list(names)), "Time/Integrator");
+      }
+    if (step_control == "fixed" && !initial_step)
+      throw InputError("Step control is fixed, but the size of the steps is missing: a number is expected for Initial step",
+                       "Time/Step control");
+    if (initial_step && *initial_step > end_time)
+      throw InputError(fmt::format("Initial step is {}, but at most the End time, {}, is expected", *initial_step, end_time),
+                       "Time/Initial step");
+  }
+} // namespace crawler

@@ -1,0 +1,568 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/petsc_object.h>
+#include <crawler/time/integrators.h>
+#include <crawler/time/time_stepper.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Remaining error of Newton's method, relative to the admissible error of a step.
+    constexpr double newton_fraction = 0.01;
+
+    /// Read access to the own part of a Vec as long as this lives.
+    class ReadAccess
+    {
+    public:
+      explicit ReadAccess(Vec vec)
+        : vec_(vec)
+      {
+        PetscInt n = 0;
+        VecGetLocalSize(vec, &n);
+        VecGetArrayRead(vec, &data_);
+        span = {data_, static_cast<std::size_t>(n)};
+      }
+      ~ReadAccess()
+      {
+        VecRestoreArrayRead(vec_, &data_);
+      }
+      std::span<const double> span;
+
+    private:
+      Vec           vec_;
+      const double *data_ = nullptr;
+    };
+
+    /// The same for writing.
+    class WriteAccess
+    {
+    public:
+      explicit WriteAccess(Vec vec)
+        : vec_(vec)
+      {
+        PetscInt n = 0;
+        VecGetLocalSize(vec, &n);
+        VecGetArray(vec, &data_);
+        span = {data_, static_cast<std::size_t>(n)};
+      }
+      ~WriteAccess()
+      {
+        VecRestoreArray(vec_, &data_);
+      }
+      std::span<double> span;
+
+    private:
+      Vec     vec_;
+      double *data_ = nullptr;
+    };
+  } // namespace
+
+
+  struct TimeStepper::Implementation
+  {
+    Implementation(TimeStepper &owner, MPI_Comm communicator, std::size_t n_owned, const TimeParameters &parameters);
+
+    TimeStepper         &owner;
+    const TimeParameters parameters;
+
+    PetscOwner<Vec> solution, residual;
+    PetscOwner<Mat> jacobian;
+    PetscOwner<TS>  ts;
+
+    // The state of one solve().
+    std::vector<double> frames;
+    std::size_t         next_frame  = 0;
+    double              tolerance   = 0.;
+    double              fixed_step  = 0.;
+    bool                stopped     = false;
+    bool                jacobian_ok = true;
+    double              convergence_constant = std::numeric_limits<double>::infinity();
+    double              correction = 0., last_correction = 0.;
+    std::size_t         n_unknowns = 0;
+    std::exception_ptr  exception;
+
+    void
+    set_options();
+    bool
+    report(double time, double size);
+    TimeOutcome
+    outcome(PetscErrorCode code);
+
+    /// Runs a callback; an exception is kept for later, since it must not pass through PETSc.
+    template <typename Callback>
+    PetscErrorCode
+    guarded(const Callback &callback)
+    {
+      try
+        {
+          callback();
+          return 0;
+        }
+      catch (...)
+        {
+          exception = std::current_exception();
+          return PETSC_ERR_USER;
+        }
+    }
+
+    static PetscErrorCode
+    function(TS ts, PetscReal t, Vec y, Vec y_dot, Vec F, void *context);
+    static PetscErrorCode
+    jacobian_function(TS, PetscReal t, Vec y, Vec y_dot, PetscReal shift, Mat A, Mat, void *context);
+    static PetscErrorCode
+    multiply(Mat A, Vec x, Vec y);
+    static PetscErrorCode
+    set_up_preconditioner(PC pc);
+    static PetscErrorCode
+    precondition(PC pc, Vec x, Vec y);
+    static PetscErrorCode
+    newton_converged(SNES snes, PetscInt it, PetscReal x_norm, PetscReal dx_norm, PetscReal F_norm, SNESConvergedReason *reason, void *context);
+    static PetscErrorCode
+    before_step(TS ts);
+    static PetscErrorCode
+    after_step(TS ts);
+  };
+
+  TimeStepper::Implementation::Implementation(TimeStepper          &owner,
+                                              MPI_Comm              communicator,
+                                              const std::size_t     n_owned,
+                                              const TimeParameters &parameters)
+    : owner(owner)
+    , parameters(parameters)
+  {
+    Vec vec = nullptr;
+    petsc(VecCreate(communicator, &vec));
+    solution.reset(vec);
+    petsc(VecSetSizes(vec, static_cast<PetscInt>(n_owned), PETSC_DECIDE));
+    petsc(VecSetType(vec, VECSTANDARD));
+    PetscInt n = 0;
+    petsc(VecGetSize(vec, &n));
+    n_unknowns = static_cast<std::size_t>(n);
+    petsc(VecDuplicate(solution.get(), &vec));
+    residual.reset(vec);
+
+    Mat mat = nullptr;
+    const auto local = static_cast<PetscInt>(n_owned);
+    petsc(MatCreateShell(communicator, local, local, PETSC_DECIDE, PETSC_DECIDE, this, &mat));
+    jacobian.reset(mat);
+    petsc(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
+
+    TS stepper = nullptr;
+    petsc(TSCreate(communicator, &stepper));
+    ts.reset(stepper);
+    petsc(TSSetApplicationContext(stepper, this));
+    petsc(TSSetIFunction(stepper, residual.get(), function, this));
+    petsc(TSSetIJacobian(stepper, mat, mat, jacobian_function, this));
+    petsc(TSSetPreStep(stepper, before_step));
+    petsc(TSSetPostStep(stepper, after_step));
+    set_options();
+  }
+
+  /// Our choices first, then the user's options after "--".
+  void
+  TimeStepper::Implementation::set_options()
+  {
+    const Integrator &method  = integrator(parameters.integrator);
+    TS                stepper = ts.get();
+    petsc(TSSetProblemType(stepper, TS_NONLINEAR));
+    petsc(TSSetEquationType(stepper, TS_EQ_IMPLICIT)); // without this arkimex is silently wrong
+    petsc(TSSetType(stepper, method.petsc_type.c_str()));
+    if (method.petsc_type == "bdf")
+      petsc(TSBDFSetOrder(stepper, static_cast<PetscInt>(parameters.order)));
+    if (method.petsc_type == "arkimex")
+      {
+        petsc(TSARKIMEXSetType(stepper, method.subtype.c_str()));
+        petsc(TSARKIMEXSetFullyImplicit(stepper, PETSC_TRUE));
+      }
+    if (method.name == "midpoint")
+      {
+        petsc(TSThetaSetTheta(stepper, 0.5));
+        petsc(TSThetaSetEndpoint(stepper, PETSC_FALSE));
+      }
+    TSAdapt adapt = nullptr;
+    petsc(TSGetAdapt(stepper, &adapt));
+    petsc(TSAdaptSetType(adapt, parameters.step_control == "fixed" ? TSADAPTNONE : TSADAPTBASIC));
+    petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // before_step() makes steps end where they must
+    petsc(TSSetMaxSNESFailures(stepper, -1));
+    petsc(TSSetMaxStepRejections(stepper, 30));
+    petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));
+    petsc(TSSetMaxSteps(stepper, static_cast<PetscInt>(parameters.max_steps)));
+
+    SNES           snes        = nullptr;
+    SNESLineSearch line_search = nullptr;
+    KSP            ksp         = nullptr;
+    PC             pc          = nullptr;
+    petsc(TSGetSNES(stepper, &snes));
+    petsc(SNESSetType(snes, SNESNEWTONLS));
+    petsc(SNESGetLineSearch(snes, &line_search));
+    petsc(SNESLineSearchSetType(line_search, SNESLINESEARCHBASIC));
+    petsc(SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 10, PETSC_DEFAULT));
+    petsc(SNESSetConvergenceTest(snes, newton_converged, this, nullptr));
+    petsc(SNESGetKSP(snes, &ksp));
+    petsc(KSPSetType(ksp, KSPPREONLY)); // the elimination is exact
+    petsc(KSPSetPCSide(ksp, PC_RIGHT));
+    petsc(KSPGetPC(ksp, &pc));
+    petsc(PCSetType(pc, PCSHELL));
+    petsc(PCShellSetContext(pc, this));
+    petsc(PCShellSetName(pc, "chain elimination"));
+    petsc(PCShellSetSetUp(pc, set_up_preconditioner));
+    petsc(PCShellSetApply(pc, precondition));
+
+    petsc(TSSetFromOptions(stepper));
+
+    TSType type = nullptr;
+    petsc(TSGetType(stepper, &type));
+    std::string name = type;
+    if (name == "arkimex")
+      {
+        TSARKIMEXType subtype = nullptr;
+        petsc(TSARKIMEXGetType(stepper, &subtype));
+        name += std::string(" ") + subtype;
+      }
+    if (name == "theta")
+      {
+        PetscBool endpoint = PETSC_FALSE;
+        petsc(TSThetaGetEndpoint(stepper, &endpoint));
+        if (endpoint)
+          name += " endpoint";
+      }
+    const std::string reason = reason_against(name);
+    if (!reason.empty())
+      throw InputError("the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " + reason);
+  }
+
+  PetscErrorCode
+  TimeStepper::Implementation::function(TS ts, const PetscReal t, Vec y, Vec y_dot, Vec F, void *context)
+  {
+    auto &self     = *static_cast<Implementation *>(context);
+    bool  accepted = true;
+    const PetscErrorCode code = self.guarded([&]() {
+      const ReadAccess  y_access(y), y_dot_access(y_dot);
+      const WriteAccess F_access(F);
+      accepted = self.owner.implicit_function(t, y_access.span, y_dot_access.span, F_access.span);
+    });
+    if (code == 0 && !accepted)
+      {
+        SNES snes = nullptr;
+        TSGetSNES(ts, &snes);
+        return SNESSetFunctionDomainError(snes);
+      }
+    return code;
+  }
+
+  PetscErrorCode
+  TimeStepper::Implementation::jacobian_function(TS,
+                                                 const PetscReal t,
+                                                 Vec             y,
+                                                 Vec             y_dot,
+                                                 const PetscReal shift,
+                                                 Mat             A,
+                                                 Mat,
+                                                 void *context)
+  {
+    auto &self = *static_cast<Implementation *>(context);
+    const PetscErrorCode code = self.guarded([&]() {
+      const ReadAccess y_access(y), y_dot_access(y_dot);
+      self.jacobian_ok = self.owner.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
+    });
+    if (code != 0)
+      return code;
+    MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
+    return MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY);
+  }
+
+  PetscErrorCode
+  TimeStepper::Implementation::multiply(Mat A, Vec x, Vec y)
+  {
+    void *context = nullptr;
+    MatShellGetContext(A, &context);
+    auto &self = *static_cast<Implementation *>(context);
+    return self.guarded([&]() {
+      const ReadAccess  x_access(x);
+      const WriteAccess y_access(y);
+      self.owner.jacobian_vmult(x_access.span, y_access.span);
+    });
+  }
+
+  PetscErrorCode
+  TimeStepper::Implementation::set_up_preconditioner(PC pc)
+  {
+    void *context = nullptr;
+    PCShellGetContext(pc, &context);
+    const bool ok = static_cast<Implementation *>(context)->jacobian_ok;
+    return PCSetFailedReason(pc, ok ? PC_NOERROR : PC_FACTOR_NUMERIC_ZEROPIVOT);
+  }
+
+  PetscErrorCode
+  TimeStepper::Implementation::precondition(PC pc, Vec x, Vec y)
+  {
+    void *context = nullptr;
+    PCShellGetContext(pc, &context);
+    auto &self = *static_cast<Implementation *>(context);
+    return self.guarded([&]() {
+      const ReadAccess  x_access(x);
+      const WriteAccess y_access(y);
+      self.owner.solve_with_jacobian(x_access.span, y_access.span);
+    });
+  }
+
+  /**
+   * Newton's method with an exact Jacobian converges quadratically: after a correction d the error that remains is about
+   * C d^2. C is taken from the last solve that needed two corrections; until there is one, two are made.
+   */
+  PetscErrorCode
+  TimeStepper::Implementation::newton_converged(SNES                 snes,
+                                                const PetscInt       it,
+                                                const PetscReal      x_norm,
+                                                const PetscReal      dx_norm,
+                                                const PetscReal      F_norm,
+                                                SNESConvergedReason *reason,
+                                                void                *context)
+  {
+    auto &self = *static_cast<Implementation *>(context);
+    *reason    = SNES_CONVERGED_ITERATING;
+    if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
+      {
+        *reason = SNES_DIVERGED_FNORM_NAN;
+        return 0;
+      }
+    if (it == 0)
+      {
+        if (F_norm == 0.)
+          *reason = SNES_CONVERGED_FNORM_ABS;
+        return 0;
+      }
+    const double rms     = 1. / std::sqrt(static_cast<double>(self.n_unknowns));
+    const double d       = dx_norm * rms / self.tolerance; // in units of the admissible error
+    const double rounding = 1e-15 * x_norm * rms / self.tolerance;
+    if (it >= 2 && self.last_correction > 0.)
+      self.convergence_constant = d / (self.last_correction * self.last_correction);
+    self.last_correction = d;
+    if (d <= newton_fraction || self.convergence_constant * d * d <= newton_fraction || d <= rounding)
+      *reason = SNES_CONVERGED_SNORM_RELATIVE;
+    (void)snes;
+    return 0;
+  }
+
+  /// Shortens the step such that it, or the one after it, ends on the next frame.
+  PetscErrorCode
+  TimeStepper::Implementation::before_step(TS ts)
+  {
+    void *context = nullptr;
+    TSGetApplicationContext(ts, &context);
+    auto     &self = *static_cast<Implementation *>(context);
+    PetscReal time = 0., size = 0.;
+    TSGetTime(ts, &time);
+    TSGetTimeStep(ts, &size);
+    if (self.fixed_step > 0.)
+      size = self.fixed_step;
+    const double remaining = self.frames[self.next_frame] - time;
+    if (size >= remaining * (1. - 1e-9))
+      size = remaining;
+    else if (self.fixed_step == 0. && size > 0.5 * remaining)
+      size = 0.5 * remaining;
+    return TSSetTimeStep(ts, size);
+  }
+
+  PetscErrorCode
+  TimeStepper::Implementation::after_step(TS ts)
+  {
+    void *context = nullptr;
+    TSGetApplicationContext(ts, &context);
+    auto &self = *static_cast<Implementation *>(context);
+    PetscReal time = 0., previous = 0.;
+    TSGetTime(ts, &time);
+    TSGetPrevTime(ts, &previous);
+    const double frame = self.frames[self.next_frame];
+    if (std::abs(time - frame) <= 1e-13 * std::max(frame - previous, std::abs(frame)))
+      {
+        time = frame;
+        TSSetTime(ts, frame);
+      }
+    const double size = time - previous;
+    bool         go_on = true;
+    const PetscErrorCode code = self.guarded([&]() { go_on = self.report(time, size); });
+    if (code != 0)
+      return code;
+    if (time == frame)
+      ++self.next_frame;
+    if (self.next_frame == self.frames.size())
+      return TSSetConvergedReason(ts, TS_CONVERGED_TIME);
+    if (!go_on)
+      {
+        self.stopped = true;
+        return TSSetConvergedReason(ts, TS_CONVERGED_USER);
+      }
+    return 0;
+  }
+
+  bool
+  TimeStepper::Implementation::report(const double time, const double size)
+  {
+    if (!owner.monitor)
+      return true;
+    PetscInt steps = 0, rejected = 0, newton = 0;
+    TSGetStepNumber(ts.get(), &steps);
+    TSGetStepRejections(ts.get(), &rejected);
+    TSGetSNESIterations(ts.get(), &newton);
+    const ReadAccess y(solution.get());
+    const bool is_frame = size > 0. && time == frames[next_frame];
+    return owner.monitor({time,
+                          size,
+                          static_cast<unsigned int>(steps),
+                          is_frame,
+                          static_cast<unsigned int>(rejected),
+                          static_cast<unsigned long>(newton)},
+                         y.span);
+  }
+
+  /// Gives what PETSc says a name.
+  TimeOutcome
+  TimeStepper::Implementation::outcome(const PetscErrorCode code)
+  {
+    TimeOutcome       result;
+    TS                stepper = ts.get();
+    TSConvergedReason reason;
+    PetscInt          steps = 0, rejected = 0, newton = 0, linear = 0;
+    PetscReal         time = 0., size = 0.;
+    TSGetConvergedReason(stepper, &reason);
+    TSGetStepNumber(stepper, &steps);
+    TSGetStepRejections(stepper, &rejected);
+    TSGetSNESIterations(stepper, &newton);
+    TSGetKSPIterations(stepper, &linear);
+    TSGetTime(stepper, &time);
+    TSGetTimeStep(stepper, &size);
+    PetscInt snes_failures = 0;
+    TSGetSNESFailures(stepper, &snes_failures);
+    result.time              = time;
+    result.step_size         = size;
+    result.steps             = static_cast<unsigned int>(steps);
+    result.rejected_steps    = static_cast<unsigned int>(rejected + snes_failures);
+    result.newton_iterations = static_cast<unsigned long>(newton);
+    result.linear_iterations = static_cast<unsigned long>(linear);
+    result.status            = "failed";
+    if (code == 0 && reason == TS_CONVERGED_TIME)
+      result.status = "finished";
+    else if (code == 0 && stopped)
+      result.status = "stopped";
+    else if (code == 0 && reason == TS_CONVERGED_ITS)
+      {
+        result.status  = "stopped";
+        result.reason  = "step_limit";
+        result.message = "the maximum number of steps is reached";
+      }
+    else
+      {
+        SNES                snes = nullptr;
+        SNESConvergedReason newton_reason;
+        TSGetSNES(stepper, &snes);
+        SNESGetConvergedReason(snes, &newton_reason);
+        result.domain_error = newton_reason == SNES_DIVERGED_FUNCTION_DOMAIN;
+        if (code != 0)
+          {
+            const char *text = nullptr;
+            PetscErrorMessage(code, &text, nullptr);
+            result.reason  = "newton_diverged";
+            result.message = std::string("PETSc stopped with the error: ") + (text != nullptr ? text : "unknown");
+          }
+        else if (newton_reason == SNES_DIVERGED_FNORM_NAN)
+          {
+            result.reason  = "nonfinite";
+            result.message = "the residual is not a finite number";
+          }
+        else if (newton_reason == SNES_DIVERGED_LINEAR_SOLVE)
+          {
+            result.reason  = "linear_failed";
+            result.message = "the linear system of Newton's method is singular or could not be solved";
+          }
+        else if (size < 1e-13 * parameters.end_time)
+          {
+            result.reason  = "step_underflow";
+            result.message = "the step size fell below the resolution of the time";
+          }
+        else if (newton_reason < 0)
+          {
+            result.reason  = "newton_diverged";
+            result.message = std::string("Newton's method did not converge (") + SNESConvergedReasons[newton_reason] + ")";
+          }
+        else
+          {
+            result.reason  = "rejection_limit";
+            result.message = "a step was rejected too many times, its error stays above the tolerance";
+          }
+      }
+    return result;
+  }
+
+
+  TimeStepper::TimeStepper(MPI_Comm communicator, const std::size_t n_owned, const TimeParameters &parameters)
+    : implementation_(std::make_unique<Implementation>(*this, communicator, n_owned, parameters))
+  {}
+
+  TimeStepper::~TimeStepper() = default;
+
+  TimeOutcome
+  TimeStepper::solve(std::vector<double>       &y,
+                     const std::vector<double> &frames,
+                     const double               tolerance,
+                     const double               initial_step)
+  {
+    Implementation &self = *implementation_;
+    TS              ts   = self.ts.get();
+    self.frames          = frames;
+    if (self.frames.empty() || self.frames.back() < self.parameters.end_time)
+      self.frames.push_back(self.parameters.end_time);
+    self.next_frame           = 0;
+    self.stopped              = false;
+    self.exception            = nullptr;
+    self.tolerance            = tolerance;
+    self.fixed_step           = self.parameters.step_control == "fixed" ? initial_step : 0.;
+    self.last_correction      = 0.;
+    self.convergence_constant = std::numeric_limits<double>::infinity();
+    {
+      const WriteAccess access(self.solution.get());
+      std::copy(y.begin(), y.end(), access.span.begin());
+    }
+    petsc(TSSetTolerances(ts, tolerance, nullptr, 0., nullptr));
+    petsc(TSSetTime(ts, 0.));
+    petsc(TSSetStepNumber(ts, 0));
+    petsc(TSSetMaxTime(ts, self.parameters.end_time));
+    petsc(TSSetTimeStep(ts, initial_step));
+    petsc(TSRestartStep(ts));
+
+    PetscErrorCode code  = 0;
+    bool           go_on = self.report(0., 0.);
+    if (go_on)
+      {
+        petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+        code = TSSolve(ts, self.solution.get());
+        petsc(PetscPopErrorHandler());
+      }
+    else
+      self.stopped = true;
+    {
+      const ReadAccess access(self.solution.get());
+      std::copy(access.span.begin(), access.span.end(), y.begin());
+    }
+    if (self.exception)
+      std::rethrow_exception(self.exception);
+    TimeOutcome result = self.outcome(code);
+    if (!go_on)
+      result.status = "stopped";
+    return result;
+  }
+
+  std::string
+  TimeStepper::petsc_type() const
+  {
+    TSType type = nullptr;
+    TSGetType(implementation_->ts.get(), &type);
+    return type;
+  }
+} // namespace crawler
