@@ -36,7 +36,13 @@ namespace crawler
     , end_stress_(scene.active_stress->at({0., scene.body.length}))
     , m_(discretization.n_local_cells() * discretization.element().n)
     , m_time_(std::numeric_limits<double>::quiet_NaN())
-  {}
+  {
+    // The stretch is a polynomial of degree q - 1 in a cell.
+    const auto &element = discretization.element();
+    for (unsigned int p = 0; p < element.n; ++p)
+      highest_mode_.push_back((2. * element.degree - 1.) * element.weights[p] *
+                              std::legendre(element.degree - 1, 2. * element.points[p] - 1.));
+  }
 
   CellInput
   Assembler::input(const double t, const std::span<const double> u, const std::span<const double> v)
@@ -170,6 +176,46 @@ namespace crawler
     range.min = reduce_minimum(range.min, 1., discretization_);
     range.max = reduce_minimum(range.max, -1., discretization_);
     return range;
+  }
+
+  Resolution
+  Assembler::resolution(const std::span<const double> u)
+  {
+    const auto     local   = discretization_.to_local(u, u_local_);
+    const auto    &element = discretization_.element();
+    const unsigned n = element.n, q = element.degree;
+    double         sums[2] = {0., 0.};
+    for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+      {
+        const double h        = discretization_.cell_size()[c];
+        double       mode = 0., strain = 0., smallest = std::numeric_limits<double>::infinity();
+        for (unsigned int p = 0; p < n; ++p)
+          {
+            double e = 0.;
+            for (unsigned int i = 0; i < n; ++i)
+              e += element.derivatives[p * n + i] * local[c * q + i];
+            e /= h;
+            mode += highest_mode_[p] * e;
+            strain += element.weights[p] * e * e;
+            smallest = std::min(smallest, 1. + e);
+          }
+        sums[0] += h / (2. * q - 1.) * (mode / smallest) * (mode / smallest);
+        sums[1] += h * strain;
+      }
+    if (discretization_.n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+    return {sums[0], sums[1]};
+  }
+
+  double
+  Assembler::root_mean_square(const std::span<const double> u) const
+  {
+    double sum = 0.;
+    for (const double value : u)
+      sum += value * value;
+    if (discretization_.n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+    return std::sqrt(sum / static_cast<double>(discretization_.n_unknowns()));
   }
 
   std::pair<double, double>

@@ -170,6 +170,7 @@ namespace crawler
   {
     const Integrator &method  = integrator(parameters.integrator);
     TS                stepper = ts.get();
+    petsc(TSSetOptionsPrefix(stepper, parameters.petsc_prefix.c_str()));
     petsc(TSSetProblemType(stepper, TS_NONLINEAR));
     petsc(TSSetEquationType(stepper, TS_EQ_IMPLICIT)); // without this arkimex is silently wrong
     petsc(TSSetType(stepper, method.petsc_type.c_str()));

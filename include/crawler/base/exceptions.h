@@ -38,22 +38,11 @@ namespace crawler
   class FileError : public std::runtime_error
   {
   public:
-    using std::runtime_error::runtime_error;
-  };
-
-  /**
-   * A time step could not be completed, or its result must not be used. `reason` is one of the names
-   * of doc/user_guide.md (newton_diverged, linear_failed, step_underflow, rejection_limit, nonfinite,
-   * under_resolved, inverted).
-   */
-  class NumericalFailure : public std::runtime_error
-  {
-  public:
-    NumericalFailure(std::string reason, const std::string &message)
+    explicit FileError(const std::string &message, const bool on_all_ranks = false)
       : std::runtime_error(message)
-      , reason(std::move(reason))
+      , on_all_ranks(on_all_ranks)
     {}
 
-    const std::string reason;
+    const bool on_all_ranks; ///< all ranks throw it together, so the program can end in order
   };
 } // namespace crawler

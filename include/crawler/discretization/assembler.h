@@ -25,6 +25,13 @@ namespace crawler
     StretchAt min, max;
   };
 
+  /// How well the mesh resolves a stretch: squared norms over the whole body (see doc/numerics.md, "Accuracy").
+  struct Resolution
+  {
+    double highest_mode; ///< int of (highest Legendre mode of w in each cell, relative to the cell's smallest w)^2 ds
+    double strain;       ///< int (w - 1)^2 ds
+  };
+
   /**
    * The semi-discrete crawler: M(u) v + K u + m = 0 with v = u_t (crawler_equation.h; doc/numerics.md). Vectors are
    * the owned values of each rank; all functions are collective.
@@ -55,6 +62,13 @@ namespace crawler
     /// smallest.
     StretchRange
     stretch_range(std::span<const double> u);
+
+    Resolution
+    resolution(std::span<const double> u);
+
+    /// Root mean square of the unknowns of all ranks [length].
+    double
+    root_mean_square(std::span<const double> u) const;
 
     /// The power that leaves through the ends in the paper's energy: [m v] from s = 0 to L (theory.md section 6).
     double
@@ -95,6 +109,7 @@ namespace crawler
     double                                m_time_;
 
     std::vector<double>          u_local_, v_local_, F_local_;
+    std::vector<double>          highest_mode_; ///< [point] weights that give the highest Legendre coefficient
     std::unique_ptr<ChainMatrix> mass_; ///< built when a velocity is first asked for
     std::optional<StretchAt>     bad_stretch_;
   };

@@ -19,6 +19,8 @@ namespace crawler
     std::optional<double> initial_step; ///< [time]
     unsigned int          max_steps = 100000000;
 
+    std::string petsc_prefix; ///< of PETSc's options; not an entry of the file
+
     void
     add_parameters(Declarations &declarations);
 

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <mpi.h>
+
+#include <functional>
+#include <string>
+
+namespace crawler
+{
+  /// Number of this process, and of all.
+  unsigned int
+  rank_of(MPI_Comm communicator);
+  unsigned int
+  size_of(MPI_Comm communicator);
+
+  /// The text of rank 0, on all ranks.
+  std::string
+  broadcast(const std::string &text, MPI_Comm communicator);
+
+  /**
+   * Runs @p action on rank 0 only and returns its text on all ranks. An InputError or FileError that it throws is thrown
+   * on all ranks, so that the failure of one cannot hang the others.
+   */
+  std::string
+  on_first_rank(MPI_Comm communicator, const std::function<std::string()> &action);
+} // namespace crawler

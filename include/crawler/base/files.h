@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace crawler
+{
+  /// Writes a whole file: first beside it under another name, then renamed, so that a file under its own name is always
+  /// complete. Throws FileError.
+  void
+  write_file(const std::filesystem::path &path, const std::string &content);
+} // namespace crawler

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/drivers/parameters.h>
+#include <crawler/parameters/parameter_file.h>
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// A parameter file, read and understood.
+  struct Input
+  {
+    ParameterFile file;
+    Parameters    parameters;
+    std::string   effective; ///< all entries as they are used, as a .prm file
+    Scene         scene;
+  };
+
+  /// Reads @p file_name on rank 0 and gives it to all (collective). Throws InputError or FileError, on all ranks.
+  Input
+  read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides);
+} // namespace crawler

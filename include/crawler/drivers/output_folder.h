@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace crawler
+{
+  /// The folder of a run: --output, or "output-NAME" for NAME.prm, in the present folder.
+  std::filesystem::path
+  output_folder(const std::string &option, const std::string &parameter_file);
+
+  /// Throws InputError if the folder has something in it that must not be overwritten, FileError if it is not a folder.
+  void
+  require_usable(const std::filesystem::path &folder, bool overwrite);
+
+  /// Makes the folder, without the results of an earlier run (only files that this program writes are removed).
+  void
+  prepare(const std::filesystem::path &folder);
+} // namespace crawler

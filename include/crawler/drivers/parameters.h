@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/discretization/discretization_parameters.h>
+#include <crawler/observers/output_parameters.h>
+#include <crawler/scene/active_stress_library.h>
+#include <crawler/scene/scene.h>
+#include <crawler/time/time_parameters.h>
+
+#include <string>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// All sections of the parameter file, in file order.
+  struct Parameters
+  {
+    std::string              model    = "nonlinear";
+    double                   accuracy = 1e-6;
+    Body                     body;
+    ActiveStressParameters   active_stress;
+    DiscretizationParameters discretization;
+    TimeParameters           time;
+    OutputParameters         output;
+
+    void
+    add_parameters(Declarations &declarations);
+
+    /// The physical problem. Throws InputError if entries do not fit together.
+    Scene
+    create_scene() const;
+  };
+} // namespace crawler

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/exceptions.h>
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// What the command line says besides the name of the command.
+  struct CommandOptions
+  {
+    std::string              file;
+    std::vector<std::string> overrides;
+    std::string              output;
+    bool                     overwrite = false;
+    bool                     quiet     = false;
+    std::string              command_line;
+  };
+
+  /// crawler run: one simulation with all its files (collective).
+  ExitCode
+  run(MPI_Comm communicator, const CommandOptions &options);
+
+  /// crawler check: says what run would do; nothing is run but the pilots that choose the mesh, nothing is written.
+  ExitCode
+  check(MPI_Comm communicator, const CommandOptions &options);
+} // namespace crawler

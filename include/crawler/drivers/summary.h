@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/drivers/parameters.h>
+#include <crawler/drivers/simulation.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// The text of summary.json. Its keys are a contract (doc/user_guide.md); what is not known is null.
+  std::string
+  summary_json(const SimulationResult &result,
+               const Parameters       &parameters,
+               const Discretization   &discretization,
+               const std::string      &command_line);
+
+  /// The same for people, in a few lines.
+  std::vector<std::string>
+  summary_lines(const SimulationResult &result, const Parameters &parameters);
+} // namespace crawler

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/observers/field_sampler.h>
+#include <crawler/observers/observer.h>
+
+#include <filesystem>
+#include <vector>
+
+namespace crawler
+{
+  /// Collects the snapshots at equidistant points of the body and writes them as one structured grid over s and t
+  /// (kymograph.vts: x is s/L, y is t/T) when the run ends.
+  class KymographWriter : public Observer
+  {
+  public:
+    KymographWriter(const Scene &scene, const Discretization &discretization, const std::filesystem::path &folder);
+
+    void
+    observe(const Snapshot &snapshot) override;
+    void
+    end() override;
+
+  private:
+    const Scene                &scene_;
+    const Discretization       &discretization_;
+    const std::filesystem::path folder_;
+    FieldSampler                sampler_;
+    std::vector<double>         times_;
+    std::vector<double>         rows_; ///< [time][field][point], on rank 0
+  };
+} // namespace crawler

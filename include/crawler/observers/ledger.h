@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <array>
+#include <deque>
+
+namespace crawler
+{
+  /// Integrals over time of rates that are known at the accepted steps.
+  struct Ledger
+  {
+    double stress_power   = 0.; ///< W = -int int m zeta_st ds dt, work of the active stress [energy]
+    double dissipation    = 0.; ///< Q = int int g v^2 ds dt [energy]
+    double positive_power = 0.; ///< int int max(-m zeta_st, 0) ds dt [energy]
+    double exchanged      = 0.; ///< int int |m zeta_st| ds dt [energy]
+    double end_work       = 0.; ///< int [m v] from s = 0 to L dt [energy]
+    double elastic_energy = 0.; ///< of the present state [energy]
+
+    /// int int m_s zeta_t ds dt, the energy of the paper [energy].
+    double
+    paper_energy() const
+    {
+      return stress_power + end_work;
+    }
+    /// |W - Q - (elastic energy)|/(exchanged work): 0 for the exact solution, which starts at rest [1].
+    double
+    residual() const;
+  };
+
+  /**
+   * Integrates rates over time as accurately as the time integrator: over each step the polynomial through the last
+   * (up to six) accepted points, i.e. the Adams-Moulton quadrature for variable steps. Where steps have just grown a
+   * lot, fewer points are used.
+   */
+  class RateQuadrature
+  {
+  public:
+    static constexpr unsigned int n_rates = 5;
+    using Rates                           = std::array<double, n_rates>;
+
+    /// Adds the rates at the next point in time and returns the increments of their integrals.
+    Rates
+    advance(double time, const Rates &rates);
+
+  private:
+    struct Point
+    {
+      double time;
+      Rates  rates;
+    };
+    std::deque<Point> points_; ///< newest first
+  };
+} // namespace crawler

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <optional>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// Section "Output": what is computed and written besides the displacement.
+  struct OutputParameters
+  {
+    unsigned int          n_snapshots = 50;
+    bool                  kymograph   = true;
+    bool                  statistics  = true;
+    bool                  ledger      = true;
+    std::optional<double> ledger_tolerance;
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+} // namespace crawler

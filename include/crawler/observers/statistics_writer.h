@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/observers/observer.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace crawler
+{
+  /// Writes statistics.csv: a row for each accepted step, units in the header. Rank 0 writes.
+  class StatisticsWriter : public Observer
+  {
+  public:
+    /// Throws FileError.
+    StatisticsWriter(const Scene &scene, const Discretization &discretization, const std::filesystem::path &folder, bool with_ledger);
+
+    void
+    observe(const Snapshot &snapshot) override;
+    void
+    end() override;
+
+  private:
+    const Scene                &scene_;
+    const bool                  writes_, with_ledger_;
+    const std::filesystem::path path_;
+    std::ofstream               out_;
+  };
+} // namespace crawler

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/observers/field_sampler.h>
+#include <crawler/observers/observer.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /**
+   * Writes each snapshot as solution/NUMBER.vtu and keeps solution.pvd up to date, so that what is written is a complete
+   * animation at any moment. A cell of degree q is written as q lines; the stretch is not averaged between cells. In
+   * ParaView "Warp By Vector" of the displacement shows the moving body.
+   */
+  class VtuWriter : public Observer
+  {
+  public:
+    VtuWriter(const Scene &scene, const Discretization &discretization, const std::filesystem::path &folder);
+
+    void
+    observe(const Snapshot &snapshot) override;
+
+  private:
+    const Discretization                       &discretization_;
+    const std::filesystem::path                 folder_;
+    FieldSampler                                sampler_;
+    std::vector<std::pair<double, std::string>> record_;
+  };
+} // namespace crawler

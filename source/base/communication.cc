@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
+
+namespace crawler
+{
+  unsigned int
+  rank_of(MPI_Comm communicator)
+  {
+    int rank = 0;
+    MPI_Comm_rank(communicator, &rank);
+    return static_cast<unsigned int>(rank);
+  }
+
+  unsigned int
+  size_of(MPI_Comm communicator)
+  {
+    int size = 1;
+    MPI_Comm_size(communicator, &size);
+    return static_cast<unsigned int>(size);
+  }
+
+  std::string
+  broadcast(const std::string &text, MPI_Comm communicator)
+  {
+    unsigned long length = text.size();
+    MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, 0, communicator);
+    std::string result = text;
+    result.resize(length);
+    MPI_Bcast(result.data(), static_cast<int>(length), MPI_CHAR, 0, communicator);
+    return result;
+  }
+
+  std::string
+  on_first_rank(MPI_Comm communicator, const std::function<std::string()> &action)
+  {
+    std::string kind = "done", text, entry;
+    if (rank_of(communicator) == 0)
+      try
+        {
+          text = action();
+        }
+      catch (const InputError &error)
+        {
+          kind  = "input";
+          text  = error.what();
+          entry = error.entry;
+        }
+      catch (const FileError &error)
+        {
+          kind = "file";
+          text = error.what();
+        }
+    kind  = broadcast(kind, communicator);
+    text  = broadcast(text, communicator);
+    entry = broadcast(entry, communicator);
+    if (kind == "input")
+      throw InputError(text, entry);
+    if (kind == "file")
+      throw FileError(text, /*on_all_ranks=*/true);
+    return text;
+  }
+} // namespace crawler

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/versions.h>
+
+#include <deal.II/base/config.h>
+
+#include <fmt/format.h>
+#include <mpi.h>
+#include <petscversion.h>
+
+namespace crawler
+{
+  std::map<std::string, std::string>
+  versions()
+  {
+    return {{"crawler", CRAWLER_VERSION},
+            {"revision", CRAWLER_REVISION},
+            {"deal.II", DEAL_II_PACKAGE_VERSION},
+            {"PETSc", fmt::format("{}.{}.{}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR)},
+            {"MPI", fmt::format("{}.{}", MPI_VERSION, MPI_SUBVERSION)}};
+  }
+} // namespace crawler

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
+#include <crawler/base/files.h>
+#include <crawler/base/stop_signal.h>
+#include <crawler/drivers/input.h>
+#include <crawler/drivers/log.h>
+#include <crawler/drivers/numerics_choice.h>
+#include <crawler/drivers/output_folder.h>
+#include <crawler/drivers/progress.h>
+#include <crawler/drivers/run.h>
+#include <crawler/drivers/simulation.h>
+#include <crawler/drivers/summary.h>
+#include <crawler/observers/kymograph_writer.h>
+#include <crawler/observers/statistics_writer.h>
+#include <crawler/observers/vtu_writer.h>
+
+#include <fmt/format.h>
+#include <petscsys.h>
+
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    /// n equal parts of (0, end_time].
+    std::vector<double>
+    frame_times(const unsigned int n, const double end_time)
+    {
+      std::vector<double> times;
+      for (unsigned int i = 1; i <= n; ++i)
+        times.push_back(i == n ? end_time : end_time * i / n);
+      return times;
+    }
+
+    /// The lines that say what will be computed.
+    void
+    report_plan(Log &log, const Input &input, const NumericsChoice &choice)
+    {
+      const Parameters &p = input.parameters;
+      log.line(fmt::format("Model {}: body L = {:g}, k = {:g}, gamma = {:g}, p = {:g} (a = {:g}), end time {:g}",
+                           p.model,
+                           p.body.length,
+                           p.body.elastic_modulus,
+                           p.body.friction_coefficient,
+                           p.body.anchoring_exponent,
+                           p.body.friction_exponent(),
+                           p.time.end_time));
+      std::ostringstream wave;
+      input.scene.active_stress->report(wave);
+      std::istringstream lines(wave.str());
+      log.line("Active stress: " + p.active_stress.generator);
+      for (std::string line; std::getline(lines, line);)
+        log.line("  " + line);
+      const Numerics &n = choice.numerics;
+      log.line(fmt::format("Mesh: {} cells of degree {}, {} unknowns. Time: {}{}, tolerance {:.3g}.",
+                           n.n_cells,
+                           n.degree,
+                           static_cast<std::size_t>(n.n_cells) * n.degree + 1,
+                           p.time.integrator,
+                           p.time.integrator == "bdf" ? fmt::format(" of order {}", p.time.order) : "",
+                           n.tolerance));
+      log.line("  (" + choice.explanation + ")");
+    }
+
+    /// PETSc options that nobody has looked at are most likely misspelt.
+    void
+    report_unused_options(Log &log)
+    {
+      PetscInt n     = 0;
+      char   **names = nullptr, **values = nullptr;
+      PetscOptionsLeftGet(nullptr, &n, &names, &values);
+      for (PetscInt i = 0; i < n; ++i)
+        log.line(fmt::format("Warning: nothing used the PETSc option -{}", names[i]));
+      PetscOptionsLeftRestore(nullptr, &n, &names, &values);
+    }
+
+    /// Names a run whose identities do not hold a failure.
+    void
+    check_identities(SimulationResult &result, const Parameters &parameters)
+    {
+      if (result.time.status != "finished" || !result.ledger)
+        return;
+      const bool   own_numerics = parameters.time.tolerance || parameters.time.integrator != "bdf" || parameters.time.order < 4 ||
+                                parameters.time.step_control == "fixed";
+      const double tolerance    = parameters.output.ledger_tolerance.value_or(
+        own_numerics ? 0.1 : std::max(1e-8, 10. * parameters.accuracy));
+      constexpr double friction_tolerance = 1e-6;
+      std::string      problem;
+      if (!(result.ledger->residual() <= tolerance))
+        {
+          result.time.reason  = "ledger_residual";
+          result.time.message = fmt::format("the ledger does not close: its residual is {:.3g}, above {:.3g}; a smaller "
+                                            "Time/Tolerance (or Accuracy) is needed",
+                                            result.ledger->residual(),
+                                            tolerance);
+        }
+      else if (!(result.net_friction <= friction_tolerance))
+        {
+          result.time.reason  = "net_friction";
+          result.time.message = fmt::format("the friction forces do not balance: {:.3g} of their sum is left over, above {:.3g}",
+                                            result.net_friction,
+                                            friction_tolerance);
+        }
+      else
+        return;
+      result.time.status = "failed";
+    }
+
+    ExitCode
+    exit_code(const TimeOutcome &outcome)
+    {
+      if (outcome.status == "finished")
+        return ExitCode::finished;
+      if (outcome.status == "inverted")
+        return ExitCode::inverted;
+      if (outcome.status == "stopped")
+        return ExitCode::stopped;
+      if (outcome.reason == "ledger_residual" || outcome.reason == "net_friction")
+        return ExitCode::self_check_failed;
+      return ExitCode::numerical_failure;
+    }
+  } // namespace
+
+
+  ExitCode
+  check(MPI_Comm communicator, const CommandOptions &options)
+  {
+    Log                  log(rank_of(communicator) == 0, /*quiet=*/false);
+    const Input          input  = read_input(communicator, options.file, options.overrides);
+    const NumericsChoice choice = choose_numerics(communicator, input.parameters, input.scene);
+    const Simulation     simulation(communicator, input.scene, input.parameters.time, choice.numerics);
+    report_plan(log, input, choice);
+    log.line(fmt::format("Output: {} snapshots{}{}{}, to \"{}\" unless --output is given.",
+                         input.parameters.output.n_snapshots,
+                         input.parameters.output.kymograph ? ", kymograph" : "",
+                         input.parameters.output.statistics ? ", statistics" : "",
+                         input.parameters.output.ledger ? ", ledger" : "",
+                         output_folder(options.output, options.file).string()));
+    log.line(options.file + " is in order; nothing was run or written.");
+    return ExitCode::finished;
+  }
+
+  ExitCode
+  run(MPI_Comm communicator, const CommandOptions &options)
+  {
+    const auto            start = std::chrono::steady_clock::now();
+    const bool            first = rank_of(communicator) == 0;
+    Log                   log(first, options.quiet);
+    const Input           input      = read_input(communicator, options.file, options.overrides);
+    const Parameters     &parameters = input.parameters;
+    const OutputParameters &output   = parameters.output;
+    const auto            folder     = output_folder(options.output, options.file);
+    on_first_rank(communicator, [&]() {
+      require_usable(folder, options.overwrite);
+      return "";
+    });
+
+    const NumericsChoice choice = choose_numerics(communicator, parameters, input.scene);
+    Simulation           simulation(communicator, input.scene, parameters.time, choice.numerics);
+
+    // Everything is in order: from here on there are files.
+    on_first_rank(communicator, [&]() {
+      prepare(folder);
+      if (output.n_snapshots > 0)
+        std::filesystem::create_directories(folder / "solution");
+      write_file(folder / "original.prm", input.file.text());
+      write_file(folder / "parameters.prm", input.effective);
+      log.open(folder / "log.txt");
+      return "";
+    });
+    report_plan(log, input, choice);
+
+    std::vector<std::unique_ptr<Observer>> observers;
+    if (output.n_snapshots > 0)
+      {
+        observers.push_back(std::make_unique<VtuWriter>(input.scene, simulation.discretization(), folder));
+        if (output.kymograph)
+          observers.push_back(std::make_unique<KymographWriter>(input.scene, simulation.discretization(), folder));
+      }
+    if (output.statistics)
+      observers.push_back(
+        std::make_unique<StatisticsWriter>(input.scene, simulation.discretization(), folder, output.ledger));
+    if (!options.quiet)
+      observers.push_back(std::make_unique<Progress>(log, input.scene));
+
+    const StopSignal stop_signal;
+    const double     setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    SimulationResult result        = simulation.run(frame_times(output.n_snapshots, parameters.time.end_time),
+                                             {.ledger = output.ledger, .resolution = false},
+                                             observers,
+                                             [&]() { return !stop_signal.arrived_anywhere(communicator); });
+    result.setup_seconds = setup_seconds;
+    if (result.time.status == "stopped" && result.time.reason.empty())
+      {
+        result.time.reason  = "signal";
+        result.time.message = fmt::format("stopped by a signal at t = {:.6g}", result.time.time);
+      }
+    check_identities(result, parameters);
+    report_unused_options(log);
+
+    on_first_rank(communicator, [&]() {
+      write_file(folder / "summary.json", summary_json(result, parameters, simulation.discretization(), options.command_line));
+      return "";
+    });
+    for (const std::string &line : summary_lines(result, parameters))
+      log.line(line);
+    if (first && result.time.status != "finished")
+      fmt::print(stderr, "crawler: {}: {}\n", result.time.reason, result.time.message);
+    log.line(output.n_snapshots > 0 ? fmt::format("Results are in {}/; open {} in ParaView.",
+                                                  folder.string(),
+                                                  (folder / "solution.pvd").string()) :
+                                      fmt::format("Results are in {}/.", folder.string()));
+    return exit_code(result.time);
+  }
+} // namespace crawler

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/versions.h>
+#include <crawler/drivers/summary.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace crawler
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+
+    Json
+    extreme(const SimulationResult::Extreme &e)
+    {
+      return {{"value", e.value}, {"s", e.s}, {"t", e.t}};
+    }
+  } // namespace
+
+  std::string
+  summary_json(const SimulationResult &result,
+               const Parameters       &parameters,
+               const Discretization   &discretization,
+               const std::string      &command_line)
+  {
+    const auto ledger = [&](auto value) { return result.ledger ? Json(value(*result.ledger)) : Json(nullptr); };
+    Json       json;
+    json["status"]             = result.time.status;
+    json["reason"]             = result.time.status == "finished" ? Json(nullptr) : Json(result.time.reason);
+    json["message"]            = result.time.status == "finished" ? Json(nullptr) : Json(result.time.message);
+    json["displacement"]       = result.displacement;
+    json["displacement_error"] = {{"total", nullptr}, {"space", nullptr}, {"time", nullptr}, {"model", nullptr}};
+    json["end_time"]           = result.time.time;
+    json["model"]              = parameters.model;
+    json["stress_power"]       = ledger([](const Ledger &l) { return l.stress_power; });
+    json["dissipation"]        = ledger([](const Ledger &l) { return l.dissipation; });
+    json["elastic_energy"]     = ledger([](const Ledger &l) { return l.elastic_energy; });
+    json["ledger_residual"]    = ledger([](const Ledger &l) { return l.residual(); });
+    json["paper_energy"]       = ledger([](const Ledger &l) { return l.paper_energy(); });
+    json["positive_power"]     = ledger([](const Ledger &l) { return l.positive_power; });
+    json["net_friction"]       = result.ledger ? Json(result.net_friction) : Json(nullptr);
+    json["min_stretch"]        = extreme(result.min_stretch);
+    json["max_stretch"]        = extreme(result.max_stretch);
+    json["inversion"]          = result.inversion ? extreme(*result.inversion) : Json(nullptr);
+    json["cells"]              = discretization.n_cells();
+    json["degree"]             = discretization.element().degree;
+    json["degrees_of_freedom"] = discretization.n_unknowns();
+    json["steps"]              = result.time.steps;
+    json["rejected_steps"]     = result.time.rejected_steps;
+    json["newton_iterations"]  = result.time.newton_iterations;
+    json["ranks"]              = discretization.n_ranks();
+    json["seconds"]            = {{"setup", result.setup_seconds}, {"solve", result.solve_seconds}, {"output", result.output_seconds}};
+    json["versions"]           = versions();
+    json["command_line"]       = command_line;
+    return json.dump(2) + "\n";
+  }
+
+  std::vector<std::string>
+  summary_lines(const SimulationResult &result, const Parameters &)
+  {
+    std::vector<std::string> lines;
+    const auto              &time = result.time;
+    lines.push_back(fmt::format("{} at t = {:g} after {} steps ({} rejected), {:.3g} s",
+                                time.status == "finished" ? "Finished" :
+                                time.status == "inverted" ? "Inverted" :
+                                time.status == "stopped"  ? "Stopped" :
+                                                            "FAILED (" + time.reason + ")",
+                                time.time,
+                                time.steps,
+                                time.rejected_steps,
+                                result.solve_seconds + result.output_seconds));
+    lines.push_back(fmt::format("  displacement      {:.10g}", result.displacement));
+    if (result.ledger)
+      {
+        lines.push_back(fmt::format("  stress power      {:.10g}", result.ledger->stress_power));
+        lines.push_back(fmt::format("  dissipation       {:.10g}", result.ledger->dissipation));
+        lines.push_back(fmt::format("  ledger residual   {:.2e} (relative), net friction {:.2e} (relative)",
+                                    result.ledger->residual(),
+                                    result.net_friction));
+      }
+    lines.push_back(fmt::format("  stretch           {:.4g} (s = {:.4g}, t = {:.4g}) to {:.4g} (s = {:.4g}, t = {:.4g})",
+                                result.min_stretch.value,
+                                result.min_stretch.s,
+                                result.min_stretch.t,
+                                result.max_stretch.value,
+                                result.max_stretch.s,
+                                result.max_stretch.t));
+    return lines;
+  }
+} // namespace crawler

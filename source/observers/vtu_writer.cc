@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+#include <crawler/observers/vtu_writer.h>
+
+#include <deal.II/base/data_out_base.h>
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    using NonscalarRange =
+      std::tuple<unsigned int, unsigned int, std::string, dealii::DataComponentInterpretation::DataComponentInterpretation>;
+
+    /// Hands our patches to deal.II's writers.
+    class PatchOutput : public dealii::DataOutInterface<1, 1>
+    {
+    public:
+      std::vector<dealii::DataOutBase::Patch<1, 1>> patches;
+
+    private:
+      const std::vector<dealii::DataOutBase::Patch<1, 1>> &
+      get_patches() const override
+      {
+        return patches;
+      }
+      std::vector<std::string>
+      get_dataset_names() const override
+      {
+        return {"displacement", "displacement", "displacement", "position", "stretch", "velocity",
+                "active_stress", "elastic_stress", "friction_force"};
+      }
+      std::vector<NonscalarRange>
+      get_nonscalar_data_ranges() const override
+      {
+        return {{0, 2, "displacement", dealii::DataComponentInterpretation::component_is_part_of_vector}};
+      }
+    };
+
+    std::vector<FieldSampler::Point>
+    line_points(const Discretization &discretization)
+    {
+      const unsigned int               q = discretization.element().degree;
+      std::vector<FieldSampler::Point> points;
+      for (unsigned int c = 0; c < discretization.n_local_cells(); ++c)
+        for (unsigned int i = 0; i <= q; ++i)
+          points.push_back({c, static_cast<double>(i) / q});
+      return points;
+    }
+  } // namespace
+
+  VtuWriter::VtuWriter(const Scene &scene, const Discretization &discretization, const std::filesystem::path &folder)
+    : discretization_(discretization)
+    , folder_(folder)
+    , sampler_(scene, discretization, line_points(discretization))
+  {}
+
+  void
+  VtuWriter::observe(const Snapshot &snapshot)
+  {
+    if (!snapshot.is_frame)
+      return;
+    const Fields      &fields = sampler_.sample(snapshot.step.time, snapshot.u, snapshot.v);
+    const unsigned int n = discretization_.element().n, n_cells = discretization_.n_local_cells();
+
+    PatchOutput output;
+    output.patches.resize(n_cells);
+    for (unsigned int c = 0; c < n_cells; ++c)
+      {
+        auto        &patch = output.patches[c];
+        const double left  = discretization_.cell_left()[c];
+        patch.vertices[0]    = dealii::Point<1>(left);
+        patch.vertices[1]    = dealii::Point<1>(left + discretization_.cell_size()[c]);
+        patch.patch_index    = c;
+        patch.n_subdivisions = n - 1;
+        patch.reference_cell = dealii::ReferenceCells::Line;
+        patch.data.reinit(9, n);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const std::size_t p = static_cast<std::size_t>(c) * n + i;
+            patch.data(0, i)    = fields.displacement[p];
+            patch.data(1, i)    = 0.;
+            patch.data(2, i)    = 0.;
+            patch.data(3, i)    = fields.position[p];
+            patch.data(4, i)    = fields.stretch[p];
+            patch.data(5, i)    = fields.velocity[p];
+            patch.data(6, i)    = fields.active_stress[p];
+            patch.data(7, i)    = fields.elastic_stress[p];
+            patch.data(8, i)    = fields.friction_force[p];
+          }
+      }
+    dealii::DataOutBase::VtkFlags flags;
+    flags.time  = snapshot.step.time;
+    flags.cycle = snapshot.step.number;
+    output.set_flags(flags);
+
+    const std::string name = fmt::format("solution/{:06}.vtu", record_.size());
+    if (discretization_.n_ranks() == 1)
+      {
+        std::ostringstream text;
+        output.write_vtu(text);
+        write_file(folder_ / name, text.str());
+      }
+    else
+      output.write_vtu_in_parallel((folder_ / name).string(), discretization_.communicator());
+    record_.emplace_back(snapshot.step.time, name);
+    if (discretization_.rank() == 0)
+      {
+        std::ostringstream text;
+        dealii::DataOutBase::write_pvd_record(text, record_);
+        write_file(folder_ / "solution.pvd", text.str());
+      }
+  }
+} // namespace crawler
