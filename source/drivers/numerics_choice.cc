@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/drivers/numerics_choice.h>
+#include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
 
@@ -13,11 +14,13 @@ namespace crawler
   {
     // The constants of the rule; doc/numerics.md says how they were found.
     constexpr unsigned int automatic_degree = 6;
-    constexpr unsigned int fewest_cells = 4, most_cells = 2048;
-    /// Error of the displacement in space, relative, is about this times `unresolved` of the mesh.
+    constexpr unsigned int fewest_cells = 4, most_cells = 4096;
+    /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
+    constexpr double resolved = 1e-3;
+    /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
     constexpr double space_factor = 1.;
-    /// Error of the displacement in time is at most this times the tolerance.
-    constexpr double time_factor = 10.;
+    /// Error of the displacement in time is below this times the number of steps times the tolerance.
+    constexpr double time_factor = 0.25;
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;
 
@@ -66,56 +69,68 @@ namespace crawler
       }
 
     TimeParameters pilot_time = parameters.time;
-    pilot_time.integrator     = "bdf";
-    pilot_time.order          = 5;
     pilot_time.step_control   = "adaptive";
     pilot_time.petsc_prefix   = "pilot_"; // options after "--" are for the real run
-    double           scale    = displacement_scale(scene);
-    if (scale == 0.)
-      scale = L;
-    double           tolerance = 1e-3 * scale;
-    unsigned int     n_cells   = user_cells.value_or(fewest_cells);
-    double           size = 0., space_error = 0.;
+    const double guess = displacement_scale(scene), scale = guess > 0. ? guess : L;
+
+    double           tolerance = 1e-3 * scale, size = 0.;
+    unsigned int     n_cells = user_cells.value_or(fewest_cells), n_pilots = 0;
     SimulationResult pilot;
-    unsigned int     n_pilots = 0;
-    for (; n_pilots < 20; ++n_pilots)
+    bool             good = false;
+    while (!good && n_pilots < 20)
       {
         Simulation simulation(communicator, scene, pilot_time, {q, n_cells, tolerance, 1e-5 * T});
         pilot = simulation.run({}, {.ledger = false, .resolution = true});
-        if (pilot.time.status != "finished")
+        ++n_pilots;
+        const bool finished = pilot.time.status == "finished";
+        size                = std::max(std::abs(pilot.displacement), displacement_floor * pilot.largest_u);
+        const bool resolves = user_cells || pilot.unresolved <= std::max(resolved, accuracy) || n_cells >= most_cells;
+        // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
+        if (!finished && !user_cells && n_cells < 64)
           {
-            // Too coarse a mesh can look like an inversion; a finer one tells. Then the real run will name it.
-            if (user_cells || n_cells >= 64)
-              break;
             n_cells *= 2;
-            continue;
+            tolerance *= 0.1;
           }
-        size = std::max(std::abs(pilot.displacement), displacement_floor * pilot.largest_u);
-        if (size > 0. && tolerance > 0.03 * size)
-          {
-            tolerance = std::max(0.01 * size, 1e-3 * tolerance);
-            continue;
-          }
-        // The error of the displacement decreases as (cell size)^(2q), `unresolved` as (cell size)^(2q-2).
-        const double margin = space_factor * pilot.unresolved / accuracy;
-        space_error         = space_factor * pilot.unresolved;
-        if (user_cells || margin <= 1. || n_cells == most_cells)
-          break;
-        const double factor = q > 1 ? std::pow(margin, 1. / (2. * q - 2.)) : 4.;
-        n_cells = std::min(most_cells, std::max(n_cells + 1, static_cast<unsigned int>(std::ceil(n_cells * std::min(factor, 4.)))));
+        else if (finished && !resolves)
+          n_cells = std::min(most_cells, 2 * n_cells);
+        else if (finished && size > 0. && tolerance > 0.03 * size)
+          tolerance = std::max(0.01 * size, 1e-3 * tolerance);
+        else
+          good = true;
       }
-    numerics.n_cells = n_cells;
+    const bool predicts = pilot.time.status == "finished";
     if (size == 0.)
       size = scale;
-    numerics.tolerance = user_tolerance.value_or(std::max(accuracy * size / time_factor, 1e-15 * scale));
+
+    // `unresolved` goes down as (cell size)^(2q-2); the error of the displacement as (cell size)^(2q).
+    numerics.n_cells = n_cells;
+    if (!user_cells && predicts)
+      {
+        const double ratio = std::max(space_factor * pilot.unresolved / accuracy, 0.);
+        numerics.n_cells   = std::clamp(static_cast<unsigned int>(std::ceil(n_cells * std::pow(ratio, 1. / std::max(2. * q - 2., 1.)))),
+                                      fewest_cells,
+                                      most_cells);
+      }
+    // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy * size.
+    const unsigned int nominal = integrator(parameters.time.integrator).order;
+    const double       r       = 1. / (1. + (nominal > 0 ? nominal : parameters.time.order));
+    const double       wanted  = accuracy * size / (time_factor * std::max(pilot.time.steps, 1u) * std::pow(tolerance, r));
+    numerics.tolerance = user_tolerance.value_or(std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance), 1e-15 * scale));
     choice.pilot_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    choice.explanation =
-      fmt::format("for Accuracy {:g}: displacement about {:.3g}, space error predicted below {:.2g}, {} pilot runs",
-                  accuracy,
-                  pilot.displacement,
-                  space_error,
-                  n_pilots + 1);
+    choice.explanation = predicts ?
+                           fmt::format("for Accuracy {:g}; from {} pilot runs with up to {} cells: displacement about {:.3g}, "
+                                       "unresolved part of the strain {:.1e}",
+                                       accuracy,
+                                       n_pilots,
+                                       n_cells,
+                                       pilot.displacement,
+                                       std::sqrt(pilot.unresolved)) :
+                           fmt::format("for Accuracy {:g}; the last of {} pilot runs, with {} cells, ended early: {}",
+                                       accuracy,
+                                       n_pilots,
+                                       n_cells,
+                                       pilot.time.message);
     return choice;
   }
 } // namespace crawler

@@ -11,6 +11,9 @@ namespace crawler
 {
   namespace
   {
+    /// A stretch below this is lost: nothing that is computed from it has a digit left.
+    constexpr double lost = 1e-12;
+
     double
     now()
     {
@@ -115,7 +118,7 @@ namespace crawler
                       fmt::format("the stretch at s = {:.6g}, t = {:.6g} is not a finite number", stretch_.min.s, step.time)};
         return false;
       }
-    if (stretch_.min.value <= 0.)
+    if (stretch_.min.value <= lost)
       {
         // The place is known; the time by linear interpolation within the step.
         const double w0 = previous_min_stretch_, w1 = stretch_.min.value;
@@ -140,6 +143,17 @@ namespace crawler
           }
         integrals_           = assembler_.integrals(step.time, u, v_);
         result_.displacement = integrals_.displacement / scene_.body.length;
+        if (!std::isfinite(integrals_.dissipation))
+          {
+            diagnosis_ = {"failed",
+                          "nonfinite",
+                          fmt::format("the velocity at t = {:.6g} is not a finite number; the smallest stretch is {:.3g} at "
+                                      "s = {:.6g}",
+                                      step.time,
+                                      stretch_.min.value,
+                                      stretch_.min.s)};
+            return false;
+          }
       }
     if (options.ledger)
       {

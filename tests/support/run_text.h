@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/drivers/input.h>
+#include <crawler/drivers/numerics_choice.h>
+#include <crawler/drivers/simulation.h>
+#include <crawler/parameters/declarations.h>
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crawler::test
+{
+  using Settings = std::vector<std::pair<std::string, std::string>>;
+
+  /// A value as it stands in a parameter file.
+  inline std::string
+  text(const double value)
+  {
+    return to_text(value);
+  }
+
+  /// Parameters with some entries set by their full names.
+  inline Parameters
+  parameters_with(const Settings &settings)
+  {
+    ParameterFile file = ParameterFile::from_text("set Model = nonlinear", "test");
+    for (const auto &[entry, value] : settings)
+      file.add_override(entry + "=" + value);
+    Parameters   parameters;
+    Declarations declarations;
+    parameters.add_parameters(declarations);
+    file.apply(declarations);
+    return parameters;
+  }
+
+  struct Outcome
+  {
+    SimulationResult result;
+    NumericsChoice   choice;
+  };
+
+  /// What `crawler run` computes with these parameters, without files.
+  inline Outcome
+  run_with(const Parameters &parameters, const Simulation::Options &options = {.ledger = true})
+  {
+    const Scene scene = parameters.create_scene();
+    Outcome     outcome;
+    outcome.choice = choose_numerics(MPI_COMM_WORLD, parameters, scene);
+    Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, outcome.choice.numerics);
+    outcome.result = simulation.run({}, options);
+    return outcome;
+  }
+
+  inline Outcome
+  run_with(const Settings &settings, const Simulation::Options &options = {.ledger = true})
+  {
+    return run_with(parameters_with(settings), options);
+  }
+
+  /// The optimal wave with one harmonic a_1 = 1, L = gamma = 1.
+  inline Settings
+  wave(const double a, const double chi, const double speed = 1., const double end_time = 1., const double k = 1.)
+  {
+    return {{"Body/Anchoring exponent", text(1. - a)},
+            {"Body/Elastic modulus", text(k)},
+            {"Active stress/Optimal wave/Perturbation parameter", text(chi)},
+            {"Active stress/Optimal wave/Choose wave by", "wave speed"},
+            {"Active stress/Optimal wave/Wave speed", text(speed)},
+            {"Time/End time", text(end_time)}};
+  }
+} // namespace crawler::test
