@@ -101,8 +101,8 @@ def expression_stress(expression):
     return lambda s, t: (eval(code, {"__builtins__": {}}, dict(names, s=s, t=t)) + 0.0 * s, None)
 
 
-def extreme(polynomial, to_fine_s, t_nodes, values, i, sign):
-    """Largest sign*w of one step near its node i, in its space-time polynomial through values (q+1, N+1)."""
+def extreme(polynomial, to_fine_s, t_nodes, values, sign):
+    """Largest sign*w of one step, in its space-time polynomial through values (q+1, N+1): best s for the best t."""
     in_time, fine_s = BarycentricInterpolator(t_nodes, values), np.linspace(*polynomial.xi[[0, -1]], to_fine_s.shape[1])
 
     def largest(function, low, high):
@@ -115,7 +115,7 @@ def extreme(polynomial, to_fine_s, t_nodes, values, i, sign):
         j = (polynomial.yi[:, 0] @ to_fine_s).argmax()
         return largest(lambda s: float(polynomial(s)), fine_s[max(j - 1, 0)], fine_s[min(j + 1, len(fine_s) - 1)])
 
-    return largest(peak, t_nodes[max(i - 1, 0)], t_nodes[min(i + 1, len(t_nodes) - 1)])
+    return largest(peak, t_nodes[0], t_nodes[-1])
 
 
 def solve(stress, exponent, end_time, elastic_modulus=1.0, friction=1.0, length=1.0, points=48, stages=6,
@@ -186,9 +186,8 @@ def solve(stress, exponent, end_time, elastic_modulus=1.0, friction=1.0, length=
         end_work += in_time @ (m[:, -1] * v[:, -1] - m[:, 0] * v[:, 0])
         times = t + h * radau.times
         for sign in extremes:
-            i, j = np.unravel_index((sign * fine).argmax(), fine.shape)
-            if sign * fine[i, j] > extremes[sign] - 2e-3:
-                extremes[sign] = max(extremes[sign], extreme(polynomial, to_fine_s, times, history, i, sign))
+            if (sign * fine).max() > extremes[sign] - 2e-3:
+                extremes[sign] = max(extremes[sign], extreme(polynomial, to_fine_s, times, history, sign))
         w, t, steps = W[-1], end_time if end_time - t <= h else t + h, steps + 1
         h *= min(3.0, 0.8 * (time_tolerance / max(error, 1e-30)) ** (1 / stages))
     return {"displacement": total[0] / length, "stress_power": total[2] - end_work, "dissipation": total[1],

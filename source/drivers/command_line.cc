@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
+#include <crawler/base/nearest_name.h>
+#include <crawler/base/petsc_object.h>
 #include <crawler/base/versions.h>
 #include <crawler/drivers/command_line.h>
 #include <crawler/drivers/parameters.h>
@@ -14,6 +16,8 @@
 #include <algorithm>
 #include <cstring>
 #include <iostream>
+#include <memory>
+#include <optional>
 
 namespace crawler
 {
@@ -54,8 +58,51 @@ namespace crawler
       return 0;
     }
 
+    /// The first option that the command does not know, with the nearest that it does.
+    std::string
+    unknown_argument(const CLI::App &app, const std::vector<std::string> &arguments)
+    {
+      const CLI::App          *command = &app;
+      std::vector<std::string> known;
+      if (!app.get_subcommands().empty())
+        command = app.get_subcommands().front();
+      for (const CLI::Option *option : command->get_options())
+        for (const std::string &name : option->get_lnames())
+          known.push_back("--" + name);
+      for (const std::string &argument : arguments)
+        {
+          const std::string name = argument.substr(0, argument.find('='));
+          if (name.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end())
+            {
+              const auto near = nearest_names(name, known, 1);
+              return fmt::format("unknown option \"{}\"{}", name, near.empty() ? "" : "; the nearest is " + quoted_list(near));
+            }
+        }
+      return "";
+    }
+
+    /// Throws InputError unless the first argument is a command or an option.
+    void
+    require_command(const CLI::App &app, const std::vector<std::string> &arguments)
+    {
+      std::vector<std::string> names;
+      for (const CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
+        names.push_back(command->get_name());
+      if (arguments.empty())
+        throw InputError("the command is missing; " + quoted_list(names) + " is expected (see crawler --help)");
+      if (arguments[0].starts_with("-") || std::find(names.begin(), names.end(), arguments[0]) != names.end())
+        return;
+      const auto near = nearest_names(arguments[0], names, 1);
+      throw InputError(fmt::format("unknown command \"{}\"; {} is expected{}",
+                                   arguments[0],
+                                   quoted_list(names),
+                                   near.empty() ? "" : "; the nearest is " + quoted_list(near)));
+    }
+
     int
-    dispatch(MPI_Comm communicator, const std::vector<std::string> &arguments)
+    dispatch(MPI_Comm                        communicator,
+             const std::vector<std::string> &arguments,
+             const std::vector<std::string> &petsc_options)
     {
       const bool first = rank_of(communicator) == 0;
       CLI::App   app("Crawler: the limbless crawler, a body that pushes itself along by waves of active stress.", "crawler");
@@ -65,6 +112,8 @@ namespace crawler
 
       CommandOptions options;
       options.command_line = fmt::format("crawler {}", fmt::join(arguments, " "));
+      if (!petsc_options.empty())
+        options.command_line += fmt::format(" -- {}", fmt::join(petsc_options, " "));
       const auto common    = [&](CLI::App *command) {
         command->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();
         command->add_option("--set", options.overrides, "Sets an entry: \"Section/Entry=value\" (repeatable)")
@@ -84,6 +133,11 @@ namespace crawler
       parameter_command->add_option("--format", format, "prm, json or markdown")
         ->check(CLI::IsMember({"prm", "json", "markdown"}));
 
+      require_command(app, arguments);
+      if (!petsc_options.empty() && !petsc_options[0].starts_with("-"))
+        throw InputError("behind \"--\" stands \"" + petsc_options[0] +
+                         "\", but a PETSc option is expected, like -ts_monitor");
+
       std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
       try
         {
@@ -95,10 +149,8 @@ namespace crawler
         }
       catch (const CLI::ParseError &error)
         {
-          return report_error(communicator,
-                              ExitCode::bad_input,
-                              std::string(error.what()) + " (crawler --help tells the commands and options)",
-                              /*on_all_ranks=*/true);
+          const std::string unknown = unknown_argument(app, arguments);
+          throw InputError((unknown.empty() ? error.what() : unknown) + " (crawler --help tells the commands and options)");
         }
       if (*parameter_command)
         return first ? print_parameters(format) : 0;
@@ -112,20 +164,34 @@ namespace crawler
     // What stands behind "--" is for PETSc, everything before it for us.
     char **separator = std::find_if(argv, argv + argc, [](const char *text) { return std::strcmp(text, "--") == 0; });
     const std::vector<std::string> arguments(argv + 1, separator);
-    std::vector<char *>            petsc_arguments = {argv[0]};
-    static char                    no_signal_handler[] = "-no_signal_handler";
-    petsc_arguments.push_back(no_signal_handler);
-    if (separator != argv + argc)
-      petsc_arguments.insert(petsc_arguments.end(), separator + 1, argv + argc);
+    const std::vector<std::string> petsc_options(separator == argv + argc ? separator : separator + 1, argv + argc);
+    static char                    no_signal_handler[] = "-no_signal_handler", yes[] = "true";
+    std::vector<char *>            petsc_arguments = {argv[0], no_signal_handler, yes};
+    petsc_arguments.insert(petsc_arguments.end(), argv + argc - petsc_options.size(), argv + argc);
     int    petsc_argc = static_cast<int>(petsc_arguments.size());
     petsc_arguments.push_back(nullptr);
     char **petsc_argv = petsc_arguments.data();
 
-    const dealii::Utilities::MPI::MPI_InitFinalize guard(petsc_argc, petsc_argv, /*max_num_threads=*/1);
-    MPI_Comm communicator = MPI_COMM_WORLD;
+    MPI_Comm                                                        communicator = MPI_COMM_WORLD;
+    std::unique_ptr<const dealii::Utilities::MPI::MPI_InitFinalize> guard;
+    std::optional<PetscErrorWords>                                  petsc_error(std::in_place);
     try
       {
-        return dispatch(communicator, arguments);
+        guard = std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(petsc_argc, petsc_argv, /*max_num_threads=*/1);
+      }
+    catch (const std::exception &)
+      {
+        report_error(communicator,
+                     ExitCode::bad_input,
+                     "PETSc refuses an option behind \"--\": " + petsc_error->text,
+                     /*on_all_ranks=*/true);
+        MPI_Finalize();
+        return static_cast<int>(ExitCode::bad_input);
+      }
+    petsc_error.reset();
+    try
+      {
+        return dispatch(communicator, arguments, petsc_options);
       }
     catch (const InputError &error)
       {

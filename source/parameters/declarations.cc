@@ -347,6 +347,8 @@ namespace crawler
             else if (!nearest_names(words.back(), {other.back()}).empty())
               elsewhere.push_back(e.path);
           }
+        if (std::find(sections_.begin(), sections_.end(), full) != sections_.end())
+          throw InputError(fmt::format("\"{}\" is a section; the name of an entry in it is expected", full), full);
         std::vector<std::string> near = nearest_names(words.back(), same_section);
         if (near.empty())
           near.assign(elsewhere.begin(), elsewhere.begin() + std::min<std::size_t>(3, elsewhere.size()));
@@ -357,7 +359,8 @@ namespace crawler
                                      where,
                                      near.empty() ?
                                        "entries there are " + quoted_list(same_section) :
-                                       "the nearest names are " + quoted_list(near)),
+                                       "the nearest " + std::string(near.size() > 1 ? "names are " : "name is ") +
+                                         quoted_list(near)),
                          full);
       }
     for (std::size_t i = 0; i + 1 < words.size(); ++i)

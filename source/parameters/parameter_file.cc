@@ -148,6 +148,8 @@ namespace crawler
           {
             if (depth == 10)
               throw InputError(fmt::format("{}: files include each other more than 10 deep", place));
+            if (rest.empty())
+              throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
             const auto file = (std::filesystem::path(name).parent_path() / rest).string();
             std::string included;
             try

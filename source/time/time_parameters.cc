@@ -63,7 +63,12 @@ namespace crawler
         if (!reason.empty())
           throw InputError(fmt::format("the integrator \"{}\" is refused: {}; {} is expected", integrator, reason, quoted_list(names)),
                            "Time/Integrator");
-        throw InputError(fmt::format("unknown integrator \"{}\"; {} is expected", integrator, quoted_list(names)), "Time/Integrator");
+        const auto near = nearest_names(integrator, names, 1);
+        throw InputError(fmt::format("unknown integrator \"{}\"; {} is expected{}",
+                                     integrator,
+                                     quoted_list(names),
+                                     near.empty() ? "" : "; the nearest is " + quoted_list(near)),
+                         "Time/Integrator");
       }
     if (step_control == "fixed" && !initial_step)
       throw InputError("Step control is fixed, but the size of the steps is missing: a number is expected for Initial step",

@@ -215,7 +215,15 @@ namespace crawler
     petsc(PCShellSetSetUp(pc, set_up_preconditioner));
     petsc(PCShellSetApply(pc, precondition));
 
-    petsc(TSSetFromOptions(stepper));
+    PetscErrorCode code = 0;
+    std::string    words;
+    {
+      PetscErrorWords error;
+      code  = TSSetFromOptions(stepper);
+      words = error.text;
+    }
+    if (code != 0)
+      throw InputError("PETSc refuses an option behind \"--\": " + words);
 
     TSType type = nullptr;
     petsc(TSGetType(stepper, &type));

@@ -22,6 +22,31 @@ namespace crawler
                              (text != nullptr ? text : "without a message"));
   }
 
+  /// Keeps the words of PETSc's errors instead of printing them with their stack, as long as this lives.
+  class PetscErrorWords
+  {
+  public:
+    PetscErrorWords()
+    {
+      PetscPushErrorHandler(keep, this);
+    }
+    PetscErrorWords(const PetscErrorWords &) = delete;
+    ~PetscErrorWords()
+    {
+      PetscPopErrorHandler();
+    }
+    std::string text;
+
+  private:
+    static PetscErrorCode
+    keep(MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type, const char *message, void *context)
+    {
+      if (type == PETSC_ERROR_INITIAL && message != nullptr)
+        static_cast<PetscErrorWords *>(context)->text = message;
+      return code;
+    }
+  };
+
   /// Destroys one reference to a PETSc object.
   template <typename Handle>
   struct PetscDestroy

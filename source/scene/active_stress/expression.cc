@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/expression.h>
 
@@ -59,6 +60,57 @@ namespace crawler
       double              s_ = 0., t_ = 0.;
       mu::Parser          parser_;
     };
+
+    /// What muParser has against a formula, as one sentence with a position that counts from 1.
+    std::string
+    in_words(const mu::ParserError &error, const std::string &formula)
+    {
+      std::string problem = error.GetMsg();
+      if (error.GetCode() == mu::ecINTERNAL_ERROR)
+        problem = "the formula is not complete";
+      // muParser's own positions count from 0.
+      for (const char *position : {" found at position", " at expression position", " at position"})
+        problem = problem.substr(0, problem.find(position));
+      while (!problem.empty() && (problem.back() == '.' || problem.back() == '!'))
+        problem.pop_back();
+      const std::string token = error.GetToken();
+      if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty() && std::isalpha(static_cast<unsigned char>(token[0])))
+        {
+          std::vector<std::string> names = {"s", "t", "L", "T", "pi"};
+          for (const auto &[name, ignored] : mu::Parser().GetFunDef())
+            names.push_back(name);
+          const auto near = nearest_names(token, names, 1);
+          problem += near.empty() ? "" : "; the nearest name is " + quoted_list(near);
+        }
+      return fmt::format("error in the formula \"{}\" at position {}: {}",
+                         formula,
+                         std::min<std::size_t>(error.GetPos(), formula.size()) + 1,
+                         problem);
+    }
+
+    /// muParser takes "s = 3" for an assignment and "s, t" for two formulas; both are slips here.
+    void
+    require_one_value(const std::string &formula)
+    {
+      int depth = 0;
+      for (std::size_t i = 0; i < formula.size(); ++i)
+        {
+          const char c = formula[i], before = i > 0 ? formula[i - 1] : ' ', after = i + 1 < formula.size() ? formula[i + 1] : ' ';
+          depth += (c == '(') - (c == ')');
+          if (c == ',' && depth == 0)
+            throw InputError(fmt::format("error in the formula \"{}\" at position {}: one formula is expected, but there are "
+                                         "several, separated by a comma",
+                                         formula,
+                                         i + 1),
+                             formula_entry);
+          if (c == '=' && after != '=' && std::string("=<>!").find(before) == std::string::npos)
+            throw InputError(fmt::format("error in the formula \"{}\" at position {}: \"=\" is found, but \"==\" is expected "
+                                         "for a comparison",
+                                         formula,
+                                         i + 1),
+                             formula_entry);
+        }
+    }
 
     std::vector<std::pair<std::string, double>>
     parse_constants(const std::string &text, const double length, const double end_time)
@@ -123,6 +175,7 @@ namespace crawler
     if (formula_.empty())
       throw InputError("the formula of the active stress is empty; an expression of s and t is expected",
                        formula_entry);
+    require_one_value(formula_);
     constexpr unsigned int n = 16;
     std::vector<double>    points(n + 1), m(n + 1);
     for (unsigned int i = 0; i <= n; ++i)
@@ -146,11 +199,7 @@ namespace crawler
       }
     catch (const mu::ParserError &error)
       {
-        throw InputError(fmt::format("error in the formula \"{}\" at position {}: {}",
-                                     formula_,
-                                     error.GetPos() + 1,
-                                     error.GetMsg()),
-                         formula_entry);
+        throw InputError(in_words(error, formula_), formula_entry);
       }
   }
 

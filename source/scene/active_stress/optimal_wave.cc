@@ -171,9 +171,11 @@ namespace crawler
     if (by_index)
       {
         if (parameters.root_index > list.size())
-          throw InputError(fmt::format("Root index is {}, but only {} waves spend this energy",
+          throw InputError(fmt::format("Root index is {}, but a whole number from 1 to {} is expected: so many waves "
+                                       "spend the energy H = {}",
                                        parameters.root_index,
-                                       list.size()),
+                                       list.size(),
+                                       parameters.energy),
                            section + "Root index");
         chosen_ = parameters.root_index - 1;
       }
@@ -188,11 +190,12 @@ namespace crawler
               found   = true;
             }
         if (!found)
-          throw InputError(fmt::format("none of the {} waves of energy H = {} is admissible: the leading-order stretch "
-                                       "of each becomes negative; a smaller Perturbation parameter is expected",
-                                       list.size(),
-                                       parameters.energy),
-                           section + "Root");
+          throw InputError(fmt::format("Perturbation parameter is {}, but a smaller one is expected: no wave of energy "
+                                       "H = {} ({} in all) is admissible, the leading-order stretch becomes negative",
+                                       parameters.perturbation_parameter,
+                                       parameters.energy,
+                                       list.size()),
+                           section + "Perturbation parameter");
       }
     wave_ = list[chosen_];
   }

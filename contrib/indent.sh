@@ -1,0 +1,6 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Formats all C++ files as .clang-format says.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+find source include tests -name '*.cc' -o -name '*.h' | sort | xargs clang-format -i

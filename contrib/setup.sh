@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Installs from Debian what is missing (as root or with sudo), and builds crawler in Release mode into build/.
+# Usage: contrib/setup.sh [tests]    with "tests": also what the tests need, and the tests themselves.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+packages=(g++ cmake ninja-build git libdeal.ii-dev libcli11-dev nlohmann-json3-dev libfmt-dev openmpi-bin)
+[ "${1:-}" = tests ] && packages+=(libgtest-dev libbenchmark-dev python3 python3-numpy python3-scipy python3-vtk9 python3-matplotlib clang-format)
+
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null | grep -q '^ii' || missing+=("$package")
+done
+if [ ${#missing[@]} -gt 0 ]; then
+  echo "Installing from Debian: ${missing[*]}"
+  as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "Please install these packages, or sudo, as root: ${missing[*]}" >&2; exit 1; }
+    as_root=(sudo)
+  fi
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+fi
+
+with_tests=OFF
+if [ "${1:-}" = tests ]; then
+  with_tests=ON
+elif [ -f build/CMakeCache.txt ] && grep -q '^CRAWLER_TESTS:BOOL=ON' build/CMakeCache.txt; then
+  with_tests=ON # keep what is there
+fi
+targets=(crawler)
+[ "${1:-}" = tests ] && targets=(all)
+cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCRAWLER_TESTS=$with_tests >build.log 2>&1 ||
+  { cat build.log >&2; exit 1; }
+rm -f build.log
+echo "Building crawler (Release) in build/"
+cmake --build build --target "${targets[@]}"

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+namespace crawler::test
+{
+  /// The slope of log(error) over log(n) by least squares, with the sign that makes a convergent method positive.
+  inline double
+  observed_order(const std::vector<double> &n, const std::vector<double> &error)
+  {
+    double     sx = 0., sy = 0., sxx = 0., sxy = 0.;
+    const auto count = static_cast<double>(n.size());
+    for (std::size_t i = 0; i < n.size(); ++i)
+      {
+        const double x = std::log(n[i]), y = std::log(error[i]);
+        sx += x;
+        sy += y;
+        sxx += x * x;
+        sxy += x * y;
+      }
+    return -(count * sxy - sx * sy) / (count * sxx - sx * sx);
+  }
+} // namespace crawler::test

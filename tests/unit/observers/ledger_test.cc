@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/observed_order.h"
+
+#include <crawler/observers/ledger.h>
+
+#include <gtest/gtest.h>
+
+using namespace crawler;
+
+namespace
+{
+  /// Error of int_0^1 exp(t) sin(5t) dt with n steps of uneven size.
+  double
+  quadrature_error(const unsigned int n)
+  {
+    const auto     f = [](const double t) { return std::exp(t) * std::sin(5. * t); };
+    RateQuadrature quadrature;
+    double         sum = 0.;
+    for (unsigned int i = 0; i <= n; ++i)
+      {
+        const double x = static_cast<double>(i) / n, t = x + 0.05 * std::sin(6. * x) * (1. - x);
+        sum += quadrature.advance(t, {{f(t), 0., 0., 0., 0.}})[0];
+      }
+    const double exact = (std::exp(1.) * (std::sin(5.) - 5. * std::cos(5.)) + 5.) / 26.;
+    return std::abs(sum - exact);
+  }
+} // namespace
+
+TEST(RateQuadrature, IsExactForPolynomialsOfDegreeFive)
+{
+  RateQuadrature quadrature;
+  double         sum = 0.;
+  // The first steps have fewer points: start where they contribute nothing.
+  for (const double t : {-1e-12, -8e-13, -6e-13, -4e-13, -2e-13, 0.})
+    quadrature.advance(t, {{0., 0., 0., 0., 0.}});
+  RateQuadrature fresh;
+  std::vector<double> times = {1., 1.1, 1.25, 1.3, 1.45, 1.6, 1.7, 1.9, 2.};
+  for (std::size_t i = 0; i < times.size(); ++i)
+    {
+      const double t         = times[i];
+      const double increment = fresh.advance(t, {{6. * std::pow(t, 5), 0., 0., 0., 0.}})[0];
+      if (i >= 5)
+        sum += increment - (std::pow(t, 6) - std::pow(times[i - 1], 6));
+    }
+  EXPECT_NEAR(sum, 0., 1e-11);
+}
+
+TEST(RateQuadrature, ConvergesWithOrderSix)
+{
+  std::vector<double> n, errors;
+  for (const unsigned int i : {40u, 80u, 160u})
+    {
+      n.push_back(i);
+      errors.push_back(quadrature_error(i));
+    }
+  EXPECT_GE(test::observed_order(n, errors), 3.8); // the first steps have fewer points
+  EXPECT_LT(errors.back(), 1e-7);
+}
+
+TEST(Ledger, ResidualIsRelativeToTheExchangedWork)
+{
+  Ledger ledger;
+  EXPECT_EQ(ledger.residual(), 0.); // a body at rest
+  ledger.stress_power   = 1.;
+  ledger.dissipation    = 0.7;
+  ledger.elastic_energy = 0.2;
+  ledger.exchanged      = 2.;
+  ledger.end_work       = -0.5;
+  EXPECT_NEAR(ledger.residual(), 0.05, 1e-15);
+  EXPECT_EQ(ledger.paper_energy(), 0.5);
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
+#include <crawler/parameters/declarations.h>
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+using namespace crawler;
+
+namespace
+{
+  struct Example
+  {
+    double                      length = 1.;
+    std::optional<unsigned int> cells;
+    std::vector<double>         list = {1., 2.};
+    std::string                 word = "yes";
+    Declarations                declarations;
+
+    Example()
+    {
+      declarations.enter("Body");
+      declarations.number("Length", length, positive(), "A length.", "length");
+      declarations.whole_number("Cells", cells, 1, 10, "A count.");
+      declarations.leave();
+      declarations.numbers("List", list, "A list.", "1");
+      declarations.choice("Word", word, {"yes", "no"}, "A choice.");
+    }
+  };
+
+  std::string
+  error_of(Example &example, const std::string &path, const std::string &value)
+  {
+    try
+      {
+        example.declarations.set(path, value);
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "";
+  }
+} // namespace
+
+TEST(Declarations, MembersFollowEntries)
+{
+  Example example;
+  example.declarations.set("Body/Length", " 2.5e-3 ");
+  example.declarations.set("Body/Cells", "7");
+  example.declarations.set("List", "3, -4.5 ,6");
+  example.declarations.set("Word", "no");
+  EXPECT_EQ(example.length, 2.5e-3);
+  EXPECT_EQ(example.cells, 7u);
+  EXPECT_EQ(example.list, (std::vector<double>{3., -4.5, 6.}));
+  EXPECT_EQ(example.word, "no");
+  example.declarations.set("Body/Cells", "automatic");
+  EXPECT_FALSE(example.cells.has_value());
+}
+
+TEST(Declarations, RefusesValuesOutOfRange)
+{
+  Example example;
+  for (const char *value : {"0", "-1", "nan", "inf", "1e999", "2x", "", "0x10", "1,5"})
+    EXPECT_NE(error_of(example, "Body/Length", value).find("a positive number is expected"), std::string::npos) << value;
+  for (const char *value : {"0", "11", "-1", "2.5", "99999999999999999999"})
+    EXPECT_NE(error_of(example, "Body/Cells", value).find("from 1 to 10"), std::string::npos) << value;
+  for (const char *value : {"", "1,", "1,,2", "a"})
+    EXPECT_NE(error_of(example, "List", value), "") << value;
+  EXPECT_NE(error_of(example, "Word", "mo").find("the nearest is \"no\""), std::string::npos);
+}
+
+TEST(Declarations, NamesTheNearestEntry)
+{
+  Example example;
+  EXPECT_NE(error_of(example, "Body/Lenght", "1").find("\"Length\""), std::string::npos);
+  EXPECT_NE(error_of(example, "Boddy/Length", "1").find("\"Body\""), std::string::npos);
+  EXPECT_NE(error_of(example, "Length", "1").find("\"Body/Length\""), std::string::npos);
+}
+
+TEST(Declarations, PrintsAllEntries)
+{
+  Example            example;
+  std::ostringstream prm, json, markdown;
+  example.declarations.print_prm(prm);
+  example.declarations.print_json(json);
+  example.declarations.print_markdown(markdown);
+  for (const char *name : {"Length", "Cells", "List", "Word"})
+    {
+      EXPECT_NE(prm.str().find(name), std::string::npos);
+      EXPECT_NE(json.str().find(name), std::string::npos);
+      EXPECT_NE(markdown.str().find(name), std::string::npos);
+    }
+}
+
+TEST(NearestName, RanksByDistance)
+{
+  EXPECT_EQ(nearest_names("anchoring exponet", {"Length", "Anchoring exponent", "Energy"}).front(), "Anchoring exponent");
+  EXPECT_TRUE(nearest_names("zzzzzzzz", {"Length", "Energy"}).empty());
+  EXPECT_EQ(quoted_list({"a", "b", "c"}), "\"a\", \"b\" or \"c\"");
+}
+
+TEST(ToText, RoundTrips)
+{
+  for (const double value : {0., 1. / 3., 1e-300, -2.5e17, 0.1})
+    EXPECT_EQ(*to_number(to_text(value)), value);
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/run_text.h"
+
+#include <crawler/base/exceptions.h>
+
+#include <gtest/gtest.h>
+
+using namespace crawler;
+
+namespace
+{
+  Parameters
+  read(const std::string &text, const std::vector<std::string> &overrides = {})
+  {
+    ParameterFile file = ParameterFile::from_text(text, "file.prm");
+    for (const auto &assignment : overrides)
+      file.add_override(assignment);
+    Parameters   parameters;
+    Declarations declarations;
+    parameters.add_parameters(declarations);
+    file.apply(declarations);
+    return parameters;
+  }
+
+  std::string
+  error_of(const std::string &text)
+  {
+    try
+      {
+        read(text);
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "";
+  }
+} // namespace
+
+TEST(ParameterFile, ReadsSectionsCommentsAndContinuedLines)
+{
+  const Parameters parameters = read("# a comment\n"
+                                     "set Accuracy = 1e-4 # another\n"
+                                     "subsection Active stress\n"
+                                     "  subsection Optimal wave\n"
+                                     "    set Sine coefficients = 1, \\\n"
+                                     "      0.5, \\\n"
+                                     "      0.25\n"
+                                     "  end\n"
+                                     "end\r\n"
+                                     "subsection Body\n  set Length = 3\nend");
+  EXPECT_EQ(parameters.accuracy, 1e-4);
+  EXPECT_EQ(parameters.active_stress.optimal_wave.sine_coefficients, (std::vector<double>{1., 0.5, 0.25}));
+  EXPECT_EQ(parameters.body.length, 3.);
+}
+
+TEST(ParameterFile, OverridesAreStronger)
+{
+  const std::string text = "subsection Body\n  set Length = 3\nend\n";
+  EXPECT_EQ(read(text, {"Body/Length=4"}).body.length, 4.);
+  EXPECT_EQ(read(text, {"Body/Length=4", " Body / Length = 5 "}).body.length, 5.);
+}
+
+TEST(ParameterFile, ErrorsNameTheLine)
+{
+  EXPECT_NE(error_of("set Accuracy = 1e-4\nset Accuracy = 1e-5\n").find("file.prm, line 2"), std::string::npos);
+  EXPECT_NE(error_of("subsection Body\n\n  set Length = -1\nend\n").find("file.prm, line 3"), std::string::npos);
+  EXPECT_NE(error_of("\nsubsection Body\n  set Length = 1\n").find("line 2: \"subsection Body\" has no \"end\""),
+            std::string::npos);
+  EXPECT_NE(error_of("set Accuracy = 1e-4\nend\n").find("line 2"), std::string::npos);
+  EXPECT_NE(error_of("subsection Boddy\nend\n").find("\"Body\""), std::string::npos);
+}
