@@ -69,10 +69,11 @@ namespace crawler
       for (const CLI::Option *option : command->get_options())
         for (const std::string &name : option->get_lnames())
           known.push_back("--" + name);
+      known.push_back("-h");
       for (const std::string &argument : arguments)
         {
           const std::string name = argument.substr(0, argument.find('='));
-          if (name.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end())
+          if (name.starts_with("-") && name != "-" && std::find(known.begin(), known.end(), name) == known.end())
             {
               const auto near = nearest_names(name, known, 1);
               return fmt::format("unknown option \"{}\"{}", name, near.empty() ? "" : "; the nearest is " + quoted_list(near));

@@ -139,7 +139,7 @@ namespace crawler
                          input.parameters.output.statistics ? ", statistics" : "",
                          input.parameters.output.ledger ? ", ledger" : "",
                          output_folder(options.output, options.file).string()));
-    log.line(options.file + " is in order; nothing was run or written.");
+    log.line(input.file.name() + " is in order; nothing was run or written.");
     return ExitCode::finished;
   }
 

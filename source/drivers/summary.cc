@@ -53,7 +53,7 @@ namespace crawler
     json["seconds"]            = {{"setup", result.setup_seconds}, {"solve", result.solve_seconds}, {"output", result.output_seconds}};
     json["versions"]           = versions();
     json["command_line"]       = command_line;
-    return json.dump(2) + "\n";
+    return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
   }
 
   std::vector<std::string>

@@ -15,7 +15,7 @@ namespace crawler
       {"midpoint", "theta", "", 2, true},
       {"arkimex l2", "arkimex", "l2", 2, true},
       {"arkimex 3", "arkimex", "3", 3, true},
-      {"arkimex ars443", "arkimex", "ars443", 3, true},
+      {"arkimex ars443", "arkimex", "ars443", 3, false},
       {"arkimex 4", "arkimex", "4", 4, true},
       {"arkimex 5", "arkimex", "5", 5, true},
     };

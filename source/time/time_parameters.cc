@@ -70,6 +70,9 @@ namespace crawler
                                      near.empty() ? "" : "; the nearest is " + quoted_list(near)),
                          "Time/Integrator");
       }
+    if (step_control == "adaptive" && !crawler::integrator(integrator).adaptive)
+      throw InputError(fmt::format("the integrator \"{}\" has no error estimate, so \"fixed\" is expected for Step control", integrator),
+                       "Time/Integrator");
     if (step_control == "fixed" && !initial_step)
       throw InputError("Step control is fixed, but the size of the steps is missing: a number is expected for Initial step",
                        "Time/Step control");

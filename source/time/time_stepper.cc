@@ -82,6 +82,7 @@ namespace crawler
     double              fixed_step  = 0.;
     bool                stopped     = false;
     bool                jacobian_ok = true;
+    bool                refused     = false; ///< a state, in an attempt at the present step
     double              convergence_constant = std::numeric_limits<double>::infinity();
     double              correction = 0., last_correction = 0.;
     std::size_t         n_unknowns = 0;
@@ -258,6 +259,7 @@ namespace crawler
     });
     if (code == 0 && !accepted)
       {
+        self.refused = true;
         SNES snes = nullptr;
         TSGetSNES(ts, &snes);
         return SNESSetFunctionDomainError(snes);
@@ -367,6 +369,7 @@ namespace crawler
     TSGetApplicationContext(ts, &context);
     auto     &self = *static_cast<Implementation *>(context);
     PetscReal time = 0., size = 0.;
+    self.refused   = false;
     TSGetTime(ts, &time);
     TSGetTimeStep(ts, &size);
     if (self.fixed_step > 0.)
@@ -472,7 +475,7 @@ namespace crawler
         SNESConvergedReason newton_reason;
         TSGetSNES(stepper, &snes);
         SNESGetConvergedReason(snes, &newton_reason);
-        result.domain_error = newton_reason == SNES_DIVERGED_FUNCTION_DOMAIN;
+        result.domain_error = refused;
         if (code != 0)
           {
             const char *text = nullptr;

@@ -22,6 +22,7 @@ namespace
     parameters.time.integrator       = name;
     parameters.time.order            = order;
     parameters.time.step_control     = fixed ? "fixed" : "adaptive";
+    parameters.time.initial_step     = step;
     const Scene scene                = parameters.create_scene();
     Simulation  simulation(MPI_COMM_WORLD, scene, parameters.time, {mesh.degree, mesh.n_cells, tolerance, step});
     return simulation.run({}, {});
@@ -40,12 +41,11 @@ TEST(Time, OneStepMethodsReachTheirOrder)
 {
   for (const Integrator &method : integrators())
     {
-      if (method.name == "bdf")
+      if (method.name == "bdf" || (method.order >= 3 && method.adaptive))
         continue;
       std::vector<double> steps, errors;
       for (const unsigned int n : method.order == 1 ? std::vector<unsigned int>{200, 400, 800} :
-                                  method.order <= 3 ? std::vector<unsigned int>{40, 80, 160} :
-                                                      std::vector<unsigned int>{20, 40, 80})
+                                  std::vector<unsigned int>{40, 80, 160})
         {
           const auto result = run(method.name, 1, true, 1e-12, 1. / n);
           ASSERT_EQ(result.time.status, "finished") << method.name;
@@ -56,6 +56,28 @@ TEST(Time, OneStepMethodsReachTheirOrder)
       const double order = test::observed_order(steps, errors);
       fmt::print("{:16} errors {:.2e} {:.2e} {:.2e}: observed order {:.2f}, nominal {}\n", method.name, errors[0], errors[1], errors[2], order, method.order);
       EXPECT_GE(order, method.order - 0.25) << method.name;
+    }
+}
+
+/// PETSc's arkimex starts with a step of second order when the mass depends on the state, so the order of the others shows
+/// with adaptive steps that start small.
+TEST(Time, ArkimexReachesItsOrder)
+{
+  for (const Integrator &method : integrators())
+    {
+      if (method.order < 3 || !method.adaptive)
+        continue;
+      std::vector<double> steps, errors;
+      for (const double tolerance : {1e-6, 1e-7, 1e-8, 1e-9})
+        {
+          const auto result = run(method.name, 1, false, tolerance, 1e-4);
+          ASSERT_EQ(result.time.status, "finished");
+          steps.push_back(result.time.steps);
+          errors.push_back(std::abs(result.displacement - reference()));
+        }
+      const double observed = test::observed_order(steps, errors);
+      fmt::print("{}: errors {:.2e} ... {:.2e} with {} ... {} steps: observed order {:.2f}\n", method.name, errors.front(), errors.back(), steps.front(), steps.back(), observed);
+      EXPECT_GE(observed, method.order - 0.3) << method.name;
     }
 }
 
@@ -83,6 +105,8 @@ TEST(Time, AdaptiveMethodsFollowTheTolerance)
 {
   for (const Integrator &method : integrators())
     {
+      if (!method.adaptive)
+        continue;
       const double tolerance = method.order == 1 ? 1e-6 : 1e-7;
       const auto   loose = run(method.name, 5, false, 100. * tolerance, 1e-5), tight = run(method.name, 5, false, tolerance, 1e-5);
       const double e_loose = std::abs(loose.displacement - reference()), e_tight = std::abs(tight.displacement - reference());

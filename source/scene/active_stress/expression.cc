@@ -76,10 +76,11 @@ namespace crawler
       const std::string token = error.GetToken();
       if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty() && std::isalpha(static_cast<unsigned char>(token[0])))
         {
-          std::vector<std::string> names = {"s", "t", "L", "T", "pi"};
-          for (const auto &[name, ignored] : mu::Parser().GetFunDef())
-            names.push_back(name);
-          const auto near = nearest_names(token, names, 1);
+          const auto near = nearest_names(token,
+                                          {"s",    "t",    "L",    "T",    "pi",   "sin",  "cos", "tan", "asin", "acos", "atan",
+                                           "sinh", "cosh", "tanh", "exp",  "log",  "sqrt", "abs", "sign", "min", "max",  "pow",
+                                           "mod",  "floor", "ceil", "erf", "erfc"},
+                                          1);
           problem += near.empty() ? "" : "; the nearest name is " + quoted_list(near);
         }
       return fmt::format("error in the formula \"{}\" at position {}: {}",

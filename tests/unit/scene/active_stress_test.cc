@@ -66,6 +66,7 @@ TEST(OptimalWave, RefusesCoefficientsOfDifferentLength)
   OptimalWaveParameters parameters;
   parameters.sine_coefficients   = {1., 2.};
   parameters.cosine_coefficients = {1., 2., 3.};
+  parameters.choose_wave_by      = "wave speed";
   EXPECT_THROW(OptimalWave(parameters, Body(), 1.), InputError);
   parameters.cosine_coefficients = {0.}; // a single 0 stands for none
   EXPECT_NO_THROW(OptimalWave(parameters, Body(), 1.));

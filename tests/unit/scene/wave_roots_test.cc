@@ -105,7 +105,7 @@ TEST(WaveRoots, NoneBelowTheSmallestEnergyOrAboveTheLargest)
 TEST(WaveRoots, SmallExcessEnergyHasVeryManyRootsAndEnds)
 {
   const WaveRoots found = find_wave_roots(Body(), one_harmonic, 0.1, 1., 0.5 * (1. + 1e-9));
-  EXPECT_GT(found.roots.size(), 25u);
+  EXPECT_GE(found.roots.size(), 25u);
   EXPECT_FALSE(found.complete);
   EXPECT_FALSE(found.double_roots);
 }
