@@ -3,7 +3,7 @@
 """Runs the program and contrib/reference/crawler_reference.py, which shares no code and no method with it, on the same
 scenes and compares the results.
 
-    python3 independent_solver.py PATH_TO_CRAWLER          needs python3-numpy and python3-scipy, takes half a minute
+    python3 independent_solver.py PATH_TO_CRAWLER          needs python3-numpy and python3-scipy, takes 10 s
 """
 import json
 import os
@@ -14,16 +14,18 @@ import tempfile
 
 REFERENCE = pathlib.Path(__file__).resolve().parents[2] / "contrib/reference/crawler_reference.py"
 
-# Largest relative difference. The extreme stretches of the program are those at the quadrature points and time steps.
+# Largest relative difference. The program looks for extreme stretches at the quadrature points and time steps only, so
+# they come from a run with more cells than the Accuracy asks for.
 TOLERANCE = {"displacement": 1e-7, "stress_power": 1e-6, "dissipation": 1e-6, "min_stretch": 1e-4, "max_stretch": 1e-4}
 ACCURACY = 1e-8
+CELLS_FOR_EXTREMES = 64
 
 # name: exponent a, length, elastic modulus, friction coefficient, end time, and the active stress: a formula,
 # or chi, wave speed, sine and cosine coefficients of the optimal wave
 SCENES = {
     "Fig. S1, chi = 0.4": (-1, 1, 1, 1, 1, (0.4, 1, (1,), (0,))),
     "a = 2, two harmonics, sines and cosines": (2, 1.5, 2, 0.6, 1.2, (0.1, -1.3, (1, 0.5), (-0.4, 0.3))),
-    "a = -1.5, formula": (-1.5, 1, 1, 1, 1, "0.4*(1-cos(2*pi*t))*sin(pi*(s-t))^2 + 0.2*sin(3*t)*s^2"),
+    "a = -1.5, formula": (-1.5, 1, 1, 1, 1, "0.2*(1-cos(2*pi*t))*(sin(2*pi*(s+t))+s^2)"),
 }
 
 
@@ -73,9 +75,14 @@ def crawler(program, *scene):
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder, "scene.prm")
         file.write_text(parameter_file(*scene))
-        call(program, "run", str(file), "--quiet", "--output", f"{folder}/output")
-        summary = json.loads(pathlib.Path(folder, "output/summary.json").read_text())
-    return {name: summary[name]["value"] if name.endswith("_stretch") else summary[name] for name in TOLERANCE}
+        summaries = []
+        for cells in ("automatic", CELLS_FOR_EXTREMES):
+            output = pathlib.Path(folder, f"{cells}")
+            call(program, "run", str(file), "--quiet", "--output", str(output),
+                 "--set", f"Discretization/Number of cells={cells}")
+            summaries.append(json.loads((output / "summary.json").read_text()))
+    automatic, fine = summaries
+    return {name: fine[name]["value"] if name.endswith("_stretch") else automatic[name] for name in TOLERANCE}
 
 
 def main():
@@ -89,7 +96,7 @@ def main():
         for quantity, tolerance in TOLERANCE.items():
             difference = abs(ours[quantity] / theirs[quantity] - 1)
             own_error = theirs["errors"][quantity] / abs(theirs[quantity])
-            good = difference <= tolerance and own_error <= 0.1 * tolerance
+            good = difference <= tolerance and own_error <= 0.2 * tolerance
             failures += not good
             print(f"  {quantity:<13} {ours[quantity]:>15.10g}  reference {theirs[quantity]:>15.10g} +- {own_error:.0e}  "
                   f"difference {difference:.1e} of at most {tolerance:g}{'' if good else '  FAILED'}", flush=True)
