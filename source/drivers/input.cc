@@ -6,8 +6,55 @@
 
 #include <sstream>
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace crawler
 {
+  namespace
+  {
+    /// Entries that have an effect only if another entry says so: a change of one that has none is worth a word.
+    std::vector<std::string>
+    settings_without_effect(const ParameterFile &file, const Parameters &p, const Declarations &declarations)
+    {
+      struct Rule
+      {
+        std::string entry; ///< or the beginning of several
+        bool        used;
+        std::string because;
+      };
+      const auto             &wave      = p.active_stress.optimal_wave;
+      const std::string       generator = "Generator = " + p.active_stress.generator, choice = "Choose wave by = " + wave.choose_wave_by;
+      const bool              by_energy = wave.choose_wave_by == "energy";
+      const std::vector<Rule> rules     = {
+        {"Active stress/Optimal wave/", p.active_stress.generator == "optimal wave", generator},
+        {"Active stress/Expression/", p.active_stress.generator == "expression", generator},
+        {"Active stress/Optimal wave/Wave speed", !by_energy, choice},
+        {"Active stress/Optimal wave/Energy", by_energy, choice},
+        {"Active stress/Optimal wave/Root", by_energy, choice},
+        {"Active stress/Optimal wave/Root index", wave.root == "index", "Root = " + wave.root},
+        {"Time/Order", p.time.integrator == "bdf", "Integrator = " + p.time.integrator},
+        {"Output/Ledger tolerance", p.output.ledger, "Ledger = false"},
+      };
+      std::vector<std::string> notes;
+      for (const Assignment &assignment : file.assignments())
+        {
+          const auto &entries = declarations.entries();
+          const auto  entry   = std::find_if(entries.begin(), entries.end(), [&](const EntryInfo &e) { return e.path == assignment.path; });
+          if (entry == entries.end() || entry->default_value == assignment.value)
+            continue;
+          for (const Rule &rule : rules)
+            if (!rule.used && assignment.path.starts_with(rule.entry))
+              {
+                notes.push_back(fmt::format("Note: {}: \"{}\" has no effect with \"{}\"", assignment.place, assignment.path, rule.because));
+                break;
+              }
+        }
+      return notes;
+    }
+  } // namespace
+
   Input
   read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides)
   {
@@ -29,7 +76,7 @@ namespace crawler
     try
       {
         Scene scene = parameters.create_scene();
-        return {file, parameters, effective.str(), std::move(scene)};
+        return {file, parameters, effective.str(), std::move(scene), settings_without_effect(file, parameters, declarations)};
       }
     catch (const InputError &error)
       {

@@ -54,6 +54,8 @@ namespace crawler
       log.line("Active stress: " + p.active_stress.generator);
       for (std::string line; std::getline(lines, line);)
         log.line("  " + line);
+      for (const std::string &note : input.notes)
+        log.line(note);
       const Numerics &n = choice.numerics;
       log.line(fmt::format("Mesh: {} cells of degree {}, {} unknowns. Time: {}{}, tolerance {:.3g}.",
                            n.n_cells,

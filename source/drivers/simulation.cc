@@ -131,7 +131,9 @@ namespace crawler
     if (step.number == 0 || stretch_.max.value > result_.max_stretch.value)
       result_.max_stretch = {stretch_.max.value, stretch_.max.s, step.time};
 
-    if (options.ledger || has_observers)
+    // Pictures need the velocity at frames only, the ledger always.
+    const bool with_velocity = options.ledger || (has_observers && (step.is_frame || step.number == 0));
+    if (with_velocity)
       {
         if (!assembler_.velocity(step.time, u, v_))
           {
@@ -141,9 +143,12 @@ namespace crawler
                                       step.time)};
             return false;
           }
+      }
+    if (options.ledger || has_observers)
+      {
         integrals_           = assembler_.integrals(step.time, u, v_);
         result_.displacement = integrals_.displacement / scene_.body.length;
-        if (!std::isfinite(integrals_.dissipation))
+        if (with_velocity && !std::isfinite(integrals_.dissipation))
           {
             diagnosis_ = {"failed",
                           "nonfinite",

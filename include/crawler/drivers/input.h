@@ -18,6 +18,7 @@ namespace crawler
     Parameters    parameters;
     std::string   effective; ///< all entries as they are used, as a .prm file
     Scene         scene;
+    std::vector<std::string> notes; ///< entries that were set to something but have no effect
   };
 
   /// Reads @p file_name on rank 0 and gives it to all (collective). Throws InputError or FileError, on all ranks.

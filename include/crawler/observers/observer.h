@@ -13,8 +13,8 @@ namespace crawler
     const Step             &step;
     bool                    is_frame; ///< one of the snapshots that were asked for, the initial state included
     std::span<const double> u;        ///< displacement [length]
-    std::span<const double> v;        ///< velocity [length/time]
-    const CellIntegrals    &integrals;
+    std::span<const double> v;        ///< velocity [length/time]; without a ledger of snapshots only
+    const CellIntegrals    &integrals; ///< those with v are as old as v
     const StretchRange     &stretch;
     const Ledger           &ledger;
   };

@@ -46,6 +46,12 @@ namespace crawler
     InputError
     with_place(const InputError &error) const;
 
+    /// Everything that is set, in the order of file and command line.
+    const std::vector<Assignment> &
+    assignments() const
+    {
+      return assignments_;
+    }
     const std::string &
     name() const
     {

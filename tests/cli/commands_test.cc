@@ -1,0 +1,491 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../support/program.h"
+
+#include <boost/property_tree/xml_parser.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <regex>
+#include <utility>
+
+using namespace crawler::test;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace
+{
+/// A cheap run: the default wave, a few frames.
+const std::string scene = "# the default wave\n"
+                          "set Accuracy = 1e-3\n"
+                          "subsection Output\n"
+                          "  set Number of snapshots = 3\n"
+                          "end\n";
+
+bool contains(const std::string &text, const std::string &part)
+{
+  return text.find(part) != std::string::npos;
+}
+
+json summary_of(const fs::path &folder)
+{
+  return json::parse(read_text(folder / "summary.json"));
+}
+
+std::vector<std::string> cells_of(const std::string &line)
+{
+  std::vector<std::string> cells;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');)
+    cells.push_back(cell);
+  return cells;
+}
+
+boost::property_tree::ptree xml(const fs::path &path)
+{
+  boost::property_tree::ptree tree;
+  boost::property_tree::read_xml(path.string(), tree); // throws if it is not well formed
+  return tree;
+}
+
+/// The times that solution.pvd lists; every file that it lists must be well-formed VTK.
+std::vector<double> frames_of(const fs::path &folder)
+{
+  std::vector<double> times;
+  const auto tree = xml(folder / "solution.pvd");
+  for (const auto &[name, node] : tree.get_child("VTKFile.Collection"))
+    if (name == "DataSet")
+    {
+      times.push_back(node.get<double>("<xmlattr>.timestep"));
+      const auto file = node.get<std::string>("<xmlattr>.file");
+      EXPECT_EQ(xml(folder / file).get<std::string>("VTKFile.<xmlattr>.type"), "UnstructuredGrid")
+        << file;
+    }
+  return times;
+}
+
+void expect_frames(const fs::path &folder, const std::vector<double> &wanted)
+{
+  const std::vector<double> times = frames_of(folder);
+  ASSERT_EQ(times.size(), wanted.size());
+  for (std::size_t i = 0; i < times.size(); ++i)
+    EXPECT_NEAR(times[i], wanted[i], 1e-11) << i;
+  const std::size_t files =
+    std::distance(fs::directory_iterator(folder / "solution"), fs::directory_iterator());
+  EXPECT_EQ(files, wanted.size()); // and nothing half-written
+}
+
+/// Rows of statistics.csv; every row is complete and every number finite.
+std::vector<std::vector<double>> statistics_of(const fs::path &folder)
+{
+  const std::vector<std::string> lines = lines_of(read_text(folder / "statistics.csv"));
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 1; i < lines.size(); ++i)
+  {
+    rows.emplace_back();
+    for (const std::string &cell : cells_of(lines[i]))
+    {
+      rows.back().push_back(std::stod(cell));
+      EXPECT_TRUE(std::isfinite(rows.back().back())) << lines[i];
+    }
+    EXPECT_EQ(rows.back().size(), cells_of(lines[0]).size()) << lines[i];
+  }
+  return rows;
+}
+
+/// The keys are a contract, and what is known must be a number.
+void expect_complete_summary(const json &summary, const bool with_ledger = true)
+{
+  for (const char *key :
+       {"status", "reason", "displacement_error", "model", "seconds", "versions", "command_line"})
+    EXPECT_TRUE(summary.contains(key)) << key;
+  for (const char *key : {"displacement",
+                          "end_time",
+                          "cells",
+                          "degree",
+                          "degrees_of_freedom",
+                          "steps",
+                          "rejected_steps",
+                          "newton_iterations"})
+    EXPECT_TRUE(summary.at(key).is_number()) << key;
+  for (const char *key : {"stress_power",
+                          "dissipation",
+                          "elastic_energy",
+                          "ledger_residual",
+                          "paper_energy",
+                          "positive_power",
+                          "net_friction"})
+    EXPECT_TRUE(with_ledger ? summary.at(key).is_number() : summary.at(key).is_null()) << key;
+  for (const char *key : {"min_stretch", "max_stretch"})
+    for (const char *part : {"value", "s", "t"})
+      EXPECT_TRUE(summary.at(key).at(part).is_number()) << key << ' ' << part;
+  for (const char *key : {"total", "space", "time", "model"})
+    EXPECT_TRUE(summary.at("displacement_error").contains(key)) << key;
+  for (const char *key : {"setup", "solve", "output"})
+    EXPECT_TRUE(summary.at("seconds").at(key).is_number()) << key;
+  for (const char *key : {"crawler", "deal.II", "PETSc"})
+    EXPECT_TRUE(summary.at("versions").contains(key)) << key;
+}
+
+class Commands : public testing::Test
+{
+protected:
+  ProgramResult run(const std::vector<std::string> &more, const std::string &file = scene)
+  {
+    write_text(folder.path / "scene.prm", file);
+    std::vector<std::string> arguments = {"run", "scene.prm", "--output", "results"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(folder.path, arguments);
+  }
+
+  TemporaryFolder folder;
+  const fs::path results = folder.path / "results";
+};
+} // namespace
+
+TEST_F(Commands, VersionAndHelp)
+{
+  const ProgramResult version = run_program(folder.path, {"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  for (const char *name : {"crawler 0", "deal.II", "PETSc"})
+    EXPECT_TRUE(contains(version.out, name)) << version.out;
+  const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> helps = {
+    {{"--help"}, {"run", "check", "parameters", "--version", "PETSc"}},
+    {{"run", "--help"}, {"FILE", "--set", "--output", "--overwrite", "--quiet"}},
+    {{"check", "--help"}, {"FILE", "--set"}},
+    {{"parameters", "--help"}, {"--format", "prm", "json", "markdown"}}};
+  for (const auto &[arguments, words] : helps)
+  {
+    const ProgramResult help = run_program(folder.path, arguments);
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_EQ(help.err, "");
+    for (const std::string &word : words)
+      EXPECT_TRUE(contains(help.out, word)) << word << "\nin: " << help.out;
+  }
+}
+
+TEST_F(Commands, ParametersInThreeFormats)
+{
+  const ProgramResult prm = run_program(folder.path, {"parameters"});
+  EXPECT_EQ(prm.exit_code, 0);
+  EXPECT_EQ(run_program(folder.path, {"parameters", "--format", "prm"}).out, prm.out);
+  const ProgramResult checked = run_program(folder.path, {"check", "-"}, prm.out);
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_TRUE(contains(checked.out, "standard input is in order")) << checked.out;
+
+  const ProgramResult list     = run_program(folder.path, {"parameters", "--format", "json"});
+  const ProgramResult markdown = run_program(folder.path, {"parameters", "--format", "markdown"});
+  EXPECT_EQ(list.exit_code, 0);
+  EXPECT_EQ(markdown.exit_code, 0);
+  std::map<std::string, std::string> defaults;
+  for (const json &entry : json::parse(list.out))
+  {
+    for (const char *key : {"entry", "default", "expected", "unit", "documentation"})
+      EXPECT_TRUE(entry.at(key).is_string()) << entry;
+    const std::string path = entry.at("entry"), name = path.substr(path.rfind('/') + 1);
+    defaults[path] = entry.at("default");
+    EXPECT_FALSE(entry.at("expected").get<std::string>().empty()) << path;
+    EXPECT_FALSE(entry.at("documentation").get<std::string>().empty()) << path;
+    EXPECT_TRUE(contains(prm.out, "set " + name + " ")) << path;
+    EXPECT_TRUE(contains(markdown.out, "| " + name + " | ")) << path;
+  }
+  const std::map<std::string, std::string> contract = {
+    {"Model", "nonlinear"},
+    {"Accuracy", "1e-06"},
+    {"Body/Length", "1"},
+    {"Body/Elastic modulus", "1"},
+    {"Body/Friction coefficient", "1"},
+    {"Body/Anchoring exponent", "2"},
+    {"Active stress/Generator", "optimal wave"},
+    {"Active stress/Optimal wave/Perturbation parameter", "0.4"},
+    {"Active stress/Optimal wave/Sine coefficients", "1"},
+    {"Active stress/Optimal wave/Cosine coefficients", "0"},
+    {"Active stress/Optimal wave/Choose wave by", "energy"},
+    {"Active stress/Optimal wave/Energy", "0.5"},
+    {"Active stress/Optimal wave/Root", "largest admissible displacement"},
+    {"Active stress/Optimal wave/Root index", "1"},
+    {"Active stress/Optimal wave/Wave speed", "1"},
+    {"Active stress/Expression/Active stress", "0.1*sin(2*pi*(s+t))"},
+    {"Active stress/Expression/Constants", ""},
+    {"Time/End time", "1"},
+    {"Output/Number of snapshots", "50"}};
+  for (const auto &[path, value] : contract)
+    EXPECT_TRUE(defaults.contains(path) && defaults.at(path) == value) << path;
+}
+
+TEST_F(Commands, CheckListsTheWavesAndWritesNothing)
+{
+  write_text(folder.path / "scene.prm", scene);
+  const auto before          = folder.content();
+  const ProgramResult result = run_program(folder.path,
+                                           {"check",
+                                            "scene.prm",
+                                            "--output",
+                                            "results",
+                                            "--set",
+                                            "Active stress/Optimal wave/Energy=0.51"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
+  for (const char *part : {"Model nonlinear",
+                           "Mesh: ",
+                           "index",
+                           "speed",
+                           "displacement",
+                           "<- chosen",
+                           "nothing was run"})
+    EXPECT_TRUE(contains(result.out, part)) << part << "\nin: " << result.out;
+  EXPECT_GE(std::count(result.out.begin(), result.out.end(), '\n'),
+            10); // several waves spend this energy
+  EXPECT_EQ(folder.content(), before);
+}
+
+TEST_F(Commands, RunWritesEveryFile)
+{
+  const ProgramResult result = run({});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_TRUE(contains(lines_of(result.out).back(), "results/solution.pvd")) << result.out;
+
+  EXPECT_EQ(read_text(results / "original.prm"), scene);
+  const std::string log = read_text(results / "log.txt");
+  EXPECT_EQ(log, result.out);
+  const json summary = summary_of(results);
+  expect_complete_summary(summary);
+  EXPECT_EQ(summary.at("status"), "finished");
+  EXPECT_TRUE(summary.at("reason").is_null());
+  EXPECT_EQ(summary.at("end_time"), 1.);
+  EXPECT_NEAR(summary.at("displacement"), 0.0900726, 1e-4);
+  EXPECT_EQ(summary.at("command_line"), "crawler run scene.prm --output results");
+
+  const std::string header = lines_of(read_text(results / "statistics.csv"))[0];
+  for (const std::string &cell : cells_of(header))
+    EXPECT_TRUE(std::regex_match(cell, std::regex("[a-z ]+ \\[[a-z0-9/ ^]+\\]"))) << cell;
+  const auto rows = statistics_of(results);
+  EXPECT_EQ(rows.size(), summary.at("steps").get<std::size_t>() + 1);
+  EXPECT_EQ(rows.back()[1], 1.);
+  EXPECT_EQ(rows.back()[3], summary.at("displacement").get<double>());
+
+  expect_frames(results, {0., 1. / 3., 2. / 3., 1.});
+  const auto kymograph = xml(results / "kymograph.vts");
+  EXPECT_EQ(kymograph.get<std::string>("VTKFile.<xmlattr>.type"), "StructuredGrid");
+  for (const char *field : {"stretch", "velocity", "active_stress", "friction_force"})
+    EXPECT_TRUE(contains(read_text(results / "kymograph.vts"), "\"" + std::string(field) + "\""))
+      << field;
+
+  // The effective parameters give the same displacement, to the last bit.
+  fs::copy_file(results / "parameters.prm", folder.path / "again.prm");
+  ASSERT_EQ(run_program(folder.path, {"run", "again.prm"}).exit_code, 0);
+  EXPECT_EQ(summary_of(folder.path / "output-again").at("displacement"),
+            summary.at("displacement"));
+}
+
+TEST_F(Commands, OverridesBeatTheFileAndStandardInputIsRead)
+{
+  const ProgramResult result = run_program(folder.path,
+                                           {"run",
+                                            "-",
+                                            "--set",
+                                            "Output/Number of snapshots=0",
+                                            "--set",
+                                            "Time/End time=2",
+                                            "--set",
+                                            "Time/End time = 0.5"},
+                                           scene);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const fs::path output = folder.path / "output-stdin";
+  EXPECT_EQ(summary_of(output).at("end_time"), 0.5); // the last one counts
+  EXPECT_EQ(read_text(output / "original.prm"), scene);
+  EXPECT_TRUE(
+    std::regex_search(read_text(output / "parameters.prm"), std::regex("set End time += 0.5\n")));
+  for (const char *name : {"solution", "solution.pvd", "kymograph.vts"}) // no snapshots
+    EXPECT_FALSE(fs::exists(output / name)) << name;
+  EXPECT_EQ(lines_of(result.out).back(), "Results are in output-stdin/.");
+}
+
+TEST_F(Commands, QuietPrintsNothing)
+{
+  const ProgramResult result = run({"--quiet"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.out + result.err, "");
+  EXPECT_TRUE(contains(read_text(results / "log.txt"), "Finished at t = 1"));
+}
+
+TEST_F(Commands, OverwriteReplacesOwnFilesOnly)
+{
+  ASSERT_EQ(run({"--quiet"}).exit_code, 0);
+  write_text(results / "notes.txt", "mine\n");
+  write_text(results / "solution" / "figure.png", "mine too\n");
+  ASSERT_EQ(run({"--quiet"}).exit_code, 2);
+  ASSERT_EQ(run({"--quiet",
+                 "--overwrite",
+                 "--set",
+                 "Output/Number of snapshots=1",
+                 "--set",
+                 "Output/Statistics=false"})
+              .exit_code,
+            0);
+  EXPECT_EQ(read_text(results / "notes.txt"), "mine\n");
+  EXPECT_EQ(read_text(results / "solution" / "figure.png"), "mine too\n");
+  EXPECT_EQ(frames_of(results), (std::vector<double>{0., 1.}));
+  EXPECT_FALSE(fs::exists(results / "solution" / "000002.vtu"));
+  EXPECT_FALSE(fs::exists(results / "statistics.csv"));
+}
+
+TEST_F(Commands, WithoutLedgerTheWorksAreUnknown)
+{
+  ASSERT_EQ(run({"--set", "Output/Ledger=false"}).exit_code, 0);
+  expect_complete_summary(summary_of(results), /*with_ledger=*/false);
+  EXPECT_FALSE(contains(read_text(results / "statistics.csv"), "dissipation"));
+}
+
+TEST_F(Commands, ExplicitNumericsAreUsed)
+{
+  const ProgramResult result = run({"--set",
+                                    "Discretization/Degree=3",
+                                    "--set",
+                                    "Discretization/Number of cells=17",
+                                    "--set",
+                                    "Time/Tolerance=1e-7"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json summary = summary_of(results);
+  EXPECT_EQ(summary.at("degree"), 3);
+  EXPECT_EQ(summary.at("cells"), 17);
+  EXPECT_EQ(summary.at("degrees_of_freedom"), 52);
+  EXPECT_TRUE(contains(result.out, "tolerance 1e-07")) << result.out;
+}
+
+TEST_F(Commands, UnusedPetscOptionsAreReported)
+{
+  const ProgramResult result = run({"--", "-ts_adapt_clp", "0.1,2", "-ts_type", "bdf"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_TRUE(contains(result.out, "Warning: nothing used the PETSc option -ts_adapt_clp\n"))
+    << result.out;
+  EXPECT_FALSE(contains(result.out, "option -ts_type")) << result.out;
+  EXPECT_EQ(summary_of(results).at("command_line"),
+            "crawler run scene.prm --output results -- -ts_adapt_clp 0.1,2 -ts_type bdf");
+}
+
+/// With a = 1 and chi = 0.6 the body really inverts, inside, near t = 0.308.
+TEST_F(Commands, InversionInsideIsNamed)
+{
+  const ProgramResult result = run({"--set",
+                                    "Active stress/Optimal wave/Choose wave by=wave speed",
+                                    "--set",
+                                    "Active stress/Optimal wave/Wave speed=-1",
+                                    "--set",
+                                    "Active stress/Optimal wave/Perturbation parameter=0.6",
+                                    "--set",
+                                    "Body/Anchoring exponent=0",
+                                    "--set",
+                                    "Output/Number of snapshots=10"});
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+  EXPECT_TRUE(contains(result.err, "the body inverted")) << result.err;
+  const json summary = summary_of(results);
+  expect_complete_summary(summary);
+  EXPECT_EQ(summary.at("status"), "inverted");
+  EXPECT_EQ(summary.at("reason"), "inverted_inside");
+  EXPECT_NEAR(summary.at("inversion").at("t"), 0.30812, 1e-3);
+  EXPECT_NEAR(summary.at("inversion").at("s"), 0.667, 0.01);
+  EXPECT_GT(summary.at("min_stretch").at("value"), 0.); // no inverted state is counted
+  for (const auto &row : statistics_of(results))
+    EXPECT_GT(row[4], 0.);
+  expect_frames(results, {0., 0.1, 0.2, 0.3});
+  xml(results / "kymograph.vts");
+}
+
+/// m = 2 t on k = 1: the stretch of an end, 1 - m/k, is 0 at t = 0.5.
+TEST_F(Commands, InversionOfAnEndIsNamed)
+{
+  const ProgramResult result = run({"--set",
+                                    "Active stress/Generator=expression",
+                                    "--set",
+                                    "Active stress/Expression/Active stress=2*t",
+                                    "--set",
+                                    "Body/Anchoring exponent=1",
+                                    "--set",
+                                    "Output/Number of snapshots=10"});
+  EXPECT_EQ(result.exit_code, 4) << result.err;
+  EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+  const json summary = summary_of(results);
+  expect_complete_summary(summary);
+  EXPECT_EQ(summary.at("status"), "inverted");
+  EXPECT_EQ(summary.at("reason"), "inverted_at_end");
+  EXPECT_NEAR(summary.at("inversion").at("t"), 0.5, 1e-3);
+  const double s = summary.at("inversion").at("s");
+  EXPECT_TRUE(s == 0. || s == 1.) << s;
+  EXPECT_GT(summary.at("min_stretch").at("value"), 0.);
+  statistics_of(results);
+  expect_frames(results, {0., 0.1, 0.2, 0.3, 0.4});
+}
+
+TEST_F(Commands, ExitCodesAndStatusAgree)
+{
+  struct Case
+  {
+    std::vector<std::string> arguments;
+    int exit_code;
+    std::string status, reason;
+  };
+  const std::vector<Case> cases = {
+    {{"--set", "Time/Maximum number of steps=3"}, 5, "stopped", "step_limit"},
+    {{"--set", "Output/Ledger tolerance=1e-15"}, 7, "failed", "ledger_residual"},
+    {{"--set",
+      "Active stress/Generator=expression",
+      "--set",
+      "Active stress/Expression/Active stress=0.001/(t-0.513)^2"},
+     3,
+     "failed",
+     "nonfinite"},
+  };
+  for (const Case &c : cases)
+  {
+    std::vector<std::string> arguments = {"--quiet", "--overwrite"};
+    arguments.insert(arguments.end(), c.arguments.begin(), c.arguments.end());
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, c.exit_code) << result.err;
+    const json summary = summary_of(results);
+    expect_complete_summary(summary);
+    EXPECT_EQ(summary.at("status"), c.status);
+    EXPECT_EQ(summary.at("reason"), c.reason);
+    EXPECT_EQ(lines_of(result.err).size(), 1u) << result.err;
+    EXPECT_TRUE(
+      result.err.starts_with("crawler: " + summary.at("reason").get<std::string>() + ": "))
+      << result.err;
+    EXPECT_TRUE(contains(result.err, summary.at("message").get<std::string>())) << result.err;
+    statistics_of(results);
+  }
+}
+
+TEST_F(Commands, SignalsStopARunInOrder)
+{
+  // A million steps, far more than the test waits for, and no pilot runs.
+  write_text(folder.path / "scene.prm",
+             in_section("Discretization", "set Number of cells = 50") +
+               in_section("Time", "set Step control = fixed\nset Initial step = 1e-6") +
+               in_section("Output", "set Number of snapshots = 100000"));
+  for (const int number : {SIGTERM, SIGINT})
+  {
+    Program program(folder.path, {"run", "scene.prm", "--output", "results", "--overwrite"});
+    ASSERT_TRUE(Program::wait_until(
+      [&]()
+      {
+        return fs::exists(results / "solution" / "000005.vtu") || !program.running();
+      }));
+    program.signal(number);
+    EXPECT_EQ(program.exit_code(), 5) << program.err();
+    EXPECT_TRUE(program.err().starts_with("crawler: signal: stopped by a signal at t = "))
+      << program.err();
+    const json summary = summary_of(results);
+    expect_complete_summary(summary);
+    EXPECT_EQ(summary.at("status"), "stopped");
+    EXPECT_EQ(summary.at("reason"), "signal");
+    const auto rows = statistics_of(results);
+    EXPECT_EQ(rows.size(), summary.at("steps").get<std::size_t>() + 1);
+    EXPECT_EQ(rows.back()[1], summary.at("end_time").get<double>());
+    const std::vector<double> frames = frames_of(results);
+    EXPECT_GE(frames.size(), 6u);
+    EXPECT_LE(frames.back(), summary.at("end_time").get<double>() + 1e-11);
+    xml(results / "kymograph.vts");
+    EXPECT_TRUE(contains(read_text(results / "log.txt"), "Stopped at t = "));
+  }
+}
