@@ -2,6 +2,8 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 
+#include <filesystem>
+
 namespace crawler
 {
   unsigned int
@@ -47,6 +49,11 @@ namespace crawler
           entry = error.entry;
         }
       catch (const FileError &error)
+        {
+          kind = "file";
+          text = error.what();
+        }
+      catch (const std::filesystem::filesystem_error &error)
         {
           kind = "file";
           text = error.what();

@@ -51,12 +51,14 @@ namespace crawler
     auto &dofs  = mesh_->dof_handler;
 
     // Each rank owns a run of neighbouring cells.
-    tria.signals.post_refinement.connect([&]() {
+    const auto assign = [&]() {
       const auto    n      = static_cast<std::uint64_t>(tria.n_active_cells());
       std::uint64_t number = 0;
       for (const auto &cell : tria.active_cell_iterators())
         cell->set_subdomain_id(static_cast<dealii::types::subdomain_id>(number++ * n_active_ranks_ / n));
-    });
+    };
+    tria.signals.create.connect(assign); // the first mesh does not count as a refinement
+    tria.signals.post_refinement.connect(assign);
     dealii::GridGenerator::subdivided_hyper_cube(tria, n_cells_, 0., length_);
     dofs.distribute_dofs(mesh_->element);
 
@@ -79,7 +81,7 @@ namespace crawler
         ++cell_number;
       }
     dofs.renumber_dofs(numbers);
-    if (dofs.n_locally_owned_dofs() != n_owned())
+    if (dofs.n_locally_owned_dofs() != n_owned() || (rank_ < n_active_ranks_) == cell_left_.empty())
       throw std::logic_error("deal.II's ownership of unknowns is not the one of the chain numbering");
   }
 

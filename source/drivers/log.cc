@@ -18,6 +18,21 @@ namespace crawler
       return;
     if (!quiet_)
       std::cout << text << std::endl;
+    keep(text);
+  }
+
+  void
+  Log::warn(const std::string &text)
+  {
+    if (!active_)
+      return;
+    std::cerr << "crawler: " << text << std::endl;
+    keep(text);
+  }
+
+  void
+  Log::keep(const std::string &text)
+  {
     if (file_.is_open())
       file_ << text << std::endl;
     else

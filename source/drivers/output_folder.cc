@@ -38,6 +38,8 @@ namespace crawler
       throw FileError("the output folder \"" + folder.string() + "\" exists and is not a folder");
     if (::access(folder.c_str(), W_OK) != 0)
       throw FileError("cannot write to the output folder \"" + folder.string() + "\": " + std::strerror(errno));
+    if (fs::exists(folder / "solution", error) && !fs::is_directory(folder / "solution", error))
+      throw FileError("\"" + (folder / "solution").string() + "\" is not a folder, but one for the snapshots is expected");
     if (!overwrite && !fs::is_empty(folder, error))
       throw InputError("the output folder \"" + folder.string() +
                        "\" is not empty; give another one with --output, or --overwrite to replace the results in it");

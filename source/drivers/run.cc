@@ -75,7 +75,7 @@ namespace crawler
       char   **names = nullptr, **values = nullptr;
       PetscOptionsLeftGet(nullptr, &n, &names, &values);
       for (PetscInt i = 0; i < n; ++i)
-        log.line(fmt::format("Warning: nothing used the PETSc option -{}", names[i]));
+        log.warn(fmt::format("warning: nothing used the PETSc option -{}", names[i]));
       PetscOptionsLeftRestore(nullptr, &n, &names, &values);
     }
 
@@ -132,8 +132,8 @@ namespace crawler
   {
     Log                  log(rank_of(communicator) == 0, /*quiet=*/false);
     const Input          input  = read_input(communicator, options.file, options.overrides);
-    const NumericsChoice choice = choose_numerics(communicator, input.parameters, input.scene);
-    const Simulation     simulation(communicator, input.scene, input.parameters.time, choice.numerics);
+    const NumericsChoice choice = choose_numerics(MPI_COMM_SELF, input.parameters, input.scene);
+    const Simulation     simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);
     report_plan(log, input, choice);
     log.line(fmt::format("Output: {} snapshots{}{}{}, to \"{}\" unless --output is given.",
                          input.parameters.output.n_snapshots,
@@ -160,8 +160,10 @@ namespace crawler
       return "";
     });
 
-    const NumericsChoice choice = choose_numerics(communicator, parameters, input.scene);
-    Simulation           simulation(communicator, input.scene, parameters.time, choice.numerics);
+    const NumericsChoice choice = choose_numerics(MPI_COMM_SELF, parameters, input.scene);
+    // Either all ranks share the cells, or each computes the whole body and the first one writes.
+    const bool shared = parameters.discretization.shares(choice.numerics.n_cells);
+    Simulation simulation(shared ? communicator : MPI_COMM_SELF, input.scene, parameters.time, choice.numerics);
 
     // Everything is in order: from here on there are files.
     on_first_rank(communicator, [&]() {
@@ -176,16 +178,17 @@ namespace crawler
     report_plan(log, input, choice);
 
     std::vector<std::unique_ptr<Observer>> observers;
-    if (output.n_snapshots > 0)
+    const bool writes = shared || first;
+    if (writes && output.n_snapshots > 0)
       {
         observers.push_back(std::make_unique<VtuWriter>(input.scene, simulation.discretization(), folder));
         if (output.kymograph)
           observers.push_back(std::make_unique<KymographWriter>(input.scene, simulation.discretization(), folder));
       }
-    if (output.statistics)
+    if (writes && output.statistics)
       observers.push_back(
         std::make_unique<StatisticsWriter>(input.scene, simulation.discretization(), folder, output.ledger));
-    if (!options.quiet)
+    if (writes && !options.quiet)
       observers.push_back(std::make_unique<Progress>(log, input.scene));
 
     const StopSignal stop_signal;
@@ -193,7 +196,7 @@ namespace crawler
     SimulationResult result        = simulation.run(frame_times(output.n_snapshots, parameters.time.end_time),
                                              {.ledger = output.ledger, .resolution = false},
                                              observers,
-                                             [&]() { return !stop_signal.arrived_anywhere(communicator); });
+                                             [&]() { return !stop_signal.arrived_anywhere(shared ? communicator : MPI_COMM_SELF); });
     result.setup_seconds = setup_seconds;
     if (result.time.status == "stopped" && result.time.reason.empty())
       {
@@ -204,17 +207,20 @@ namespace crawler
     report_unused_options(log);
 
     on_first_rank(communicator, [&]() {
-      write_file(folder / "summary.json", summary_json(result, parameters, simulation.discretization(), options.command_line));
+      write_file(folder / "summary.json", summary_json(result, parameters, simulation.discretization(), size_of(communicator), options.command_line));
       return "";
     });
     for (const std::string &line : summary_lines(result, parameters))
       log.line(line);
-    if (first && result.time.status != "finished")
-      fmt::print(stderr, "crawler: {}: {}\n", result.time.reason, result.time.message);
+    if (result.time.status != "finished")
+      log.warn(result.time.reason + ": " + result.time.message);
     log.line(output.n_snapshots > 0 ? fmt::format("Results are in {}/; open {} in ParaView.",
                                                   folder.string(),
                                                   (folder / "solution.pvd").string()) :
                                       fmt::format("Results are in {}/.", folder.string()));
-    return exit_code(result.time);
+    // The first rank speaks for all: a signal may have stopped some only.
+    int code = static_cast<int>(exit_code(result.time));
+    MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
+    return static_cast<ExitCode>(code);
   }
 } // namespace crawler

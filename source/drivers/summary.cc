@@ -22,6 +22,7 @@ namespace crawler
   summary_json(const SimulationResult &result,
                const Parameters       &parameters,
                const Discretization   &discretization,
+               const unsigned int      n_ranks,
                const std::string      &command_line)
   {
     const auto ledger = [&](auto value) { return result.ledger ? Json(value(*result.ledger)) : Json(nullptr); };
@@ -49,7 +50,8 @@ namespace crawler
     json["steps"]              = result.time.steps;
     json["rejected_steps"]     = result.time.rejected_steps;
     json["newton_iterations"]  = result.time.newton_iterations;
-    json["ranks"]              = discretization.n_ranks();
+    json["ranks"]              = n_ranks;
+    json["cells_shared"]       = discretization.n_ranks() > 1;
     json["seconds"]            = {{"setup", result.setup_seconds}, {"solve", result.solve_seconds}, {"output", result.output_seconds}};
     json["versions"]           = versions();
     json["command_line"]       = command_line;

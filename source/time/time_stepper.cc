@@ -388,6 +388,10 @@ namespace crawler
     void *context = nullptr;
     TSGetApplicationContext(ts, &context);
     auto &self = *static_cast<Implementation *>(context);
+    TSConvergedReason reason;
+    TSGetConvergedReason(ts, &reason);
+    if (reason < 0)
+      return 0; // PETSc calls this after a step that failed, too: there is no new state
     PetscReal time = 0., previous = 0.;
     TSGetTime(ts, &time);
     TSGetPrevTime(ts, &previous);

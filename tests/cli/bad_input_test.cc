@@ -398,6 +398,10 @@ std::vector<BadInput> command_lines()
                   {"run", "good.prm", "--output", "occupied", "--overwrite"},
                   {"\"occupied\"", "is not a folder"},
                   6),
+    bad_arguments("SnapshotFolderIsFile",
+                  {"run", "good.prm", "--output", "odd", "--overwrite"},
+                  {"\"odd/solution\"", "is not a folder"},
+                  6),
     bad_arguments("OutputUnderFile",
                   {"run", "good.prm", "--output", "occupied/results"},
                   {"\"occupied/results\"", "is not a folder"},
@@ -415,6 +419,8 @@ void fill(const std::filesystem::path &folder, const std::string &file)
   write_text(folder / "occupied", "a file\n");
   std::filesystem::create_directory(folder / "full");
   write_text(folder / "full" / "summary.json", "older results\n");
+  std::filesystem::create_directory(folder / "odd");
+  write_text(folder / "odd" / "solution", "not a folder\n");
 }
 
 void expect_one_sentence(const std::string &text)

@@ -295,7 +295,7 @@ TEST_F(Commands, OverridesBeatTheFileAndStandardInputIsRead)
   EXPECT_EQ(summary_of(output).at("end_time"), 0.5); // the last one counts
   EXPECT_EQ(read_text(output / "original.prm"), scene);
   EXPECT_TRUE(
-    std::regex_search(read_text(output / "parameters.prm"), std::regex("set End time += 0.5\n")));
+    std::regex_search(read_text(output / "parameters.prm"), std::regex("set End time += 0.5\\b")));
   for (const char *name : {"solution", "solution.pvd", "kymograph.vts"}) // no snapshots
     EXPECT_FALSE(fs::exists(output / name)) << name;
   EXPECT_EQ(lines_of(result.out).back(), "Results are in output-stdin/.");
@@ -357,9 +357,9 @@ TEST_F(Commands, UnusedPetscOptionsAreReported)
 {
   const ProgramResult result = run({"--", "-ts_adapt_clp", "0.1,2", "-ts_type", "bdf"});
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_TRUE(contains(result.out, "Warning: nothing used the PETSc option -ts_adapt_clp\n"))
-    << result.out;
-  EXPECT_FALSE(contains(result.out, "option -ts_type")) << result.out;
+  const std::string warning = "warning: nothing used the PETSc option -ts_adapt_clp\n";
+  EXPECT_EQ(result.err, "crawler: " + warning);
+  EXPECT_TRUE(contains(read_text(results / "log.txt"), warning));
   EXPECT_EQ(summary_of(results).at("command_line"),
             "crawler run scene.prm --output results -- -ts_adapt_clp 0.1,2 -ts_type bdf");
 }
@@ -432,7 +432,7 @@ TEST_F(Commands, ExitCodesAndStatusAgree)
     {{"--set",
       "Active stress/Generator=expression",
       "--set",
-      "Active stress/Expression/Active stress=0.001/(t-0.513)^2"},
+      "Active stress/Expression/Active stress=t > 0.51 && t < 0.56 ? sqrt(-1) : 0.1*s*t"},
      3,
      "failed",
      "nonfinite"},
@@ -465,7 +465,8 @@ TEST_F(Commands, SignalsStopARunInOrder)
                in_section("Output", "set Number of snapshots = 100000"));
   for (const int number : {SIGTERM, SIGINT})
   {
-    Program program(folder.path, {"run", "scene.prm", "--output", "results", "--overwrite"});
+    fs::remove_all(results);
+    Program program(folder.path, {"run", "scene.prm", "--output", "results"});
     ASSERT_TRUE(Program::wait_until(
       [&]()
       {

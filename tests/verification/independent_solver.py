@@ -98,7 +98,7 @@ def main():
             own_error = theirs["errors"][quantity] / abs(theirs[quantity])
             good = difference <= tolerance and own_error <= 0.2 * tolerance
             failures += not good
-            print(f"  {quantity:<13} {ours[quantity]:>15.10g}  reference {theirs[quantity]:>15.10g} +- {own_error:.0e}  "
+            print(f"  {quantity:<13} {ours[quantity]:>15.10g}, reference {theirs[quantity]:>15.10g} +- {own_error:.0e}, "
                   f"difference {difference:.1e} of at most {tolerance:g}{'' if good else '  FAILED'}", flush=True)
     print(f"{failures} differences too large")
     return 1 if failures else 0

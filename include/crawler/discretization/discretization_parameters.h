@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 namespace crawler
 {
@@ -12,8 +13,13 @@ namespace crawler
   {
     std::optional<unsigned int> degree;
     std::optional<unsigned int> n_cells;
+    std::string                 share_cells = "automatic";
 
     void
     add_parameters(Declarations &declarations);
+
+    /// Whether several ranks should share a mesh of @p cells cells.
+    bool
+    shares(unsigned int cells) const;
   };
 } // namespace crawler

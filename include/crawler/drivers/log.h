@@ -16,11 +16,18 @@ namespace crawler
     void
     line(const std::string &text);
 
+    /// The same for what must not be missed: on standard error, also if quiet.
+    void
+    warn(const std::string &text);
+
     /// Writes everything from now on, and all earlier lines, to @p file as well. Throws FileError.
     void
     open(const std::filesystem::path &file);
 
   private:
+    void
+    keep(const std::string &text);
+
     const bool    active_, quiet_;
     std::string   earlier_;
     std::ofstream file_;

@@ -14,6 +14,7 @@ namespace crawler
   summary_json(const SimulationResult &result,
                const Parameters       &parameters,
                const Discretization   &discretization,
+               unsigned int            n_ranks,
                const std::string      &command_line);
 
   /// The same for people, in a few lines.

@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The answer does not depend on the number of ranks, nor does the way a run fails.
+
+    python3 same_answer.py PATH_TO_CRAWLER MPIRUN
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+TOLERANCE = 1e-10  # relative
+SAME = ("displacement", "stress_power", "dissipation", "elastic_energy", "paper_energy", "positive_power")
+PLACES = ("min_stretch", "max_stretch")
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
+                   OPENBLAS_NUM_THREADS="1")
+
+# Coarse in time, so few steps: communication is slow where there are fewer processors than ranks.
+SHARED = {"Discretization/Share cells": "yes"}
+WAVE = {**SHARED, "Active stress/Optimal wave/Choose wave by": "wave speed", "Active stress/Optimal wave/Wave speed": 1,
+        "Active stress/Optimal wave/Perturbation parameter": 0.4, "Discretization/Number of cells": 8,
+        "Time/Tolerance": 1e-6, "Output/Number of snapshots": 2}
+FORMULA = {**SHARED, "Active stress/Generator": "expression", "Body/Anchoring exponent": 1.5,
+           "Active stress/Expression/Active stress": "0.3*(1-cos(2*pi*t))*sin(pi*(s-t))^2",
+           "Discretization/Number of cells": 3, "Time/Tolerance": 1e-6, "Output/Number of snapshots": 2}
+INVERTS = {**WAVE, "Body/Anchoring exponent": 0, "Active stress/Optimal wave/Wave speed": -1,
+           "Active stress/Optimal wave/Perturbation parameter": 0.6}
+BAD_VALUE = {**WAVE, "Body/Length": -1}
+UNKNOWN = {**WAVE, "Body/Lenght": 1}
+INCONSISTENT = {**WAVE, "Active stress/Optimal wave/Wave speed": 0}  # found while the scene is built
+
+failures = 0
+
+
+def check(condition, what):
+    """Prints what was checked and counts failures."""
+    global failures
+    failures += not condition
+    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
+
+
+def run(program, mpirun, folder, ranks, scene):
+    """Runs the scene; returns exit code, summary (None if there is none) and the lines of the program's messages."""
+    file, output = pathlib.Path(folder, "scene.prm"), pathlib.Path(folder, "output")
+    file.write_text("set Model = nonlinear\n")
+    command = [mpirun, "--oversubscribe", "-n", str(ranks), program] if ranks > 1 else [program]
+    command += ["run", str(file), "--quiet", "--overwrite", "--output", str(output)]
+    for name, value in scene.items():
+        command += ["--set", f"{name}={value}"]
+    summary = output / "summary.json"
+    summary.unlink(missing_ok=True)
+    with subprocess.Popen(command, env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True) as process:
+        try:
+            out, errors = process.communicate(timeout=120)
+        except subprocess.TimeoutExpired:
+            process.terminate()  # mpirun then ends its ranks
+            try:
+                process.communicate(timeout=10)
+            except subprocess.TimeoutExpired:
+                process.kill()
+            sys.exit(f"FAILED: no end within 120 s: {' '.join(command)}")
+    messages = [line for line in (out + errors).splitlines() if line.startswith("crawler: ")]
+    return process.returncode, json.loads(summary.read_text()) if summary.exists() else None, messages
+
+
+def same_answer(name, scene, ranks, *where):
+    """The summary of the scene on one rank and on others."""
+    code, one, _ = run(*where, 1, scene)
+    check(code == 0, f"{name}: exit code {code} on 1 rank")
+    for n in ranks if code == 0 else ():
+        code, many, _ = run(*where, n, scene)
+        if code != 0 or many is None:
+            check(False, f"{name}: exit code {code} on {n} ranks")
+            continue
+        errors = {key: abs(many[key] - one[key]) / max(abs(one[key]), 1e-3 * abs(one["stress_power"])) for key in SAME}
+        for key in PLACES:
+            errors[key] = abs(many[key]["value"] - one[key]["value"])
+        worst = max(errors, key=errors.get)
+        check(many["ranks"] == n and many["degrees_of_freedom"] == one["degrees_of_freedom"]
+              and many["cells_shared"] == (scene["Discretization/Share cells"] == "yes")
+              and all(error <= TOLERANCE for error in errors.values()),
+              f"{name}: {n} ranks, {many['steps']} steps ({one['steps']} on one), "
+              f"largest difference {errors[worst]:.1e} in {worst}")
+
+
+def main():
+    """1 if any check failed."""
+    if len(sys.argv) != 3:
+        sys.exit("usage: same_answer.py PATH_TO_CRAWLER MPIRUN")
+    with tempfile.TemporaryDirectory() as folder:
+        where = (sys.argv[1], sys.argv[2], folder)
+        same_answer("Fig. S1, chi = 0.4", WAVE, (2, 3), *where)
+        same_answer("the whole body on each rank", {**WAVE, "Discretization/Share cells": "no"}, (2,), *where)
+        same_answer("formula, 3 cells", FORMULA, (2, 3), *where)
+        same_answer("one cell", {**FORMULA, "Discretization/Number of cells": 1}, (2,), *where)
+
+        ends = []
+        for ranks in (1, 2):
+            code, summary, messages = run(*where, ranks, INVERTS)
+            check(code == 4 and len(messages) <= 1, f"inversion: exit code {code} on {ranks} ranks, message {messages}")
+            check(summary is not None and summary["status"] == "inverted" and summary["inversion"] is not None,
+                  f"inversion: summary.json of {ranks} ranks says so")
+            ends.append((summary or {}).get("inversion"))
+        if None not in ends:
+            check(all(abs(ends[0][key] - ends[1][key]) <= 1e-6 for key in ("s", "t")),
+                  f"inversion at the same place: {ends}")
+
+        bad = {"value out of range": BAD_VALUE, "unknown entry": UNKNOWN, "impossible wave": INCONSISTENT}
+        for name, scene in bad.items():
+            code, _, messages = run(*where, 2, scene)
+            check(code == 2 and len(messages) == 1, f"{name}: exit code {code} on 2 ranks, messages {messages}")
+    print(f"{failures} checks failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
