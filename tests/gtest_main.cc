@@ -8,7 +8,7 @@ int
 main(int argc, char **argv)
 {
   ::testing::InitGoogleTest(&argc, argv);
-  int                                            one = 1; // PETSc need not see GoogleTest's options
+  int one = 1; // PETSc need not see GoogleTest's options
   const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
   auto &listeners = ::testing::UnitTest::GetInstance()->listeners();
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)

@@ -39,25 +39,25 @@ namespace crawler
     std::string kind = "done", text, entry;
     if (rank_of(communicator) == 0)
       try
-        {
-          text = action();
-        }
+      {
+        text = action();
+      }
       catch (const InputError &error)
-        {
-          kind  = "input";
-          text  = error.what();
-          entry = error.entry;
-        }
+      {
+        kind  = "input";
+        text  = error.what();
+        entry = error.entry;
+      }
       catch (const FileError &error)
-        {
-          kind = "file";
-          text = error.what();
-        }
+      {
+        kind = "file";
+        text = error.what();
+      }
       catch (const std::filesystem::filesystem_error &error)
-        {
-          kind = "file";
-          text = error.what();
-        }
+      {
+        kind = "file";
+        text = error.what();
+      }
     kind  = broadcast(kind, communicator);
     text  = broadcast(text, communicator);
     entry = broadcast(entry, communicator);

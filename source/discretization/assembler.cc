@@ -17,7 +17,7 @@ namespace crawler
       const unsigned int size = discretization.n_ranks();
       if (size == 1)
         return own;
-      const double        sent[2] = {own.value, own.s};
+      const double sent[2] = {own.value, own.s};
       std::vector<double> all(2 * size);
       MPI_Allgather(sent, 2, MPI_DOUBLE, all.data(), 2, MPI_DOUBLE, discretization.communicator());
       StretchAt best{all[0], all[1]};
@@ -48,10 +48,10 @@ namespace crawler
   Assembler::input(const double t, const std::span<const double> u, const std::span<const double> v)
   {
     if (t != m_time_)
-      {
-        stress_->values(t, m_);
-        m_time_ = t;
-      }
+    {
+      stress_->values(t, m_);
+      m_time_ = t;
+    }
     const auto local_u = discretization_.to_local(u, u_local_);
     const auto local_v = v.data() == nullptr ? v : discretization_.to_local(v, v_local_);
     return {discretization_.n_local_cells(),
@@ -65,36 +65,37 @@ namespace crawler
   }
 
   bool
-  Assembler::residual(const double                  t,
+  Assembler::residual(const double t,
                       const std::span<const double> u,
                       const std::span<const double> v,
-                      const std::span<double>       F)
+                      const std::span<double> F)
   {
-    const CellInput in   = input(t, u, v);
-    const bool      one  = discretization_.n_active_ranks() == 1;
-    double         *data = F.data();
+    const CellInput in = input(t, u, v);
+    const bool one     = discretization_.n_active_ranks() == 1;
+    double *data       = F.data();
     if (one)
       std::fill(F.begin(), F.end(), 0.);
     else
-      {
-        F_local_.assign(discretization_.n_local(), 0.);
-        data = F_local_.data();
-      }
+    {
+      F_local_.assign(discretization_.n_local(), 0.);
+      data = F_local_.data();
+    }
     const long bad = kernels_.residual(in, data);
     if (!one)
       discretization_.add_to_owned(F_local_, F);
 
     StretchAt found{std::numeric_limits<double>::infinity(), 0.};
     if (bad >= 0)
-      {
-        const auto         &element = discretization_.element();
-        const unsigned int  cell = static_cast<unsigned int>(bad) / element.n, point = static_cast<unsigned int>(bad) % element.n;
-        const double        h = discretization_.cell_size()[cell];
-        double              w = 1.;
-        for (unsigned int i = 0; i < element.n; ++i)
-          w += element.derivatives[point * element.n + i] / h * in.u[cell * element.degree + i];
-        found = {w, discretization_.cell_left()[cell] + h * element.points[point]};
-      }
+    {
+      const auto &element      = discretization_.element();
+      const unsigned int cell  = static_cast<unsigned int>(bad) / element.n,
+                         point = static_cast<unsigned int>(bad) % element.n;
+      const double h           = discretization_.cell_size()[cell];
+      double w                 = 1.;
+      for (unsigned int i = 0; i < element.n; ++i)
+        w += element.derivatives[point * element.n + i] / h * in.u[cell * element.degree + i];
+      found = {w, discretization_.cell_left()[cell] + h * element.points[point]};
+    }
     int any = bad >= 0;
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, discretization_.communicator());
@@ -105,11 +106,11 @@ namespace crawler
   }
 
   void
-  Assembler::jacobian(const double                  t,
+  Assembler::jacobian(const double t,
                       const std::span<const double> u,
                       const std::span<const double> v,
-                      const double                  sigma,
-                      ChainMatrix                  &A)
+                      const double sigma,
+                      ChainMatrix &A)
   {
     kernels_.jacobian(input(t, u, v), sigma, A.blocks().data());
   }
@@ -138,41 +139,38 @@ namespace crawler
     static_assert(sizeof(CellIntegrals) % sizeof(double) == 0);
     if (discretization_.n_ranks() == 1)
       return sum;
-    MPI_Allreduce(MPI_IN_PLACE,
-                  &sum,
-                  sizeof(CellIntegrals) / sizeof(double),
-                  MPI_DOUBLE,
-                  MPI_SUM,
-                  discretization_.communicator());
+    MPI_Allreduce(
+      MPI_IN_PLACE, &sum, sizeof(CellIntegrals) / sizeof(double), MPI_DOUBLE, MPI_SUM, discretization_.communicator());
     return sum;
   }
 
   StretchRange
   Assembler::stretch_range(const std::span<const double> u)
   {
-    const auto     local   = discretization_.to_local(u, u_local_);
-    const auto    &element = discretization_.element();
+    const auto local    = discretization_.to_local(u, u_local_);
+    const auto &element = discretization_.element();
     const unsigned n = element.n, q = element.degree;
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    StretchRange     range{{infinity, 0.}, {-infinity, 0.}};
+    StretchRange range{{infinity, 0.}, {-infinity, 0.}};
     for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+    {
+      const double h  = discretization_.cell_size()[c];
+      const auto look = [&](const double *derivatives, const double x)
       {
-        const double h = discretization_.cell_size()[c];
-        const auto   look = [&](const double *derivatives, const double x) {
-          double w = 0.;
-          for (unsigned int i = 0; i < n; ++i)
-            w += derivatives[i] * local[c * q + i];
-          w = 1. + w / h;
-          if (w < range.min.value || (std::isnan(w) && !std::isnan(range.min.value)))
-            range.min = {w, discretization_.cell_left()[c] + h * x};
-          if (w > range.max.value)
-            range.max = {w, discretization_.cell_left()[c] + h * x};
-        };
-        look(element.left_derivatives.data(), 0.);
-        for (unsigned int p = 0; p < n; ++p)
-          look(&element.derivatives[p * n], element.points[p]);
-        look(element.right_derivatives.data(), 1.);
-      }
+        double w = 0.;
+        for (unsigned int i = 0; i < n; ++i)
+          w += derivatives[i] * local[c * q + i];
+        w = 1. + w / h;
+        if (w < range.min.value || (std::isnan(w) && !std::isnan(range.min.value)))
+          range.min = {w, discretization_.cell_left()[c] + h * x};
+        if (w > range.max.value)
+          range.max = {w, discretization_.cell_left()[c] + h * x};
+      };
+      look(element.left_derivatives.data(), 0.);
+      for (unsigned int p = 0; p < n; ++p)
+        look(&element.derivatives[p * n], element.points[p]);
+      look(element.right_derivatives.data(), 1.);
+    }
     range.min = reduce_minimum(range.min, 1., discretization_);
     range.max = reduce_minimum(range.max, -1., discretization_);
     return range;
@@ -181,27 +179,27 @@ namespace crawler
   Resolution
   Assembler::resolution(const std::span<const double> u)
   {
-    const auto     local   = discretization_.to_local(u, u_local_);
-    const auto    &element = discretization_.element();
+    const auto local    = discretization_.to_local(u, u_local_);
+    const auto &element = discretization_.element();
     const unsigned n = element.n, q = element.degree;
-    double         sums[2] = {0., 0.};
+    double sums[2] = {0., 0.};
     for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+    {
+      const double h = discretization_.cell_size()[c];
+      double mode = 0., strain = 0., smallest = std::numeric_limits<double>::infinity();
+      for (unsigned int p = 0; p < n; ++p)
       {
-        const double h        = discretization_.cell_size()[c];
-        double       mode = 0., strain = 0., smallest = std::numeric_limits<double>::infinity();
-        for (unsigned int p = 0; p < n; ++p)
-          {
-            double e = 0.;
-            for (unsigned int i = 0; i < n; ++i)
-              e += element.derivatives[p * n + i] * local[c * q + i];
-            e /= h;
-            mode += highest_mode_[p] * e;
-            strain += element.weights[p] * e * e;
-            smallest = std::min(smallest, 1. + e);
-          }
-        sums[0] += h / (2. * q - 1.) * (mode / smallest) * (mode / smallest);
-        sums[1] += h * strain;
+        double e = 0.;
+        for (unsigned int i = 0; i < n; ++i)
+          e += element.derivatives[p * n + i] * local[c * q + i];
+        e /= h;
+        mode += highest_mode_[p] * e;
+        strain += element.weights[p] * e * e;
+        smallest = std::min(smallest, 1. + e);
       }
+      sums[0] += h / (2. * q - 1.) * (mode / smallest) * (mode / smallest);
+      sums[1] += h * strain;
+    }
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
     return {sums[0], sums[1]};

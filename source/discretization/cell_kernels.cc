@@ -17,12 +17,12 @@ namespace crawler
     evaluate(const double *table, const double *nodal, const double factor, const double offset, double *at_points)
     {
       for (int p = 0; p < n; ++p)
-        {
-          double sum = 0.;
-          for (int i = 0; i < n; ++i)
-            sum += table[p * n + i] * nodal[i];
-          at_points[p] = offset + factor * sum;
-        }
+      {
+        double sum = 0.;
+        for (int i = 0; i < n; ++i)
+          sum += table[p * n + i] * nodal[i];
+        at_points[p] = offset + factor * sum;
+      }
     }
 
     template <int q>
@@ -36,35 +36,35 @@ namespace crawler
       {
         const double *values = in.element->values.data(), *derivatives = in.element->derivatives.data();
         const double *weights = in.element->weights.data();
-        long          bad     = -1;
+        long bad              = -1;
         for (unsigned int c = 0; c < in.n_cells; ++c)
+        {
+          const double h  = in.cell_size[c];
+          const double *u = in.u + c * q, *m = in.m + c * n;
+          double *f = F + c * q;
+          Points w, g, v, friction, force;
+          evaluate<n>(derivatives, u, 1. / h, 1., w.data());
+          for (int p = 0; p < n; ++p)
           {
-            const double h = in.cell_size[c];
-            const double *u = in.u + c * q, *m = in.m + c * n;
-            double       *f = F + c * q;
-            Points        w, g, v, friction, force;
-            evaluate<n>(derivatives, u, 1. / h, 1., w.data());
-            for (int p = 0; p < n; ++p)
-              {
-                if (!(w[p] > 0.) && bad < 0)
-                  bad = static_cast<long>(c) * n + p;
-                force[p] = weights[p] * equation::body_force(w[p], m[p], in.k);
-              }
-            if (in.v != nullptr)
-              {
-                in.friction->values(w, g);
-                evaluate<n>(values, in.v + c * q, 1., 0., v.data());
-                for (int p = 0; p < n; ++p)
-                  friction[p] = h * weights[p] * equation::friction_force(g[p], v[p]);
-                for (int p = 0; p < n; ++p)
-                  for (int i = 0; i < n; ++i)
-                    f[i] += friction[p] * values[p * n + i] + force[p] * derivatives[p * n + i];
-              }
-            else
-              for (int p = 0; p < n; ++p)
-                for (int i = 0; i < n; ++i)
-                  f[i] += force[p] * derivatives[p * n + i];
+            if (!(w[p] > 0.) && bad < 0)
+              bad = static_cast<long>(c) * n + p;
+            force[p] = weights[p] * equation::body_force(w[p], m[p], in.k);
           }
+          if (in.v != nullptr)
+          {
+            in.friction->values(w, g);
+            evaluate<n>(values, in.v + c * q, 1., 0., v.data());
+            for (int p = 0; p < n; ++p)
+              friction[p] = h * weights[p] * equation::friction_force(g[p], v[p]);
+            for (int p = 0; p < n; ++p)
+              for (int i = 0; i < n; ++i)
+                f[i] += friction[p] * values[p * n + i] + force[p] * derivatives[p * n + i];
+          }
+          else
+            for (int p = 0; p < n; ++p)
+              for (int i = 0; i < n; ++i)
+                f[i] += force[p] * derivatives[p * n + i];
+        }
         return bad;
       }
 
@@ -74,27 +74,27 @@ namespace crawler
         const double *values = in.element->values.data(), *derivatives = in.element->derivatives.data();
         const double *weights = in.element->weights.data(), *stiffness = in.element->stiffness.data();
         for (unsigned int c = 0; c < in.n_cells; ++c)
+        {
+          const double h = in.cell_size[c], k_over_h = in.k / h;
+          double *J = blocks + c * n * n;
+          Points w, g, dg, v;
+          evaluate<n>(derivatives, in.u + c * q, 1. / h, 1., w.data());
+          evaluate<n>(values, in.v + c * q, 1., 0., v.data());
+          in.friction->values_and_derivatives(w, g, dg);
+          for (int i = 0; i < n * n; ++i)
+            J[i] = k_over_h * stiffness[i];
+          for (int p = 0; p < n; ++p)
           {
-            const double h = in.cell_size[c], k_over_h = in.k / h;
-            double      *J = blocks + c * n * n;
-            Points       w, g, dg, v;
-            evaluate<n>(derivatives, in.u + c * q, 1. / h, 1., w.data());
-            evaluate<n>(values, in.v + c * q, 1., 0., v.data());
-            in.friction->values_and_derivatives(w, g, dg);
-            for (int i = 0; i < n * n; ++i)
-              J[i] = k_over_h * stiffness[i];
-            for (int p = 0; p < n; ++p)
-              {
-                const double from_v = h * weights[p] * sigma * g[p];
-                const double from_w = weights[p] * dg[p] * v[p]; // h * (1/h)
-                Points       column;
-                for (int j = 0; j < n; ++j)
-                  column[j] = from_v * values[p * n + j] + from_w * derivatives[p * n + j];
-                for (int i = 0; i < n; ++i)
-                  for (int j = 0; j < n; ++j)
-                    J[i * n + j] += values[p * n + i] * column[j];
-              }
+            const double from_v = h * weights[p] * sigma * g[p];
+            const double from_w = weights[p] * dg[p] * v[p]; // h * (1/h)
+            Points column;
+            for (int j = 0; j < n; ++j)
+              column[j] = from_v * values[p * n + j] + from_w * derivatives[p * n + j];
+            for (int i = 0; i < n; ++i)
+              for (int j = 0; j < n; ++j)
+                J[i * n + j] += values[p * n + i] * column[j];
           }
+        }
       }
 
       static void
@@ -103,22 +103,22 @@ namespace crawler
         const double *values = in.element->values.data(), *derivatives = in.element->derivatives.data();
         const double *weights = in.element->weights.data();
         for (unsigned int c = 0; c < in.n_cells; ++c)
-          {
-            const double h = in.cell_size[c];
-            double      *M = blocks + c * n * n;
-            Points       w, g;
-            evaluate<n>(derivatives, in.u + c * q, 1. / h, 1., w.data());
-            in.friction->values(w, g);
-            for (int i = 0; i < n * n; ++i)
-              M[i] = 0.;
-            for (int p = 0; p < n; ++p)
-              for (int i = 0; i < n; ++i)
-                {
-                  const double factor = h * weights[p] * g[p] * values[p * n + i];
-                  for (int j = 0; j < n; ++j)
-                    M[i * n + j] += factor * values[p * n + j];
-                }
-          }
+        {
+          const double h = in.cell_size[c];
+          double *M      = blocks + c * n * n;
+          Points w, g;
+          evaluate<n>(derivatives, in.u + c * q, 1. / h, 1., w.data());
+          in.friction->values(w, g);
+          for (int i = 0; i < n * n; ++i)
+            M[i] = 0.;
+          for (int p = 0; p < n; ++p)
+            for (int i = 0; i < n; ++i)
+            {
+              const double factor = h * weights[p] * g[p] * values[p * n + i];
+              for (int j = 0; j < n; ++j)
+                M[i * n + j] += factor * values[p * n + j];
+            }
+        }
       }
 
       static void
@@ -127,30 +127,30 @@ namespace crawler
         const double *values = in.element->values.data(), *derivatives = in.element->derivatives.data();
         const double *weights = in.element->weights.data();
         for (unsigned int c = 0; c < in.n_cells; ++c)
+        {
+          const double h  = in.cell_size[c];
+          const double *m = in.m + c * n;
+          Points w, g, u, v, v_s;
+          evaluate<n>(derivatives, in.u + c * q, 1. / h, 1., w.data());
+          evaluate<n>(values, in.u + c * q, 1., 0., u.data());
+          evaluate<n>(values, in.v + c * q, 1., 0., v.data());
+          evaluate<n>(derivatives, in.v + c * q, 1. / h, 0., v_s.data());
+          in.friction->values(w, g);
+          for (int p = 0; p < n; ++p)
           {
-            const double  h = in.cell_size[c];
-            const double *m = in.m + c * n;
-            Points        w, g, u, v, v_s;
-            evaluate<n>(derivatives, in.u + c * q, 1. / h, 1., w.data());
-            evaluate<n>(values, in.u + c * q, 1., 0., u.data());
-            evaluate<n>(values, in.v + c * q, 1., 0., v.data());
-            evaluate<n>(derivatives, in.v + c * q, 1. / h, 0., v_s.data());
-            in.friction->values(w, g);
-            for (int p = 0; p < n; ++p)
-              {
-                const double ds = h * weights[p], power = equation::stress_power(m[p], v_s[p]);
-                const double friction = equation::friction_force(g[p], v[p]);
-                sum.displacement += ds * u[p];
-                sum.velocity += ds * v[p];
-                sum.elastic_energy += ds * equation::elastic_energy(w[p], in.k);
-                sum.stress_power += ds * power;
-                sum.positive_power += ds * std::max(power, 0.);
-                sum.absolute_power += ds * std::abs(power);
-                sum.dissipation += ds * equation::dissipation(g[p], v[p]);
-                sum.net_friction += ds * friction;
-                sum.abs_friction += ds * std::abs(friction);
-              }
+            const double ds = h * weights[p], power = equation::stress_power(m[p], v_s[p]);
+            const double friction = equation::friction_force(g[p], v[p]);
+            sum.displacement += ds * u[p];
+            sum.velocity += ds * v[p];
+            sum.elastic_energy += ds * equation::elastic_energy(w[p], in.k);
+            sum.stress_power += ds * power;
+            sum.positive_power += ds * std::max(power, 0.);
+            sum.absolute_power += ds * std::abs(power);
+            sum.dissipation += ds * equation::dissipation(g[p], v[p]);
+            sum.net_friction += ds * friction;
+            sum.abs_friction += ds * std::abs(friction);
           }
+        }
       }
 
       static void
@@ -158,12 +158,12 @@ namespace crawler
       {
         for (unsigned int c = 0; c < n_cells; ++c)
           for (int i = 0; i < n; ++i)
-            {
-              double sum = 0.;
-              for (int j = 0; j < n; ++j)
-                sum += blocks[(c * n + i) * n + j] * x[c * q + j];
-              y[c * q + i] += sum;
-            }
+          {
+            double sum = 0.;
+            for (int j = 0; j < n; ++j)
+              sum += blocks[(c * n + i) * n + j] * x[c * q + j];
+            y[c * q + i] += sum;
+          }
       }
 
       // Nodes 1 ... q-1 of each cell are the inner ones. After condense() a block holds
@@ -175,48 +175,48 @@ namespace crawler
       {
         bool ok = true;
         for (unsigned int c = 0; c < n_cells; ++c)
+        {
+          double *A = blocks + c * n * n;
+          for (int k = 1; k < q; ++k)
           {
-            double *A = blocks + c * n * n;
-            for (int k = 1; k < q; ++k)
-              {
-                const double pivot = A[k * n + k];
-                ok                 = ok && pivot != 0. && std::isfinite(pivot);
-                const double inverse = 1. / pivot;
-                A[k * n + k]         = inverse;
-                for (int i = k + 1; i < q; ++i)
-                  {
-                    const double factor = A[i * n + k] * inverse;
-                    A[i * n + k]        = factor;
-                    for (int j = k + 1; j < q; ++j)
-                      A[i * n + j] -= factor * A[k * n + j];
-                    A[i * n] -= factor * A[k * n];
-                    A[i * n + q] -= factor * A[k * n + q];
-                  }
-              }
-            for (int k = q - 1; k >= 1; --k)
-              {
-                double left = A[k * n], right = A[k * n + q];
-                for (int j = k + 1; j < q; ++j)
-                  {
-                    left -= A[k * n + j] * A[j * n];
-                    right -= A[k * n + j] * A[j * n + q];
-                  }
-                A[k * n]     = left * A[k * n + k];
-                A[k * n + q] = right * A[k * n + k];
-              }
-            double s00 = A[0], s01 = A[q], s10 = A[q * n], s11 = A[q * n + q];
-            for (int k = 1; k < q; ++k)
-              {
-                s00 -= A[k] * A[k * n];
-                s01 -= A[k] * A[k * n + q];
-                s10 -= A[q * n + k] * A[k * n];
-                s11 -= A[q * n + k] * A[k * n + q];
-              }
-            schur[4 * c]     = s00;
-            schur[4 * c + 1] = s01;
-            schur[4 * c + 2] = s10;
-            schur[4 * c + 3] = s11;
+            const double pivot   = A[k * n + k];
+            ok                   = ok && pivot != 0. && std::isfinite(pivot);
+            const double inverse = 1. / pivot;
+            A[k * n + k]         = inverse;
+            for (int i = k + 1; i < q; ++i)
+            {
+              const double factor = A[i * n + k] * inverse;
+              A[i * n + k]        = factor;
+              for (int j = k + 1; j < q; ++j)
+                A[i * n + j] -= factor * A[k * n + j];
+              A[i * n] -= factor * A[k * n];
+              A[i * n + q] -= factor * A[k * n + q];
+            }
           }
+          for (int k = q - 1; k >= 1; --k)
+          {
+            double left = A[k * n], right = A[k * n + q];
+            for (int j = k + 1; j < q; ++j)
+            {
+              left -= A[k * n + j] * A[j * n];
+              right -= A[k * n + j] * A[j * n + q];
+            }
+            A[k * n]     = left * A[k * n + k];
+            A[k * n + q] = right * A[k * n + k];
+          }
+          double s00 = A[0], s01 = A[q], s10 = A[q * n], s11 = A[q * n + q];
+          for (int k = 1; k < q; ++k)
+          {
+            s00 -= A[k] * A[k * n];
+            s01 -= A[k] * A[k * n + q];
+            s10 -= A[q * n + k] * A[k * n];
+            s11 -= A[q * n + k] * A[k * n + q];
+          }
+          schur[4 * c]     = s00;
+          schur[4 * c + 1] = s01;
+          schur[4 * c + 2] = s10;
+          schur[4 * c + 3] = s11;
+        }
         return ok;
       }
 
@@ -224,36 +224,36 @@ namespace crawler
       forward(const unsigned int n_cells, const double *blocks, double *x)
       {
         for (unsigned int c = 0; c < n_cells; ++c)
+        {
+          const double *A = blocks + c * n * n;
+          double *y       = x + c * q;
+          for (int i = 2; i < q; ++i)
+            for (int j = 1; j < i; ++j)
+              y[i] -= A[i * n + j] * y[j];
+          for (int i = q - 1; i >= 1; --i)
           {
-            const double *A = blocks + c * n * n;
-            double       *y = x + c * q;
-            for (int i = 2; i < q; ++i)
-              for (int j = 1; j < i; ++j)
-                y[i] -= A[i * n + j] * y[j];
-            for (int i = q - 1; i >= 1; --i)
-              {
-                for (int j = i + 1; j < q; ++j)
-                  y[i] -= A[i * n + j] * y[j];
-                y[i] *= A[i * n + i];
-              }
-            for (int i = 1; i < q; ++i)
-              {
-                y[0] -= A[i] * y[i];
-                y[q] -= A[q * n + i] * y[i];
-              }
+            for (int j = i + 1; j < q; ++j)
+              y[i] -= A[i * n + j] * y[j];
+            y[i] *= A[i * n + i];
           }
+          for (int i = 1; i < q; ++i)
+          {
+            y[0] -= A[i] * y[i];
+            y[q] -= A[q * n + i] * y[i];
+          }
+        }
       }
 
       static void
       backward(const unsigned int n_cells, const double *blocks, double *x)
       {
         for (unsigned int c = 0; c < n_cells; ++c)
-          {
-            const double *A = blocks + c * n * n;
-            double       *y = x + c * q;
-            for (int i = 1; i < q; ++i)
-              y[i] -= A[i * n] * y[0] + A[i * n + q] * y[q];
-          }
+        {
+          const double *A = blocks + c * n * n;
+          double *y       = x + c * q;
+          for (int i = 1; i < q; ++i)
+            y[i] -= A[i * n] * y[0] + A[i * n + q] * y[q];
+        }
       }
 
       static constexpr CellKernels table = {residual, jacobian, mass, integrals, multiply, condense, forward, backward};
@@ -264,24 +264,24 @@ namespace crawler
   cell_kernels(const unsigned int degree)
   {
     switch (degree)
-      {
-        case 1:
-          return Kernels<1>::table;
-        case 2:
-          return Kernels<2>::table;
-        case 3:
-          return Kernels<3>::table;
-        case 4:
-          return Kernels<4>::table;
-        case 5:
-          return Kernels<5>::table;
-        case 6:
-          return Kernels<6>::table;
-        case 7:
-          return Kernels<7>::table;
-        case 8:
-          return Kernels<8>::table;
-      }
+    {
+      case 1:
+        return Kernels<1>::table;
+      case 2:
+        return Kernels<2>::table;
+      case 3:
+        return Kernels<3>::table;
+      case 4:
+        return Kernels<4>::table;
+      case 5:
+        return Kernels<5>::table;
+      case 6:
+        return Kernels<6>::table;
+      case 7:
+        return Kernels<7>::table;
+      case 8:
+        return Kernels<8>::table;
+    }
     throw std::logic_error("degrees 1 to 8 are compiled");
   }
 } // namespace crawler

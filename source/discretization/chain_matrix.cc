@@ -22,8 +22,8 @@ namespace crawler
   void
   ChainMatrix::multiply(const std::span<const double> x, const std::span<double> y) const
   {
-    const auto  &d     = *discretization_;
-    const auto   local = d.to_local(x, x_local_);
+    const auto &d    = *discretization_;
+    const auto local = d.to_local(x, x_local_);
     local_.assign(d.n_local(), 0.);
     cell_kernels(d.element().degree).multiply(d.n_local_cells(), blocks_.data(), local.data(), local_.data());
     d.add_to_owned(local_, y);
@@ -32,131 +32,131 @@ namespace crawler
   bool
   ChainMatrix::factorize()
   {
-    const auto        &d = *discretization_;
+    const auto &d        = *discretization_;
     const unsigned int n = d.n_local_cells();
     factors_             = blocks_;
     bool ok              = cell_kernels(d.element().degree).condense(n, factors_.data(), schur_.data());
 
     double own[4] = {1., 0., 0., 1.};
     if (n > 0)
+    {
+      // Node i couples to node 0 (row_zero, column_zero), and to node i+1 (next above, below under the diagonal).
+      double corner = schur_[0], diagonal = schur_[3];
+      double row = schur_[1], column = schur_[2]; // A[0][i], A[i][0] for i = 1
+      for (unsigned int i = 1; i < n; ++i)
       {
-        // Node i couples to node 0 (row_zero, column_zero), and to node i+1 (next above, below under the diagonal).
-        double corner = schur_[0], diagonal = schur_[3];
-        double row = schur_[1], column = schur_[2]; // A[0][i], A[i][0] for i = 1
-        for (unsigned int i = 1; i < n; ++i)
-          {
-            const double *S = &schur_[4 * i];
-            diagonal += S[0];
-            ok                   = ok && diagonal != 0. && std::isfinite(diagonal);
-            const double inverse = 1. / diagonal;
-            inverse_[i]          = inverse;
-            row_zero_[i]         = row * inverse;
-            column_zero_[i]      = column * inverse;
-            next_[i]             = S[1] * inverse;
-            below_[i]            = S[2] * inverse;
-            corner -= row_zero_[i] * column;
-            diagonal   = S[3] - below_[i] * S[1];
-            const double next_row = -row_zero_[i] * S[1];
-            column                = -below_[i] * column;
-            row                   = next_row;
-          }
-        own[0] = corner;
-        own[1] = row;
-        own[2] = column;
-        own[3] = diagonal;
+        const double *S = &schur_[4 * i];
+        diagonal += S[0];
+        ok                   = ok && diagonal != 0. && std::isfinite(diagonal);
+        const double inverse = 1. / diagonal;
+        inverse_[i]          = inverse;
+        row_zero_[i]         = row * inverse;
+        column_zero_[i]      = column * inverse;
+        next_[i]             = S[1] * inverse;
+        below_[i]            = S[2] * inverse;
+        corner -= row_zero_[i] * column;
+        diagonal              = S[3] - below_[i] * S[1];
+        const double next_row = -row_zero_[i] * S[1];
+        column                = -below_[i] * column;
+        row                   = next_row;
       }
+      own[0] = corner;
+      own[1] = row;
+      own[2] = column;
+      own[3] = diagonal;
+    }
     const unsigned int ranks = d.n_active_ranks();
     if (d.n_ranks() == 1)
-      {
-        std::copy(own, own + 4, reduced_.begin());
-        return ok && std::isfinite(own[0]) && std::isfinite(own[3]);
-      }
+    {
+      std::copy(own, own + 4, reduced_.begin());
+      return ok && std::isfinite(own[0]) && std::isfinite(own[3]);
+    }
     // Ranks without cells send numbers that nobody reads.
-    double              sent[5] = {own[0], own[1], own[2], own[3], ok ? 1. : 0.};
+    double sent[5] = {own[0], own[1], own[2], own[3], ok ? 1. : 0.};
     std::vector<double> all(5 * d.n_ranks());
     MPI_Allgather(sent, 5, MPI_DOUBLE, all.data(), 5, MPI_DOUBLE, d.communicator());
     for (unsigned int r = 0; r < ranks; ++r)
-      {
-        std::copy(&all[5 * r], &all[5 * r] + 4, reduced_.begin() + 4 * r);
-        ok = ok && all[5 * r + 4] == 1. && std::isfinite(all[5 * r]) && std::isfinite(all[5 * r + 3]);
-      }
+    {
+      std::copy(&all[5 * r], &all[5 * r] + 4, reduced_.begin() + 4 * r);
+      ok = ok && all[5 * r + 4] == 1. && std::isfinite(all[5 * r]) && std::isfinite(all[5 * r + 3]);
+    }
     return ok;
   }
 
   void
   ChainMatrix::solve(const std::span<const double> b, const std::span<double> x) const
   {
-    const auto        &d       = *discretization_;
-    const auto        &kernels = cell_kernels(d.element().degree);
+    const auto &d        = *discretization_;
+    const auto &kernels  = cell_kernels(d.element().degree);
     const unsigned int n = d.n_local_cells(), q = d.element().degree, ranks = d.n_active_ranks();
-    const bool         shared_first = d.has_left_neighbour();
+    const bool shared_first = d.has_left_neighbour();
 
     // Work on the local array; the right-hand side of a shared node stays with its owner.
     const bool direct = ranks == 1;
     if (direct)
-      {
-        if (x.data() != b.data())
-          std::copy(b.begin(), b.end(), x.begin());
-      }
+    {
+      if (x.data() != b.data())
+        std::copy(b.begin(), b.end(), x.begin());
+    }
     else
+    {
+      local_.resize(d.n_local());
+      if (n > 0)
       {
-        local_.resize(d.n_local());
-        if (n > 0)
-          {
-            local_[0] = 0.;
-            std::copy(b.begin(), b.end(), local_.begin() + (shared_first ? 1 : 0));
-          }
+        local_[0] = 0.;
+        std::copy(b.begin(), b.end(), local_.begin() + (shared_first ? 1 : 0));
       }
+    }
     double *y = direct ? x.data() : local_.data();
 
     kernels.forward(n, factors_.data(), y);
     double first = n > 0 ? y[0] : 0.;
     for (unsigned int i = 1; i < n; ++i)
-      {
-        const double r = y[i * q];
-        first -= row_zero_[i] * r;
-        y[(i + 1) * q] -= below_[i] * r;
-      }
+    {
+      const double r = y[i * q];
+      first -= row_zero_[i] * r;
+      y[(i + 1) * q] -= below_[i] * r;
+    }
     const double last = n > 0 ? y[static_cast<std::size_t>(n) * q] : 0.;
 
     // The system of the shared nodes 0 ... ranks, the same on every rank.
     double x_first = 0., x_last = 0.;
     if (direct)
-      {
-        const double *S = reduced_.data();
-        // Eliminate the first node; the sum of both rows keeps the digits when the friction term is small.
-        const double factor = S[2] / S[0];
-        x_last              = (last - factor * first) / (S[3] - factor * S[1]);
-        x_first             = (first - S[1] * x_last) / S[0];
-      }
+    {
+      const double *S = reduced_.data();
+      // Eliminate the first node; the sum of both rows keeps the digits when the friction term is small.
+      const double factor = S[2] / S[0];
+      x_last              = (last - factor * first) / (S[3] - factor * S[1]);
+      x_first             = (first - S[1] * x_last) / S[0];
+    }
     else
+    {
+      const double sent[2] = {first, last};
+      std::vector<double> all(2 * d.n_ranks()), diagonal(ranks + 1, 0.);
+      MPI_Allgather(sent, 2, MPI_DOUBLE, all.data(), 2, MPI_DOUBLE, d.communicator());
+      std::fill(reduced_rhs_.begin(), reduced_rhs_.end(), 0.);
+      for (unsigned int r = 0; r < ranks; ++r)
       {
-        const double        sent[2] = {first, last};
-        std::vector<double> all(2 * d.n_ranks()), diagonal(ranks + 1, 0.);
-        MPI_Allgather(sent, 2, MPI_DOUBLE, all.data(), 2, MPI_DOUBLE, d.communicator());
-        std::fill(reduced_rhs_.begin(), reduced_rhs_.end(), 0.);
-        for (unsigned int r = 0; r < ranks; ++r)
-          {
-            reduced_rhs_[r] += all[2 * r];
-            reduced_rhs_[r + 1] += all[2 * r + 1];
-            diagonal[r] += reduced_[4 * r];
-            diagonal[r + 1] += reduced_[4 * r + 3];
-          }
-        for (unsigned int r = 0; r < ranks; ++r)
-          {
-            const double factor = reduced_[4 * r + 2] / diagonal[r];
-            diagonal[r + 1] -= factor * reduced_[4 * r + 1];
-            reduced_rhs_[r + 1] -= factor * reduced_rhs_[r];
-          }
-        reduced_rhs_[ranks] /= diagonal[ranks];
-        for (unsigned int r = ranks; r-- > 0;)
-          reduced_rhs_[r] = (reduced_rhs_[r] - reduced_[4 * r + 1] * reduced_rhs_[r + 1]) / diagonal[r];
-        if (n > 0)
-          {
-            x_first = reduced_rhs_[d.rank()];
-            x_last  = reduced_rhs_[d.rank() + 1];
-          }
+        reduced_rhs_[r] += all[2 * r];
+        reduced_rhs_[r + 1] += all[2 * r + 1];
+        diagonal[r] += reduced_[4 * r];
+        diagonal[r + 1] += reduced_[4 * r + 3];
       }
+      for (unsigned int r = 0; r < ranks; ++r)
+      {
+        const double factor = reduced_[4 * r + 2] / diagonal[r];
+        diagonal[r + 1] -= factor * reduced_[4 * r + 1];
+        reduced_rhs_[r + 1] -= factor * reduced_rhs_[r];
+      }
+      reduced_rhs_[ranks] /= diagonal[ranks];
+      for (unsigned int r = ranks; r-- > 0;)
+        reduced_rhs_[r] = (reduced_rhs_[r] - reduced_[4 * r + 1] * reduced_rhs_[r + 1]) / diagonal[r];
+      if (n > 0)
+      {
+        x_first = reduced_rhs_[d.rank()];
+        x_last  = reduced_rhs_[d.rank() + 1];
+      }
+    }
     if (n == 0)
       return;
 

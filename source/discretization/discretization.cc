@@ -19,15 +19,16 @@ namespace crawler
                       dealii::parallel::shared::Triangulation<1>::partition_custom_signal)
       , element(degree)
       , dof_handler(triangulation)
-    {}
+    {
+    }
 
     dealii::parallel::shared::Triangulation<1> triangulation;
-    dealii::FE_Q<1>                            element; // Gauss-Lobatto nodes
-    dealii::DoFHandler<1>                      dof_handler;
+    dealii::FE_Q<1> element; // Gauss-Lobatto nodes
+    dealii::DoFHandler<1> dof_handler;
   };
 
-  Discretization::Discretization(MPI_Comm           communicator,
-                                 const double       length,
+  Discretization::Discretization(MPI_Comm communicator,
+                                 const double length,
                                  const unsigned int n_cells,
                                  const unsigned int degree)
     : communicator_(communicator)
@@ -46,13 +47,14 @@ namespace crawler
   void
   Discretization::make_mesh()
   {
-    mesh_       = std::make_unique<Mesh>(communicator_, element_.degree);
-    auto &tria  = mesh_->triangulation;
-    auto &dofs  = mesh_->dof_handler;
+    mesh_      = std::make_unique<Mesh>(communicator_, element_.degree);
+    auto &tria = mesh_->triangulation;
+    auto &dofs = mesh_->dof_handler;
 
     // Each rank owns a run of neighbouring cells.
-    const auto assign = [&]() {
-      const auto    n      = static_cast<std::uint64_t>(tria.n_active_cells());
+    const auto assign = [&]()
+    {
+      const auto n         = static_cast<std::uint64_t>(tria.n_active_cells());
       std::uint64_t number = 0;
       for (const auto &cell : tria.active_cell_iterators())
         cell->set_subdomain_id(static_cast<dealii::types::subdomain_id>(number++ * n_active_ranks_ / n));
@@ -63,23 +65,23 @@ namespace crawler
     dofs.distribute_dofs(mesh_->element);
 
     // Number the unknowns along the body. FE_Q lists the two ends of a cell before its inside.
-    const unsigned int                           q = element_.degree;
+    const unsigned int q = element_.degree;
     std::vector<dealii::types::global_dof_index> numbers(dofs.n_dofs()), of_cell(q + 1);
-    std::size_t                                  cell_number = 0;
+    std::size_t cell_number = 0;
     for (const auto &cell : dofs.active_cell_iterators())
+    {
+      cell->get_dof_indices(of_cell);
+      numbers[of_cell[0]] = cell_number * q;
+      numbers[of_cell[1]] = (cell_number + 1) * q;
+      for (unsigned int i = 1; i < q; ++i)
+        numbers[of_cell[i + 1]] = cell_number * q + i;
+      if (cell->is_locally_owned())
       {
-        cell->get_dof_indices(of_cell);
-        numbers[of_cell[0]] = cell_number * q;
-        numbers[of_cell[1]] = (cell_number + 1) * q;
-        for (unsigned int i = 1; i < q; ++i)
-          numbers[of_cell[i + 1]] = cell_number * q + i;
-        if (cell->is_locally_owned())
-          {
-            cell_left_.push_back(cell->vertex(0)[0]);
-            cell_size_.push_back(cell->vertex(1)[0] - cell->vertex(0)[0]);
-          }
-        ++cell_number;
+        cell_left_.push_back(cell->vertex(0)[0]);
+        cell_size_.push_back(cell->vertex(1)[0] - cell->vertex(0)[0]);
       }
+      ++cell_number;
+    }
     dofs.renumber_dofs(numbers);
     if (dofs.n_locally_owned_dofs() != n_owned() || (rank_ < n_active_ranks_) == cell_left_.empty())
       throw std::logic_error("deal.II's ownership of unknowns is not the one of the chain numbering");
@@ -101,10 +103,11 @@ namespace crawler
   {
     if (n_active_ranks_ == 1 || n_local() == 0)
       return owned;
-    double     from_left = 0.;
-    const auto left      = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
-    const auto right     = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
-    MPI_Sendrecv(&owned.back(), 1, MPI_DOUBLE, right, 0, &from_left, 1, MPI_DOUBLE, left, 0, communicator_, MPI_STATUS_IGNORE);
+    double from_left = 0.;
+    const auto left  = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
+    const auto right = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
+    MPI_Sendrecv(
+      &owned.back(), 1, MPI_DOUBLE, right, 0, &from_left, 1, MPI_DOUBLE, left, 0, communicator_, MPI_STATUS_IGNORE);
     if (!has_left_neighbour())
       return owned;
     buffer.resize(n_local());
@@ -123,10 +126,11 @@ namespace crawler
       std::copy(local.begin() + (skip_first ? 1 : 0), local.end(), owned.begin());
     if (n_active_ranks_ == 1)
       return;
-    double     from_right = 0.;
-    const auto left       = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
-    const auto right      = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
-    MPI_Sendrecv(local.data(), 1, MPI_DOUBLE, left, 1, &from_right, 1, MPI_DOUBLE, right, 1, communicator_, MPI_STATUS_IGNORE);
+    double from_right = 0.;
+    const auto left   = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
+    const auto right  = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
+    MPI_Sendrecv(
+      local.data(), 1, MPI_DOUBLE, left, 1, &from_right, 1, MPI_DOUBLE, right, 1, communicator_, MPI_STATUS_IGNORE);
     owned.back() += from_right;
   }
 } // namespace crawler

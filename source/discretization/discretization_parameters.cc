@@ -20,18 +20,19 @@ namespace crawler
                               1,
                               10000000,
                               "Number of cells of one size along the body. Automatic: chosen from Accuracy.");
-    declarations.choice("Share cells",
-                        share_cells,
-                        {"automatic", "yes", "no"},
-                        "Whether the ranks of mpirun share the cells, or each computes the whole body. Automatic: shared from "
-                        "20000 cells on; below, the messages cost more than they save.");
+    declarations.choice(
+      "Share cells",
+      share_cells,
+      {"automatic", "yes", "no"},
+      "Whether the ranks of mpirun share the cells, or each computes the whole body. Automatic: shared from "
+      "2000 cells on; below, the messages cost more than they save.");
     declarations.leave();
   }
 
   bool
   DiscretizationParameters::shares(const unsigned int cells) const
   {
-    constexpr unsigned int worth_sharing = 20000; // measured, doc/numerics.md
+    constexpr unsigned int worth_sharing = 2000; // measured, doc/numerics.md
     return share_cells == "yes" || (share_cells == "automatic" && cells >= worth_sharing);
   }
 } // namespace crawler

@@ -46,7 +46,7 @@ namespace crawler
     int
     print_parameters(const std::string &format)
     {
-      Parameters   parameters;
+      Parameters parameters;
       Declarations declarations;
       parameters.add_parameters(declarations);
       if (format == "json")
@@ -62,7 +62,7 @@ namespace crawler
     std::string
     unknown_argument(const CLI::App &app, const std::vector<std::string> &arguments)
     {
-      const CLI::App          *command = &app;
+      const CLI::App *command = &app;
       std::vector<std::string> known;
       if (!app.get_subcommands().empty())
         command = app.get_subcommands().front();
@@ -71,14 +71,15 @@ namespace crawler
           known.push_back("--" + name);
       known.push_back("-h");
       for (const std::string &argument : arguments)
+      {
+        const std::string name = argument.substr(0, argument.find('='));
+        if (name.starts_with("-") && name != "-" && std::find(known.begin(), known.end(), name) == known.end())
         {
-          const std::string name = argument.substr(0, argument.find('='));
-          if (name.starts_with("-") && name != "-" && std::find(known.begin(), known.end(), name) == known.end())
-            {
-              const auto near = nearest_names(name, known, 1);
-              return fmt::format("unknown option \"{}\"{}", name, near.empty() ? "" : "; the nearest is " + quoted_list(near));
-            }
+          const auto near = nearest_names(name, known, 1);
+          return fmt::format(
+            "unknown option \"{}\"{}", name, near.empty() ? "" : "; the nearest is " + quoted_list(near));
         }
+      }
       return "";
     }
 
@@ -87,7 +88,11 @@ namespace crawler
     require_command(const CLI::App &app, const std::vector<std::string> &arguments)
     {
       std::vector<std::string> names;
-      for (const CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
+      for (const CLI::App *command : app.get_subcommands(
+             [](const CLI::App *)
+             {
+               return true;
+             }))
         names.push_back(command->get_name());
       if (arguments.empty())
         throw InputError("the command is missing; " + quoted_list(names) + " is expected (see crawler --help)");
@@ -101,12 +106,13 @@ namespace crawler
     }
 
     int
-    dispatch(MPI_Comm                        communicator,
+    dispatch(MPI_Comm communicator,
              const std::vector<std::string> &arguments,
              const std::vector<std::string> &petsc_options)
     {
       const bool first = rank_of(communicator) == 0;
-      CLI::App   app("Crawler: the limbless crawler, a body that pushes itself along by waves of active stress.", "crawler");
+      CLI::App app("Crawler: the limbless crawler, a body that pushes itself along by waves of active stress.",
+                   "crawler");
       app.set_version_flag("--version", version_text());
       app.require_subcommand(1);
       app.footer("Options for PETSc go behind a lone \"--\", e.g. crawler run FILE.prm -- -ts_monitor");
@@ -115,7 +121,8 @@ namespace crawler
       options.command_line = fmt::format("crawler {}", fmt::join(arguments, " "));
       if (!petsc_options.empty())
         options.command_line += fmt::format(" -- {}", fmt::join(petsc_options, " "));
-      const auto common    = [&](CLI::App *command) {
+      const auto common = [&](CLI::App *command)
+      {
         command->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();
         command->add_option("--set", options.overrides, "Sets an entry: \"Section/Entry=value\" (repeatable)")
           ->allow_extra_args(false)
@@ -129,8 +136,8 @@ namespace crawler
       CLI::App *check_command =
         app.add_subcommand("check", "Says what run would do with a parameter file; runs and writes nothing");
       common(check_command);
-      std::string format           = "prm";
-      CLI::App   *parameter_command = app.add_subcommand("parameters", "Prints every entry of the parameter file");
+      std::string format          = "prm";
+      CLI::App *parameter_command = app.add_subcommand("parameters", "Prints every entry of the parameter file");
       parameter_command->add_option("--format", format, "prm, json or markdown")
         ->check(CLI::IsMember({"prm", "json", "markdown"}));
 
@@ -141,18 +148,19 @@ namespace crawler
 
       std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
       try
-        {
-          app.parse(reversed);
-        }
+      {
+        app.parse(reversed);
+      }
       catch (const CLI::Success &success)
-        {
-          return first ? app.exit(success) : 0;
-        }
+      {
+        return first ? app.exit(success) : 0;
+      }
       catch (const CLI::ParseError &error)
-        {
-          const std::string unknown = unknown_argument(app, arguments);
-          throw InputError((unknown.empty() ? error.what() : unknown) + " (crawler --help tells the commands and options)");
-        }
+      {
+        const std::string unknown = unknown_argument(app, arguments);
+        throw InputError((unknown.empty() ? error.what() : unknown) +
+                         " (crawler --help tells the commands and options)");
+      }
       if (*parameter_command)
         return first ? print_parameters(format) : 0;
       return static_cast<int>(*run_command ? run(communicator, options) : check(communicator, options));
@@ -163,52 +171,57 @@ namespace crawler
   run_command_line(int argc, char **argv)
   {
     // What stands behind "--" is for PETSc, everything before it for us.
-    char **separator = std::find_if(argv, argv + argc, [](const char *text) { return std::strcmp(text, "--") == 0; });
+    char **separator = std::find_if(argv,
+                                    argv + argc,
+                                    [](const char *text)
+                                    {
+                                      return std::strcmp(text, "--") == 0;
+                                    });
     const std::vector<std::string> arguments(argv + 1, separator);
     const std::vector<std::string> petsc_options(separator == argv + argc ? separator : separator + 1, argv + argc);
-    static char                    no_signal_handler[] = "-no_signal_handler", yes[] = "true";
-    std::vector<char *>            petsc_arguments = {argv[0], no_signal_handler, yes};
+    static char no_signal_handler[] = "-no_signal_handler", yes[] = "true";
+    std::vector<char *> petsc_arguments = {argv[0], no_signal_handler, yes};
     petsc_arguments.insert(petsc_arguments.end(), argv + argc - petsc_options.size(), argv + argc);
-    int    petsc_argc = static_cast<int>(petsc_arguments.size());
+    int petsc_argc = static_cast<int>(petsc_arguments.size());
     petsc_arguments.push_back(nullptr);
     char **petsc_argv = petsc_arguments.data();
 
-    MPI_Comm                                                        communicator = MPI_COMM_WORLD;
+    MPI_Comm communicator = MPI_COMM_WORLD;
     std::unique_ptr<const dealii::Utilities::MPI::MPI_InitFinalize> guard;
-    std::optional<PetscErrorWords>                                  petsc_error(std::in_place);
+    std::optional<PetscErrorWords> petsc_error(std::in_place);
     try
-      {
-        guard = std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(petsc_argc, petsc_argv, /*max_num_threads=*/1);
-      }
+    {
+      guard = std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(petsc_argc, petsc_argv, /*max_num_threads=*/1);
+    }
     catch (const std::exception &)
-      {
-        report_error(communicator,
-                     ExitCode::bad_input,
-                     "PETSc refuses an option behind \"--\": " + petsc_error->text,
-                     /*on_all_ranks=*/false);
-        MPI_Finalize();
-        return static_cast<int>(ExitCode::bad_input);
-      }
+    {
+      report_error(communicator,
+                   ExitCode::bad_input,
+                   "PETSc refuses an option behind \"--\": " + petsc_error->text,
+                   /*on_all_ranks=*/false);
+      MPI_Finalize();
+      return static_cast<int>(ExitCode::bad_input);
+    }
     petsc_error.reset();
     try
-      {
-        return dispatch(communicator, arguments, petsc_options);
-      }
+    {
+      return dispatch(communicator, arguments, petsc_options);
+    }
     catch (const InputError &error)
-      {
-        return report_error(communicator, ExitCode::bad_input, error.what(), /*on_all_ranks=*/true);
-      }
+    {
+      return report_error(communicator, ExitCode::bad_input, error.what(), /*on_all_ranks=*/true);
+    }
     catch (const FileError &error)
-      {
-        return report_error(communicator, ExitCode::file_error, error.what(), error.on_all_ranks);
-      }
+    {
+      return report_error(communicator, ExitCode::file_error, error.what(), error.on_all_ranks);
+    }
     catch (const std::bad_alloc &)
-      {
-        return report_error(communicator, ExitCode::numerical_failure, "out of memory", /*on_all_ranks=*/false);
-      }
+    {
+      return report_error(communicator, ExitCode::numerical_failure, "out of memory", /*on_all_ranks=*/false);
+    }
     catch (const std::exception &error)
-      {
-        return report_error(communicator, ExitCode::numerical_failure, error.what(), /*on_all_ranks=*/false);
-      }
+    {
+      return report_error(communicator, ExitCode::numerical_failure, error.what(), /*on_all_ranks=*/false);
+    }
   }
 } // namespace crawler

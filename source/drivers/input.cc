@@ -21,13 +21,14 @@ namespace crawler
       struct Rule
       {
         std::string entry; ///< or the beginning of several
-        bool        used;
+        bool used;
         std::string because;
       };
-      const auto             &wave      = p.active_stress.optimal_wave;
-      const std::string       generator = "Generator = " + p.active_stress.generator, choice = "Choose wave by = " + wave.choose_wave_by;
-      const bool              by_energy = wave.choose_wave_by == "energy";
-      const std::vector<Rule> rules     = {
+      const auto &wave              = p.active_stress.optimal_wave;
+      const std::string generator   = "Generator = " + p.active_stress.generator,
+                        choice      = "Choose wave by = " + wave.choose_wave_by;
+      const bool by_energy          = wave.choose_wave_by == "energy";
+      const std::vector<Rule> rules = {
         {"Active stress/Optimal wave/", p.active_stress.generator == "optimal wave", generator},
         {"Active stress/Expression/", p.active_stress.generator == "expression", generator},
         {"Active stress/Optimal wave/Wave speed", !by_energy, choice},
@@ -39,18 +40,24 @@ namespace crawler
       };
       std::vector<std::string> notes;
       for (const Assignment &assignment : file.assignments())
-        {
-          const auto &entries = declarations.entries();
-          const auto  entry   = std::find_if(entries.begin(), entries.end(), [&](const EntryInfo &e) { return e.path == assignment.path; });
-          if (entry == entries.end() || entry->default_value == assignment.value)
-            continue;
-          for (const Rule &rule : rules)
-            if (!rule.used && assignment.path.starts_with(rule.entry))
-              {
-                notes.push_back(fmt::format("Note: {}: \"{}\" has no effect with \"{}\"", assignment.place, assignment.path, rule.because));
-                break;
-              }
-        }
+      {
+        const auto &entries = declarations.entries();
+        const auto entry    = std::find_if(entries.begin(),
+                                        entries.end(),
+                                        [&](const EntryInfo &e)
+                                        {
+                                          return e.path == assignment.path;
+                                        });
+        if (entry == entries.end() || entry->default_value == assignment.value)
+          continue;
+        for (const Rule &rule : rules)
+          if (!rule.used && assignment.path.starts_with(rule.entry))
+          {
+            notes.push_back(fmt::format(
+              "Note: {}: \"{}\" has no effect with \"{}\"", assignment.place, assignment.path, rule.because));
+            break;
+          }
+      }
       return notes;
     }
   } // namespace
@@ -58,29 +65,32 @@ namespace crawler
   Input
   read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides)
   {
-    ParameterFile     own;
-    const std::string text = on_first_rank(communicator, [&]() {
-      own = ParameterFile::read(file_name);
-      return own.text();
-    });
-    ParameterFile file = ParameterFile::from_text(text, file_name == "-" ? "standard input" : file_name);
+    ParameterFile own;
+    const std::string text = on_first_rank(communicator,
+                                           [&]()
+                                           {
+                                             own = ParameterFile::read(file_name);
+                                             return own.text();
+                                           });
+    ParameterFile file     = ParameterFile::from_text(text, file_name == "-" ? "standard input" : file_name);
     for (const std::string &assignment : overrides)
       file.add_override(assignment);
 
-    Parameters   parameters;
+    Parameters parameters;
     Declarations declarations;
     parameters.add_parameters(declarations);
     file.apply(declarations);
     std::ostringstream effective;
     declarations.print_prm(effective);
     try
-      {
-        Scene scene = parameters.create_scene();
-        return {file, parameters, effective.str(), std::move(scene), settings_without_effect(file, parameters, declarations)};
-      }
+    {
+      Scene scene = parameters.create_scene();
+      return {
+        file, parameters, effective.str(), std::move(scene), settings_without_effect(file, parameters, declarations)};
+    }
     catch (const InputError &error)
-      {
-        throw file.with_place(error);
-      }
+    {
+      throw file.with_place(error);
+    }
   }
 } // namespace crawler

@@ -9,7 +9,8 @@ namespace crawler
   Log::Log(const bool is_first_rank, const bool quiet)
     : active_(is_first_rank)
     , quiet_(quiet)
-  {}
+  {
+  }
 
   void
   Log::line(const std::string &text)

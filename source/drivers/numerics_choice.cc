@@ -29,17 +29,17 @@ namespace crawler
     displacement_scale(const Scene &scene)
     {
       constexpr unsigned int n = 32;
-      std::vector<double>    points(n + 1), m(n + 1);
+      std::vector<double> points(n + 1), m(n + 1);
       for (unsigned int i = 0; i <= n; ++i)
         points[i] = scene.body.length * i / n;
-      const auto stress  = scene.active_stress->at(points);
-      double     largest = 0.;
+      const auto stress = scene.active_stress->at(points);
+      double largest    = 0.;
       for (unsigned int j = 0; j <= n; ++j)
-        {
-          stress->values(scene.end_time * j / n, m);
-          for (const double value : m)
-            largest = std::max(largest, std::abs(value));
-        }
+      {
+        stress->values(scene.end_time * j / n, m);
+        for (const double value : m)
+          largest = std::max(largest, std::abs(value));
+      }
       const double L = scene.body.length;
       return std::min(largest * L / scene.body.elastic_modulus,
                       largest * scene.end_time / (L * scene.body.friction_coefficient));
@@ -49,88 +49,92 @@ namespace crawler
   NumericsChoice
   choose_numerics(MPI_Comm communicator, const Parameters &parameters, const Scene &scene)
   {
-    const auto           start = std::chrono::steady_clock::now();
-    const double         T = scene.end_time, L = scene.body.length, accuracy = parameters.accuracy;
-    const auto          &user_cells = parameters.discretization.n_cells;
-    const auto          &user_tolerance = parameters.time.tolerance;
-    NumericsChoice       choice;
-    Numerics            &numerics = choice.numerics;
-    numerics.degree              = parameters.discretization.degree.value_or(automatic_degree);
-    numerics.initial_step        = parameters.time.initial_step.value_or(1e-5 * T);
-    const unsigned int q         = numerics.degree;
+    const auto start = std::chrono::steady_clock::now();
+    const double T = scene.end_time, L = scene.body.length, accuracy = parameters.accuracy;
+    const auto &user_cells     = parameters.discretization.n_cells;
+    const auto &user_tolerance = parameters.time.tolerance;
+    NumericsChoice choice;
+    Numerics &numerics    = choice.numerics;
+    numerics.degree       = parameters.discretization.degree.value_or(automatic_degree);
+    numerics.initial_step = parameters.time.initial_step.value_or(1e-5 * T);
+    // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
+    const unsigned int pilot_degree = std::max(numerics.degree, 2u);
 
     const bool fixed = parameters.time.step_control == "fixed";
     if (user_cells && (user_tolerance || fixed))
-      {
-        numerics.n_cells   = *user_cells;
-        numerics.tolerance = user_tolerance.value_or(1e-10 * L); // of Newton's method only
-        choice.explanation = "cells and time steps as set by the user";
-        return choice;
-      }
+    {
+      numerics.n_cells   = *user_cells;
+      numerics.tolerance = user_tolerance.value_or(1e-10 * L); // of Newton's method only
+      choice.explanation = "cells and time steps as set by the user";
+      return choice;
+    }
 
     TimeParameters pilot_time = parameters.time;
     pilot_time.step_control   = "adaptive";
     pilot_time.petsc_prefix   = "pilot_"; // options after "--" are for the real run
     const double guess = displacement_scale(scene), scale = guess > 0. ? guess : L;
 
-    double           tolerance = 1e-3 * scale, size = 0.;
-    unsigned int     n_cells = user_cells.value_or(fewest_cells), n_pilots = 0;
+    double tolerance = 1e-3 * scale, size = 0.;
+    unsigned int n_cells = user_cells.value_or(fewest_cells), n_pilots = 0;
     SimulationResult pilot;
-    bool             good = false;
+    bool good = false;
     while (!good && n_pilots < 20)
+    {
+      Simulation simulation(communicator, scene, pilot_time, {pilot_degree, n_cells, tolerance, 1e-5 * T});
+      pilot = simulation.run({}, {.ledger = false, .resolution = true});
+      ++n_pilots;
+      const bool finished = pilot.time.status == "finished";
+      size = std::max(finished ? std::abs(pilot.displacement) : 0., displacement_floor * pilot.largest_u);
+      const bool resolves = user_cells || pilot.unresolved <= std::max(resolved, accuracy) || n_cells >= most_cells;
+      // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
+      if (!finished && !user_cells && n_cells < 64)
       {
-        Simulation simulation(communicator, scene, pilot_time, {q, n_cells, tolerance, 1e-5 * T});
-        pilot = simulation.run({}, {.ledger = false, .resolution = true});
-        ++n_pilots;
-        const bool finished = pilot.time.status == "finished";
-        size                = std::max(std::abs(pilot.displacement), displacement_floor * pilot.largest_u);
-        const bool resolves = user_cells || pilot.unresolved <= std::max(resolved, accuracy) || n_cells >= most_cells;
-        // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
-        if (!finished && !user_cells && n_cells < 64)
-          {
-            n_cells *= 2;
-            tolerance *= 0.1;
-          }
-        else if (finished && !resolves)
-          n_cells = std::min(most_cells, 2 * n_cells);
-        else if (finished && size > 0. && tolerance > 0.03 * size)
-          tolerance = std::max(0.01 * size, 1e-3 * tolerance);
-        else
-          good = true;
+        n_cells *= 2;
+        tolerance *= 0.1;
       }
+      else if (finished && !resolves)
+        n_cells = std::min(most_cells, 2 * n_cells);
+      else if (finished && size > 0. && tolerance > 0.03 * size)
+        tolerance = std::max(0.01 * size, 1e-3 * tolerance);
+      else
+        good = true;
+    }
     const bool predicts = pilot.time.status == "finished";
     if (size == 0.)
       size = scale;
 
-    // `unresolved` goes down as (cell size)^(2q-2); the error of the displacement as (cell size)^(2q).
+    // `unresolved` goes down as (cell size)^(2q-2), q the pilot's degree; the error of the displacement at least as
+    // fast.
     numerics.n_cells = n_cells;
     if (!user_cells && predicts)
-      {
-        const double ratio = std::max(space_factor * pilot.unresolved / accuracy, 0.);
-        numerics.n_cells   = std::clamp(static_cast<unsigned int>(std::ceil(n_cells * std::pow(ratio, 1. / std::max(2. * q - 2., 1.)))),
-                                      fewest_cells,
-                                      most_cells);
-      }
-    // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy * size.
+    {
+      const double ratio = std::max(space_factor * pilot.unresolved / accuracy, 0.);
+      numerics.n_cells =
+        std::clamp(static_cast<unsigned int>(std::ceil(n_cells * std::pow(ratio, 1. / (2. * pilot_degree - 2.)))),
+                   fewest_cells,
+                   most_cells);
+    }
+    // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
+    // size.
     const unsigned int nominal = integrator(parameters.time.integrator).order;
-    const double       r       = 1. / (1. + (nominal > 0 ? nominal : parameters.time.order));
-    const double       wanted  = accuracy * size / (time_factor * std::max(pilot.time.steps, 1u) * std::pow(tolerance, r));
-    numerics.tolerance = user_tolerance.value_or(std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance), 1e-15 * scale));
-    choice.pilot_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    choice.explanation = predicts ?
-                           fmt::format("for Accuracy {:g}; from {} pilot runs with up to {} cells: displacement about {:.3g}, "
-                                       "unresolved part of the strain {:.1e}",
-                                       accuracy,
-                                       n_pilots,
-                                       n_cells,
-                                       pilot.displacement,
-                                       std::sqrt(pilot.unresolved)) :
-                           fmt::format("for Accuracy {:g}; the last of {} pilot runs, with {} cells, ended early: {}",
-                                       accuracy,
-                                       n_pilots,
-                                       n_cells,
-                                       pilot.time.message);
+    const double r             = 1. / (1. + (nominal > 0 ? nominal : parameters.time.order));
+    const double wanted = accuracy * size / (time_factor * std::max(pilot.time.steps, 1u) * std::pow(tolerance, r));
+    numerics.tolerance =
+      user_tolerance.value_or(std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance), 1e-15 * scale));
+    choice.pilot_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    choice.explanation =
+      predicts ? fmt::format("for Accuracy {:g}; from {} pilot runs with up to {} cells: displacement about {:.3g}, "
+                             "unresolved part of the strain {:.1e}",
+                             accuracy,
+                             n_pilots,
+                             n_cells,
+                             pilot.displacement,
+                             std::sqrt(pilot.unresolved))
+               : fmt::format("for Accuracy {:g}; the last of {} pilot runs, with {} cells, ended early: {}",
+                             accuracy,
+                             n_pilots,
+                             n_cells,
+                             pilot.time.message);
     return choice;
   }
 } // namespace crawler

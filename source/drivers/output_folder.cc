@@ -23,23 +23,25 @@ namespace crawler
   {
     std::error_code error;
     if (!fs::exists(folder, error))
-      {
-        // The nearest folder that exists must let us make the missing ones.
-        fs::path parent = fs::absolute(folder).parent_path();
-        while (!fs::exists(parent, error) && parent.has_relative_path())
-          parent = parent.parent_path();
-        if (!fs::is_directory(parent, error))
-          throw FileError("cannot make the output folder \"" + folder.string() + "\": \"" + parent.string() + "\" is not a folder");
-        if (::access(parent.c_str(), W_OK) != 0)
-          throw FileError("cannot make the output folder \"" + folder.string() + "\": " + std::strerror(errno));
-        return;
-      }
+    {
+      // The nearest folder that exists must let us make the missing ones.
+      fs::path parent = fs::absolute(folder).parent_path();
+      while (!fs::exists(parent, error) && parent.has_relative_path())
+        parent = parent.parent_path();
+      if (!fs::is_directory(parent, error))
+        throw FileError("cannot make the output folder \"" + folder.string() + "\": \"" + parent.string() +
+                        "\" is not a folder");
+      if (::access(parent.c_str(), W_OK) != 0)
+        throw FileError("cannot make the output folder \"" + folder.string() + "\": " + std::strerror(errno));
+      return;
+    }
     if (!fs::is_directory(folder, error))
       throw FileError("the output folder \"" + folder.string() + "\" exists and is not a folder");
     if (::access(folder.c_str(), W_OK) != 0)
       throw FileError("cannot write to the output folder \"" + folder.string() + "\": " + std::strerror(errno));
     if (fs::exists(folder / "solution", error) && !fs::is_directory(folder / "solution", error))
-      throw FileError("\"" + (folder / "solution").string() + "\" is not a folder, but one for the snapshots is expected");
+      throw FileError("\"" + (folder / "solution").string() +
+                      "\" is not a folder, but one for the snapshots is expected");
     if (!overwrite && !fs::is_empty(folder, error))
       throw InputError("the output folder \"" + folder.string() +
                        "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
@@ -52,8 +54,13 @@ namespace crawler
     fs::create_directories(folder, error);
     if (error)
       throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
-    for (const char *name :
-         {"original.prm", "parameters.prm", "log.txt", "statistics.csv", "summary.json", "solution.pvd", "kymograph.vts"})
+    for (const char *name : {"original.prm",
+                             "parameters.prm",
+                             "log.txt",
+                             "statistics.csv",
+                             "summary.json",
+                             "solution.pvd",
+                             "kymograph.vts"})
       fs::remove(folder / name, error);
     if (fs::is_directory(folder / "solution", error))
       for (const auto &file : fs::directory_iterator(folder / "solution"))

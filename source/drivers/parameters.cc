@@ -7,16 +7,14 @@ namespace crawler
   void
   Parameters::add_parameters(Declarations &declarations)
   {
-    declarations.choice("Model",
-                        model,
-                        {"nonlinear"},
-                        "The model: the full nonlinear equation.");
-    declarations.number("Accuracy",
-                        accuracy,
-                        between(1e-12, 0.1),
-                        "Wanted relative error of the displacement. Chooses degree, cells and time tolerance where they "
-                        "are automatic (doc/numerics.md).",
-                        "1");
+    declarations.choice("Model", model, {"nonlinear"}, "The model: the full nonlinear equation.");
+    declarations.number(
+      "Accuracy",
+      accuracy,
+      between(1e-12, 0.1),
+      "Wanted relative error of the displacement. Chooses degree, cells and time tolerance where they "
+      "are automatic (doc/numerics.md).",
+      "1");
     body.add_parameters(declarations);
     active_stress.add_parameters(declarations);
     discretization.add_parameters(declarations);

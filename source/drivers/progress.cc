@@ -9,7 +9,8 @@ namespace crawler
     : log_(log)
     , end_time_(scene.end_time)
     , length_(scene.body.length)
-  {}
+  {
+  }
 
   void
   Progress::observe(const Snapshot &snapshot)
@@ -19,13 +20,14 @@ namespace crawler
       return;
     while (next_tenth_ <= done)
       ++next_tenth_;
-    log_.line(fmt::format("  {:3.0f} %  t = {:<10.4g} step {:<6} size {:<9.3g} displacement {:<14.8g} stretch {:.3g} to {:.3g}",
-                          10. * done,
-                          snapshot.step.time,
-                          snapshot.step.number,
-                          snapshot.step.size,
-                          snapshot.integrals.displacement / length_,
-                          snapshot.stretch.min.value,
-                          snapshot.stretch.max.value));
+    log_.line(
+      fmt::format("  {:3.0f} %  t = {:<10.4g} step {:<6} size {:<9.3g} displacement {:<14.8g} stretch {:.3g} to {:.3g}",
+                  10. * done,
+                  snapshot.step.time,
+                  snapshot.step.number,
+                  snapshot.step.size,
+                  snapshot.integrals.displacement / length_,
+                  snapshot.stretch.min.value,
+                  snapshot.stretch.max.value));
   }
 } // namespace crawler

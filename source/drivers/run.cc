@@ -71,8 +71,8 @@ namespace crawler
     void
     report_unused_options(Log &log)
     {
-      PetscInt n     = 0;
-      char   **names = nullptr, **values = nullptr;
+      PetscInt n   = 0;
+      char **names = nullptr, **values = nullptr;
       PetscOptionsLeftGet(nullptr, &n, &names, &values);
       for (PetscInt i = 0; i < n; ++i)
         log.warn(fmt::format("warning: nothing used the PETSc option -{}", names[i]));
@@ -85,27 +85,28 @@ namespace crawler
     {
       if (result.time.status != "finished" || !result.ledger)
         return;
-      const bool   own_numerics = parameters.time.tolerance || parameters.time.integrator != "bdf" || parameters.time.order < 4 ||
-                                parameters.time.step_control == "fixed";
-      const double tolerance    = parameters.output.ledger_tolerance.value_or(
-        own_numerics ? 0.1 : std::max(1e-8, 10. * parameters.accuracy));
+      const bool own_numerics = parameters.time.tolerance || parameters.time.integrator != "bdf" ||
+                                parameters.time.order < 4 || parameters.time.step_control == "fixed";
+      const double tolerance =
+        parameters.output.ledger_tolerance.value_or(own_numerics ? 0.1 : std::max(1e-8, 10. * parameters.accuracy));
       constexpr double friction_tolerance = 1e-6;
-      std::string      problem;
+      std::string problem;
       if (!(result.ledger->residual() <= tolerance))
-        {
-          result.time.reason  = "ledger_residual";
-          result.time.message = fmt::format("the ledger does not close: its residual is {:.3g}, above {:.3g}; a smaller "
-                                            "Time/Tolerance (or Accuracy) is needed",
-                                            result.ledger->residual(),
-                                            tolerance);
-        }
+      {
+        result.time.reason  = "ledger_residual";
+        result.time.message = fmt::format("the ledger does not close: its residual is {:.3g}, above {:.3g}; a smaller "
+                                          "Time/Tolerance (or Accuracy) is needed",
+                                          result.ledger->residual(),
+                                          tolerance);
+      }
       else if (!(result.net_friction <= friction_tolerance))
-        {
-          result.time.reason  = "net_friction";
-          result.time.message = fmt::format("the friction forces do not balance: {:.3g} of their sum is left over, above {:.3g}",
-                                            result.net_friction,
-                                            friction_tolerance);
-        }
+      {
+        result.time.reason = "net_friction";
+        result.time.message =
+          fmt::format("the friction forces do not balance: {:.3g} of their sum is left over, above {:.3g}",
+                      result.net_friction,
+                      friction_tolerance);
+      }
       else
         return;
       result.time.status = "failed";
@@ -130,35 +131,39 @@ namespace crawler
   ExitCode
   check(MPI_Comm communicator, const CommandOptions &options)
   {
-    Log                  log(rank_of(communicator) == 0, /*quiet=*/false);
-    const Input          input  = read_input(communicator, options.file, options.overrides);
+    Log log(rank_of(communicator) == 0, /*quiet=*/false);
+    const Input input           = read_input(communicator, options.file, options.overrides);
     const NumericsChoice choice = choose_numerics(MPI_COMM_SELF, input.parameters, input.scene);
-    const Simulation     simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);
+    const Simulation simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);
     report_plan(log, input, choice);
-    log.line(fmt::format("Output: {} snapshots{}{}{}, to \"{}\" unless --output is given.",
-                         input.parameters.output.n_snapshots,
-                         input.parameters.output.kymograph ? ", kymograph" : "",
-                         input.parameters.output.statistics ? ", statistics" : "",
-                         input.parameters.output.ledger ? ", ledger" : "",
-                         output_folder(options.output, options.file).string()));
-    log.line(input.file.name() + " is in order; nothing was run or written.");
+    log.line(
+      fmt::format("Output: {} snapshots{}{}{}, to \"{}\" unless --output is given.",
+                  input.parameters.output.n_snapshots,
+                  input.parameters.output.kymograph && input.parameters.output.n_snapshots > 0 ? ", kymograph" : "",
+                  input.parameters.output.statistics ? ", statistics" : "",
+                  input.parameters.output.ledger ? ", ledger" : "",
+                  output_folder(options.output, options.file).string()));
+    log.line(input.file.name() + " is in order; nothing but pilot runs was run, and nothing was written.");
     return ExitCode::finished;
   }
 
   ExitCode
   run(MPI_Comm communicator, const CommandOptions &options)
   {
-    const auto            start = std::chrono::steady_clock::now();
-    const bool            first = rank_of(communicator) == 0;
-    Log                   log(first, options.quiet);
-    const Input           input      = read_input(communicator, options.file, options.overrides);
-    const Parameters     &parameters = input.parameters;
-    const OutputParameters &output   = parameters.output;
-    const auto            folder     = output_folder(options.output, options.file);
-    on_first_rank(communicator, [&]() {
-      require_usable(folder, options.overwrite);
-      return "";
-    });
+    const StopSignal stop_signal; // from here on a signal ends the run in order
+    const auto start = std::chrono::steady_clock::now();
+    const bool first = rank_of(communicator) == 0;
+    Log log(first, options.quiet);
+    const Input input              = read_input(communicator, options.file, options.overrides);
+    const Parameters &parameters   = input.parameters;
+    const OutputParameters &output = parameters.output;
+    const auto folder              = output_folder(options.output, options.file);
+    on_first_rank(communicator,
+                  [&]()
+                  {
+                    require_usable(folder, options.overwrite);
+                    return "";
+                  });
 
     const NumericsChoice choice = choose_numerics(MPI_COMM_SELF, parameters, input.scene);
     // Either all ranks share the cells, or each computes the whole body and the first one writes.
@@ -166,58 +171,68 @@ namespace crawler
     Simulation simulation(shared ? communicator : MPI_COMM_SELF, input.scene, parameters.time, choice.numerics);
 
     // Everything is in order: from here on there are files.
-    on_first_rank(communicator, [&]() {
-      prepare(folder);
-      if (output.n_snapshots > 0)
-        std::filesystem::create_directories(folder / "solution");
-      write_file(folder / "original.prm", input.file.text());
-      write_file(folder / "parameters.prm", input.effective);
-      log.open(folder / "log.txt");
-      return "";
-    });
+    on_first_rank(communicator,
+                  [&]()
+                  {
+                    prepare(folder);
+                    if (output.n_snapshots > 0)
+                      std::filesystem::create_directories(folder / "solution");
+                    write_file(folder / "original.prm", input.file.text());
+                    write_file(folder / "parameters.prm", input.effective);
+                    log.open(folder / "log.txt");
+                    return "";
+                  });
     report_plan(log, input, choice);
 
     std::vector<std::unique_ptr<Observer>> observers;
     const bool writes = shared || first;
     if (writes && output.n_snapshots > 0)
-      {
-        observers.push_back(std::make_unique<VtuWriter>(input.scene, simulation.discretization(), folder));
-        if (output.kymograph)
-          observers.push_back(std::make_unique<KymographWriter>(input.scene, simulation.discretization(), folder));
-      }
+    {
+      observers.push_back(std::make_unique<VtuWriter>(input.scene, simulation.discretization(), folder));
+      if (output.kymograph)
+        observers.push_back(std::make_unique<KymographWriter>(input.scene, simulation.discretization(), folder));
+    }
     if (writes && output.statistics)
       observers.push_back(
         std::make_unique<StatisticsWriter>(input.scene, simulation.discretization(), folder, output.ledger));
     if (writes && !options.quiet)
       observers.push_back(std::make_unique<Progress>(log, input.scene));
 
-    const StopSignal stop_signal;
-    const double     setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    SimulationResult result        = simulation.run(frame_times(output.n_snapshots, parameters.time.end_time),
-                                             {.ledger = output.ledger, .resolution = false},
-                                             observers,
-                                             [&]() { return !stop_signal.arrived_anywhere(shared ? communicator : MPI_COMM_SELF); });
+    const double setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    SimulationResult result =
+      simulation.run(frame_times(output.n_snapshots, parameters.time.end_time),
+                     {.ledger = output.ledger, .resolution = false},
+                     observers,
+                     [&]()
+                     {
+                       return !stop_signal.arrived_anywhere(shared ? communicator : MPI_COMM_SELF);
+                     });
     result.setup_seconds = setup_seconds;
     if (result.time.status == "stopped" && result.time.reason.empty())
-      {
-        result.time.reason  = "signal";
-        result.time.message = fmt::format("stopped by a signal at t = {:.6g}", result.time.time);
-      }
+    {
+      result.time.reason  = "signal";
+      result.time.message = fmt::format("stopped by a signal at t = {:.6g}", result.time.time);
+    }
     check_identities(result, parameters);
     report_unused_options(log);
 
-    on_first_rank(communicator, [&]() {
-      write_file(folder / "summary.json", summary_json(result, parameters, simulation.discretization(), size_of(communicator), options.command_line));
-      return "";
-    });
+    on_first_rank(
+      communicator,
+      [&]()
+      {
+        write_file(
+          folder / "summary.json",
+          summary_json(result, parameters, simulation.discretization(), size_of(communicator), options.command_line));
+        return "";
+      });
     for (const std::string &line : summary_lines(result, parameters))
       log.line(line);
     if (result.time.status != "finished")
       log.warn(result.time.reason + ": " + result.time.message);
-    log.line(output.n_snapshots > 0 ? fmt::format("Results are in {}/; open {} in ParaView.",
-                                                  folder.string(),
-                                                  (folder / "solution.pvd").string()) :
-                                      fmt::format("Results are in {}/.", folder.string()));
+    log.line(
+      output.n_snapshots > 0
+        ? fmt::format("Results are in {}/; open {} in ParaView.", folder.string(), (folder / "solution.pvd").string())
+        : fmt::format("Results are in {}/.", folder.string()));
     // The first rank speaks for all: a signal may have stopped some only.
     int code = static_cast<int>(exit_code(result.time));
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);

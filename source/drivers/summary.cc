@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 namespace crawler
 {
   namespace
@@ -20,13 +22,16 @@ namespace crawler
 
   std::string
   summary_json(const SimulationResult &result,
-               const Parameters       &parameters,
-               const Discretization   &discretization,
-               const unsigned int      n_ranks,
-               const std::string      &command_line)
+               const Parameters &parameters,
+               const Discretization &discretization,
+               const unsigned int n_ranks,
+               const std::string &command_line)
   {
-    const auto ledger = [&](auto value) { return result.ledger ? Json(value(*result.ledger)) : Json(nullptr); };
-    Json       json;
+    const auto ledger = [&](auto value)
+    {
+      return result.ledger ? Json(value(*result.ledger)) : Json(nullptr);
+    };
+    Json json;
     json["status"]             = result.time.status;
     json["reason"]             = result.time.status == "finished" ? Json(nullptr) : Json(result.time.reason);
     json["message"]            = result.time.status == "finished" ? Json(nullptr) : Json(result.time.message);
@@ -34,12 +39,36 @@ namespace crawler
     json["displacement_error"] = {{"total", nullptr}, {"space", nullptr}, {"time", nullptr}, {"model", nullptr}};
     json["end_time"]           = result.time.time;
     json["model"]              = parameters.model;
-    json["stress_power"]       = ledger([](const Ledger &l) { return l.stress_power; });
-    json["dissipation"]        = ledger([](const Ledger &l) { return l.dissipation; });
-    json["elastic_energy"]     = ledger([](const Ledger &l) { return l.elastic_energy; });
-    json["ledger_residual"]    = ledger([](const Ledger &l) { return l.residual(); });
-    json["paper_energy"]       = ledger([](const Ledger &l) { return l.paper_energy(); });
-    json["positive_power"]     = ledger([](const Ledger &l) { return l.positive_power; });
+    json["stress_power"]       = ledger(
+      [](const Ledger &l)
+      {
+        return l.stress_power;
+      });
+    json["dissipation"] = ledger(
+      [](const Ledger &l)
+      {
+        return l.dissipation;
+      });
+    json["elastic_energy"] = ledger(
+      [](const Ledger &l)
+      {
+        return l.elastic_energy;
+      });
+    json["ledger_residual"] = ledger(
+      [](const Ledger &l)
+      {
+        return l.residual();
+      });
+    json["paper_energy"] = ledger(
+      [](const Ledger &l)
+      {
+        return l.paper_energy();
+      });
+    json["positive_power"] = ledger(
+      [](const Ledger &l)
+      {
+        return l.positive_power;
+      });
     json["net_friction"]       = result.ledger ? Json(result.net_friction) : Json(nullptr);
     json["min_stretch"]        = extreme(result.min_stretch);
     json["max_stretch"]        = extreme(result.max_stretch);
@@ -52,9 +81,10 @@ namespace crawler
     json["newton_iterations"]  = result.time.newton_iterations;
     json["ranks"]              = n_ranks;
     json["cells_shared"]       = discretization.n_ranks() > 1;
-    json["seconds"]            = {{"setup", result.setup_seconds}, {"solve", result.solve_seconds}, {"output", result.output_seconds}};
-    json["versions"]           = versions();
-    json["command_line"]       = command_line;
+    json["seconds"]            = {
+                 {"setup", result.setup_seconds}, {"solve", result.solve_seconds}, {"output", result.output_seconds}};
+    json["versions"]     = versions();
+    json["command_line"] = command_line;
     return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
   }
 
@@ -62,32 +92,34 @@ namespace crawler
   summary_lines(const SimulationResult &result, const Parameters &)
   {
     std::vector<std::string> lines;
-    const auto              &time = result.time;
+    const auto &time = result.time;
     lines.push_back(fmt::format("{} at t = {:g} after {} steps ({} rejected), {:.3g} s",
-                                time.status == "finished" ? "Finished" :
-                                time.status == "inverted" ? "Inverted" :
-                                time.status == "stopped"  ? "Stopped" :
-                                                            "FAILED (" + time.reason + ")",
+                                time.status == "finished"   ? "Finished"
+                                : time.status == "inverted" ? "Inverted"
+                                : time.status == "stopped"  ? "Stopped"
+                                                            : "FAILED (" + time.reason + ")",
                                 time.time,
                                 time.steps,
                                 time.rejected_steps,
                                 result.solve_seconds + result.output_seconds));
-    lines.push_back(fmt::format("  displacement      {:.10g}", result.displacement));
+    lines.push_back(std::isfinite(result.displacement) ? fmt::format("  displacement      {:.10g}", result.displacement)
+                                                       : "  displacement      unknown");
     if (result.ledger)
-      {
-        lines.push_back(fmt::format("  stress power      {:.10g}", result.ledger->stress_power));
-        lines.push_back(fmt::format("  dissipation       {:.10g}", result.ledger->dissipation));
-        lines.push_back(fmt::format("  ledger residual   {:.2e} (relative), net friction {:.2e} (relative)",
-                                    result.ledger->residual(),
-                                    result.net_friction));
-      }
-    lines.push_back(fmt::format("  stretch           {:.4g} (s = {:.4g}, t = {:.4g}) to {:.4g} (s = {:.4g}, t = {:.4g})",
-                                result.min_stretch.value,
-                                result.min_stretch.s,
-                                result.min_stretch.t,
-                                result.max_stretch.value,
-                                result.max_stretch.s,
-                                result.max_stretch.t));
+    {
+      lines.push_back(fmt::format("  stress power      {:.10g}", result.ledger->stress_power));
+      lines.push_back(fmt::format("  dissipation       {:.10g}", result.ledger->dissipation));
+      lines.push_back(fmt::format("  ledger residual   {:.2e} (relative), net friction {:.2e} (relative)",
+                                  result.ledger->residual(),
+                                  result.net_friction));
+    }
+    lines.push_back(
+      fmt::format("  stretch           {:.4g} (s = {:.4g}, t = {:.4g}) to {:.4g} (s = {:.4g}, t = {:.4g})",
+                  result.min_stretch.value,
+                  result.min_stretch.s,
+                  result.min_stretch.t,
+                  result.max_stretch.value,
+                  result.max_stretch.s,
+                  result.max_stretch.t));
     return lines;
   }
 } // namespace crawler

@@ -13,7 +13,7 @@ namespace crawler
   namespace
   {
     constexpr unsigned int n_points = 201;
-    constexpr const char  *names[]  = {"stretch", "velocity", "active_stress", "friction_force", "displacement"};
+    constexpr const char *names[]   = {"stretch", "velocity", "active_stress", "friction_force", "displacement"};
     constexpr unsigned int n_fields = std::size(names);
 
     /// Those of the equidistant points that lie in this rank's cells.
@@ -21,41 +21,42 @@ namespace crawler
     own_points(const Discretization &discretization)
     {
       std::vector<FieldSampler::Point> points;
-      const auto                      &left = discretization.cell_left();
+      const auto &left = discretization.cell_left();
       if (left.empty())
         return points;
       const double end = left.back() + discretization.cell_size().back();
       for (unsigned int i = 0; i < n_points; ++i)
-        {
-          const double s    = discretization.length() * i / (n_points - 1);
-          const bool   last = !discretization.has_right_neighbour();
-          if (s < left.front() || (last ? i + 1 < n_points && s > end : s >= end))
-            continue;
-          const auto cell = static_cast<unsigned int>(
-            std::max<std::ptrdiff_t>(0, std::upper_bound(left.begin(), left.end(), s) - left.begin() - 1));
-          points.push_back({cell, std::clamp((s - left[cell]) / discretization.cell_size()[cell], 0., 1.)});
-        }
+      {
+        const double s  = discretization.length() * i / (n_points - 1);
+        const bool last = !discretization.has_right_neighbour();
+        if (s < left.front() || (last ? i + 1 < n_points && s > end : s >= end))
+          continue;
+        const auto cell = static_cast<unsigned int>(
+          std::max<std::ptrdiff_t>(0, std::upper_bound(left.begin(), left.end(), s) - left.begin() - 1));
+        points.push_back({cell, std::clamp((s - left[cell]) / discretization.cell_size()[cell], 0., 1.)});
+      }
       return points;
     }
   } // namespace
 
-  KymographWriter::KymographWriter(const Scene                 &scene,
-                                   const Discretization        &discretization,
+  KymographWriter::KymographWriter(const Scene &scene,
+                                   const Discretization &discretization,
                                    const std::filesystem::path &folder)
     : scene_(scene)
     , discretization_(discretization)
     , folder_(folder)
     , sampler_(scene, discretization, own_points(discretization))
-  {}
+  {
+  }
 
   void
   KymographWriter::observe(const Snapshot &snapshot)
   {
     if (!snapshot.is_frame)
       return;
-    const Fields &fields  = sampler_.sample(snapshot.step.time, snapshot.u, snapshot.v);
-    const int     own     = static_cast<int>(fields.stretch.size());
-    const auto    n_ranks = discretization_.n_ranks();
+    const Fields &fields = sampler_.sample(snapshot.step.time, snapshot.u, snapshot.v);
+    const int own        = static_cast<int>(fields.stretch.size());
+    const auto n_ranks   = discretization_.n_ranks();
     std::vector<int> counts(n_ranks), offsets(n_ranks, 0);
     MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, discretization_.communicator());
     for (unsigned int r = 1; r < n_ranks; ++r)
@@ -63,12 +64,19 @@ namespace crawler
     times_.push_back(snapshot.step.time);
     for (const auto *field :
          {&fields.stretch, &fields.velocity, &fields.active_stress, &fields.friction_force, &fields.displacement})
-      {
-        std::vector<double> all(discretization_.rank() == 0 ? n_points : 0);
-        MPI_Gatherv(field->data(), own, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, 0,
-                    discretization_.communicator());
-        rows_.insert(rows_.end(), all.begin(), all.end());
-      }
+    {
+      std::vector<double> all(discretization_.rank() == 0 ? n_points : 0);
+      MPI_Gatherv(field->data(),
+                  own,
+                  MPI_DOUBLE,
+                  all.data(),
+                  counts.data(),
+                  offsets.data(),
+                  MPI_DOUBLE,
+                  0,
+                  discretization_.communicator());
+      rows_.insert(rows_.end(), all.begin(), all.end());
+    }
   }
 
   void
@@ -77,29 +85,32 @@ namespace crawler
     if (discretization_.rank() != 0 || times_.size() < 2)
       return;
     const std::size_t n_times = times_.size();
-    std::string       text    = fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"0.1\" "
-                                                     "byte_order=\"LittleEndian\">\n<StructuredGrid WholeExtent=\"0 {0} 0 {1} 0 0\">\n"
-                                                     "<Piece Extent=\"0 {0} 0 {1} 0 0\">\n<PointData Scalars=\"stretch\">\n",
+    std::string text          = fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"0.1\" "
+                                            "byte_order=\"LittleEndian\">\n<StructuredGrid WholeExtent=\"0 {0} 0 {1} 0 0\">\n"
+                                            "<Piece Extent=\"0 {0} 0 {1} 0 0\">\n<PointData Scalars=\"stretch\">\n",
                                    n_points - 1,
                                    n_times - 1);
     for (unsigned int f = 0; f < n_fields; ++f)
-      {
-        text += fmt::format("<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n", names[f]);
-        for (std::size_t j = 0; j < n_times; ++j)
-          {
-            for (unsigned int i = 0; i < n_points; ++i)
-              fmt::format_to(std::back_inserter(text), "{:.9g} ", rows_[(j * n_fields + f) * n_points + i]);
-            text += '\n';
-          }
-        text += "</DataArray>\n";
-      }
-    text += "</PointData>\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n";
-    for (const double time : times_)
+    {
+      text += fmt::format("<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n", names[f]);
+      for (std::size_t j = 0; j < n_times; ++j)
       {
         for (unsigned int i = 0; i < n_points; ++i)
-          fmt::format_to(std::back_inserter(text), "{:.9g} {:.9g} 0 ", static_cast<double>(i) / (n_points - 1), time / scene_.end_time);
+          fmt::format_to(std::back_inserter(text), "{:.9g} ", rows_[(j * n_fields + f) * n_points + i]);
         text += '\n';
       }
+      text += "</DataArray>\n";
+    }
+    text += "</PointData>\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n";
+    for (const double time : times_)
+    {
+      for (unsigned int i = 0; i < n_points; ++i)
+        fmt::format_to(std::back_inserter(text),
+                       "{:.9g} {:.9g} 0 ",
+                       static_cast<double>(i) / (n_points - 1),
+                       time / scene_.end_time);
+      text += '\n';
+    }
     text += "</DataArray>\n</Points>\n</Piece>\n</StructuredGrid>\n</VTKFile>\n";
     write_file(folder_ / "kymograph.vts", text);
   }

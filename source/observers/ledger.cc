@@ -37,23 +37,23 @@ namespace crawler
       ++n;
 
     // Gauss formula with three points, exact for the polynomial of degree n - 1 <= 5 through the n points.
-    const double     offset  = 0.5 * std::sqrt(0.6);
+    const double offset         = 0.5 * std::sqrt(0.6);
     constexpr double weights[3] = {5. / 18., 4. / 9., 5. / 18.};
-    const double     x[3]       = {0.5 - offset, 0.5, 0.5 + offset};
+    const double x[3]           = {0.5 - offset, 0.5, 0.5 + offset};
     for (unsigned int j = 0; j < n; ++j)
+    {
+      double weight = 0.;
+      for (unsigned int g = 0; g < 3; ++g)
       {
-        double weight = 0.;
-        for (unsigned int g = 0; g < 3; ++g)
-          {
-            double lagrange = weights[g];
-            for (unsigned int i = 0; i < n; ++i)
-              if (i != j)
-                lagrange *= (left + x[g] * step - points_[i].time) / (points_[j].time - points_[i].time);
-            weight += lagrange;
-          }
-        for (unsigned int r = 0; r < n_rates; ++r)
-          increment[r] += step * weight * points_[j].rates[r];
+        double lagrange = weights[g];
+        for (unsigned int i = 0; i < n; ++i)
+          if (i != j)
+            lagrange *= (left + x[g] * step - points_[i].time) / (points_[j].time - points_[i].time);
+        weight += lagrange;
       }
+      for (unsigned int r = 0; r < n_rates; ++r)
+        increment[r] += step * weight * points_[j].rates[r];
+    }
     return increment;
   }
 } // namespace crawler

@@ -8,25 +8,27 @@ namespace crawler
   OutputParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Output");
-    declarations.whole_number("Number of snapshots",
-                              n_snapshots,
-                              0,
-                              1000000,
-                              "Number of snapshots for ParaView at equal time intervals until the end time, besides the "
-                              "initial state. 0: none.");
+    declarations.whole_number(
+      "Number of snapshots",
+      n_snapshots,
+      0,
+      1000000,
+      "Number of snapshots for ParaView at equal time intervals until the end time, besides the "
+      "initial state. 0: none.");
     declarations.flag("Kymograph", kymograph, "Whether to write the fields over s and t of all snapshots as one file.");
     declarations.flag("Statistics", statistics, "Whether to write statistics.csv, a row for each time step.");
     declarations.flag("Ledger",
                       ledger,
                       "Whether to compute works, energies and the net friction in every step, and to check that they "
                       "balance.");
-    declarations.number("Ledger tolerance",
-                        ledger_tolerance,
-                        positive(),
-                        "Largest admissible ledger residual, relative to the work that the active stress exchanges with "
-                        "the body; beyond it the run fails its self-check. Automatic: ten times Accuracy, at least 1e-8 "
-                        "(a Tolerance or an integrator of the user's own choice: 0.1).",
-                        "1");
+    declarations.number(
+      "Ledger tolerance",
+      ledger_tolerance,
+      positive(),
+      "Largest admissible ledger residual, relative to the work that the active stress exchanges with "
+      "the body; beyond it the run fails its self-check. Automatic: ten times Accuracy, at least 1e-8 "
+      "(a Tolerance or an integrator of the user's own choice: 0.1).",
+      "1");
     declarations.leave();
   }
 } // namespace crawler

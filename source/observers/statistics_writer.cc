@@ -6,10 +6,10 @@
 
 namespace crawler
 {
-  StatisticsWriter::StatisticsWriter(const Scene                 &scene,
-                                     const Discretization        &discretization,
+  StatisticsWriter::StatisticsWriter(const Scene &scene,
+                                     const Discretization &discretization,
                                      const std::filesystem::path &folder,
-                                     const bool                   with_ledger)
+                                     const bool with_ledger)
     : scene_(scene)
     , writes_(discretization.rank() == 0)
     , with_ledger_(with_ledger)

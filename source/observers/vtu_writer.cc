@@ -13,8 +13,8 @@ namespace crawler
 {
   namespace
   {
-    using NonscalarRange =
-      std::tuple<unsigned int, unsigned int, std::string, dealii::DataComponentInterpretation::DataComponentInterpretation>;
+    using NonscalarRange = std::
+      tuple<unsigned int, unsigned int, std::string, dealii::DataComponentInterpretation::DataComponentInterpretation>;
 
     /// Hands our patches to deal.II's writers.
     class PatchOutput : public dealii::DataOutInterface<1, 1>
@@ -31,8 +31,15 @@ namespace crawler
       std::vector<std::string>
       get_dataset_names() const override
       {
-        return {"displacement", "displacement", "displacement", "position", "stretch", "velocity",
-                "active_stress", "elastic_stress", "friction_force"};
+        return {"displacement",
+                "displacement",
+                "displacement",
+                "position",
+                "stretch",
+                "velocity",
+                "active_stress",
+                "elastic_stress",
+                "friction_force"};
       }
       std::vector<NonscalarRange>
       get_nonscalar_data_ranges() const override
@@ -44,7 +51,7 @@ namespace crawler
     std::vector<FieldSampler::Point>
     line_points(const Discretization &discretization)
     {
-      const unsigned int               q = discretization.element().degree;
+      const unsigned int q = discretization.element().degree;
       std::vector<FieldSampler::Point> points;
       for (unsigned int c = 0; c < discretization.n_local_cells(); ++c)
         for (unsigned int i = 0; i <= q; ++i)
@@ -57,42 +64,43 @@ namespace crawler
     : discretization_(discretization)
     , folder_(folder)
     , sampler_(scene, discretization, line_points(discretization))
-  {}
+  {
+  }
 
   void
   VtuWriter::observe(const Snapshot &snapshot)
   {
     if (!snapshot.is_frame)
       return;
-    const Fields      &fields = sampler_.sample(snapshot.step.time, snapshot.u, snapshot.v);
+    const Fields &fields = sampler_.sample(snapshot.step.time, snapshot.u, snapshot.v);
     const unsigned int n = discretization_.element().n, n_cells = discretization_.n_local_cells();
 
     PatchOutput output;
     output.patches.resize(n_cells);
     for (unsigned int c = 0; c < n_cells; ++c)
+    {
+      auto &patch          = output.patches[c];
+      const double left    = discretization_.cell_left()[c];
+      patch.vertices[0]    = dealii::Point<1>(left);
+      patch.vertices[1]    = dealii::Point<1>(left + discretization_.cell_size()[c]);
+      patch.patch_index    = c;
+      patch.n_subdivisions = n - 1;
+      patch.reference_cell = dealii::ReferenceCells::Line;
+      patch.data.reinit(9, n);
+      for (unsigned int i = 0; i < n; ++i)
       {
-        auto        &patch = output.patches[c];
-        const double left  = discretization_.cell_left()[c];
-        patch.vertices[0]    = dealii::Point<1>(left);
-        patch.vertices[1]    = dealii::Point<1>(left + discretization_.cell_size()[c]);
-        patch.patch_index    = c;
-        patch.n_subdivisions = n - 1;
-        patch.reference_cell = dealii::ReferenceCells::Line;
-        patch.data.reinit(9, n);
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            const std::size_t p = static_cast<std::size_t>(c) * n + i;
-            patch.data(0, i)    = fields.displacement[p];
-            patch.data(1, i)    = 0.;
-            patch.data(2, i)    = 0.;
-            patch.data(3, i)    = fields.position[p];
-            patch.data(4, i)    = fields.stretch[p];
-            patch.data(5, i)    = fields.velocity[p];
-            patch.data(6, i)    = fields.active_stress[p];
-            patch.data(7, i)    = fields.elastic_stress[p];
-            patch.data(8, i)    = fields.friction_force[p];
-          }
+        const std::size_t p = static_cast<std::size_t>(c) * n + i;
+        patch.data(0, i)    = fields.displacement[p];
+        patch.data(1, i)    = 0.;
+        patch.data(2, i)    = 0.;
+        patch.data(3, i)    = fields.position[p];
+        patch.data(4, i)    = fields.stretch[p];
+        patch.data(5, i)    = fields.velocity[p];
+        patch.data(6, i)    = fields.active_stress[p];
+        patch.data(7, i)    = fields.elastic_stress[p];
+        patch.data(8, i)    = fields.friction_force[p];
       }
+    }
     dealii::DataOutBase::VtkFlags flags;
     flags.time  = snapshot.step.time;
     flags.cycle = snapshot.step.number;
@@ -100,19 +108,19 @@ namespace crawler
 
     const std::string name = fmt::format("solution/{:06}.vtu", record_.size());
     if (discretization_.n_ranks() == 1)
-      {
-        std::ostringstream text;
-        output.write_vtu(text);
-        write_file(folder_ / name, text.str());
-      }
+    {
+      std::ostringstream text;
+      output.write_vtu(text);
+      write_file(folder_ / name, text.str());
+    }
     else
       output.write_vtu_in_parallel((folder_ / name).string(), discretization_.communicator());
     record_.emplace_back(snapshot.step.time, name);
     if (discretization_.rank() == 0)
-      {
-        std::ostringstream text;
-        dealii::DataOutBase::write_pvd_record(text, record_);
-        write_file(folder_ / "solution.pvd", text.str());
-      }
+    {
+      std::ostringstream text;
+      dealii::DataOutBase::write_pvd_record(text, record_);
+      write_file(folder_ / "solution.pvd", text.str());
+    }
   }
 } // namespace crawler

@@ -24,7 +24,8 @@ namespace crawler
       WordyPattern(std::string expected, std::function<bool(const std::string &)> match)
         : expected_(std::move(expected))
         , match_(std::move(match))
-      {}
+      {
+      }
       bool
       match(const std::string &text) const override
       {
@@ -42,7 +43,7 @@ namespace crawler
       }
 
     private:
-      std::string                              expected_;
+      std::string expected_;
       std::function<bool(const std::string &)> match_;
     };
 
@@ -52,7 +53,12 @@ namespace crawler
     to_count(const std::string &text)
     {
       if (text.empty() || text.size() > 9 ||
-          !std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); }))
+          !std::all_of(text.begin(),
+                       text.end(),
+                       [](unsigned char c)
+                       {
+                         return std::isdigit(c);
+                       }))
         return std::nullopt;
       return static_cast<unsigned int>(std::stoul(text));
     }
@@ -61,8 +67,8 @@ namespace crawler
     to_numbers(const std::string &text)
     {
       std::vector<std::optional<double>> values;
-      std::istringstream                 in(text + ",");
-      std::string                        item;
+      std::istringstream in(text + ",");
+      std::string item;
       while (std::getline(in, item, ','))
         values.push_back(to_number(trimmed(item)));
       return values;
@@ -90,13 +96,10 @@ namespace crawler
     if (!has_lower && !has_upper)
       return "a number";
     if (has_lower && !has_upper)
-      return lower == 0 ? (lower_included ? "a number that is not negative" : "a positive number") :
-                          fmt::format("a number {} {}", lower_included ? "from" : "above", lower);
-    return fmt::format("a number {} {} {} {}",
-                       lower_included ? "from" : "above",
-                       lower,
-                       upper_included ? "to" : "and below",
-                       upper);
+      return lower == 0 ? (lower_included ? "a number that is not negative" : "a positive number")
+                        : fmt::format("a number {} {}", lower_included ? "from" : "above", lower);
+    return fmt::format(
+      "a number {} {} {} {}", lower_included ? "from" : "above", lower, upper_included ? "to" : "and below", upper);
   }
 
   Range
@@ -122,7 +125,8 @@ namespace crawler
 
   Declarations::Declarations()
     : handler_(std::make_unique<dealii::ParameterHandler>())
-  {}
+  {
+  }
 
   Declarations::~Declarations() = default;
 
@@ -150,27 +154,29 @@ namespace crawler
   }
 
   void
-  Declarations::declare(const std::string                              &name,
-                        const std::string                              &default_value,
-                        const std::string                              &expected,
+  Declarations::declare(const std::string &name,
+                        const std::string &default_value,
+                        const std::string &expected,
                         const std::function<bool(const std::string &)> &match,
                         const std::function<void(const std::string &)> &assign,
-                        const std::string                              &documentation,
-                        const std::string                              &unit)
+                        const std::string &documentation,
+                        const std::string &unit)
   {
     const std::string unit_text = unit.empty() ? "" : " Unit: " + unit + ".";
-    handler_->declare_entry(name,
-                            default_value,
-                            WordyPattern(expected, match),
-                            documentation + " Expected: " + expected + "." + unit_text);
-    handler_->add_action(name, [assign](const std::string &text) { assign(trimmed(text)); });
+    handler_->declare_entry(
+      name, default_value, WordyPattern(expected, match), documentation + " Expected: " + expected + "." + unit_text);
+    handler_->add_action(name,
+                         [assign](const std::string &text)
+                         {
+                           assign(trimmed(text));
+                         });
     entries_.push_back({path_of(name), default_value, expected, unit, documentation});
   }
 
   void
   Declarations::number(const std::string &name,
-                       double            &value,
-                       const Range       &range,
+                       double &value,
+                       const Range &range,
                        const std::string &documentation,
                        const std::string &unit)
   {
@@ -178,38 +184,46 @@ namespace crawler
       name,
       to_text(value),
       range.in_words(),
-      [range](const std::string &text) {
+      [range](const std::string &text)
+      {
         const auto number = to_number(text);
         return number && range.contains(*number);
       },
-      [&value](const std::string &text) { value = *to_number(text); },
+      [&value](const std::string &text)
+      {
+        value = *to_number(text);
+      },
       documentation,
       unit);
   }
 
   void
-  Declarations::number(const std::string     &name,
+  Declarations::number(const std::string &name,
                        std::optional<double> &value,
-                       const Range           &range,
-                       const std::string     &documentation,
-                       const std::string     &unit)
+                       const Range &range,
+                       const std::string &documentation,
+                       const std::string &unit)
   {
     declare(
       name,
       value ? to_text(*value) : automatic,
       range.in_words() + " or the word \"automatic\"",
-      [range](const std::string &text) {
+      [range](const std::string &text)
+      {
         const auto number = to_number(text);
         return text == automatic || (number && range.contains(*number));
       },
-      [&value](const std::string &text) { value = to_number(text); },
+      [&value](const std::string &text)
+      {
+        value = to_number(text);
+      },
       documentation,
       unit);
   }
 
   void
   Declarations::whole_number(const std::string &name,
-                             unsigned int      &value,
+                             unsigned int &value,
                              const unsigned int lower,
                              const unsigned int upper,
                              const std::string &documentation)
@@ -218,40 +232,48 @@ namespace crawler
       name,
       std::to_string(value),
       count_range(lower, upper),
-      [lower, upper](const std::string &text) {
+      [lower, upper](const std::string &text)
+      {
         const auto count = to_count(text);
         return count && *count >= lower && *count <= upper;
       },
-      [&value](const std::string &text) { value = *to_count(text); },
+      [&value](const std::string &text)
+      {
+        value = *to_count(text);
+      },
       documentation,
       "");
   }
 
   void
-  Declarations::whole_number(const std::string           &name,
+  Declarations::whole_number(const std::string &name,
                              std::optional<unsigned int> &value,
-                             const unsigned int           lower,
-                             const unsigned int           upper,
-                             const std::string           &documentation)
+                             const unsigned int lower,
+                             const unsigned int upper,
+                             const std::string &documentation)
   {
     declare(
       name,
       value ? std::to_string(*value) : automatic,
       count_range(lower, upper) + " or the word \"automatic\"",
-      [lower, upper](const std::string &text) {
+      [lower, upper](const std::string &text)
+      {
         const auto count = to_count(text);
         return text == automatic || (count && *count >= lower && *count <= upper);
       },
-      [&value](const std::string &text) { value = to_count(text); },
+      [&value](const std::string &text)
+      {
+        value = to_count(text);
+      },
       documentation,
       "");
   }
 
   void
-  Declarations::numbers(const std::string   &name,
+  Declarations::numbers(const std::string &name,
                         std::vector<double> &value,
-                        const std::string   &documentation,
-                        const std::string   &unit)
+                        const std::string &documentation,
+                        const std::string &unit)
   {
     std::vector<std::string> items;
     for (const double number : value)
@@ -259,12 +281,19 @@ namespace crawler
     declare(
       name,
       fmt::format("{}", fmt::join(items, ", ")),
-      "numbers separated by commas",
-      [](const std::string &text) {
+      "a list of numbers separated by commas",
+      [](const std::string &text)
+      {
         const auto all = to_numbers(text);
-        return std::all_of(all.begin(), all.end(), [](const auto &number) { return number; });
+        return std::all_of(all.begin(),
+                           all.end(),
+                           [](const auto &number)
+                           {
+                             return number;
+                           });
       },
-      [&value](const std::string &text) {
+      [&value](const std::string &text)
+      {
         value.clear();
         for (const auto &number : to_numbers(text))
           value.push_back(*number);
@@ -274,19 +303,23 @@ namespace crawler
   }
 
   void
-  Declarations::choice(const std::string              &name,
-                       std::string                    &value,
+  Declarations::choice(const std::string &name,
+                       std::string &value,
                        const std::vector<std::string> &words,
-                       const std::string              &documentation)
+                       const std::string &documentation)
   {
     declare(
       name,
       value,
       words.size() == 1 ? "the word " + quoted_list(words) : quoted_list(words),
-      [words](const std::string &text) {
+      [words](const std::string &text)
+      {
         return std::find(words.begin(), words.end(), text) != words.end();
       },
-      [&value](const std::string &text) { value = text; },
+      [&value](const std::string &text)
+      {
+        value = text;
+      },
       documentation,
       "");
   }
@@ -298,15 +331,21 @@ namespace crawler
       name,
       value ? "true" : "false",
       "\"true\" or \"false\"",
-      [](const std::string &text) { return text == "true" || text == "false"; },
-      [&value](const std::string &text) { value = (text == "true"); },
+      [](const std::string &text)
+      {
+        return text == "true" || text == "false";
+      },
+      [&value](const std::string &text)
+      {
+        value = (text == "true");
+      },
       documentation,
       "");
   }
 
   void
   Declarations::text(const std::string &name,
-                     std::string       &value,
+                     std::string &value,
                      const std::string &expected,
                      const std::string &documentation,
                      const std::string &unit)
@@ -315,8 +354,14 @@ namespace crawler
       name,
       value,
       expected,
-      [](const std::string &) { return true; },
-      [&value](const std::string &text) { value = text; },
+      [](const std::string &)
+      {
+        return true;
+      },
+      [&value](const std::string &text)
+      {
+        value = text;
+      },
       documentation,
       unit);
   }
@@ -325,69 +370,69 @@ namespace crawler
   Declarations::set(const std::string &path, const std::string &value)
   {
     const std::vector<std::string> words = split_path(path);
-    const std::string              full  = fmt::format("{}", fmt::join(words, "/"));
-    const auto                     entry =
-      std::find_if(entries_.begin(), entries_.end(), [&](const EntryInfo &e) {
-        return e.path == full;
-      });
+    const std::string full               = fmt::format("{}", fmt::join(words, "/"));
+    const auto entry                     = std::find_if(entries_.begin(),
+                                    entries_.end(),
+                                    [&](const EntryInfo &e)
+                                    {
+                                      return e.path == full;
+                                    });
     if (entry == entries_.end())
+    {
+      const std::string section = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
+      if (!section.empty())
+        require_section(section);
+      // Prefer names of the same section, then any entry of the same name elsewhere.
+      std::vector<std::string> same_section, elsewhere;
+      for (const EntryInfo &e : entries_)
       {
-        const std::string section = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
-        if (!section.empty())
-          require_section(section);
-        // Prefer names of the same section, then any entry of the same name elsewhere.
-        std::vector<std::string> same_section, elsewhere;
-        for (const EntryInfo &e : entries_)
-          {
-            const auto        other = split_path(e.path);
-            const std::string other_section =
-              fmt::format("{}", fmt::join(other.begin(), other.end() - 1, "/"));
-            if (other_section == section)
-              same_section.push_back(other.back());
-            else if (!nearest_names(words.back(), {other.back()}).empty())
-              elsewhere.push_back(e.path);
-          }
-        if (std::find(sections_.begin(), sections_.end(), full) != sections_.end())
-          throw InputError(fmt::format("\"{}\" is a section; the name of an entry in it is expected", full), full);
-        std::vector<std::string> near = nearest_names(words.back(), same_section);
-        if (near.empty())
-          near.assign(elsewhere.begin(), elsewhere.begin() + std::min<std::size_t>(3, elsewhere.size()));
-        const std::string where =
-          section.empty() ? "at the top level of the file" : "in section \"" + section + "\"";
-        throw InputError(fmt::format("unknown entry \"{}\" {}; {}",
-                                     words.back(),
-                                     where,
-                                     near.empty() ?
-                                       "entries there are " + quoted_list(same_section) :
-                                       "the nearest " + std::string(near.size() > 1 ? "names are " : "name is ") +
-                                         quoted_list(near)),
-                         full);
+        const auto other                = split_path(e.path);
+        const std::string other_section = fmt::format("{}", fmt::join(other.begin(), other.end() - 1, "/"));
+        if (other_section == section)
+          same_section.push_back(other.back());
+        else if (!nearest_names(words.back(), {other.back()}).empty())
+          elsewhere.push_back(e.path);
       }
+      if (std::find(sections_.begin(), sections_.end(), full) != sections_.end())
+        throw InputError(fmt::format("\"{}\" is a section; the name of an entry in it is expected", full), full);
+      std::vector<std::string> near = nearest_names(words.back(), same_section);
+      if (near.empty())
+        near.assign(elsewhere.begin(), elsewhere.begin() + std::min<std::size_t>(3, elsewhere.size()));
+      const std::string where = section.empty() ? "at the top level of the file" : "in section \"" + section + "\"";
+      throw InputError(
+        fmt::format("unknown entry \"{}\" {}; {}",
+                    words.back(),
+                    where,
+                    near.empty()
+                      ? "entries there are " + quoted_list(same_section)
+                      : "the nearest " + std::string(near.size() > 1 ? "names are " : "name is ") + quoted_list(near)),
+        full);
+    }
     for (std::size_t i = 0; i + 1 < words.size(); ++i)
       handler_->enter_subsection(words[i]);
     std::string problem;
     try
-      {
-        handler_->set(words.back(), trimmed(value));
-      }
+    {
+      handler_->set(words.back(), trimmed(value));
+    }
     catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
+    {
+      problem = fmt::format("\"{}\" is \"{}\", but {} is expected", full, value, entry->expected);
+      // A choice of words: name the nearest one.
+      if (!value.empty() && entry->expected.front() == '"')
       {
-        problem = fmt::format("\"{}\" is \"{}\", but {} is expected", full, value, entry->expected);
-        // A choice of words: name the nearest one.
-        if (!value.empty() && entry->expected.front() == '"')
-          {
-            std::vector<std::string> choices;
-            for (std::size_t start = entry->expected.find('"'); start != std::string::npos;)
-              {
-                const std::size_t end = entry->expected.find('"', start + 1);
-                choices.push_back(entry->expected.substr(start + 1, end - start - 1));
-                start = entry->expected.find('"', end + 1);
-              }
-            const auto near = nearest_names(value, choices, 1);
-            if (!near.empty())
-              problem += "; the nearest is " + quoted_list(near);
-          }
+        std::vector<std::string> choices;
+        for (std::size_t start = entry->expected.find('"'); start != std::string::npos;)
+        {
+          const std::size_t end = entry->expected.find('"', start + 1);
+          choices.push_back(entry->expected.substr(start + 1, end - start - 1));
+          start = entry->expected.find('"', end + 1);
+        }
+        const auto near = nearest_names(value, choices, 1);
+        if (!near.empty())
+          problem += "; the nearest is " + quoted_list(near);
       }
+    }
     for (std::size_t i = 0; i + 1 < words.size(); ++i)
       handler_->leave_subsection();
     if (!problem.empty())
@@ -424,9 +469,7 @@ namespace crawler
   void
   Declarations::print_prm(std::ostream &out) const
   {
-    handler_->print_parameters(out,
-                               dealii::ParameterHandler::PRM |
-                                 dealii::ParameterHandler::KeepDeclarationOrder);
+    handler_->print_parameters(out, dealii::ParameterHandler::PRM | dealii::ParameterHandler::KeepDeclarationOrder);
   }
 
   void
@@ -450,27 +493,28 @@ namespace crawler
            "`end`, and on the command line as\n`--set \"Section/Entry=value\"`.\n";
     std::string section = "-";
     for (const EntryInfo &entry : entries_)
+    {
+      const auto words      = split_path(entry.path);
+      const std::string own = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
+      if (own != section)
       {
-        const auto        words = split_path(entry.path);
-        const std::string own   = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
-        if (own != section)
-          {
-            section = own;
-            out << "\n## " << (section.empty() ? "Top level" : section)
-                << "\n\n| entry | default | expected | unit | meaning |\n|---|---|---|---|---|\n";
-          }
-        const auto cell = [](std::string text) {
-          for (std::size_t i = text.find('|'); i != std::string::npos; i = text.find('|', i + 2))
-            text.replace(i, 1, "\\|");
-          return text;
-        };
-        out << fmt::format("| {} | `{}` | {} | {} | {} |\n",
-                           words.back(),
-                           entry.default_value.empty() ? " " : cell(entry.default_value),
-                           cell(entry.expected),
-                           entry.unit,
-                           cell(entry.documentation));
+        section = own;
+        out << "\n## " << (section.empty() ? "Top level" : section)
+            << "\n\n| entry | default | expected | unit | meaning |\n|---|---|---|---|---|\n";
       }
+      const auto cell = [](std::string text)
+      {
+        for (std::size_t i = text.find('|'); i != std::string::npos; i = text.find('|', i + 2))
+          text.replace(i, 1, "\\|");
+        return text;
+      };
+      out << fmt::format("| {} | `{}` | {} | {} | {} |\n",
+                         words.back(),
+                         entry.default_value.empty() ? " " : cell(entry.default_value),
+                         cell(entry.expected),
+                         entry.unit,
+                         cell(entry.documentation));
+    }
   }
 
 
@@ -487,8 +531,8 @@ namespace crawler
   split_path(const std::string &path)
   {
     std::vector<std::string> words;
-    std::istringstream       in(path);
-    std::string              word;
+    std::istringstream in(path);
+    std::string word;
     while (std::getline(in, word, '/'))
       words.push_back(trimmed(word));
     if (words.empty())
@@ -501,7 +545,7 @@ namespace crawler
   {
     if (text.empty() || text.find_first_not_of("0123456789.+-eE") != std::string::npos)
       return std::nullopt;
-    char        *end   = nullptr;
+    char *end          = nullptr;
     const double value = std::strtod(text.c_str(), &end);
     if (end != text.c_str() + text.size() || !std::isfinite(value))
       return std::nullopt;

@@ -20,21 +20,19 @@ namespace crawler
     {
       std::ostringstream content;
       if (file_name == "-")
-        {
-          content << std::cin.rdbuf();
-          return content.str();
-        }
+      {
+        content << std::cin.rdbuf();
+        return content.str();
+      }
       std::error_code ignored;
       if (std::filesystem::is_directory(file_name, ignored))
-        throw FileError(
-          fmt::format("\"{}\" is a folder; the name of a parameter file is expected", file_name));
+        throw FileError(fmt::format("\"{}\" is a folder; the name of a parameter file is expected", file_name));
       std::ifstream in(file_name, std::ios::binary);
       if (!in)
         throw FileError(
           fmt::format("cannot read \"{}\": {}",
                       file_name,
-                      std::filesystem::exists(file_name, ignored) ? "permission denied" :
-                                                                    "there is no such file"));
+                      std::filesystem::exists(file_name, ignored) ? "permission denied" : "there is no such file"));
       content << in.rdbuf();
       return content.str();
     }
@@ -65,24 +63,27 @@ namespace crawler
     file.text_ = text;
     file.parse(text, name, 0);
     if (file.assignments_.empty() && file.sections_.empty())
-      throw InputError(fmt::format(
-        "{}: the file sets nothing; at least one line \"set Entry = value\" is expected (see crawler "
-        "parameters)",
-        name));
+      throw InputError(
+        fmt::format("{}: the file sets nothing; at least one line \"set Entry = value\" is expected (see crawler "
+                    "parameters)",
+                    name));
     return file;
   }
 
   void
   ParameterFile::parse(const std::string &text, const std::string &name, const unsigned int depth)
   {
-    if (std::any_of(text.begin(), text.end(), [](const char c) {
-          return static_cast<unsigned char>(c) < 9;
-        }))
-      throw InputError(
-        fmt::format("{}: this is a binary file; a text file of parameters is expected", name));
+    if (std::any_of(text.begin(),
+                    text.end(),
+                    [](const char c)
+                    {
+                      return static_cast<unsigned char>(c) < 9;
+                    }))
+      throw InputError(fmt::format("{}: this is a binary file; a text file of parameters is expected", name));
 
     std::vector<std::pair<std::string, unsigned int>> open; // sections, and the lines that opened them
-    const auto                                        path = [&open](const std::string &last) {
+    const auto path = [&open](const std::string &last)
+    {
       std::string result;
       for (const auto &[section, line] : open)
         result += section + "/";
@@ -90,92 +91,83 @@ namespace crawler
     };
 
     std::istringstream in(text);
-    std::string        raw, line;
-    unsigned int       number = 0, first = 0;
+    std::string raw, line;
+    unsigned int number = 0, first = 0;
     while (std::getline(in, raw))
-      {
-        ++number;
-        if (const auto comment = raw.find('#'); comment != std::string::npos)
-          raw.erase(comment);
-        raw = trimmed(raw);
-        if (line.empty())
-          first = number;
-        const bool continues = !raw.empty() && raw.back() == '\\';
-        if (continues)
-          raw.pop_back();
-        line += raw;
-        if (continues && !in.eof())
-          continue;
-        const std::string statement = trimmed(line);
-        line.clear();
-        if (statement.empty())
-          continue;
+    {
+      ++number;
+      if (const auto comment = raw.find('#'); comment != std::string::npos)
+        raw.erase(comment);
+      raw = trimmed(raw);
+      if (line.empty())
+        first = number;
+      const bool continues = !raw.empty() && raw.back() == '\\';
+      if (continues)
+        raw.pop_back();
+      line += raw;
+      if (continues && !in.eof())
+        continue;
+      const std::string statement = trimmed(line);
+      line.clear();
+      if (statement.empty())
+        continue;
 
-        const std::string place    = fmt::format("{}, line {}", name, first);
-        const auto [keyword, rest] = first_word(statement);
-        if (keyword == "subsection")
-          {
-            if (rest.empty())
-              throw InputError(fmt::format("{}: \"subsection\" without a name", place));
-            sections_.push_back({path(rest), place});
-            open.emplace_back(rest, first);
-          }
-        else if (statement == "end")
-          {
-            if (open.empty())
-              throw InputError(
-                fmt::format("{}: \"end\" without a \"subsection\" that it could close", place));
-            open.pop_back();
-          }
-        else if (keyword == "set")
-          {
-            const auto equals = rest.find('=');
-            if (equals == std::string::npos || trimmed(rest.substr(0, equals)).empty())
-              throw InputError(
-                fmt::format("{}: found \"{}\", but \"set Entry = value\" is expected", place, statement));
-            const Assignment assignment{path(trimmed(rest.substr(0, equals))),
-                                        trimmed(rest.substr(equals + 1)),
-                                        place};
-            for (const Assignment &other : assignments_)
-              if (other.path == assignment.path)
-                throw InputError(fmt::format("{}: \"{}\" is set a second time (first in {}); once is expected",
-                                             place,
-                                             assignment.path,
-                                             other.place));
-            assignments_.push_back(assignment);
-          }
-        else if (keyword == "include")
-          {
-            if (depth == 10)
-              throw InputError(fmt::format("{}: files include each other more than 10 deep", place));
-            if (rest.empty())
-              throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
-            const auto file = (std::filesystem::path(name).parent_path() / rest).string();
-            std::string included;
-            try
-              {
-                included = read_whole(file);
-              }
-            catch (const FileError &error)
-              {
-                throw FileError(fmt::format("{}: {}", place, error.what()));
-              }
-            if (!open.empty())
-              throw InputError(
-                fmt::format("{}: \"include\" is expected outside of all subsections", place));
-            parse(included, file, depth + 1);
-          }
-        else
-          throw InputError(fmt::format(
-            "{}: found \"{}\", but a line begins with \"set\", \"subsection\", \"end\", \"include\" or \"#\"",
-            place,
-            statement.substr(0, 60)));
+      const std::string place    = fmt::format("{}, line {}", name, first);
+      const auto [keyword, rest] = first_word(statement);
+      if (keyword == "subsection")
+      {
+        if (rest.empty())
+          throw InputError(fmt::format("{}: \"subsection\" without a name", place));
+        sections_.push_back({path(rest), place});
+        open.emplace_back(rest, first);
       }
+      else if (statement == "end")
+      {
+        if (open.empty())
+          throw InputError(fmt::format("{}: \"end\" without a \"subsection\" that it could close", place));
+        open.pop_back();
+      }
+      else if (keyword == "set")
+      {
+        const auto equals = rest.find('=');
+        if (equals == std::string::npos || trimmed(rest.substr(0, equals)).empty())
+          throw InputError(fmt::format("{}: found \"{}\", but \"set Entry = value\" is expected", place, statement));
+        const Assignment assignment{path(trimmed(rest.substr(0, equals))), trimmed(rest.substr(equals + 1)), place};
+        for (const Assignment &other : assignments_)
+          if (other.path == assignment.path)
+            throw InputError(fmt::format(
+              "{}: \"{}\" is set a second time (first in {}); once is expected", place, assignment.path, other.place));
+        assignments_.push_back(assignment);
+      }
+      else if (keyword == "include")
+      {
+        if (depth == 10)
+          throw InputError(fmt::format("{}: files include each other more than 10 deep", place));
+        if (rest.empty())
+          throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
+        const auto file = (std::filesystem::path(name).parent_path() / rest).string();
+        std::string included;
+        try
+        {
+          included = read_whole(file);
+        }
+        catch (const FileError &error)
+        {
+          throw FileError(fmt::format("{}: {}", place, error.what()));
+        }
+        if (!open.empty())
+          throw InputError(fmt::format("{}: \"include\" is expected outside of all subsections", place));
+        parse(included, file, depth + 1);
+      }
+      else
+        throw InputError(
+          fmt::format("{}: found \"{}\", but a line begins with \"set\", \"subsection\", \"end\", \"include\" or \"#\"",
+                      place,
+                      statement.substr(0, 60)));
+    }
     if (!open.empty())
-      throw InputError(fmt::format("{}, line {}: \"subsection {}\" has no \"end\"",
-                                   name,
-                                   open.back().second,
-                                   open.back().first));
+      throw InputError(
+        fmt::format("{}, line {}: \"subsection {}\" has no \"end\"", name, open.back().second, open.back().first));
   }
 
   void
@@ -183,8 +175,7 @@ namespace crawler
   {
     const auto equals = assignment.find('=');
     if (equals == std::string::npos || trimmed(assignment.substr(0, equals)).empty())
-      throw InputError(
-        fmt::format("--set \"{}\": \"Section/Entry=value\" is expected", assignment));
+      throw InputError(fmt::format("--set \"{}\": \"Section/Entry=value\" is expected", assignment));
     overrides_.push_back(assignment);
     assignments_.push_back({trimmed(assignment.substr(0, equals)),
                             trimmed(assignment.substr(equals + 1)),
@@ -196,22 +187,22 @@ namespace crawler
   {
     for (const Section &section : sections_)
       try
-        {
-          declarations.require_section(section.path);
-        }
+      {
+        declarations.require_section(section.path);
+      }
       catch (const InputError &error)
-        {
-          throw InputError(section.place + ": " + error.what(), section.path);
-        }
+      {
+        throw InputError(section.place + ": " + error.what(), section.path);
+      }
     for (const Assignment &assignment : assignments_)
       try
-        {
-          declarations.set(assignment.path, assignment.value);
-        }
+      {
+        declarations.set(assignment.path, assignment.value);
+      }
       catch (const InputError &error)
-        {
-          throw InputError(assignment.place + ": " + error.what(), assignment.path);
-        }
+      {
+        throw InputError(assignment.place + ": " + error.what(), assignment.path);
+      }
   }
 
   InputError

@@ -5,5 +5,6 @@ namespace crawler
 {
   void
   ActiveStress::report(std::ostream &) const
-  {}
+  {
+  }
 } // namespace crawler

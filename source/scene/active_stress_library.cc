@@ -22,15 +22,20 @@ namespace crawler
       static const std::vector<Generator> list = {
         {"none",
          NoActiveStress::description,
-         [](const auto &, const Body &, double) { return std::make_unique<NoActiveStress>(); }},
+         [](const auto &, const Body &, double)
+         {
+           return std::make_unique<NoActiveStress>();
+         }},
         {"optimal wave",
          OptimalWave::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
            return std::make_unique<OptimalWave>(parameters.optimal_wave, body, end_time);
          }},
         {"expression",
          Expression::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
            return std::make_unique<Expression>(parameters.expression, body.length, end_time);
          }},
       };
@@ -42,12 +47,12 @@ namespace crawler
   ActiveStressParameters::add_parameters(Declarations &declarations)
   {
     std::vector<std::string> names;
-    std::string              documentation = "What makes the active stress: ";
+    std::string documentation = "What makes the active stress: ";
     for (const Generator &entry : generators())
-      {
-        documentation += (names.empty() ? "" : "; ") + entry.name + " (" + entry.description + ")";
-        names.push_back(entry.name);
-      }
+    {
+      documentation += (names.empty() ? "" : "; ") + entry.name + " (" + entry.description + ")";
+      names.push_back(entry.name);
+    }
     declarations.enter("Active stress");
     declarations.choice("Generator", generator, names, documentation + ".");
     optimal_wave.add_parameters(declarations);

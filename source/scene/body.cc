@@ -9,11 +9,8 @@ namespace crawler
   {
     declarations.enter("Body");
     declarations.number("Length", length, positive(), "Rest length L of the body.", "length");
-    declarations.number("Elastic modulus",
-                        elastic_modulus,
-                        positive(),
-                        "Elastic modulus k: force per unit strain.",
-                        "force");
+    declarations.number(
+      "Elastic modulus", elastic_modulus, positive(), "Elastic modulus k: force per unit strain.", "force");
     declarations.number("Friction coefficient",
                         friction_coefficient,
                         positive(),

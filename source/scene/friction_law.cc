@@ -23,17 +23,18 @@ namespace crawler
     : gamma_(gamma)
     , a_(a)
     , a_is_small_integer_(a == std::round(a) && std::abs(a) <= 64)
-  {}
+  {
+  }
 
   void
   PowerFriction::values(const std::span<const double> w, const std::span<double> g) const
   {
     if (a_is_small_integer_)
-      {
-        const auto n = static_cast<unsigned int>(std::abs(a_));
-        for (std::size_t i = 0; i < w.size(); ++i)
-          g[i] = gamma_ * integer_power(a_ < 0 ? 1. / w[i] : w[i], n);
-      }
+    {
+      const auto n = static_cast<unsigned int>(std::abs(a_));
+      for (std::size_t i = 0; i < w.size(); ++i)
+        g[i] = gamma_ * integer_power(a_ < 0 ? 1. / w[i] : w[i], n);
+    }
     else
       for (std::size_t i = 0; i < w.size(); ++i)
         g[i] = gamma_ * std::pow(w[i], a_);
@@ -41,8 +42,8 @@ namespace crawler
 
   void
   PowerFriction::values_and_derivatives(const std::span<const double> w,
-                                        const std::span<double>       g,
-                                        const std::span<double>       dg) const
+                                        const std::span<double> g,
+                                        const std::span<double> dg) const
   {
     values(w, g);
     for (std::size_t i = 0; i < w.size(); ++i)

@@ -17,11 +17,12 @@ namespace crawler
       names.push_back(entry.name);
     declarations.enter("Time");
     declarations.number("End time", end_time, positive(), "Duration T; the body starts at rest at time 0.", "time");
-    declarations.text("Integrator",
-                      integrator,
-                      quoted_list(names),
-                      "Time integrator (PETSc TS). Integrators of PETSc that are not sound for this equation are refused "
-                      "with the reason.");
+    declarations.text(
+      "Integrator",
+      integrator,
+      quoted_list(names),
+      "Time integrator (PETSc TS). Integrators of PETSc that are not sound for this equation are refused "
+      "with the reason.");
     declarations.whole_number("Order", order, 1, 5, "Order of bdf; the other integrators have their own.");
     declarations.choice("Step control",
                         step_control,
@@ -34,16 +35,9 @@ namespace crawler
                         "Estimated error of the displacement that is admissible in a step (root mean square over the "
                         "body). Automatic: chosen from Accuracy.",
                         "length");
-    declarations.number("Initial step",
-                        initial_step,
-                        positive(),
-                        "Size of the first step. Automatic: chosen from Accuracy.",
-                        "time");
-    declarations.whole_number("Maximum number of steps",
-                              max_steps,
-                              1,
-                              999999999,
-                              "The run stops after so many steps.");
+    declarations.number(
+      "Initial step", initial_step, positive(), "Size of the first step. Automatic: chosen from Accuracy.", "time");
+    declarations.whole_number("Maximum number of steps", max_steps, 1, 999999999, "The run stops after so many steps.");
     declarations.leave();
   }
 
@@ -53,31 +47,36 @@ namespace crawler
     bool known = false;
     std::vector<std::string> names;
     for (const Integrator &entry : integrators())
-      {
-        names.push_back(entry.name);
-        known = known || entry.name == integrator;
-      }
+    {
+      names.push_back(entry.name);
+      known = known || entry.name == integrator;
+    }
     if (!known)
-      {
-        const std::string reason = reason_against(integrator);
-        if (!reason.empty())
-          throw InputError(fmt::format("the integrator \"{}\" is refused: {}; {} is expected", integrator, reason, quoted_list(names)),
-                           "Time/Integrator");
-        const auto near = nearest_names(integrator, names, 1);
-        throw InputError(fmt::format("unknown integrator \"{}\"; {} is expected{}",
-                                     integrator,
-                                     quoted_list(names),
-                                     near.empty() ? "" : "; the nearest is " + quoted_list(near)),
-                         "Time/Integrator");
-      }
-    if (step_control == "adaptive" && !crawler::integrator(integrator).adaptive)
-      throw InputError(fmt::format("the integrator \"{}\" has no error estimate, so \"fixed\" is expected for Step control", integrator),
+    {
+      const std::string reason = reason_against(integrator);
+      if (!reason.empty())
+        throw InputError(
+          fmt::format("the integrator \"{}\" is refused: {}; {} is expected", integrator, reason, quoted_list(names)),
+          "Time/Integrator");
+      const auto near = nearest_names(integrator, names, 1);
+      throw InputError(fmt::format("unknown integrator \"{}\"; {} is expected{}",
+                                   integrator,
+                                   quoted_list(names),
+                                   near.empty() ? "" : "; the nearest is " + quoted_list(near)),
                        "Time/Integrator");
+    }
+    if (step_control == "adaptive" && !crawler::integrator(integrator).adaptive)
+      throw InputError(
+        fmt::format("the integrator \"{}\" has no error estimate, so \"fixed\" is expected for Step control",
+                    integrator),
+        "Time/Integrator");
     if (step_control == "fixed" && !initial_step)
-      throw InputError("Step control is fixed, but the size of the steps is missing: a number is expected for Initial step",
-                       "Time/Step control");
+      throw InputError(
+        "Step control is fixed, but the size of the steps is missing: a number is expected for Initial step",
+        "Time/Step control");
     if (initial_step && *initial_step > end_time)
-      throw InputError(fmt::format("Initial step is {}, but at most the End time, {}, is expected", *initial_step, end_time),
-                       "Time/Initial step");
+      throw InputError(
+        fmt::format("Initial step is {}, but at most the End time, {}, is expected", *initial_step, end_time),
+        "Time/Initial step");
   }
 } // namespace crawler

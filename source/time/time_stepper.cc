@@ -4,10 +4,13 @@
 #include <crawler/time/integrators.h>
 #include <crawler/time/time_stepper.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <optional>
 
 namespace crawler
 {
@@ -35,7 +38,7 @@ namespace crawler
       std::span<const double> span;
 
     private:
-      Vec           vec_;
+      Vec vec_;
       const double *data_ = nullptr;
     };
 
@@ -58,7 +61,7 @@ namespace crawler
       std::span<double> span;
 
     private:
-      Vec     vec_;
+      Vec vec_;
       double *data_ = nullptr;
     };
   } // namespace
@@ -68,25 +71,28 @@ namespace crawler
   {
     Implementation(TimeStepper &owner, MPI_Comm communicator, std::size_t n_owned, const TimeParameters &parameters);
 
-    TimeStepper         &owner;
+    TimeStepper &owner;
     const TimeParameters parameters;
 
     PetscOwner<Vec> solution, residual;
     PetscOwner<Mat> jacobian;
-    PetscOwner<TS>  ts;
+    PetscOwner<TS> ts;
 
     // The state of one solve().
     std::vector<double> frames;
-    std::size_t         next_frame  = 0;
-    double              tolerance   = 0.;
-    double              fixed_step  = 0.;
-    bool                stopped     = false;
-    bool                jacobian_ok = true;
-    bool                refused     = false; ///< a state, in an attempt at the present step
-    double              convergence_constant = std::numeric_limits<double>::infinity();
-    double              correction = 0., last_correction = 0.;
-    std::size_t         n_unknowns = 0;
-    std::exception_ptr  exception;
+    std::size_t next_frame = 0;
+    double tolerance       = 0.;
+    double fixed_step      = 0.;
+    bool stopped           = false;
+    bool jacobian_ok       = true;
+    double refused_at      = -1.;                    ///< time of the last state that implicit_function refused
+    bool underflow         = false;                  ///< a step is below the resolution of the time
+    std::optional<double> user_tolerance, user_step; ///< options -ts_atol and -ts_dt
+    double relative_tolerance   = 0.;                ///< option -ts_rtol
+    double convergence_constant = std::numeric_limits<double>::infinity();
+    double last_correction      = 0.;
+    std::size_t n_unknowns      = 0;
+    std::exception_ptr exception;
 
     void
     set_options();
@@ -101,15 +107,15 @@ namespace crawler
     guarded(const Callback &callback)
     {
       try
-        {
-          callback();
-          return 0;
-        }
+      {
+        callback();
+        return 0;
+      }
       catch (...)
-        {
-          exception = std::current_exception();
-          return PETSC_ERR_USER;
-        }
+      {
+        exception = std::current_exception();
+        return PETSC_ERR_USER;
+      }
     }
 
     static PetscErrorCode
@@ -123,16 +129,22 @@ namespace crawler
     static PetscErrorCode
     precondition(PC pc, Vec x, Vec y);
     static PetscErrorCode
-    newton_converged(SNES snes, PetscInt it, PetscReal x_norm, PetscReal dx_norm, PetscReal F_norm, SNESConvergedReason *reason, void *context);
+    newton_converged(SNES snes,
+                     PetscInt it,
+                     PetscReal x_norm,
+                     PetscReal dx_norm,
+                     PetscReal F_norm,
+                     SNESConvergedReason *reason,
+                     void *context);
     static PetscErrorCode
     before_step(TS ts);
     static PetscErrorCode
     after_step(TS ts);
   };
 
-  TimeStepper::Implementation::Implementation(TimeStepper          &owner,
-                                              MPI_Comm              communicator,
-                                              const std::size_t     n_owned,
+  TimeStepper::Implementation::Implementation(TimeStepper &owner,
+                                              MPI_Comm communicator,
+                                              const std::size_t n_owned,
                                               const TimeParameters &parameters)
     : owner(owner)
     , parameters(parameters)
@@ -148,7 +160,7 @@ namespace crawler
     petsc(VecDuplicate(solution.get(), &vec));
     residual.reset(vec);
 
-    Mat mat = nullptr;
+    Mat mat          = nullptr;
     const auto local = static_cast<PetscInt>(n_owned);
     petsc(MatCreateShell(communicator, local, local, PETSC_DECIDE, PETSC_DECIDE, this, &mat));
     jacobian.reset(mat);
@@ -169,8 +181,8 @@ namespace crawler
   void
   TimeStepper::Implementation::set_options()
   {
-    const Integrator &method  = integrator(parameters.integrator);
-    TS                stepper = ts.get();
+    const Integrator &method = integrator(parameters.integrator);
+    TS stepper               = ts.get();
     petsc(TSSetOptionsPrefix(stepper, parameters.petsc_prefix.c_str()));
     petsc(TSSetProblemType(stepper, TS_NONLINEAR));
     petsc(TSSetEquationType(stepper, TS_EQ_IMPLICIT)); // without this arkimex is silently wrong
@@ -178,15 +190,15 @@ namespace crawler
     if (method.petsc_type == "bdf")
       petsc(TSBDFSetOrder(stepper, static_cast<PetscInt>(parameters.order)));
     if (method.petsc_type == "arkimex")
-      {
-        petsc(TSARKIMEXSetType(stepper, method.subtype.c_str()));
-        petsc(TSARKIMEXSetFullyImplicit(stepper, PETSC_TRUE));
-      }
+    {
+      petsc(TSARKIMEXSetType(stepper, method.subtype.c_str()));
+      petsc(TSARKIMEXSetFullyImplicit(stepper, PETSC_TRUE));
+    }
     if (method.name == "midpoint")
-      {
-        petsc(TSThetaSetTheta(stepper, 0.5));
-        petsc(TSThetaSetEndpoint(stepper, PETSC_FALSE));
-      }
+    {
+      petsc(TSThetaSetTheta(stepper, 0.5));
+      petsc(TSThetaSetEndpoint(stepper, PETSC_FALSE));
+    }
     TSAdapt adapt = nullptr;
     petsc(TSGetAdapt(stepper, &adapt));
     petsc(TSAdaptSetType(adapt, parameters.step_control == "fixed" ? TSADAPTNONE : TSADAPTBASIC));
@@ -196,10 +208,10 @@ namespace crawler
     petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));
     petsc(TSSetMaxSteps(stepper, static_cast<PetscInt>(parameters.max_steps)));
 
-    SNES           snes        = nullptr;
+    SNES snes                  = nullptr;
     SNESLineSearch line_search = nullptr;
-    KSP            ksp         = nullptr;
-    PC             pc          = nullptr;
+    KSP ksp                    = nullptr;
+    PC pc                      = nullptr;
     petsc(TSGetSNES(stepper, &snes));
     petsc(SNESSetType(snes, SNESNEWTONLS));
     petsc(SNESGetLineSearch(snes, &line_search));
@@ -217,7 +229,7 @@ namespace crawler
     petsc(PCShellSetApply(pc, precondition));
 
     PetscErrorCode code = 0;
-    std::string    words;
+    std::string words;
     {
       PetscErrorWords error;
       code  = TSSetFromOptions(stepper);
@@ -226,22 +238,36 @@ namespace crawler
     if (code != 0)
       throw InputError("PETSc refuses an option behind \"--\": " + words);
 
+    // solve() sets these anew each time.
+    const auto option = [&](const char *option_name)
+    {
+      PetscReal value = 0.;
+      PetscBool found = PETSC_FALSE;
+      petsc(PetscOptionsGetReal(nullptr, parameters.petsc_prefix.c_str(), option_name, &value, &found));
+      return found ? std::optional<double>(value) : std::nullopt;
+    };
+    user_tolerance     = option("-ts_atol");
+    user_step          = option("-ts_dt");
+    relative_tolerance = option("-ts_rtol").value_or(0.);
+    if (option("-ts_max_time"))
+      throw InputError("the PETSc option -ts_max_time is refused: Time/End time is expected to say when the run ends");
+
     TSType type = nullptr;
     petsc(TSGetType(stepper, &type));
     std::string name = type;
     if (name == "arkimex")
-      {
-        TSARKIMEXType subtype = nullptr;
-        petsc(TSARKIMEXGetType(stepper, &subtype));
-        name += std::string(" ") + subtype;
-      }
+    {
+      TSARKIMEXType subtype = nullptr;
+      petsc(TSARKIMEXGetType(stepper, &subtype));
+      name += std::string(" ") + subtype;
+    }
     if (name == "theta")
-      {
-        PetscBool endpoint = PETSC_FALSE;
-        petsc(TSThetaGetEndpoint(stepper, &endpoint));
-        if (endpoint)
-          name += " endpoint";
-      }
+    {
+      PetscBool endpoint = PETSC_FALSE;
+      petsc(TSThetaGetEndpoint(stepper, &endpoint));
+      if (endpoint)
+        name += " endpoint";
+    }
     const std::string reason = reason_against(name);
     if (!reason.empty())
       throw InputError("the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " + reason);
@@ -250,38 +276,36 @@ namespace crawler
   PetscErrorCode
   TimeStepper::Implementation::function(TS ts, const PetscReal t, Vec y, Vec y_dot, Vec F, void *context)
   {
-    auto &self     = *static_cast<Implementation *>(context);
-    bool  accepted = true;
-    const PetscErrorCode code = self.guarded([&]() {
-      const ReadAccess  y_access(y), y_dot_access(y_dot);
-      const WriteAccess F_access(F);
-      accepted = self.owner.implicit_function(t, y_access.span, y_dot_access.span, F_access.span);
-    });
-    if (code == 0 && !accepted)
+    auto &self                = *static_cast<Implementation *>(context);
+    bool accepted             = true;
+    const PetscErrorCode code = self.guarded(
+      [&]()
       {
-        self.refused = true;
-        SNES snes = nullptr;
-        TSGetSNES(ts, &snes);
-        return SNESSetFunctionDomainError(snes);
-      }
+        const ReadAccess y_access(y), y_dot_access(y_dot);
+        const WriteAccess F_access(F);
+        accepted = self.owner.implicit_function(t, y_access.span, y_dot_access.span, F_access.span);
+      });
+    if (code == 0 && !accepted)
+    {
+      self.refused_at = t;
+      SNES snes       = nullptr;
+      TSGetSNES(ts, &snes);
+      return SNESSetFunctionDomainError(snes);
+    }
     return code;
   }
 
   PetscErrorCode
-  TimeStepper::Implementation::jacobian_function(TS,
-                                                 const PetscReal t,
-                                                 Vec             y,
-                                                 Vec             y_dot,
-                                                 const PetscReal shift,
-                                                 Mat             A,
-                                                 Mat,
-                                                 void *context)
+  TimeStepper::Implementation::jacobian_function(
+    TS, const PetscReal t, Vec y, Vec y_dot, const PetscReal shift, Mat A, Mat, void *context)
   {
-    auto &self = *static_cast<Implementation *>(context);
-    const PetscErrorCode code = self.guarded([&]() {
-      const ReadAccess y_access(y), y_dot_access(y_dot);
-      self.jacobian_ok = self.owner.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
-    });
+    auto &self                = *static_cast<Implementation *>(context);
+    const PetscErrorCode code = self.guarded(
+      [&]()
+      {
+        const ReadAccess y_access(y), y_dot_access(y_dot);
+        self.jacobian_ok = self.owner.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
+      });
     if (code != 0)
       return code;
     MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
@@ -294,11 +318,13 @@ namespace crawler
     void *context = nullptr;
     MatShellGetContext(A, &context);
     auto &self = *static_cast<Implementation *>(context);
-    return self.guarded([&]() {
-      const ReadAccess  x_access(x);
-      const WriteAccess y_access(y);
-      self.owner.jacobian_vmult(x_access.span, y_access.span);
-    });
+    return self.guarded(
+      [&]()
+      {
+        const ReadAccess x_access(x);
+        const WriteAccess y_access(y);
+        self.owner.jacobian_vmult(x_access.span, y_access.span);
+      });
   }
 
   PetscErrorCode
@@ -316,41 +342,43 @@ namespace crawler
     void *context = nullptr;
     PCShellGetContext(pc, &context);
     auto &self = *static_cast<Implementation *>(context);
-    return self.guarded([&]() {
-      const ReadAccess  x_access(x);
-      const WriteAccess y_access(y);
-      self.owner.solve_with_jacobian(x_access.span, y_access.span);
-    });
+    return self.guarded(
+      [&]()
+      {
+        const ReadAccess x_access(x);
+        const WriteAccess y_access(y);
+        self.owner.solve_with_jacobian(x_access.span, y_access.span);
+      });
   }
 
   /**
-   * Newton's method with an exact Jacobian converges quadratically: after a correction d the error that remains is about
-   * C d^2. C is taken from the last solve that needed two corrections; until there is one, two are made.
+   * Newton's method with an exact Jacobian converges quadratically: after a correction d the error that remains is
+   * about C d^2. C is taken from the last solve that needed two corrections; until there is one, two are made.
    */
   PetscErrorCode
-  TimeStepper::Implementation::newton_converged(SNES                 snes,
-                                                const PetscInt       it,
-                                                const PetscReal      x_norm,
-                                                const PetscReal      dx_norm,
-                                                const PetscReal      F_norm,
+  TimeStepper::Implementation::newton_converged(SNES snes,
+                                                const PetscInt it,
+                                                const PetscReal x_norm,
+                                                const PetscReal dx_norm,
+                                                const PetscReal F_norm,
                                                 SNESConvergedReason *reason,
-                                                void                *context)
+                                                void *context)
   {
     auto &self = *static_cast<Implementation *>(context);
     *reason    = SNES_CONVERGED_ITERATING;
     if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
-      {
-        *reason = SNES_DIVERGED_FNORM_NAN;
-        return 0;
-      }
+    {
+      *reason = SNES_DIVERGED_FNORM_NAN;
+      return 0;
+    }
     if (it == 0)
-      {
-        if (F_norm == 0.)
-          *reason = SNES_CONVERGED_FNORM_ABS;
-        return 0;
-      }
-    const double rms     = 1. / std::sqrt(static_cast<double>(self.n_unknowns));
-    const double d       = dx_norm * rms / self.tolerance; // in units of the admissible error
+    {
+      if (F_norm == 0.)
+        *reason = SNES_CONVERGED_FNORM_ABS;
+      return 0;
+    }
+    const double rms      = 1. / std::sqrt(static_cast<double>(self.n_unknowns));
+    const double d        = dx_norm * rms / self.tolerance; // in units of the admissible error
     const double rounding = 1e-15 * x_norm * rms / self.tolerance;
     if (it >= 2 && self.last_correction > 0.)
       self.convergence_constant = d / (self.last_correction * self.last_correction);
@@ -367,9 +395,8 @@ namespace crawler
   {
     void *context = nullptr;
     TSGetApplicationContext(ts, &context);
-    auto     &self = *static_cast<Implementation *>(context);
+    auto &self     = *static_cast<Implementation *>(context);
     PetscReal time = 0., size = 0.;
-    self.refused   = false;
     TSGetTime(ts, &time);
     TSGetTimeStep(ts, &size);
     if (self.fixed_step > 0.)
@@ -397,13 +424,22 @@ namespace crawler
     TSGetPrevTime(ts, &previous);
     const double frame = self.frames[self.next_frame];
     if (std::abs(time - frame) <= 1e-13 * std::max(frame - previous, std::abs(frame)))
-      {
-        time = frame;
-        TSSetTime(ts, frame);
-      }
+    {
+      time = frame;
+      TSSetTime(ts, frame);
+    }
     const double size = time - previous;
-    bool         go_on = true;
-    const PetscErrorCode code = self.guarded([&]() { go_on = self.report(time, size); });
+    if (!(size > 4. * std::numeric_limits<double>::epsilon() * time))
+    {
+      self.underflow = true; // nothing can be gained, and nobody should divide by this
+      return TSSetConvergedReason(ts, TS_DIVERGED_STEP_REJECTED);
+    }
+    bool go_on                = true;
+    const PetscErrorCode code = self.guarded(
+      [&]()
+      {
+        go_on = self.report(time, size);
+      });
     if (code != 0)
       return code;
     if (time == frame)
@@ -411,10 +447,10 @@ namespace crawler
     if (self.next_frame == self.frames.size())
       return TSSetConvergedReason(ts, TS_CONVERGED_TIME);
     if (!go_on)
-      {
-        self.stopped = true;
-        return TSSetConvergedReason(ts, TS_CONVERGED_USER);
-      }
+    {
+      self.stopped = true;
+      return TSSetConvergedReason(ts, TS_CONVERGED_USER);
+    }
     return 0;
   }
 
@@ -442,11 +478,11 @@ namespace crawler
   TimeOutcome
   TimeStepper::Implementation::outcome(const PetscErrorCode code)
   {
-    TimeOutcome       result;
-    TS                stepper = ts.get();
+    TimeOutcome result;
+    TS stepper = ts.get();
     TSConvergedReason reason;
-    PetscInt          steps = 0, rejected = 0, newton = 0, linear = 0;
-    PetscReal         time = 0., size = 0.;
+    PetscInt steps = 0, rejected = 0, newton = 0, linear = 0;
+    PetscReal time = 0., size = 0.;
     TSGetConvergedReason(stepper, &reason);
     TSGetStepNumber(stepper, &steps);
     TSGetStepRejections(stepper, &rejected);
@@ -454,12 +490,10 @@ namespace crawler
     TSGetKSPIterations(stepper, &linear);
     TSGetTime(stepper, &time);
     TSGetTimeStep(stepper, &size);
-    PetscInt snes_failures = 0;
-    TSGetSNESFailures(stepper, &snes_failures);
     result.time              = time;
     result.step_size         = size;
     result.steps             = static_cast<unsigned int>(steps);
-    result.rejected_steps    = static_cast<unsigned int>(rejected + snes_failures);
+    result.rejected_steps    = static_cast<unsigned int>(rejected);
     result.newton_iterations = static_cast<unsigned long>(newton);
     result.linear_iterations = static_cast<unsigned long>(linear);
     result.status            = "failed";
@@ -468,98 +502,104 @@ namespace crawler
     else if (code == 0 && stopped)
       result.status = "stopped";
     else if (code == 0 && reason == TS_CONVERGED_ITS)
-      {
-        result.status  = "stopped";
-        result.reason  = "step_limit";
-        result.message = "the maximum number of steps is reached";
-      }
+    {
+      result.status  = "stopped";
+      result.reason  = "step_limit";
+      result.message = "the maximum number of steps is reached";
+    }
     else
+    {
+      SNES snes = nullptr;
+      SNESConvergedReason newton_reason;
+      TSGetSNES(stepper, &snes);
+      SNESGetConvergedReason(snes, &newton_reason);
+      // Refused states on the way to this one count if they were close: the steps became small because of them.
+      result.domain_error = refused_at >= time - 1e-6 * parameters.end_time;
+      if (code != 0)
       {
-        SNES                snes = nullptr;
-        SNESConvergedReason newton_reason;
-        TSGetSNES(stepper, &snes);
-        SNESGetConvergedReason(snes, &newton_reason);
-        result.domain_error = refused;
-        if (code != 0)
-          {
-            const char *text = nullptr;
-            PetscErrorMessage(code, &text, nullptr);
-            result.reason  = "newton_diverged";
-            result.message = std::string("PETSc stopped with the error: ") + (text != nullptr ? text : "unknown");
-          }
-        else if (newton_reason == SNES_DIVERGED_FNORM_NAN)
-          {
-            result.reason  = "nonfinite";
-            result.message = "the residual is not a finite number";
-          }
-        else if (newton_reason == SNES_DIVERGED_LINEAR_SOLVE)
-          {
-            result.reason  = "linear_failed";
-            result.message = "the linear system of Newton's method is singular or could not be solved";
-          }
-        else if (size < 1e-13 * parameters.end_time)
-          {
-            result.reason  = "step_underflow";
-            result.message = "the step size fell below the resolution of the time";
-          }
-        else if (newton_reason < 0)
-          {
-            result.reason  = "newton_diverged";
-            result.message = std::string("Newton's method did not converge (") + SNESConvergedReasons[newton_reason] + ")";
-          }
-        else
-          {
-            result.reason  = "rejection_limit";
-            result.message = "a step was rejected too many times, its error stays above the tolerance";
-          }
+        const char *text = nullptr;
+        PetscErrorMessage(code, &text, nullptr);
+        result.reason  = "petsc_error";
+        result.message = std::string("PETSc stopped with the error: ") + (text != nullptr ? text : "unknown");
       }
+      else if (newton_reason == SNES_DIVERGED_FNORM_NAN)
+      {
+        result.reason  = "nonfinite";
+        result.message = "the residual is not a finite number";
+      }
+      else if (newton_reason == SNES_DIVERGED_LINEAR_SOLVE)
+      {
+        result.reason  = "linear_failed";
+        result.message = "the linear system of Newton's method is singular or could not be solved";
+      }
+      else if (underflow || size < 1e-13 * parameters.end_time)
+      {
+        result.reason  = "step_underflow";
+        result.message = "the step size fell below the resolution of the time";
+      }
+      else if (newton_reason < 0)
+      {
+        result.reason  = "newton_diverged";
+        result.message = std::string("Newton's method did not converge (") + SNESConvergedReasons[newton_reason] + ")";
+      }
+      else
+      {
+        result.reason  = "rejection_limit";
+        result.message = "a step was rejected too many times, its error stays above the tolerance";
+      }
+      result.message += fmt::format(", at t = {:.9g} with step size {:.3g}", time, size);
+    }
     return result;
   }
 
 
   TimeStepper::TimeStepper(MPI_Comm communicator, const std::size_t n_owned, const TimeParameters &parameters)
     : implementation_(std::make_unique<Implementation>(*this, communicator, n_owned, parameters))
-  {}
+  {
+  }
 
   TimeStepper::~TimeStepper() = default;
 
   TimeOutcome
-  TimeStepper::solve(std::vector<double>       &y,
+  TimeStepper::solve(std::vector<double> &y,
                      const std::vector<double> &frames,
-                     const double               tolerance,
-                     const double               initial_step)
+                     const double tolerance,
+                     const double initial_step)
   {
     Implementation &self = *implementation_;
-    TS              ts   = self.ts.get();
+    TS ts                = self.ts.get();
     self.frames          = frames;
     if (self.frames.empty() || self.frames.back() < self.parameters.end_time)
       self.frames.push_back(self.parameters.end_time);
     self.next_frame           = 0;
     self.stopped              = false;
     self.exception            = nullptr;
-    self.tolerance            = tolerance;
-    self.fixed_step           = self.parameters.step_control == "fixed" ? initial_step : 0.;
+    self.refused_at           = -1.;
+    self.underflow            = false;
+    self.tolerance            = self.user_tolerance.value_or(tolerance);
+    const double first_step   = self.user_step.value_or(initial_step);
+    self.fixed_step           = self.parameters.step_control == "fixed" ? first_step : 0.;
     self.last_correction      = 0.;
     self.convergence_constant = std::numeric_limits<double>::infinity();
     {
       const WriteAccess access(self.solution.get());
       std::copy(y.begin(), y.end(), access.span.begin());
     }
-    petsc(TSSetTolerances(ts, tolerance, nullptr, 0., nullptr));
+    petsc(TSSetTolerances(ts, self.tolerance, nullptr, self.relative_tolerance, nullptr));
     petsc(TSSetTime(ts, 0.));
     petsc(TSSetStepNumber(ts, 0));
     petsc(TSSetMaxTime(ts, self.parameters.end_time));
-    petsc(TSSetTimeStep(ts, initial_step));
+    petsc(TSSetTimeStep(ts, first_step));
     petsc(TSRestartStep(ts));
 
-    PetscErrorCode code  = 0;
-    bool           go_on = self.report(0., 0.);
+    PetscErrorCode code = 0;
+    bool go_on          = self.report(0., 0.);
     if (go_on)
-      {
-        petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
-        code = TSSolve(ts, self.solution.get());
-        petsc(PetscPopErrorHandler());
-      }
+    {
+      petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+      code = TSSolve(ts, self.solution.get());
+      petsc(PetscPopErrorHandler());
+    }
     else
       self.stopped = true;
     {

@@ -7,435 +7,332 @@ using namespace crawler::test;
 
 namespace
 {
-using Words = std::vector<std::string>;
+  using Words = std::vector<std::string>;
 
-/// A file or command line with a mistake, and what the program must say about it.
-struct BadInput
-{
-  std::string name;
-  std::string file; ///< content of bad.prm
-  Words message;    ///< must be in the one line on standard error
-  int exit_code   = 2;
-  Words arguments = {"run", "bad.prm", "--output", "results"};
-};
-
-void PrintTo(const BadInput &input, std::ostream *out)
-{
-  *out << input.name;
-}
-
-const std::string good = "set Accuracy = 1e-3\n";
-
-BadInput bad_arguments(const std::string &name,
-                       const Words &arguments,
-                       const Words &message,
-                       const int exit_code = 2)
-{
-  return {name, good, message, exit_code, arguments};
-}
-
-/// A bad formula of the active stress; the constants stand in line 5.
-BadInput bad_formula(const std::string &name,
-                     const std::string &formula,
-                     const std::string &constants,
-                     const Words &message)
-{
-  return {name,
-          "subsection Active stress\nset Generator = expression\nsubsection Expression\nset Active "
-          "stress = " +
-            formula + "\nset Constants = " + constants + "\nend\nend\n",
-          message};
-}
-
-BadInput bad_wave(const std::string &name, const std::string &lines, const Words &message)
-{
-  return {name, in_section("Active stress/Optimal wave", lines), message};
-}
-
-std::vector<BadInput> names()
-{
-  return {
-    {"UnknownSection",
-     "subsection Boddy\nend\n",
-     {"bad.prm, line 1", "\"Boddy\"", "nearest", "\"Body\""}},
-    {"UnknownInnerSection",
-     in_section("Active stress/Optimal wafe", ""),
-     {"bad.prm, line 2", "\"Active stress/Optimal wafe\"", "\"Active stress/Optimal wave\""}},
-    {"MisspeltEntry",
-     in_section("Body", "\nset Lenght = 1"),
-     {"bad.prm, line 3",
-      "unknown entry \"Lenght\"",
-      "in section \"Body\"",
-      "nearest name is \"Length\""}},
-    {"MisspeltEntryAtTop",
-     "set Accuracie = 1e-3\n",
-     {"bad.prm, line 1", "at the top level", "\"Accuracy\""}},
-    {"EntryInWrongSection",
-     in_section("Body", "set End time = 1"),
-     {"bad.prm, line 2", "\"End time\"", "\"Time/End time\""}},
-    {"EntryOutsideItsSection",
-     "set Length = 1\n",
-     {"bad.prm, line 1", "at the top level", "\"Body/Length\""}},
-    {"UnknownGenerator",
-     in_section("Active stress", "set Generator = optimal waves"),
-     {"bad.prm, line 2",
-      "\"optimal waves\"",
-      "\"none\"",
-      "\"expression\"",
-      "the nearest is \"optimal wave\""}},
-    {"UnknownModel",
-     "set Model = linaer\n",
-     {"bad.prm, line 1", "\"Model\" is \"linaer\"", "\"nonlinear\" is expected"}},
-    {"UnknownIntegrator",
-     in_section("Time", "set Integrator = bfd"),
-     {"bad.prm, line 2", "unknown integrator \"bfd\"", "the nearest is \"bdf\""}},
-    {"UnsoundRosw",
-     in_section("Time", "set Integrator = rosw"),
-     {"bad.prm, line 2", "\"rosw\" is refused", "constant mass matrix", "\"bdf\""}},
-    {"UnsoundIrk",
-     in_section("Time", "set Integrator = irk"),
-     {"line 2", "\"irk\" is refused", "order here is 0"}},
-    {"UnsoundGlle",
-     in_section("Time", "set Integrator = glle"),
-     {"line 2", "\"glle\" is refused", "control its error"}},
-    {"UnsoundArkimex2c",
-     in_section("Time", "set Integrator = arkimex 2c"),
-     {"line 2", "\"arkimex 2c\" is refused", "does not go to 0", "\"arkimex 4\""}},
-  };
-}
-
-std::vector<BadInput> values()
-{
-  const std::string positive = "a positive number is expected";
-  return {
-    {"NegativeLength",
-     in_section("Body", "set Length = -1"),
-     {"line 2", "\"Body/Length\" is \"-1\"", positive}},
-    {"ZeroModulus",
-     in_section("Body", "set Elastic modulus = 0"),
-     {"line 2", "Elastic modulus\" is \"0\"", positive}},
-    {"ZeroFriction",
-     in_section("Body", "set Friction coefficient = 0"),
-     {"line 2", "Friction coefficient", positive}},
-    {"ExponentOutOfRange",
-     in_section("Body", "set Anchoring exponent = 101"),
-     {"\"101\"", "a number from -100 to 100"}},
-    {"AccuracyTooSmall",
-     "set Accuracy = 0\n",
-     {"bad.prm, line 1", "\"Accuracy\" is \"0\"", "from 1e-12 to 0.1"}},
-    {"AccuracyTooLarge",
-     "\n\nset Accuracy = 0.2 # large\n",
-     {"bad.prm, line 3", "\"0.2\"", "from 1e-12 to 0.1"}},
-    {"NaN", in_section("Body", "set Length = nan"), {"line 2", "\"nan\"", positive}},
-    {"Infinity", in_section("Body", "set Length = inf"), {"line 2", "\"inf\"", positive}},
-    {"Overflow", in_section("Body", "set Length = 1e999"), {"line 2", "\"1e999\"", positive}},
-    {"TextForNumber",
-     in_section("Time", "set End time = soon"),
-     {"line 2", "\"Time/End time\" is \"soon\"", positive}},
-    {"UnitBehindNumber", in_section("Time", "set End time = 1 s"), {"line 2", "\"1 s\"", positive}},
-    {"Hexadecimal", in_section("Body", "set Length = 0x10"), {"line 2", "\"0x10\"", positive}},
-    {"EmptyValue",
-     in_section("Body", "set Length ="),
-     {"line 2", "\"Body/Length\" is \"\"", positive}},
-    {"DegreeTooHigh",
-     in_section("Discretization", "set Degree = 9"),
-     {"\"9\"", "from 1 to 8", "\"automatic\""}},
-    {"NoCells",
-     in_section("Discretization", "set Number of cells = 0"),
-     {"\"0\"", "whole number from 1"}},
-    {"NegativeCells",
-     in_section("Discretization", "set Number of cells = -4"),
-     {"\"-4\"", "whole number from 1"}},
-    {"HalfACell",
-     in_section("Discretization", "set Number of cells = 4.5"),
-     {"\"4.5\"", "whole number"}},
-    {"OrderTooHigh",
-     in_section("Time", "set Order = 6"),
-     {"\"Time/Order\" is \"6\"", "from 1 to 5"}},
-    {"ZeroTolerance",
-     in_section("Time", "set Tolerance = 0"),
-     {"\"0\"", "a positive number or the word \"automatic\""}},
-    {"NegativeSnapshots",
-     in_section("Output", "set Number of snapshots = -1"),
-     {"\"-1\"", "from 0 to 1000000"}},
-    {"HugeCount",
-     in_section("Output", "set Number of snapshots = 99999999999999999999"),
-     {"from 0 to 1000000"}},
-    {"FlagAsNumber",
-     in_section("Output", "set Ledger = 1"),
-     {"\"Output/Ledger\" is \"1\"", "\"true\" or \"false\""}},
-    {"StepControlMisspelt",
-     in_section("Time", "set Step control = adaptiv"),
-     {"\"adaptiv\"", "the nearest is \"adaptive\""}},
-    {"FixedWithoutStep",
-     in_section("Time", "set Step control = fixed"),
-     {"line 2", "fixed", "number is expected for Initial step"}},
-    {"StepBeyondEnd",
-     in_section("Time", "set End time = 1\nset Initial step = 2"),
-     {"line 3", "Initial step is 2", "at most the End time, 1"}},
-  };
-}
-
-std::vector<BadInput> formulas()
-{
-  return {
-    bad_formula("FormulaNotClosed",
-                "sin(2*pi*s",
-                "",
-                {"bad.prm, line 4", "\"sin(2*pi*s\"", "position 11", "parenthesis"}),
-    bad_formula(
-      "FormulaOperators", "sin(s) + * t", "", {"bad.prm, line 4", "position 10", "\"*\""}),
-    bad_formula("FormulaNotComplete", "2*+", "", {"bad.prm, line 4", "position 4", "not complete"}),
-    bad_formula("FormulaUnknownFunction",
-                "2*sine(s)",
-                "",
-                {"bad.prm, line 4", "position 3", "\"sine\"", "nearest name is \"sin\""}),
-    bad_formula(
-      "FormulaUnknownVariable", "A*s", "B = 1", {"bad.prm, line 4", "position 1", "\"A\""}),
-    bad_formula("FormulaArguments",
-                "sin(s, t)",
-                "",
-                {"bad.prm, line 4", "position", "Too many parameters", "\"sin\""}),
-    bad_formula(
-      "FormulaEmpty", "", "", {"bad.prm, line 4", "empty", "expression of s and t is expected"}),
-    bad_formula(
-      "FormulaAssigns", "s = 3", "", {"bad.prm, line 4", "position 3", "\"==\" is expected"}),
-    bad_formula(
-      "TwoFormulas", "s, t", "", {"bad.prm, line 4", "position 2", "one formula is expected"}),
-    bad_formula("FormulaInfinite",
-                "1/s",
-                "",
-                {"bad.prm, line 4", "\"1/s\"", "s = 0", "finite number is expected"}),
-    bad_formula("FormulaLogarithm",
-                "log(s)",
-                "",
-                {"bad.prm, line 4", "\"log(s)\"", "s = 0", "finite number is expected"}),
-    bad_formula("FormulaNotReal",
-                "sqrt(0.5-t)",
-                "",
-                {"bad.prm, line 4", "t = 0.5625", "finite number is expected"}),
-    bad_formula(
-      "ConstantsWithoutValue", "x*s", "x", {"bad.prm, line 5", "found \"x\"", "name=number"}),
-    bad_formula("ConstantsWithText",
-                "x*s",
-                "x = one",
-                {"bad.prm, line 5", "found \"x = one\"", "name=number"}),
-    bad_formula(
-      "ConstantsTrailingComma", "x*s", "x = 1,", {"bad.prm, line 5", "found \"\"", "name=number"}),
-    bad_formula(
-      "ConstantTwice", "x*s", "x = 1, x = 2", {"bad.prm, line 5", "\"x\" is already defined"}),
-    bad_formula("ConstantIsVariable", "s", "s = 1", {"bad.prm, line 5", "\"s\" is a variable"}),
-  };
-}
-
-std::vector<BadInput> waves()
-{
-  return {
-    bad_wave("CoefficientCounts",
-             "set Sine coefficients = 1, 2\nset Cosine coefficients = 1, 2, 3",
-             {"bad.prm, line 4", "2 sine and 3 cosine", "or a single 0"}),
-    bad_wave("AllCoefficientsZero",
-             "set Sine coefficients = 0, 0",
-             {"bad.prm, line 3", "are 0", "at least one that is not"}),
-    bad_wave("TrailingComma",
-             "set Sine coefficients = 1,",
-             {"bad.prm, line 3", "\"1,\"", "numbers separated by commas"}),
-    bad_wave("Semicolon",
-             "set Cosine coefficients = 1; 2",
-             {"bad.prm, line 3", "\"1; 2\"", "numbers separated by commas"}),
-    bad_wave("NoWaveOfThisEnergy",
-             "set Energy = 0.49",
-             {"bad.prm, line 3", "H = 0.49", "the smallest, 0.5,"}),
-    bad_wave("EnergyTooLarge",
-             "set Energy = 100",
-             {"bad.prm, line 3", "H = 100", "the smallest, 0.5, to below 10.3696"}),
-    bad_wave("RootIndexTooLarge",
-             "set Energy = 5\nset Root = index\nset Root index = 3",
-             {"bad.prm, line 5", "Root index is 3", "from 1 to 1 is expected"}),
-    bad_wave(
-      "RootIndexZero", "set Root index = 0", {"bad.prm, line 3", "\"0\"", "whole number from 1"}),
-    bad_wave("NoneAdmissible",
-             "set Perturbation parameter = 5\nset Energy = 5",
-             {"bad.prm, line 3",
-              "Perturbation parameter is 5",
-              "a smaller one",
-              "no wave of energy H = 5",
-              "admissible"}),
-    bad_wave("WaveStandsStill",
-             "set Choose wave by = wave speed\nset Wave speed = 0",
-             {"bad.prm, line 4", "wave speed is 0", "not 0 is expected"}),
-    bad_wave("PerturbationIsText",
-             "set Perturbation parameter = small",
-             {"bad.prm, line 3", "\"small\"", "a number is expected"}),
-  };
-}
-
-std::vector<BadInput> files()
-{
-  return {
-    {"EmptyFile", "", {"bad.prm: ", "sets nothing", "\"set Entry = value\" is expected"}},
-    {"OnlyComments", "# nothing\n\n  # at all\n", {"bad.prm: ", "sets nothing"}},
-    {"BinaryFile",
-     std::string("\x7f"
-                 "ELF\x01\x00\x02",
-                 7),
-     {"bad.prm: ", "binary file", "text file"}},
-    {"MissingEnd",
-     "# c\nsubsection Body\nset Length = 1\n",
-     {"bad.prm, line 2", "\"subsection Body\" has no \"end\""}},
-    {"ExtraEnd",
-     "subsection Body\nend\nend\n",
-     {"bad.prm, line 3", "\"end\" without a \"subsection\""}},
-    {"NeitherSetNorEnd",
-     good + "Length = 1\n",
-     {"bad.prm, line 2", "found \"Length = 1\"", "\"set\", \"subsection\", \"end\""}},
-    {"CapitalSet", "Set Accuracy = 1e-3\n", {"bad.prm, line 1", "found \"Set Accuracy", "\"set\""}},
-    {"SetWithoutEquals",
-     "set Accuracy 1e-3\n",
-     {"bad.prm, line 1", "\"set Accuracy 1e-3\"", "\"set Entry = value\""}},
-    {"SetWithoutName", "set = 1e-3\n", {"bad.prm, line 1", "\"set Entry = value\" is expected"}},
-    {"SectionWithoutName",
-     good + "subsection\nend\n",
-     {"bad.prm, line 2", "\"subsection\" without a name"}},
-    {"SetTwice",
-     good + "\n" + good,
-     {"bad.prm, line 3", "\"Accuracy\"", "second time", "first in bad.prm, line 1"}},
-    {"SetTwiceInReopenedSection",
-     in_section("Body", "set Length = 1") + in_section("Body", "set Length = 2"),
-     {"bad.prm, line 5", "\"Body/Length\"", "second time", "first in bad.prm, line 2"}},
-    {"LineAfterContinuation",
-     in_section("Active stress/Optimal wave", "set Sine coefficients = 1, \\\n 2\nset Root = none"),
-     {"bad.prm, line 5", "\"none\""}},
-    {"MissingInclude",
-     good + "include missing.prm\n",
-     {"bad.prm, line 2", "\"missing.prm\"", "no such file"},
-     6},
-    {"IncludeWithoutName", "include\n", {"bad.prm, line 1", "without the name of a file"}},
-    {"IncludeInCircle", "include circle.prm\n", {".prm, line 1", "include each other"}},
-    {"MistakeInInclude", "include wrong.prm\n", {"wrong.prm, line 2", "\"Body/Length\" is \"x\""}},
-    {"IncludeInSection",
-     in_section("Body", "include good.prm"),
-     {"bad.prm, line 2", "outside of all subsections"}},
-  };
-}
-
-std::vector<BadInput> command_lines()
-{
-  const auto set = [](const std::string &name, const std::string &assignment, const Words &message)
+  /// A file or command line with a mistake, and what the program must say about it.
+  struct BadInput
   {
-    return bad_arguments(
-      name, {"run", "good.prm", "--output", "results", "--set", assignment}, message);
+    std::string name;
+    std::string file; ///< content of bad.prm
+    Words message;    ///< must be in the one line on standard error
+    int exit_code   = 2;
+    Words arguments = {"run", "bad.prm", "--output", "results"};
   };
-  const auto petsc = [](const std::string &name, const Words &options, const Words &message)
+
+  void
+  PrintTo(const BadInput &input, std::ostream *out)
   {
-    Words arguments = {"run", "good.prm", "--output", "results", "--"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return bad_arguments(name, arguments, message);
+    *out << input.name;
+  }
+
+  const std::string good = "set Accuracy = 1e-3\n";
+
+  BadInput
+  bad_arguments(const std::string &name, const Words &arguments, const Words &message, const int exit_code = 2)
+  {
+    return {name, good, message, exit_code, arguments};
+  }
+
+  /// A bad formula of the active stress; the constants stand in line 5.
+  BadInput
+  bad_formula(const std::string &name, const std::string &formula, const std::string &constants, const Words &message)
+  {
+    return {name,
+            "subsection Active stress\nset Generator = expression\nsubsection Expression\nset Active "
+            "stress = " +
+              formula + "\nset Constants = " + constants + "\nend\nend\n",
+            message};
+  }
+
+  BadInput
+  bad_wave(const std::string &name, const std::string &lines, const Words &message)
+  {
+    return {name, in_section("Active stress/Optimal wave", lines), message};
+  }
+
+  std::vector<BadInput>
+  names()
+  {
+    return {
+      {"UnknownSection", "subsection Boddy\nend\n", {"bad.prm, line 1", "\"Boddy\"", "nearest", "\"Body\""}},
+      {"UnknownInnerSection",
+       in_section("Active stress/Optimal wafe", ""),
+       {"bad.prm, line 2", "\"Active stress/Optimal wafe\"", "\"Active stress/Optimal wave\""}},
+      {"MisspeltEntry",
+       in_section("Body", "\nset Lenght = 1"),
+       {"bad.prm, line 3", "unknown entry \"Lenght\"", "in section \"Body\"", "nearest name is \"Length\""}},
+      {"MisspeltEntryAtTop", "set Accuracie = 1e-3\n", {"bad.prm, line 1", "at the top level", "\"Accuracy\""}},
+      {"EntryInWrongSection",
+       in_section("Body", "set End time = 1"),
+       {"bad.prm, line 2", "\"End time\"", "\"Time/End time\""}},
+      {"EntryOutsideItsSection", "set Length = 1\n", {"bad.prm, line 1", "at the top level", "\"Body/Length\""}},
+      {"UnknownGenerator",
+       in_section("Active stress", "set Generator = optimal waves"),
+       {"bad.prm, line 2", "\"optimal waves\"", "\"none\"", "\"expression\"", "the nearest is \"optimal wave\""}},
+      {"UnknownModel",
+       "set Model = linaer\n",
+       {"bad.prm, line 1", "\"Model\" is \"linaer\"", "\"nonlinear\" is expected"}},
+      {"UnknownIntegrator",
+       in_section("Time", "set Integrator = bfd"),
+       {"bad.prm, line 2", "unknown integrator \"bfd\"", "the nearest is \"bdf\""}},
+      {"UnsoundRosw",
+       in_section("Time", "set Integrator = rosw"),
+       {"bad.prm, line 2", "\"rosw\" is refused", "constant mass matrix", "\"bdf\""}},
+      {"UnsoundIrk", in_section("Time", "set Integrator = irk"), {"line 2", "\"irk\" is refused", "order here is 0"}},
+      {"UnsoundGlle",
+       in_section("Time", "set Integrator = glle"),
+       {"line 2", "\"glle\" is refused", "control its error"}},
+      {"UnsoundArkimex2c",
+       in_section("Time", "set Integrator = arkimex 2c"),
+       {"line 2", "\"arkimex 2c\" is refused", "does not go to 0", "\"arkimex 4\""}},
+    };
+  }
+
+  std::vector<BadInput>
+  values()
+  {
+    const std::string positive = "a positive number is expected";
+    return {
+      {"NegativeLength", in_section("Body", "set Length = -1"), {"line 2", "\"Body/Length\" is \"-1\"", positive}},
+      {"ZeroModulus",
+       in_section("Body", "set Elastic modulus = 0"),
+       {"line 2", "Elastic modulus\" is \"0\"", positive}},
+      {"ZeroFriction",
+       in_section("Body", "set Friction coefficient = 0"),
+       {"line 2", "Friction coefficient", positive}},
+      {"ExponentOutOfRange",
+       in_section("Body", "set Anchoring exponent = 101"),
+       {"\"101\"", "a number from -100 to 100"}},
+      {"AccuracyTooSmall", "set Accuracy = 0\n", {"bad.prm, line 1", "\"Accuracy\" is \"0\"", "from 1e-12 to 0.1"}},
+      {"AccuracyTooLarge", "\n\nset Accuracy = 0.2 # large\n", {"bad.prm, line 3", "\"0.2\"", "from 1e-12 to 0.1"}},
+      {"NaN", in_section("Body", "set Length = nan"), {"line 2", "\"nan\"", positive}},
+      {"Infinity", in_section("Body", "set Length = inf"), {"line 2", "\"inf\"", positive}},
+      {"Overflow", in_section("Body", "set Length = 1e999"), {"line 2", "\"1e999\"", positive}},
+      {"TextForNumber",
+       in_section("Time", "set End time = soon"),
+       {"line 2", "\"Time/End time\" is \"soon\"", positive}},
+      {"UnitBehindNumber", in_section("Time", "set End time = 1 s"), {"line 2", "\"1 s\"", positive}},
+      {"Hexadecimal", in_section("Body", "set Length = 0x10"), {"line 2", "\"0x10\"", positive}},
+      {"EmptyValue", in_section("Body", "set Length ="), {"line 2", "\"Body/Length\" is \"\"", positive}},
+      {"DegreeTooHigh", in_section("Discretization", "set Degree = 9"), {"\"9\"", "from 1 to 8", "\"automatic\""}},
+      {"NoCells", in_section("Discretization", "set Number of cells = 0"), {"\"0\"", "whole number from 1"}},
+      {"NegativeCells", in_section("Discretization", "set Number of cells = -4"), {"\"-4\"", "whole number from 1"}},
+      {"HalfACell", in_section("Discretization", "set Number of cells = 4.5"), {"\"4.5\"", "whole number"}},
+      {"OrderTooHigh", in_section("Time", "set Order = 6"), {"\"Time/Order\" is \"6\"", "from 1 to 5"}},
+      {"ZeroTolerance",
+       in_section("Time", "set Tolerance = 0"),
+       {"\"0\"", "a positive number or the word \"automatic\""}},
+      {"NegativeSnapshots", in_section("Output", "set Number of snapshots = -1"), {"\"-1\"", "from 0 to 1000000"}},
+      {"HugeCount", in_section("Output", "set Number of snapshots = 99999999999999999999"), {"from 0 to 1000000"}},
+      {"FlagAsNumber", in_section("Output", "set Ledger = 1"), {"\"Output/Ledger\" is \"1\"", "\"true\" or \"false\""}},
+      {"StepControlMisspelt",
+       in_section("Time", "set Step control = adaptiv"),
+       {"\"adaptiv\"", "the nearest is \"adaptive\""}},
+      {"FixedWithoutStep",
+       in_section("Time", "set Step control = fixed"),
+       {"line 2", "fixed", "number is expected for Initial step"}},
+      {"StepBeyondEnd",
+       in_section("Time", "set End time = 1\nset Initial step = 2"),
+       {"line 3", "Initial step is 2", "at most the End time, 1"}},
+    };
+  }
+
+  std::vector<BadInput>
+  formulas()
+  {
+    return {
+      bad_formula(
+        "FormulaNotClosed", "sin(2*pi*s", "", {"bad.prm, line 4", "\"sin(2*pi*s\"", "position 11", "parenthesis"}),
+      bad_formula("FormulaOperators", "sin(s) + * t", "", {"bad.prm, line 4", "position 10", "\"*\""}),
+      bad_formula("FormulaNotComplete", "2*+", "", {"bad.prm, line 4", "position 4", "not complete"}),
+      bad_formula("FormulaUnknownFunction",
+                  "2*sine(s)",
+                  "",
+                  {"bad.prm, line 4", "position 3", "\"sine\"", "nearest name is \"sin\""}),
+      bad_formula("FormulaUnknownVariable", "A*s", "B = 1", {"bad.prm, line 4", "position 1", "\"A\""}),
+      bad_formula(
+        "FormulaArguments", "sin(s, t)", "", {"bad.prm, line 4", "position", "Too many parameters", "\"sin\""}),
+      bad_formula("FormulaEmpty", "", "", {"bad.prm, line 4", "empty", "expression of s and t is expected"}),
+      bad_formula("FormulaAssigns", "s = 3", "", {"bad.prm, line 4", "position 3", "\"==\" is expected"}),
+      bad_formula("TwoFormulas", "s, t", "", {"bad.prm, line 4", "position 2", "one formula is expected"}),
+      bad_formula("FormulaInfinite", "1/s", "", {"bad.prm, line 4", "\"1/s\"", "s = 0", "finite number is expected"}),
+      bad_formula(
+        "FormulaLogarithm", "log(s)", "", {"bad.prm, line 4", "\"log(s)\"", "s = 0", "finite number is expected"}),
+      bad_formula("FormulaNotReal", "sqrt(0.5-t)", "", {"bad.prm, line 4", "t = 0.5625", "finite number is expected"}),
+      bad_formula("ConstantsWithoutValue", "x*s", "x", {"bad.prm, line 5", "found \"x\"", "name=number"}),
+      bad_formula("ConstantsWithText", "x*s", "x = one", {"bad.prm, line 5", "found \"x = one\"", "name=number"}),
+      bad_formula("ConstantsTrailingComma", "x*s", "x = 1,", {"bad.prm, line 5", "found \"\"", "name=number"}),
+      bad_formula("ConstantTwice", "x*s", "x = 1, x = 2", {"bad.prm, line 5", "\"x\" is already defined"}),
+      bad_formula("ConstantIsVariable", "s", "s = 1", {"bad.prm, line 5", "\"s\" is a variable"}),
+    };
+  }
+
+  std::vector<BadInput>
+  waves()
+  {
+    return {
+      bad_wave("CoefficientCounts",
+               "set Sine coefficients = 1, 2\nset Cosine coefficients = 1, 2, 3",
+               {"bad.prm, line 4", "2 sine and 3 cosine", "or a single 0"}),
+      bad_wave("AllCoefficientsZero",
+               "set Sine coefficients = 0, 0",
+               {"bad.prm, line 3", "are 0", "at least one that is not"}),
+      bad_wave(
+        "TrailingComma", "set Sine coefficients = 1,", {"bad.prm, line 3", "\"1,\"", "numbers separated by commas"}),
+      bad_wave(
+        "Semicolon", "set Cosine coefficients = 1; 2", {"bad.prm, line 3", "\"1; 2\"", "numbers separated by commas"}),
+      bad_wave("NoWaveOfThisEnergy", "set Energy = 0.49", {"bad.prm, line 3", "H = 0.49", "the smallest, 0.5,"}),
+      bad_wave(
+        "EnergyTooLarge", "set Energy = 100", {"bad.prm, line 3", "H = 100", "the smallest, 0.5, to below 10.3696"}),
+      bad_wave("RootIndexTooLarge",
+               "set Energy = 5\nset Root = index\nset Root index = 3",
+               {"bad.prm, line 5", "Root index is 3", "from 1 to 1 is expected"}),
+      bad_wave("RootIndexZero", "set Root index = 0", {"bad.prm, line 3", "\"0\"", "whole number from 1"}),
+      bad_wave(
+        "NoneAdmissible",
+        "set Perturbation parameter = 5\nset Energy = 5",
+        {"bad.prm, line 3", "Perturbation parameter is 5", "a smaller one", "no wave of energy H = 5", "admissible"}),
+      bad_wave("WaveStandsStill",
+               "set Choose wave by = wave speed\nset Wave speed = 0",
+               {"bad.prm, line 4", "wave speed is 0", "not 0 is expected"}),
+      bad_wave("PerturbationIsText",
+               "set Perturbation parameter = small",
+               {"bad.prm, line 3", "\"small\"", "a number is expected"}),
+    };
+  }
+
+  std::vector<BadInput>
+  files()
+  {
+    return {
+      {"EmptyFile", "", {"bad.prm: ", "sets nothing", "\"set Entry = value\" is expected"}},
+      {"OnlyComments", "# nothing\n\n  # at all\n", {"bad.prm: ", "sets nothing"}},
+      {"BinaryFile",
+       std::string("\x7f"
+                   "ELF\x01\x00\x02",
+                   7),
+       {"bad.prm: ", "binary file", "text file"}},
+      {"MissingEnd",
+       "# c\nsubsection Body\nset Length = 1\n",
+       {"bad.prm, line 2", "\"subsection Body\" has no \"end\""}},
+      {"ExtraEnd", "subsection Body\nend\nend\n", {"bad.prm, line 3", "\"end\" without a \"subsection\""}},
+      {"NeitherSetNorEnd",
+       good + "Length = 1\n",
+       {"bad.prm, line 2", "found \"Length = 1\"", "\"set\", \"subsection\", \"end\""}},
+      {"CapitalSet", "Set Accuracy = 1e-3\n", {"bad.prm, line 1", "found \"Set Accuracy", "\"set\""}},
+      {"SetWithoutEquals",
+       "set Accuracy 1e-3\n",
+       {"bad.prm, line 1", "\"set Accuracy 1e-3\"", "\"set Entry = value\""}},
+      {"SetWithoutName", "set = 1e-3\n", {"bad.prm, line 1", "\"set Entry = value\" is expected"}},
+      {"SectionWithoutName", good + "subsection\nend\n", {"bad.prm, line 2", "\"subsection\" without a name"}},
+      {"SetTwice", good + "\n" + good, {"bad.prm, line 3", "\"Accuracy\"", "second time", "first in bad.prm, line 1"}},
+      {"SetTwiceInReopenedSection",
+       in_section("Body", "set Length = 1") + in_section("Body", "set Length = 2"),
+       {"bad.prm, line 5", "\"Body/Length\"", "second time", "first in bad.prm, line 2"}},
+      {"LineAfterContinuation",
+       in_section("Active stress/Optimal wave", "set Sine coefficients = 1, \\\n 2\nset Root = none"),
+       {"bad.prm, line 5", "\"none\""}},
+      {"MissingInclude", good + "include missing.prm\n", {"bad.prm, line 2", "\"missing.prm\"", "no such file"}, 6},
+      {"IncludeWithoutName", "include\n", {"bad.prm, line 1", "without the name of a file"}},
+      {"IncludeInCircle", "include circle.prm\n", {".prm, line 1", "include each other"}},
+      {"MistakeInInclude", "include wrong.prm\n", {"wrong.prm, line 2", "\"Body/Length\" is \"x\""}},
+      {"IncludeInSection", in_section("Body", "include good.prm"), {"bad.prm, line 2", "outside of all subsections"}},
+    };
+  }
+
+  std::vector<BadInput>
+  command_lines()
+  {
+    const auto set = [](const std::string &name, const std::string &assignment, const Words &message)
+    {
+      return bad_arguments(name, {"run", "good.prm", "--output", "results", "--set", assignment}, message);
+    };
+    const auto petsc = [](const std::string &name, const Words &options, const Words &message)
+    {
+      Words arguments = {"run", "good.prm", "--output", "results", "--"};
+      arguments.insert(arguments.end(), options.begin(), options.end());
+      return bad_arguments(name, arguments, message);
+    };
+    return {
+      bad_arguments("NoCommand", {}, {"command is missing", "\"run\", \"check\""}),
+      bad_arguments("UnknownCommand", {"chekc", "good.prm"}, {"unknown command \"chekc\"", "the nearest is \"check\""}),
+      bad_arguments("MissingFileName", {"run"}, {"FILE is required"}),
+      bad_arguments("TwoFiles", {"run", "good.prm", "more.prm"}, {"not expected: more.prm"}),
+      bad_arguments("UnknownOption",
+                    {"run", "good.prm", "--ouptut", "results"},
+                    {"unknown option \"--ouptut\"", "the nearest is \"--output\""}),
+      bad_arguments("OptionWithoutValue", {"run", "good.prm", "--output"}, {"--output", "required"}),
+      bad_arguments("UnknownFormat", {"parameters", "--format", "xml"}, {"xml", "prm,json,markdown"}),
+      bad_arguments(
+        "FileThatDoesNotExist", {"run", "missing.prm", "--output", "results"}, {"\"missing.prm\"", "no such file"}, 6),
+      bad_arguments(
+        "FileIsFolder", {"run", "full", "--output", "results"}, {"\"full\"", "is a folder", "file is expected"}, 6),
+      bad_arguments("CheckOfBadFile", {"check", "wrong.prm"}, {"wrong.prm, line 2", "\"x\"", "positive number"}),
+      bad_arguments("EmptyStandardInput", {"run", "-", "--output", "results"}, {"standard input: ", "sets nothing"}),
+      set("OverrideWithoutEquals", "Body/Length", {"--set \"Body/Length\"", "\"Section/Entry=value\" is expected"}),
+      set("OverrideUnknown", "Body/Lenght=1", {"--set \"Body/Lenght=1\"", "unknown entry \"Lenght\"", "\"Length\""}),
+      set(
+        "OverrideUnknownSection", "Bodi/Length=1", {"--set \"Bodi/Length=1\"", "unknown section \"Bodi\"", "\"Body\""}),
+      set("OverrideOfSection", "Body=1", {"--set \"Body=1\"", "\"Body\" is a section", "entry"}),
+      set(
+        "OverrideBadValue", "Body/Length=-1", {"--set \"Body/Length=-1\"", "\"-1\"", "a positive number is expected"}),
+      set("OverrideMakesBadScene",
+          "Active stress/Optimal wave/Energy=0.1",
+          {"--set \"Active", "H = 0.1", "the smallest, 0.5"}),
+      petsc("PetscTypeRosw", {"-ts_type", "rosw"}, {"\"rosw\"", "-ts_type", "is refused", "constant mass matrix"}),
+      petsc("PetscTypeArkimex2c", {"-ts_type", "arkimex", "-ts_arkimex_type", "2c"}, {"\"arkimex 2c\"", "is refused"}),
+      petsc("PetscTypeUnknown", {"-ts_type", "magic"}, {"PETSc refuses", "\"--\"", "magic"}),
+      petsc("PetscNumber", {"-ts_max_steps", "many"}, {"PETSc refuses", "\"--\"", "many"}),
+      petsc("PetscOptionsFile", {"-options_file", "missing.txt"}, {"PETSc refuses", "\"--\"", "missing.txt"}),
+      petsc("PetscStrayWord", {"ts_type", "bdf"}, {"behind \"--\"", "\"ts_type\"", "PETSc option is expected"}),
+      bad_arguments("OutputNotEmpty",
+                    {"run", "good.prm", "--output", "full"},
+                    {"\"full\" is not empty", "--output", "--overwrite"}),
+      bad_arguments(
+        "OutputIsFile", {"run", "good.prm", "--output", "occupied"}, {"\"occupied\"", "is not a folder"}, 6),
+      bad_arguments("OutputIsFileOverwrite",
+                    {"run", "good.prm", "--output", "occupied", "--overwrite"},
+                    {"\"occupied\"", "is not a folder"},
+                    6),
+      bad_arguments("SnapshotFolderIsFile",
+                    {"run", "good.prm", "--output", "odd", "--overwrite"},
+                    {"\"odd/solution\"", "is not a folder"},
+                    6),
+      bad_arguments("OutputUnderFile",
+                    {"run", "good.prm", "--output", "occupied/results"},
+                    {"\"occupied/results\"", "is not a folder"},
+                    6),
+    };
+  }
+
+  /// A folder with everything that the cases speak of.
+  void
+  fill(const std::filesystem::path &folder, const std::string &file)
+  {
+    write_text(folder / "bad.prm", file);
+    write_text(folder / "good.prm", good);
+    write_text(folder / "wrong.prm", "subsection Body\n  set Length = x\nend\n");
+    write_text(folder / "circle.prm", "include bad.prm\n");
+    write_text(folder / "occupied", "a file\n");
+    std::filesystem::create_directory(folder / "full");
+    write_text(folder / "full" / "summary.json", "older results\n");
+    std::filesystem::create_directory(folder / "odd");
+    write_text(folder / "odd" / "solution", "not a folder\n");
+  }
+
+  void
+  expect_one_sentence(const std::string &text)
+  {
+    EXPECT_TRUE(text.starts_with("crawler: ")) << text;
+    EXPECT_EQ(lines_of(text).size(), 1u) << text;
+    EXPECT_TRUE(text.ends_with('\n')) << text;
+    for (const char *dump : {"Error Message", "deal.II", "PETSC ERROR", "terminate called", "MPI_ABORT", "exception"})
+      EXPECT_EQ(text.find(dump), std::string::npos) << text;
+  }
+
+  class BadInputTest : public testing::TestWithParam<BadInput>
+  {
   };
-  return {
-    bad_arguments("NoCommand", {}, {"command is missing", "\"run\", \"check\""}),
-    bad_arguments("UnknownCommand",
-                  {"chekc", "good.prm"},
-                  {"unknown command \"chekc\"", "the nearest is \"check\""}),
-    bad_arguments("MissingFileName", {"run"}, {"FILE is required"}),
-    bad_arguments("TwoFiles", {"run", "good.prm", "more.prm"}, {"not expected: more.prm"}),
-    bad_arguments("UnknownOption",
-                  {"run", "good.prm", "--ouptut", "results"},
-                  {"unknown option \"--ouptut\"", "the nearest is \"--output\""}),
-    bad_arguments("OptionWithoutValue", {"run", "good.prm", "--output"}, {"--output", "required"}),
-    bad_arguments("UnknownFormat", {"parameters", "--format", "xml"}, {"xml", "prm,json,markdown"}),
-    bad_arguments("FileThatDoesNotExist",
-                  {"run", "missing.prm", "--output", "results"},
-                  {"\"missing.prm\"", "no such file"},
-                  6),
-    bad_arguments("FileIsFolder",
-                  {"run", "full", "--output", "results"},
-                  {"\"full\"", "is a folder", "file is expected"},
-                  6),
-    bad_arguments(
-      "CheckOfBadFile", {"check", "wrong.prm"}, {"wrong.prm, line 2", "\"x\"", "positive number"}),
-    bad_arguments("EmptyStandardInput",
-                  {"run", "-", "--output", "results"},
-                  {"standard input: ", "sets nothing"}),
-    set("OverrideWithoutEquals",
-        "Body/Length",
-        {"--set \"Body/Length\"", "\"Section/Entry=value\" is expected"}),
-    set("OverrideUnknown",
-        "Body/Lenght=1",
-        {"--set \"Body/Lenght=1\"", "unknown entry \"Lenght\"", "\"Length\""}),
-    set("OverrideUnknownSection",
-        "Bodi/Length=1",
-        {"--set \"Bodi/Length=1\"", "unknown section \"Bodi\"", "\"Body\""}),
-    set("OverrideOfSection", "Body=1", {"--set \"Body=1\"", "\"Body\" is a section", "entry"}),
-    set("OverrideBadValue",
-        "Body/Length=-1",
-        {"--set \"Body/Length=-1\"", "\"-1\"", "a positive number is expected"}),
-    set("OverrideMakesBadScene",
-        "Active stress/Optimal wave/Energy=0.1",
-        {"--set \"Active", "H = 0.1", "the smallest, 0.5"}),
-    petsc("PetscTypeRosw",
-          {"-ts_type", "rosw"},
-          {"\"rosw\"", "-ts_type", "is refused", "constant mass matrix"}),
-    petsc("PetscTypeArkimex2c",
-          {"-ts_type", "arkimex", "-ts_arkimex_type", "2c"},
-          {"\"arkimex 2c\"", "is refused"}),
-    petsc("PetscTypeUnknown", {"-ts_type", "magic"}, {"PETSc refuses", "\"--\"", "magic"}),
-    petsc("PetscNumber", {"-ts_max_steps", "many"}, {"PETSc refuses", "\"--\"", "many"}),
-    petsc("PetscOptionsFile",
-          {"-options_file", "missing.txt"},
-          {"PETSc refuses", "\"--\"", "missing.txt"}),
-    petsc("PetscStrayWord",
-          {"ts_type", "bdf"},
-          {"behind \"--\"", "\"ts_type\"", "PETSc option is expected"}),
-    bad_arguments("OutputNotEmpty",
-                  {"run", "good.prm", "--output", "full"},
-                  {"\"full\" is not empty", "--output", "--overwrite"}),
-    bad_arguments("OutputIsFile",
-                  {"run", "good.prm", "--output", "occupied"},
-                  {"\"occupied\"", "is not a folder"},
-                  6),
-    bad_arguments("OutputIsFileOverwrite",
-                  {"run", "good.prm", "--output", "occupied", "--overwrite"},
-                  {"\"occupied\"", "is not a folder"},
-                  6),
-    bad_arguments("SnapshotFolderIsFile",
-                  {"run", "good.prm", "--output", "odd", "--overwrite"},
-                  {"\"odd/solution\"", "is not a folder"},
-                  6),
-    bad_arguments("OutputUnderFile",
-                  {"run", "good.prm", "--output", "occupied/results"},
-                  {"\"occupied/results\"", "is not a folder"},
-                  6),
-  };
-}
-
-/// A folder with everything that the cases speak of.
-void fill(const std::filesystem::path &folder, const std::string &file)
-{
-  write_text(folder / "bad.prm", file);
-  write_text(folder / "good.prm", good);
-  write_text(folder / "wrong.prm", "subsection Body\n  set Length = x\nend\n");
-  write_text(folder / "circle.prm", "include bad.prm\n");
-  write_text(folder / "occupied", "a file\n");
-  std::filesystem::create_directory(folder / "full");
-  write_text(folder / "full" / "summary.json", "older results\n");
-  std::filesystem::create_directory(folder / "odd");
-  write_text(folder / "odd" / "solution", "not a folder\n");
-}
-
-void expect_one_sentence(const std::string &text)
-{
-  EXPECT_TRUE(text.starts_with("crawler: ")) << text;
-  EXPECT_EQ(lines_of(text).size(), 1u) << text;
-  EXPECT_TRUE(text.ends_with('\n')) << text;
-  for (const char *dump :
-       {"Error Message", "deal.II", "PETSC ERROR", "terminate called", "MPI_ABORT", "exception"})
-    EXPECT_EQ(text.find(dump), std::string::npos) << text;
-}
-
-class BadInputTest : public testing::TestWithParam<BadInput>
-{
-};
 } // namespace
 
 TEST_P(BadInputTest, IsRefusedInOneSentence)
@@ -451,8 +348,7 @@ TEST_P(BadInputTest, IsRefusedInOneSentence)
   expect_one_sentence(result.err);
   EXPECT_EQ(result.out, "");
   for (const std::string &part : input.message)
-    EXPECT_NE(result.err.find(part), std::string::npos)
-      << "not found: " << part << "\nin: " << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << "not found: " << part << "\nin: " << result.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path / "results"));
   EXPECT_EQ(folder.content(), before);
 }

@@ -22,21 +22,22 @@ namespace
       : discretization_(discretization)
       , sampler_(scene, discretization, points(discretization))
       , error_(error)
-    {}
+    {
+    }
 
     void
     observe(const Snapshot &snapshot) override
     {
       const Fields &fields = sampler_.sample(snapshot.step.time, snapshot.u, snapshot.v);
-      double        sum    = 0.;
-      const auto   &exact  = test::ExactSolution();
+      double sum           = 0.;
+      const auto &exact    = test::ExactSolution();
       for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
         for (unsigned int p = 0; p < fine_.n; ++p)
-          {
-            const std::size_t i     = static_cast<std::size_t>(c) * fine_.n + p;
-            const double      error = fields.displacement[i] - exact.u(sampler_.coordinates()[i], snapshot.step.time);
-            sum += discretization_.cell_size()[c] * fine_.weights[p] * error * error;
-          }
+        {
+          const std::size_t i = static_cast<std::size_t>(c) * fine_.n + p;
+          const double error  = fields.displacement[i] - exact.u(sampler_.coordinates()[i], snapshot.step.time);
+          sum += discretization_.cell_size()[c] * fine_.weights[p] * error * error;
+        }
       error_ = std::sqrt(sum);
     }
 
@@ -52,45 +53,54 @@ namespace
     }
 
     const ReferenceElement fine_{8};
-    const Discretization  &discretization_;
-    FieldSampler           sampler_;
-    double                &error_;
+    const Discretization &discretization_;
+    FieldSampler sampler_;
+    double &error_;
   };
 
   class Space : public ::testing::TestWithParam<unsigned int>
-  {};
+  {
+  };
 } // namespace
 
 TEST_P(Space, OrderOnAnExactSolution)
 {
   const unsigned int q = GetParam();
   // Meshes in the asymptotic range and errors above those of time and rounding.
-  const std::vector<std::vector<unsigned int>> meshes = {{}, {32, 64, 128}, {8, 16, 32}, {6, 10, 16}, {4, 6, 8}, {3, 4, 5, 6}};
+  const std::vector<std::vector<unsigned int>> meshes = {
+    {}, {32, 64, 128}, {8, 16, 32}, {6, 10, 16}, {4, 6, 8}, {3, 4, 5, 6}};
   const test::ExactSolution exact;
-  std::vector<double>       cells, displacement_errors, l2_errors;
+  std::vector<double> cells, displacement_errors, l2_errors;
   for (const unsigned int n : meshes[q])
-    {
-      auto settings = exact.settings(end_time);
-      settings.insert(settings.end(),
-                      {{"Discretization/Degree", std::to_string(q)},
-                       {"Discretization/Number of cells", std::to_string(n)},
-                       {"Time/Tolerance", "1e-13"},
-                       {"Time/Initial step", "1e-6"}});
-      const Parameters parameters = test::parameters_with(settings);
-      const Scene      scene      = parameters.create_scene();
-      Simulation       simulation(MPI_COMM_WORLD, scene, parameters.time, {q, n, 1e-13, 1e-6});
-      double           l2 = 0.;
-      std::vector<std::unique_ptr<Observer>> observers;
-      observers.push_back(std::make_unique<L2Error>(scene, simulation.discretization(), l2));
-      const SimulationResult result = simulation.run({}, {}, observers);
-      ASSERT_EQ(result.time.status, "finished");
-      cells.push_back(n);
-      displacement_errors.push_back(std::abs(result.displacement - exact.displacement(end_time)));
-      l2_errors.push_back(l2);
-      fmt::print("degree {}, {:3} cells: displacement error {:.3e}, L2 error {:.3e}\n", q, n, displacement_errors.back(), l2);
-    }
-  const double in_displacement = test::observed_order(cells, displacement_errors), in_l2 = test::observed_order(cells, l2_errors);
-  fmt::print("degree {}: observed order {:.2f} in the displacement (2q = {}), {:.2f} in L2 (q+1 = {})\n", q, in_displacement, 2 * q, in_l2, q + 1);
+  {
+    auto settings = exact.settings(end_time);
+    settings.insert(settings.end(),
+                    {{"Discretization/Degree", std::to_string(q)},
+                     {"Discretization/Number of cells", std::to_string(n)},
+                     {"Time/Tolerance", "1e-13"},
+                     {"Time/Initial step", "1e-6"}});
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, {q, n, 1e-13, 1e-6});
+    double l2 = 0.;
+    std::vector<std::unique_ptr<Observer>> observers;
+    observers.push_back(std::make_unique<L2Error>(scene, simulation.discretization(), l2));
+    const SimulationResult result = simulation.run({}, {}, observers);
+    ASSERT_EQ(result.time.status, "finished");
+    cells.push_back(n);
+    displacement_errors.push_back(std::abs(result.displacement - exact.displacement(end_time)));
+    l2_errors.push_back(l2);
+    fmt::print(
+      "degree {}, {:3} cells: displacement error {:.3e}, L2 error {:.3e}\n", q, n, displacement_errors.back(), l2);
+  }
+  const double in_displacement = test::observed_order(cells, displacement_errors),
+               in_l2           = test::observed_order(cells, l2_errors);
+  fmt::print("degree {}: observed order {:.2f} in the displacement (2q = {}), {:.2f} in L2 (q+1 = {})\n",
+             q,
+             in_displacement,
+             2 * q,
+             in_l2,
+             q + 1);
   EXPECT_GE(in_displacement, 2. * q - 0.3);
   EXPECT_GE(in_l2, q + 1. - 0.2);
 }

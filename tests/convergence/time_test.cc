@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Required orders in time of every integrator that is offered, on the crawler itself: the displacement of the Fig. S1 case
-// (chi = 0.3), against the same mesh with a far smaller tolerance.
+// Required orders in time of every integrator that is offered, on the crawler itself: the displacement of the Fig. S1
+// case (chi = 0.3), against the same mesh with a far smaller tolerance.
 #include "../support/observed_order.h"
 #include "../support/run_text.h"
 
@@ -18,13 +18,13 @@ namespace
   SimulationResult
   run(const std::string &name, const unsigned int order, const bool fixed, const double tolerance, const double step)
   {
-    auto       parameters            = test::parameters_with(test::wave(-1., 0.3));
-    parameters.time.integrator       = name;
-    parameters.time.order            = order;
-    parameters.time.step_control     = fixed ? "fixed" : "adaptive";
-    parameters.time.initial_step     = step;
-    const Scene scene                = parameters.create_scene();
-    Simulation  simulation(MPI_COMM_WORLD, scene, parameters.time, {mesh.degree, mesh.n_cells, tolerance, step});
+    auto parameters              = test::parameters_with(test::wave(-1., 0.3));
+    parameters.time.integrator   = name;
+    parameters.time.order        = order;
+    parameters.time.step_control = fixed ? "fixed" : "adaptive";
+    parameters.time.initial_step = step;
+    const Scene scene            = parameters.create_scene();
+    Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, {mesh.degree, mesh.n_cells, tolerance, step});
     return simulation.run({}, {});
   }
 
@@ -40,80 +40,108 @@ namespace
 TEST(Time, OneStepMethodsReachTheirOrder)
 {
   for (const Integrator &method : integrators())
+  {
+    if (method.name == "bdf" || (method.order >= 3 && method.adaptive))
+      continue;
+    std::vector<double> steps, errors;
+    for (const unsigned int n :
+         method.order == 1 ? std::vector<unsigned int>{200, 400, 800} : std::vector<unsigned int>{40, 80, 160})
     {
-      if (method.name == "bdf" || (method.order >= 3 && method.adaptive))
-        continue;
-      std::vector<double> steps, errors;
-      for (const unsigned int n : method.order == 1 ? std::vector<unsigned int>{200, 400, 800} :
-                                  std::vector<unsigned int>{40, 80, 160})
-        {
-          const auto result = run(method.name, 1, true, 1e-12, 1. / n);
-          ASSERT_EQ(result.time.status, "finished") << method.name;
-          EXPECT_EQ(result.time.steps, n) << method.name;
-          steps.push_back(n);
-          errors.push_back(std::abs(result.displacement - reference()));
-        }
-      const double order = test::observed_order(steps, errors);
-      fmt::print("{:16} errors {:.2e} {:.2e} {:.2e}: observed order {:.2f}, nominal {}\n", method.name, errors[0], errors[1], errors[2], order, method.order);
-      EXPECT_GE(order, method.order - 0.25) << method.name;
+      const auto result = run(method.name, 1, true, 1e-12, 1. / n);
+      ASSERT_EQ(result.time.status, "finished") << method.name;
+      EXPECT_EQ(result.time.steps, n) << method.name;
+      steps.push_back(n);
+      errors.push_back(std::abs(result.displacement - reference()));
     }
+    const double order = test::observed_order(steps, errors);
+    fmt::print("{:16} errors {:.2e} {:.2e} {:.2e}: observed order {:.2f}, nominal {}\n",
+               method.name,
+               errors[0],
+               errors[1],
+               errors[2],
+               order,
+               method.order);
+    EXPECT_GE(order, method.order - 0.25) << method.name;
+  }
 }
 
-/// PETSc's arkimex starts with a step of second order when the mass depends on the state, so the order of the others shows
-/// with adaptive steps that start small.
+/// PETSc's arkimex starts with a step of second order when the mass depends on the state, so the order of the others
+/// shows with adaptive steps that start small.
 TEST(Time, ArkimexReachesItsOrder)
 {
   for (const Integrator &method : integrators())
+  {
+    if (method.order < 3 || !method.adaptive)
+      continue;
+    std::vector<double> steps, errors;
+    for (const double tolerance : {1e-6, 1e-7, 1e-8, 1e-9})
     {
-      if (method.order < 3 || !method.adaptive)
-        continue;
-      std::vector<double> steps, errors;
-      for (const double tolerance : {1e-6, 1e-7, 1e-8, 1e-9})
-        {
-          const auto result = run(method.name, 1, false, tolerance, 1e-4);
-          ASSERT_EQ(result.time.status, "finished");
-          steps.push_back(result.time.steps);
-          errors.push_back(std::abs(result.displacement - reference()));
-        }
-      const double observed = test::observed_order(steps, errors);
-      fmt::print("{}: errors {:.2e} ... {:.2e} with {} ... {} steps: observed order {:.2f}\n", method.name, errors.front(), errors.back(), steps.front(), steps.back(), observed);
-      EXPECT_GE(observed, method.order - 0.3) << method.name;
+      const auto result = run(method.name, 1, false, tolerance, 1e-4);
+      ASSERT_EQ(result.time.status, "finished");
+      steps.push_back(result.time.steps);
+      errors.push_back(std::abs(result.displacement - reference()));
     }
+    const double observed = test::observed_order(steps, errors);
+    fmt::print("{}: errors {:.2e} ... {:.2e} with {} ... {} steps: observed order {:.2f}\n",
+               method.name,
+               errors.front(),
+               errors.back(),
+               steps.front(),
+               steps.back(),
+               observed);
+    EXPECT_GE(observed, method.order - 0.3) << method.name;
+  }
 }
 
 /// bdf starts with small steps of low order, so its order is that of error over steps as the tolerance decreases.
 TEST(Time, BdfReachesItsOrder)
 {
   for (unsigned int order = 1; order <= 5; ++order)
+  {
+    std::vector<double> steps, errors;
+    for (const double tolerance :
+         order == 1 ? std::vector<double>{1e-6, 1e-7, 1e-8} : std::vector<double>{1e-7, 1e-8, 1e-9, 1e-10})
     {
-      std::vector<double> steps, errors;
-      for (const double tolerance : order == 1 ? std::vector<double>{1e-6, 1e-7, 1e-8} : std::vector<double>{1e-7, 1e-8, 1e-9, 1e-10})
-        {
-          const auto result = run("bdf", order, false, tolerance, 1e-6);
-          ASSERT_EQ(result.time.status, "finished");
-          steps.push_back(result.time.steps);
-          errors.push_back(std::abs(result.displacement - reference()));
-        }
-      const double observed = test::observed_order(steps, errors);
-      fmt::print("bdf of order {}: errors {:.2e} ... {:.2e} with {} ... {} steps: observed order {:.2f}\n", order, errors.front(), errors.back(), steps.front(), steps.back(), observed);
-      EXPECT_GE(observed, order - 0.3) << order;
+      const auto result = run("bdf", order, false, tolerance, 1e-6);
+      ASSERT_EQ(result.time.status, "finished");
+      steps.push_back(result.time.steps);
+      errors.push_back(std::abs(result.displacement - reference()));
     }
+    const double observed = test::observed_order(steps, errors);
+    fmt::print("bdf of order {}: errors {:.2e} ... {:.2e} with {} ... {} steps: observed order {:.2f}\n",
+               order,
+               errors.front(),
+               errors.back(),
+               steps.front(),
+               steps.back(),
+               observed);
+    EXPECT_GE(observed, order - 0.3) << order;
+  }
 }
 
 /// The error estimate of every adaptive method does its work: a smaller tolerance gives a smaller error.
 TEST(Time, AdaptiveMethodsFollowTheTolerance)
 {
   for (const Integrator &method : integrators())
-    {
-      if (!method.adaptive)
-        continue;
-      const double tolerance = method.order == 1 ? 1e-6 : 1e-7;
-      const auto   loose = run(method.name, 5, false, 100. * tolerance, 1e-5), tight = run(method.name, 5, false, tolerance, 1e-5);
-      const double e_loose = std::abs(loose.displacement - reference()), e_tight = std::abs(tight.displacement - reference());
-      fmt::print("{:16} tolerance {:.0e}: {:5} steps, error {:.2e}; tolerance {:.0e}: {:5} steps, error {:.2e}\n", method.name, 100. * tolerance, loose.time.steps, e_loose, tolerance, tight.time.steps, e_tight);
-      ASSERT_EQ(tight.time.status, "finished") << method.name;
-      EXPECT_GT(tight.time.steps, loose.time.steps) << method.name;
-      EXPECT_LT(e_tight, 0.5 * e_loose) << method.name;
-      EXPECT_LT(e_tight, 1000. * tolerance) << method.name;
-    }
+  {
+    if (!method.adaptive)
+      continue;
+    const double tolerance = method.order == 1 ? 1e-6 : 1e-7;
+    const auto loose       = run(method.name, 5, false, 100. * tolerance, 1e-5),
+               tight       = run(method.name, 5, false, tolerance, 1e-5);
+    const double e_loose   = std::abs(loose.displacement - reference()),
+                 e_tight   = std::abs(tight.displacement - reference());
+    fmt::print("{:16} tolerance {:.0e}: {:5} steps, error {:.2e}; tolerance {:.0e}: {:5} steps, error {:.2e}\n",
+               method.name,
+               100. * tolerance,
+               loose.time.steps,
+               e_loose,
+               tolerance,
+               tight.time.steps,
+               e_tight);
+    ASSERT_EQ(tight.time.status, "finished") << method.name;
+    EXPECT_GT(tight.time.steps, loose.time.steps) << method.name;
+    EXPECT_LT(e_tight, 0.5 * e_loose) << method.name;
+    EXPECT_LT(e_tight, 1000. * tolerance) << method.name;
+  }
 }

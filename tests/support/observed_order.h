@@ -10,16 +10,16 @@ namespace crawler::test
   inline double
   observed_order(const std::vector<double> &n, const std::vector<double> &error)
   {
-    double     sx = 0., sy = 0., sxx = 0., sxy = 0.;
+    double sx = 0., sy = 0., sxx = 0., sxy = 0.;
     const auto count = static_cast<double>(n.size());
     for (std::size_t i = 0; i < n.size(); ++i)
-      {
-        const double x = std::log(n[i]), y = std::log(error[i]);
-        sx += x;
-        sy += y;
-        sxx += x * x;
-        sxy += x * y;
-      }
+    {
+      const double x = std::log(n[i]), y = std::log(error[i]);
+      sx += x;
+      sy += y;
+      sxx += x * x;
+      sxy += x * y;
+    }
     return -(count * sxy - sx * sy) / (count * sxx - sx * sx);
   }
 } // namespace crawler::test

@@ -21,197 +21,203 @@
 
 namespace crawler::test
 {
-inline std::string read_text(const std::filesystem::path &path)
-{
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream content;
-  content << in.rdbuf();
-  return content.str();
-}
-
-inline void write_text(const std::filesystem::path &path, const std::string &content)
-{
-  std::ofstream(path, std::ios::binary) << content;
-}
-
-inline std::vector<std::string> lines_of(const std::string &text)
-{
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);)
-    lines.push_back(line);
-  return lines;
-}
-
-/// An empty folder that goes away with this object.
-class TemporaryFolder
-{
-public:
-  TemporaryFolder()
+  inline std::string
+  read_text(const std::filesystem::path &path)
   {
-    std::string name = (std::filesystem::temp_directory_path() / "crawler_test_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw std::runtime_error("cannot make a temporary folder");
-    path = name;
-  }
-  TemporaryFolder(const TemporaryFolder &) = delete;
-  ~TemporaryFolder()
-  {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
+    std::ifstream in(path, std::ios::binary);
+    std::ostringstream content;
+    content << in.rdbuf();
+    return content.str();
   }
 
-  /// Every file by its name with its content, every folder with the content "folder".
-  std::map<std::string, std::string> content() const
+  inline void
+  write_text(const std::filesystem::path &path, const std::string &content)
   {
-    std::map<std::string, std::string> result;
-    for (const auto &entry : std::filesystem::recursive_directory_iterator(path))
-      result[entry.path().lexically_relative(path).string()] =
-        entry.is_directory() ? "folder" : read_text(entry.path());
-    return result;
+    std::ofstream(path, std::ios::binary) << content;
   }
 
-  std::filesystem::path path;
-};
-
-/**
- * The real program, started in a folder. It gets an environment of its own: MPI_Init of the test
- * leaves variables behind that would make the child believe it belongs to the same job.
- */
-class Program
-{
-public:
-  Program(const std::filesystem::path &folder,
-          const std::vector<std::string> &arguments,
-          const std::string &input = "")
+  inline std::vector<std::string>
+  lines_of(const std::string &text)
   {
-    write_text(streams_.path / "in", input);
-    std::vector<std::string> words = {CRAWLER_PROGRAM};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<std::string> environment = {"OMPI_ALLOW_RUN_AS_ROOT=1",
-                                            "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
-                                            "OMP_NUM_THREADS=1",
-                                            "OPENBLAS_NUM_THREADS=1"};
-    for (const char *name : {"PATH", "HOME", "TMPDIR", "LD_LIBRARY_PATH"})
-      if (const char *value = std::getenv(name); value != nullptr)
-        environment.push_back(std::string(name) + "=" + value);
+    std::vector<std::string> lines;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);)
+      lines.push_back(line);
+    return lines;
+  }
 
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-    const auto redirect = [&](const int descriptor, const char *name, const int flags)
+  /// An empty folder that goes away with this object.
+  class TemporaryFolder
+  {
+  public:
+    TemporaryFolder()
     {
-      posix_spawn_file_actions_addopen(
-        &actions, descriptor, (streams_.path / name).c_str(), flags, 0600);
-    };
-    redirect(STDIN_FILENO, "in", O_RDONLY);
-    redirect(STDOUT_FILENO, "out", O_WRONLY | O_CREAT);
-    redirect(STDERR_FILENO, "err", O_WRONLY | O_CREAT);
-    const int failed = posix_spawn(&id_,
-                                   CRAWLER_PROGRAM,
-                                   &actions,
-                                   nullptr,
-                                   pointers(words).data(),
-                                   pointers(environment).data());
-    posix_spawn_file_actions_destroy(&actions);
-    if (failed != 0)
-      throw std::runtime_error("cannot start " + words[0]);
-  }
-  Program(const Program &) = delete;
-  ~Program()
-  {
-    if (running())
-    {
-      kill(id_, SIGKILL);
-      waitpid(id_, nullptr, 0);
+      std::string name = (std::filesystem::temp_directory_path() / "crawler_test_XXXXXX").string();
+      if (mkdtemp(name.data()) == nullptr)
+        throw std::runtime_error("cannot make a temporary folder");
+      path = name;
     }
-  }
-
-  bool running()
-  {
-    if (!ended_)
-      ended_ = waitpid(id_, &status_, WNOHANG) == id_;
-    return !ended_;
-  }
-
-  void signal(const int number) const
-  {
-    kill(id_, number);
-  }
-
-  /// Waits until @p condition holds; false if it does not within @p seconds.
-  template <typename Condition>
-  static bool wait_until(const Condition &condition, const double seconds = 60)
-  {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-    while (!condition())
+    TemporaryFolder(const TemporaryFolder &) = delete;
+    ~TemporaryFolder()
     {
-      if (std::chrono::steady_clock::now() > end)
-        return false;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
     }
-    return true;
-  }
 
-  /// Waits for the end: the exit code, or minus the number of the signal that ended the program.
-  int exit_code()
+    /// Every file by its name with its content, every folder with the content "folder".
+    std::map<std::string, std::string>
+    content() const
+    {
+      std::map<std::string, std::string> result;
+      for (const auto &entry : std::filesystem::recursive_directory_iterator(path))
+        result[entry.path().lexically_relative(path).string()] =
+          entry.is_directory() ? "folder" : read_text(entry.path());
+      return result;
+    }
+
+    std::filesystem::path path;
+  };
+
+  /**
+   * The real program, started in a folder. It gets an environment of its own: MPI_Init of the test
+   * leaves variables behind that would make the child believe it belongs to the same job.
+   */
+  class Program
   {
-    if (!wait_until(
-          [this]()
-          {
-            return !running();
-          }))
-      throw std::runtime_error("the program does not come to an end");
-    return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
-  }
+  public:
+    Program(const std::filesystem::path &folder,
+            const std::vector<std::string> &arguments,
+            const std::string &input = "")
+    {
+      write_text(streams_.path / "in", input);
+      std::vector<std::string> words = {CRAWLER_PROGRAM};
+      words.insert(words.end(), arguments.begin(), arguments.end());
+      std::vector<std::string> environment = {
+        "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1"};
+      for (const char *name : {"PATH", "HOME", "TMPDIR", "LD_LIBRARY_PATH"})
+        if (const char *value = std::getenv(name); value != nullptr)
+          environment.push_back(std::string(name) + "=" + value);
 
-  std::string out() const
+      posix_spawn_file_actions_t actions;
+      posix_spawn_file_actions_init(&actions);
+      posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+      const auto redirect = [&](const int descriptor, const char *name, const int flags)
+      {
+        posix_spawn_file_actions_addopen(&actions, descriptor, (streams_.path / name).c_str(), flags, 0600);
+      };
+      redirect(STDIN_FILENO, "in", O_RDONLY);
+      redirect(STDOUT_FILENO, "out", O_WRONLY | O_CREAT);
+      redirect(STDERR_FILENO, "err", O_WRONLY | O_CREAT);
+      const int failed =
+        posix_spawn(&id_, CRAWLER_PROGRAM, &actions, nullptr, pointers(words).data(), pointers(environment).data());
+      posix_spawn_file_actions_destroy(&actions);
+      if (failed != 0)
+        throw std::runtime_error("cannot start " + words[0]);
+    }
+    Program(const Program &) = delete;
+    ~Program()
+    {
+      if (running())
+      {
+        kill(id_, SIGKILL);
+        waitpid(id_, nullptr, 0);
+      }
+    }
+
+    bool
+    running()
+    {
+      if (!ended_)
+        ended_ = waitpid(id_, &status_, WNOHANG) == id_;
+      return !ended_;
+    }
+
+    void
+    signal(const int number) const
+    {
+      kill(id_, number);
+    }
+
+    /// Waits until @p condition holds; false if it does not within @p seconds.
+    template <typename Condition>
+    static bool
+    wait_until(const Condition &condition, const double seconds = 60)
+    {
+      const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+      while (!condition())
+      {
+        if (std::chrono::steady_clock::now() > end)
+          return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+      return true;
+    }
+
+    /// Waits for the end: the exit code, or minus the number of the signal that ended the program.
+    int
+    exit_code()
+    {
+      if (!wait_until(
+            [this]()
+            {
+              return !running();
+            }))
+        throw std::runtime_error("the program does not come to an end");
+      return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
+    }
+
+    std::string
+    out() const
+    {
+      return read_text(streams_.path / "out");
+    }
+    std::string
+    err() const
+    {
+      return read_text(streams_.path / "err");
+    }
+
+  private:
+    static std::vector<char *>
+    pointers(std::vector<std::string> &words)
+    {
+      std::vector<char *> result;
+      for (std::string &word : words)
+        result.push_back(word.data());
+      result.push_back(nullptr);
+      return result;
+    }
+
+    TemporaryFolder streams_;
+    pid_t id_   = 0;
+    int status_ = 0;
+    bool ended_ = false;
+  };
+
+  struct ProgramResult
   {
-    return read_text(streams_.path / "out");
-  }
-  std::string err() const
+    int exit_code;
+    std::string out, err;
+  };
+
+  inline ProgramResult
+  run_program(const std::filesystem::path &folder,
+              const std::vector<std::string> &arguments,
+              const std::string &input = "")
   {
-    return read_text(streams_.path / "err");
+    Program program(folder, arguments, input);
+    const int exit_code = program.exit_code();
+    return {exit_code, program.out(), program.err()};
   }
 
-private:
-  static std::vector<char *> pointers(std::vector<std::string> &words)
+  /// "set ..." lines within the subsections of a path like "Active stress/Expression".
+  inline std::string
+  in_section(const std::string &path, const std::string &lines)
   {
-    std::vector<char *> result;
-    for (std::string &word : words)
-      result.push_back(word.data());
-    result.push_back(nullptr);
-    return result;
+    std::string before, after;
+    std::istringstream in(path);
+    for (std::string name; std::getline(in, name, '/'); after += "end\n")
+      before += "subsection " + name + "\n";
+    return before + lines + "\n" + after;
   }
-
-  TemporaryFolder streams_;
-  pid_t id_   = 0;
-  int status_ = 0;
-  bool ended_ = false;
-};
-
-struct ProgramResult
-{
-  int exit_code;
-  std::string out, err;
-};
-
-inline ProgramResult run_program(const std::filesystem::path &folder,
-                                 const std::vector<std::string> &arguments,
-                                 const std::string &input = "")
-{
-  Program program(folder, arguments, input);
-  const int exit_code = program.exit_code();
-  return {exit_code, program.out(), program.err()};
-}
-
-/// "set ..." lines within the subsections of a path like "Active stress/Expression".
-inline std::string in_section(const std::string &path, const std::string &lines)
-{
-  std::string before, after;
-  std::istringstream in(path);
-  for (std::string name; std::getline(in, name, '/'); after += "end\n")
-    before += "subsection " + name + "\n";
-  return before + lines + "\n" + after;
-}
 } // namespace crawler::test

@@ -30,7 +30,7 @@ namespace crawler::test
     ParameterFile file = ParameterFile::from_text("set Model = nonlinear", "test");
     for (const auto &[entry, value] : settings)
       file.add_override(entry + "=" + value);
-    Parameters   parameters;
+    Parameters parameters;
     Declarations declarations;
     parameters.add_parameters(declarations);
     file.apply(declarations);
@@ -40,7 +40,7 @@ namespace crawler::test
   struct Outcome
   {
     SimulationResult result;
-    NumericsChoice   choice;
+    NumericsChoice choice;
   };
 
   /// What `crawler run` computes with these parameters, without files.
@@ -48,7 +48,7 @@ namespace crawler::test
   run_with(const Parameters &parameters, const Simulation::Options &options = {.ledger = true})
   {
     const Scene scene = parameters.create_scene();
-    Outcome     outcome;
+    Outcome outcome;
     outcome.choice = choose_numerics(MPI_COMM_WORLD, parameters, scene);
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, outcome.choice.numerics);
     outcome.result = simulation.run({}, options);

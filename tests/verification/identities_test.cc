@@ -20,45 +20,46 @@ namespace
   }
 
   /// Explicit numerics: no pilot runs, and the same mesh for both of a pair.
-  const test::Settings numerics = {{"Discretization/Degree", "4"},
-                                   {"Discretization/Number of cells", "10"},
-                                   {"Time/Tolerance", "1e-9"}};
+  const test::Settings numerics = {
+    {"Discretization/Degree", "4"}, {"Discretization/Number of cells", "10"}, {"Time/Tolerance", "1e-9"}};
 } // namespace
 
 /// int g v ds = 0 and stress power = dissipation + change of the elastic energy, from p = -20 to 21.
 TEST(Identities, NetFrictionAndLedger)
 {
   for (const double p : {-20., -3., 0., 0.5, 1., 2., 2.5, 4., 21.})
-    {
-      const auto result = test::run_with(with(test::wave(1. - p, 0.1, 0.7), numerics)).result;
-      ASSERT_EQ(result.time.status, "finished") << p;
-      EXPECT_LT(result.net_friction, 1e-11) << p;
-      EXPECT_LT(result.ledger->residual(), 1e-6) << p;
-      EXPECT_GT(result.ledger->dissipation, 0.) << p;
-      EXPECT_GE(result.ledger->positive_power, result.ledger->stress_power) << p;
-    }
+  {
+    const auto result = test::run_with(with(test::wave(1. - p, 0.1, 0.7), numerics)).result;
+    ASSERT_EQ(result.time.status, "finished") << p;
+    EXPECT_LT(result.net_friction, 1e-11) << p;
+    EXPECT_LT(result.ledger->residual(), 1e-6) << p;
+    EXPECT_GT(result.ledger->dissipation, 0.) << p;
+    EXPECT_GE(result.ledger->positive_power, result.ledger->stress_power) << p;
+  }
 }
 
 /// a = 0: the centre of mass never moves, whatever m is.
 TEST(Identities, NewtonianFrictionNeverMoves)
 {
   for (const char *m : {"0.3*sin(2*pi*(s+t))", "0.2*s*t", "0.3*exp(-20*(s-t)^2)"})
-    {
-      const auto result = test::run_with(with({{"Body/Anchoring exponent", "1"},
-                                               {"Active stress/Generator", "expression"},
-                                               {"Active stress/Expression/Active stress", m}},
-                                              numerics))
-                            .result;
-      ASSERT_EQ(result.time.status, "finished");
-      EXPECT_LT(std::abs(result.displacement), 1e-14) << m;
-    }
+  {
+    const auto result = test::run_with(with({{"Body/Anchoring exponent", "1"},
+                                             {"Active stress/Generator", "expression"},
+                                             {"Active stress/Expression/Active stress", m}},
+                                            numerics))
+                          .result;
+    ASSERT_EQ(result.time.status, "finished");
+    EXPECT_LT(std::abs(result.displacement), 1e-14) << m;
+  }
 }
 
 /// m(L-s,t) gives the opposite displacement.
 TEST(Identities, MirroredStressMirrorsTheDisplacement)
 {
-  const auto run = [](const std::string &m) {
-    return test::run_with(with({{"Active stress/Generator", "expression"}, {"Active stress/Expression/Active stress", m}}, numerics))
+  const auto run = [](const std::string &m)
+  {
+    return test::run_with(
+             with({{"Active stress/Generator", "expression"}, {"Active stress/Expression/Active stress", m}}, numerics))
       .result.displacement;
   };
   const double forward = run("0.3*sin(2*pi*(s+t))*s"), mirrored = run("0.3*sin(2*pi*(1-s+t))*(1-s)");
@@ -70,9 +71,10 @@ TEST(Identities, MirroredStressMirrorsTheDisplacement)
 TEST(Identities, Scaling)
 {
   const double reference = test::run_with(with(test::wave(-1., 0.3), numerics)).result.displacement;
-  const double scaled    = test::run_with(with(test::wave(-1., 0.3),
-                                            with(numerics, {{"Body/Elastic modulus", "1000"}, {"Body/Friction coefficient", "1000"}})))
-                          .result.displacement;
+  const double scaled =
+    test::run_with(with(test::wave(-1., 0.3),
+                        with(numerics, {{"Body/Elastic modulus", "1000"}, {"Body/Friction coefficient", "1000"}})))
+      .result.displacement;
   EXPECT_NEAR(scaled / reference, 1., 1e-10);
   // Lengths in micrometres instead of metres: L, c and a_1 times 1e-6; k in N, gamma in N s/m^2.
   const double micro = test::run_with(with(test::wave(-1., 0.3, 1e-6),
@@ -90,17 +92,19 @@ TEST(Identities, Scaling)
 TEST(Identities, StrainModesDecay)
 {
   // Forced up to about t = 0.1 by m = A sin(pi s) f(t), f = exp(-((t-0.05)/0.012)^2), then free.
-  const auto strain = [](const double end_time) {
-    const auto parameters = test::parameters_with(with({{"Body/Length", "2"},
-                                                        {"Body/Elastic modulus", "0.8"},
-                                                        {"Body/Friction coefficient", "1.7"},
-                                                        {"Active stress/Generator", "expression"},
-                                                        {"Active stress/Expression/Active stress", "1e-5*sin(pi*s/L)*exp(-((t-0.05)/0.012)^2)"},
-                                                        {"Time/End time", test::text(end_time)}},
-                                                       {}));
+  const auto strain = [](const double end_time)
+  {
+    const auto parameters = test::parameters_with(
+      with({{"Body/Length", "2"},
+            {"Body/Elastic modulus", "0.8"},
+            {"Body/Friction coefficient", "1.7"},
+            {"Active stress/Generator", "expression"},
+            {"Active stress/Expression/Active stress", "1e-5*sin(pi*s/L)*exp(-((t-0.05)/0.012)^2)"},
+            {"Time/End time", test::text(end_time)}},
+           {}));
     const Scene scene = parameters.create_scene();
-    Simulation  simulation(MPI_COMM_WORLD, scene, parameters.time, {5, 6, 1e-14, 1e-7});
-    const auto  result = simulation.run({}, {.ledger = true});
+    Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, {5, 6, 1e-14, 1e-7});
+    const auto result = simulation.run({}, {.ledger = true});
     EXPECT_EQ(result.time.status, "finished");
     return std::sqrt(result.ledger->elastic_energy);
   };
@@ -112,7 +116,11 @@ TEST(Identities, StrainModesDecay)
 TEST(Identities, ExactSolution)
 {
   const test::ExactSolution exact;
-  const auto result = test::run_with(with(exact.settings(0.75), {{"Discretization/Degree", "6"}, {"Discretization/Number of cells", "8"}, {"Time/Tolerance", "1e-12"}})).result;
+  const auto result =
+    test::run_with(
+      with(exact.settings(0.75),
+           {{"Discretization/Degree", "6"}, {"Discretization/Number of cells", "8"}, {"Time/Tolerance", "1e-12"}}))
+      .result;
   EXPECT_NEAR(result.displacement / exact.displacement(0.75), 1., 1e-8);
   // The extreme stretches over s and t are 1 -+ 2E, reached at t = 1/2.
   EXPECT_NEAR(result.min_stretch.value, 1. - 2. * exact.E, 1e-3);

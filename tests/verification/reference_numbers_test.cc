@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The numbers of doc/theory.md section 5 to the digits printed there: displacements to 8 digits or more, works, energies and
-// extreme stretches. Half a unit of the last digit is the tolerance.
+// The numbers of doc/theory.md section 5 to the digits printed there: displacements to 8 digits or more, works,
+// energies and extreme stretches. Half a unit of the last digit is the tolerance.
 #include "../support/run_text.h"
 
 #include <gtest/gtest.h>
@@ -43,13 +43,20 @@ TEST(ReferenceNumbers, Displacements)
                                  {-1, 0.3, 1, 1, 0.01, 4.6416054195e-2, 1e-10},
                                  {-1, 0.3, 1, 1, 100, 0.0486052726, 0.6e-10}};
   for (const Row &row : rows)
-    {
-      const auto result = accurate(test::wave(row.a, row.chi, row.speed, row.end_time, row.k));
-      ASSERT_EQ(result.time.status, "finished");
-      fmt::print("a = {:2g}, chi = {:5g}, c = {:2g}, T = {:2g}, k = {:4g}: {:.12g}, reference {:.12g}\n", row.a, row.chi, row.speed, row.end_time, row.k, result.displacement, row.displacement);
-      EXPECT_NEAR(result.displacement, row.displacement, row.half_digit);
-      EXPECT_LT(std::abs(result.displacement / row.displacement - 1.), row.half_digit > 1e-8 ? 1e-5 : 1e-6);
-    }
+  {
+    const auto result = accurate(test::wave(row.a, row.chi, row.speed, row.end_time, row.k));
+    ASSERT_EQ(result.time.status, "finished");
+    fmt::print("a = {:2g}, chi = {:5g}, c = {:2g}, T = {:2g}, k = {:4g}: {:.12g}, reference {:.12g}\n",
+               row.a,
+               row.chi,
+               row.speed,
+               row.end_time,
+               row.k,
+               result.displacement,
+               row.displacement);
+    EXPECT_NEAR(result.displacement, row.displacement, row.half_digit);
+    EXPECT_LT(std::abs(result.displacement / row.displacement - 1.), row.half_digit > 1e-8 ? 1e-5 : 1e-6);
+  }
 }
 
 TEST(ReferenceNumbers, FigS1)
@@ -83,9 +90,10 @@ TEST(ReferenceNumbers, Fig2)
 /// The promise of Accuracy on the default settings of a scene that is not in the table: the default generator, 1e-6.
 TEST(ReferenceNumbers, AccuracyDoesNotDependOnUnits)
 {
-  // The Fig. S1 case with L = 1e-3, k = 7, gamma = 11 and time in other units: chi/c a_n, k/(gamma c L) and cT/L as before.
+  // The Fig. S1 case with L = 1e-3, k = 7, gamma = 11 and time in other units: chi/c a_n, k/(gamma c L) and cT/L as
+  // before.
   const double L = 1e-3, gamma = 11., k = 7., c = k / (gamma * L);
-  auto         settings = test::wave(-1., 0.4, c, L / c, k);
+  auto settings = test::wave(-1., 0.4, c, L / c, k);
   settings.insert(settings.end(),
                   {{"Body/Length", test::text(L)},
                    {"Body/Friction coefficient", test::text(gamma)},

@@ -18,50 +18,74 @@ int
 main(int argc, char **argv)
 {
   using namespace crawler;
-  int                                            one = 1;
+  int one = 1;
   const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
   if (argc < 2)
     return 2;
   std::ifstream file(argv[1]);
   if (!file)
-    {
-      fmt::print(stderr, "theory_table: cannot read {}\n", argv[1]);
-      return 2;
-    }
-  const auto          rows = nlohmann::json::parse(file)["rows"];
+  {
+    fmt::print(stderr, "theory_table: cannot read {}\n", argv[1]);
+    return 2;
+  }
+  const auto rows = nlohmann::json::parse(file)["rows"];
   std::vector<double> accuracies;
   for (int i = 2; i < argc; ++i)
     accuracies.push_back(std::stod(argv[i]));
   if (accuracies.empty())
     accuracies = {1e-3, 1e-6, 1e-8, 1e-9};
 
-  int  failures = 0;
-  bool any      = false;
+  int failures = 0;
+  bool any     = false;
   fmt::print("{:>4} {:>6} {:>3} {:>4} {:>5} {:>9} {:>18} {:>18} {:>10} {:>10} {:>9} {:>5} {:>6} {:>8}\n",
-             "a", "chi", "c", "T", "k", "accuracy", "displacement", "reference", "rel error", "work err", "ledger", "cells", "steps", "ms");
+             "a",
+             "chi",
+             "c",
+             "T",
+             "k",
+             "accuracy",
+             "displacement",
+             "reference",
+             "rel error",
+             "work err",
+             "ledger",
+             "cells",
+             "steps",
+             "ms");
   for (const auto &row : rows)
     for (const double accuracy : accuracies)
-      {
-        auto settings = test::wave(row["exponent"], row["chi"], row["speed"], row["end_time"], row["elastic_modulus"]);
-        settings.emplace_back("Accuracy", test::text(accuracy));
-        const auto   outcome   = test::run_with(settings);
-        const auto  &result    = outcome.result;
-        const double reference = row["values"]["displacement"], work = row["values"]["stress_power"];
-        const double error     = std::abs(result.displacement / reference - 1.);
-        // At a = 0 the body never moves; the extremes are promised for the log-stretch form only.
-        const bool still   = std::abs(reference) < 1e-12;
-        const bool extreme = row["name"] == "extreme";
-        const bool ok      = result.time.status == "finished" &&
-                        (still ? std::abs(result.displacement) < 1e-12 : error <= accuracy || extreme);
-        any = true;
-        failures += !ok;
-        fmt::print("{:>4g} {:>6g} {:>3g} {:>4g} {:>5g} {:>9.0e} {:>18.12g} {:>18.12g} {:>10.1e} {:>10.1e} {:>9.1e} {:>5} {:>6} {:>8.2f}{}\n",
-                   row["exponent"].get<double>(), row["chi"].get<double>(), row["speed"].get<double>(),
-                   row["end_time"].get<double>(), row["elastic_modulus"].get<double>(), accuracy, result.displacement,
-                   reference, error, std::abs(result.ledger->stress_power / work - 1.), result.ledger->residual(),
-                   outcome.choice.numerics.n_cells, result.time.steps, 1e3 * result.solve_seconds,
-                   ok ? "" : "  <- FAILS " + result.time.reason);
-      }
+    {
+      auto settings = test::wave(row["exponent"], row["chi"], row["speed"], row["end_time"], row["elastic_modulus"]);
+      settings.emplace_back("Accuracy", test::text(accuracy));
+      const auto outcome     = test::run_with(settings);
+      const auto &result     = outcome.result;
+      const double reference = row["values"]["displacement"], work = row["values"]["stress_power"];
+      const double error = std::abs(result.displacement / reference - 1.);
+      // At a = 0 the body never moves; the extremes are promised for the log-stretch form only.
+      const bool still   = std::abs(reference) < 1e-12;
+      const bool extreme = row["name"] == "extreme";
+      const bool ok      = result.time.status == "finished" &&
+                      (still ? std::abs(result.displacement) < 1e-12 : error <= accuracy || extreme);
+      any = true;
+      failures += !ok;
+      fmt::print("{:>4g} {:>6g} {:>3g} {:>4g} {:>5g} {:>9.0e} {:>18.12g} {:>18.12g} {:>10.1e} {:>10.1e} {:>9.1e} {:>5} "
+                 "{:>6} {:>8.2f}{}\n",
+                 row["exponent"].get<double>(),
+                 row["chi"].get<double>(),
+                 row["speed"].get<double>(),
+                 row["end_time"].get<double>(),
+                 row["elastic_modulus"].get<double>(),
+                 accuracy,
+                 result.displacement,
+                 reference,
+                 error,
+                 std::abs(result.ledger->stress_power / work - 1.),
+                 result.ledger->residual(),
+                 outcome.choice.numerics.n_cells,
+                 result.time.steps,
+                 1e3 * result.solve_seconds,
+                 ok ? "" : "  <- FAILS " + result.time.reason);
+    }
   fmt::print("{} runs failed\n", failures);
   return failures == 0 && any ? 0 : 1;
 }

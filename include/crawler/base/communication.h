@@ -19,8 +19,8 @@ namespace crawler
   broadcast(const std::string &text, MPI_Comm communicator);
 
   /**
-   * Runs @p action on rank 0 only and returns its text on all ranks. An InputError or FileError that it throws is thrown
-   * on all ranks, so that the failure of one cannot hang the others.
+   * Runs @p action on rank 0 only and returns its text on all ranks. An InputError or FileError that it throws is
+   * thrown on all ranks, so that the failure of one cannot hang the others.
    */
   std::string
   on_first_rank(MPI_Comm communicator, const std::function<std::string()> &action);

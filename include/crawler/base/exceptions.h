@@ -29,7 +29,8 @@ namespace crawler
     explicit InputError(const std::string &message, std::string entry = "")
       : std::runtime_error(message)
       , entry(std::move(entry))
-    {}
+    {
+    }
 
     const std::string entry;
   };
@@ -41,7 +42,8 @@ namespace crawler
     explicit FileError(const std::string &message, const bool on_all_ranks = false)
       : std::runtime_error(message)
       , on_all_ranks(on_all_ranks)
-    {}
+    {
+    }
 
     const bool on_all_ranks; ///< all ranks throw it together, so the program can end in order
   };

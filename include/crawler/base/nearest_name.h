@@ -9,9 +9,7 @@ namespace crawler
   /// Up to @p count names of @p candidates that are closest to @p name (edit distance, ignoring case),
   /// best first; names that have nothing in common with it are left out.
   std::vector<std::string>
-  nearest_names(const std::string              &name,
-                const std::vector<std::string> &candidates,
-                unsigned int                    count = 3);
+  nearest_names(const std::string &name, const std::vector<std::string> &candidates, unsigned int count = 3);
 
   /// "a", "b" or "c": a list in quotation marks as it stands in a sentence.
   std::string

@@ -39,7 +39,14 @@ namespace crawler
 
   private:
     static PetscErrorCode
-    keep(MPI_Comm, int, const char *, const char *, PetscErrorCode code, PetscErrorType type, const char *message, void *context)
+    keep(MPI_Comm,
+         int,
+         const char *,
+         const char *,
+         PetscErrorCode code,
+         PetscErrorType type,
+         const char *message,
+         void *context)
     {
       if (type == PETSC_ERROR_INITIAL && message != nullptr)
         static_cast<PetscErrorWords *>(context)->text = message;

@@ -100,17 +100,17 @@ namespace crawler
     CellInput
     input(double t, std::span<const double> u, std::span<const double> v);
 
-    const Scene          &scene_;
+    const Scene &scene_;
     const Discretization &discretization_;
-    const CellKernels    &kernels_;
+    const CellKernels &kernels_;
 
     std::unique_ptr<ActiveStressAtPoints> stress_, end_stress_;
-    std::vector<double>                   m_; ///< at the quadrature points, at the time m_time_
-    double                                m_time_;
+    std::vector<double> m_; ///< at the quadrature points, at the time m_time_
+    double m_time_;
 
-    std::vector<double>          u_local_, v_local_, F_local_;
-    std::vector<double>          highest_mode_; ///< [point] weights that give the highest Legendre coefficient
+    std::vector<double> u_local_, v_local_, F_local_;
+    std::vector<double> highest_mode_;  ///< [point] weights that give the highest Legendre coefficient
     std::unique_ptr<ChainMatrix> mass_; ///< built when a velocity is first asked for
-    std::optional<StretchAt>     bad_stretch_;
+    std::optional<StretchAt> bad_stretch_;
   };
 } // namespace crawler

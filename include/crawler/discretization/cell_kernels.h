@@ -10,14 +10,14 @@ namespace crawler
   /// What the integrals over a run of cells need. Arrays over nodes are local ones (discretization.h).
   struct CellInput
   {
-    unsigned int            n_cells;
-    const double           *cell_size;
+    unsigned int n_cells;
+    const double *cell_size;
     const ReferenceElement *element;
-    const FrictionLaw      *friction;
-    double                  k; ///< elastic modulus
-    const double           *u; ///< displacement at the nodes
-    const double           *v; ///< velocity at the nodes; may be null in residual(): then without friction
-    const double           *m; ///< active stress at the quadrature points
+    const FrictionLaw *friction;
+    double k;        ///< elastic modulus
+    const double *u; ///< displacement at the nodes
+    const double *v; ///< velocity at the nodes; may be null in residual(): then without friction
+    const double *m; ///< active stress at the quadrature points
   };
 
   /// Integrals over the body that the ledger is made of; see theory.md section 1 for their relations.

@@ -36,12 +36,12 @@ namespace crawler
 
   private:
     const Discretization *discretization_;
-    std::vector<double>   blocks_, factors_, schur_;
+    std::vector<double> blocks_, factors_, schur_;
 
     // Elimination of the end nodes 1 ... n-1 of the own cells, node 0 and n kept. For node i: its inverse pivot and
     // the couplings row/column 0, and to the next node.
     std::vector<double> inverse_, row_zero_, column_zero_, next_, below_;
-    std::vector<double> reduced_;         ///< [rank][4] the 2x2 systems of all ranks
+    std::vector<double> reduced_; ///< [rank][4] the 2x2 systems of all ranks
     mutable std::vector<double> local_, line_, reduced_rhs_;
     mutable std::vector<double> x_local_;
   };

@@ -125,13 +125,13 @@ namespace crawler
     void
     make_mesh();
 
-    const MPI_Comm         communicator_;
-    const double           length_;
-    const unsigned int     n_cells_;
+    const MPI_Comm communicator_;
+    const double length_;
+    const unsigned int n_cells_;
     const ReferenceElement element_;
-    unsigned int           rank_, n_ranks_;
-    unsigned int           n_active_ranks_;
-    std::vector<double>    cell_left_, cell_size_;
+    unsigned int rank_, n_ranks_;
+    unsigned int n_active_ranks_;
+    std::vector<double> cell_left_, cell_size_;
 
     struct Mesh; ///< deal.II's objects, kept out of this header
     std::unique_ptr<Mesh> mesh_;

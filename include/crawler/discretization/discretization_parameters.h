@@ -13,7 +13,7 @@ namespace crawler
   {
     std::optional<unsigned int> degree;
     std::optional<unsigned int> n_cells;
-    std::string                 share_cells = "automatic";
+    std::string share_cells = "automatic";
 
     void
     add_parameters(Declarations &declarations);

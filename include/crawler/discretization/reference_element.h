@@ -17,15 +17,15 @@ namespace crawler
     /// @param degree 1 to highest_degree.
     explicit ReferenceElement(unsigned int degree);
 
-    unsigned int        degree;
-    unsigned int        n;           ///< degree + 1: number of nodes, and of quadrature points
-    std::vector<double> nodes;       ///< [n]
-    std::vector<double> points;      ///< [n] quadrature points
-    std::vector<double> weights;     ///< [n] quadrature weights, their sum is 1
-    std::vector<double> values;      ///< [n points][n nodes] shape functions
-    std::vector<double> derivatives; ///< [n points][n nodes] their derivatives
+    unsigned int degree;
+    unsigned int n;                        ///< degree + 1: number of nodes, and of quadrature points
+    std::vector<double> nodes;             ///< [n]
+    std::vector<double> points;            ///< [n] quadrature points
+    std::vector<double> weights;           ///< [n] quadrature weights, their sum is 1
+    std::vector<double> values;            ///< [n points][n nodes] shape functions
+    std::vector<double> derivatives;       ///< [n points][n nodes] their derivatives
     std::vector<double> left_derivatives;  ///< [n nodes] derivatives at 0
     std::vector<double> right_derivatives; ///< [n nodes] derivatives at 1
-    std::vector<double> stiffness;   ///< [n nodes][n nodes] sum of weight derivative derivative
+    std::vector<double> stiffness;         ///< [n nodes][n nodes] sum of weight derivative derivative
   };
 } // namespace crawler

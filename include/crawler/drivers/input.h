@@ -15,9 +15,9 @@ namespace crawler
   struct Input
   {
     ParameterFile file;
-    Parameters    parameters;
-    std::string   effective; ///< all entries as they are used, as a .prm file
-    Scene         scene;
+    Parameters parameters;
+    std::string effective; ///< all entries as they are used, as a .prm file
+    Scene scene;
     std::vector<std::string> notes; ///< entries that were set to something but have no effect
   };
 

@@ -28,8 +28,8 @@ namespace crawler
     void
     keep(const std::string &text);
 
-    const bool    active_, quiet_;
-    std::string   earlier_;
+    const bool active_, quiet_;
+    std::string earlier_;
     std::ofstream file_;
   };
 } // namespace crawler

@@ -11,17 +11,17 @@ namespace crawler
   /// Settings, and in a sentence why.
   struct NumericsChoice
   {
-    Numerics    numerics;
+    Numerics numerics;
     std::string explanation;
-    double      pilot_seconds = 0.;
+    double pilot_seconds = 0.;
   };
 
   /**
    * Turns Accuracy into degree, number of cells and time tolerance; entries that the user has set are taken as they are
-   * (collective). The rule, with its constants, is explained in doc/numerics.md ("Accuracy"): pilot runs on a coarse mesh
-   * with a loose tolerance measure the size of the displacement and how fast the Legendre modes of the stretch decay; the
-   * mesh is refined until the predicted error of the displacement in space, and the tolerance chosen such that the one in
-   * time, are below Accuracy.
+   * (collective). The rule, with its constants, is explained in doc/numerics.md ("Accuracy"): pilot runs on a coarse
+   * mesh with a loose tolerance measure the size of the displacement and how fast the Legendre modes of the stretch
+   * decay; the mesh is refined until the predicted error of the displacement in space, and the tolerance chosen such
+   * that the one in time, are below Accuracy.
    */
   NumericsChoice
   choose_numerics(MPI_Comm communicator, const Parameters &parameters, const Scene &scene);

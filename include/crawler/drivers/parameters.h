@@ -16,13 +16,13 @@ namespace crawler
   /// All sections of the parameter file, in file order.
   struct Parameters
   {
-    std::string              model    = "nonlinear";
-    double                   accuracy = 1e-6;
-    Body                     body;
-    ActiveStressParameters   active_stress;
+    std::string model = "nonlinear";
+    double accuracy   = 1e-6;
+    Body body;
+    ActiveStressParameters active_stress;
     DiscretizationParameters discretization;
-    TimeParameters           time;
-    OutputParameters         output;
+    TimeParameters time;
+    OutputParameters output;
 
     void
     add_parameters(Declarations &declarations);

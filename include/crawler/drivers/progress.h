@@ -16,7 +16,7 @@ namespace crawler
     observe(const Snapshot &snapshot) override;
 
   private:
-    Log         &log_;
+    Log &log_;
     const double end_time_, length_;
     unsigned int next_tenth_ = 1;
   };

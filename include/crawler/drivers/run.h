@@ -13,12 +13,12 @@ namespace crawler
   /// What the command line says besides the name of the command.
   struct CommandOptions
   {
-    std::string              file;
+    std::string file;
     std::vector<std::string> overrides;
-    std::string              output;
-    bool                     overwrite = false;
-    bool                     quiet     = false;
-    std::string              command_line;
+    std::string output;
+    bool overwrite = false;
+    bool quiet     = false;
+    std::string command_line;
   };
 
   /// crawler run: one simulation with all its files (collective).

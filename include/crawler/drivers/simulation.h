@@ -5,6 +5,7 @@
 #include <crawler/observers/observer.h>
 #include <crawler/time/time_stepper.h>
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,10 +16,10 @@ namespace crawler
   /// The numerical settings of one simulation; numerics_choice.h chooses those that the user leaves open.
   struct Numerics
   {
-    unsigned int degree       = 0;
-    unsigned int n_cells      = 0;
-    double       tolerance    = 0.; ///< [length]
-    double       initial_step = 0.; ///< [time]
+    unsigned int degree  = 0;
+    unsigned int n_cells = 0;
+    double tolerance     = 0.; ///< [length]
+    double initial_step  = 0.; ///< [time]
   };
 
   /// What one simulation gives.
@@ -26,19 +27,20 @@ namespace crawler
   {
     TimeOutcome time; ///< its status is "inverted" too
 
-    double                displacement = 0.; ///< of the centre of mass, (1/L) int u ds [length]
-    double                largest_u    = 0.; ///< root mean square of u over the body, largest over time [length]
-    double                unresolved   = 0.; ///< largest over time of highest_mode/strain (Resolution), if looked at
+    /// Of the centre of mass, (1/L) int u ds [length]; not a number if nobody looked before the run broke off.
+    double displacement = std::numeric_limits<double>::quiet_NaN();
+    double largest_u    = 0.; ///< root mean square of u over the body, largest over time [length]
+    double unresolved   = 0.; ///< Resolution: largest highest_mode over largest strain, if looked at
     std::optional<Ledger> ledger;
-    double                net_friction = 0.; ///< largest |int g v ds|/int |g v| ds over time [1]
+    double net_friction = 0.; ///< largest |int g v ds|/int |g v| ds over time [1]
 
     struct Extreme
     {
       double value = 1., s = 0., t = 0.;
     };
-    Extreme                min_stretch, max_stretch;
+    Extreme min_stretch, max_stretch;
     std::optional<Extreme> inversion; ///< where and when the body inverted; value is the stretch there
-    double                 setup_seconds = 0., solve_seconds = 0., output_seconds = 0.;
+    double setup_seconds = 0., solve_seconds = 0., output_seconds = 0.;
   };
 
   /**
@@ -60,10 +62,10 @@ namespace crawler
 
     /// Runs from rest. @p frames are times in (0, T] where steps must end. @p keep_going is asked after every step.
     SimulationResult
-    run(const std::vector<double>                   &frames,
-        const Options                               &options,
-        const std::vector<std::unique_ptr<Observer>> &observers  = {},
-        const std::function<bool()>                 &keep_going = {});
+    run(const std::vector<double> &frames,
+        const Options &options,
+        const std::vector<std::unique_ptr<Observer>> &observers = {},
+        const std::function<bool()> &keep_going                 = {});
 
     const Discretization &
     discretization() const
@@ -84,25 +86,26 @@ namespace crawler
     void
     lost_stretch(double value, double s, double t, double reach);
 
-    const Scene         &scene_;
-    const Numerics       numerics_;
+    const Scene &scene_;
+    const Numerics numerics_;
     const Discretization discretization_;
-    Assembler            assembler_;
-    ChainMatrix          jacobian_;
-    TimeStepper          stepper_;
-    double               setup_seconds_ = 0.;
+    Assembler assembler_;
+    ChainMatrix jacobian_;
+    TimeStepper stepper_;
+    double setup_seconds_ = 0.;
 
     // The state of one run().
     struct Diagnosis
     {
       std::string status, reason, message;
     };
-    SimulationResult         result_;
+    SimulationResult result_;
     std::optional<Diagnosis> diagnosis_; ///< replaces what the time stepper says
-    RateQuadrature      quadrature_;
-    CellIntegrals       integrals_;
-    StretchRange        stretch_;
-    double              previous_min_stretch_ = 1.;
+    RateQuadrature quadrature_;
+    Resolution largest_{}; ///< over time, if looked at
+    CellIntegrals integrals_;
+    StretchRange stretch_;
+    double previous_min_stretch_ = 1.;
     std::vector<double> u_, v_;
   };
 } // namespace crawler

@@ -12,10 +12,10 @@ namespace crawler
   /// The text of summary.json. Its keys are a contract (doc/user_guide.md); what is not known is null.
   std::string
   summary_json(const SimulationResult &result,
-               const Parameters       &parameters,
-               const Discretization   &discretization,
-               unsigned int            n_ranks,
-               const std::string      &command_line);
+               const Parameters &parameters,
+               const Discretization &discretization,
+               unsigned int n_ranks,
+               const std::string &command_line);
 
   /// The same for people, in a few lines.
   std::vector<std::string>

@@ -18,7 +18,7 @@ namespace crawler
     struct Point
     {
       unsigned int cell; ///< number among this rank's cells
-      double       x;    ///< from 0 to 1 in the cell
+      double x;          ///< from 0 to 1 in the cell
     };
 
     FieldSampler(const Scene &scene, const Discretization &discretization, std::vector<Point> points);
@@ -35,13 +35,13 @@ namespace crawler
     }
 
   private:
-    const Scene                          &scene_;
-    const Discretization                 &discretization_;
-    const std::vector<Point>              points_;
-    std::vector<double>                   coordinates_;
-    std::vector<double>                   values_, derivatives_; ///< [point][node] shape functions
+    const Scene &scene_;
+    const Discretization &discretization_;
+    const std::vector<Point> points_;
+    std::vector<double> coordinates_;
+    std::vector<double> values_, derivatives_; ///< [point][node] shape functions
     std::unique_ptr<ActiveStressAtPoints> stress_;
-    std::vector<double>                   u_local_, v_local_;
-    Fields                                fields_;
+    std::vector<double> u_local_, v_local_;
+    Fields fields_;
   };
 } // namespace crawler

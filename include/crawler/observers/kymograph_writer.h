@@ -22,11 +22,11 @@ namespace crawler
     end() override;
 
   private:
-    const Scene                &scene_;
-    const Discretization       &discretization_;
+    const Scene &scene_;
+    const Discretization &discretization_;
     const std::filesystem::path folder_;
-    FieldSampler                sampler_;
-    std::vector<double>         times_;
-    std::vector<double>         rows_; ///< [time][field][point], on rank 0
+    FieldSampler sampler_;
+    std::vector<double> times_;
+    std::vector<double> rows_; ///< [time][field][point], on rank 0
   };
 } // namespace crawler

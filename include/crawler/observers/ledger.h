@@ -46,7 +46,7 @@ namespace crawler
     struct Point
     {
       double time;
-      Rates  rates;
+      Rates rates;
     };
     std::deque<Point> points_; ///< newest first
   };

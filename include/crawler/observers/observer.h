@@ -10,13 +10,13 @@ namespace crawler
   /// An accepted state of a run, read-only. Vectors are the owned values of this rank.
   struct Snapshot
   {
-    const Step             &step;
-    bool                    is_frame; ///< one of the snapshots that were asked for, the initial state included
-    std::span<const double> u;        ///< displacement [length]
-    std::span<const double> v;        ///< velocity [length/time]; without a ledger of snapshots only
-    const CellIntegrals    &integrals; ///< those with v are as old as v
-    const StretchRange     &stretch;
-    const Ledger           &ledger;
+    const Step &step;
+    bool is_frame;                  ///< one of the snapshots that were asked for, the initial state included
+    std::span<const double> u;      ///< displacement [length]
+    std::span<const double> v;      ///< velocity [length/time]; without a ledger of snapshots only
+    const CellIntegrals &integrals; ///< those with v are as old as v
+    const StretchRange &stretch;
+    const Ledger &ledger;
   };
 
   /// Looks at the accepted states of a run. Called on all ranks together.
@@ -31,6 +31,7 @@ namespace crawler
     /// After the last state, however the run ended.
     virtual void
     end()
-    {}
+    {
+    }
   };
 } // namespace crawler

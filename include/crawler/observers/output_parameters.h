@@ -10,10 +10,10 @@ namespace crawler
   /// Section "Output": what is computed and written besides the displacement.
   struct OutputParameters
   {
-    unsigned int          n_snapshots = 50;
-    bool                  kymograph   = true;
-    bool                  statistics  = true;
-    bool                  ledger      = true;
+    unsigned int n_snapshots = 50;
+    bool kymograph           = true;
+    bool statistics          = true;
+    bool ledger              = true;
     std::optional<double> ledger_tolerance;
 
     void

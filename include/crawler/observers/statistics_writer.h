@@ -13,7 +13,10 @@ namespace crawler
   {
   public:
     /// Throws FileError.
-    StatisticsWriter(const Scene &scene, const Discretization &discretization, const std::filesystem::path &folder, bool with_ledger);
+    StatisticsWriter(const Scene &scene,
+                     const Discretization &discretization,
+                     const std::filesystem::path &folder,
+                     bool with_ledger);
 
     void
     observe(const Snapshot &snapshot) override;
@@ -21,9 +24,9 @@ namespace crawler
     end() override;
 
   private:
-    const Scene                &scene_;
-    const bool                  writes_, with_ledger_;
+    const Scene &scene_;
+    const bool writes_, with_ledger_;
     const std::filesystem::path path_;
-    std::ofstream               out_;
+    std::ofstream out_;
   };
 } // namespace crawler

@@ -11,9 +11,9 @@
 namespace crawler
 {
   /**
-   * Writes each snapshot as solution/NUMBER.vtu and keeps solution.pvd up to date, so that what is written is a complete
-   * animation at any moment. A cell of degree q is written as q lines; the stretch is not averaged between cells. In
-   * ParaView "Warp By Vector" of the displacement shows the moving body.
+   * Writes each snapshot as solution/NUMBER.vtu and keeps solution.pvd up to date, so that what is written is a
+   * complete animation at any moment. A cell of degree q is written as q lines; the stretch is not averaged between
+   * cells. In ParaView "Warp By Vector" of the displacement shows the moving body.
    */
   class VtuWriter : public Observer
   {
@@ -24,9 +24,9 @@ namespace crawler
     observe(const Snapshot &snapshot) override;
 
   private:
-    const Discretization                       &discretization_;
-    const std::filesystem::path                 folder_;
-    FieldSampler                                sampler_;
+    const Discretization &discretization_;
+    const std::filesystem::path folder_;
+    FieldSampler sampler_;
     std::vector<std::pair<double, std::string>> record_;
   };
 } // namespace crawler

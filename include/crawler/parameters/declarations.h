@@ -19,10 +19,10 @@ namespace crawler
   /// The admissible values of a number: an interval whose ends may be left out.
   struct Range
   {
-    double lower          = -std::numeric_limits<double>::infinity();
-    double upper          = std::numeric_limits<double>::infinity();
-    bool   lower_included = false;
-    bool   upper_included = false;
+    double lower        = -std::numeric_limits<double>::infinity();
+    double upper        = std::numeric_limits<double>::infinity();
+    bool lower_included = false;
+    bool upper_included = false;
 
     bool
     contains(double value) const;
@@ -65,44 +65,44 @@ namespace crawler
 
     void
     number(const std::string &name,
-           double            &value,
-           const Range       &range,
+           double &value,
+           const Range &range,
            const std::string &documentation,
            const std::string &unit);
     /// Like number(), but the word "automatic" (an empty optional) is admissible as well.
     void
-    number(const std::string     &name,
+    number(const std::string &name,
            std::optional<double> &value,
-           const Range           &range,
-           const std::string     &documentation,
-           const std::string     &unit);
+           const Range &range,
+           const std::string &documentation,
+           const std::string &unit);
     void
     whole_number(const std::string &name,
-                 unsigned int      &value,
-                 unsigned int       lower,
-                 unsigned int       upper,
+                 unsigned int &value,
+                 unsigned int lower,
+                 unsigned int upper,
                  const std::string &documentation);
     void
-    whole_number(const std::string           &name,
+    whole_number(const std::string &name,
                  std::optional<unsigned int> &value,
-                 unsigned int                 lower,
-                 unsigned int                 upper,
-                 const std::string           &documentation);
+                 unsigned int lower,
+                 unsigned int upper,
+                 const std::string &documentation);
     void
-    numbers(const std::string   &name,
+    numbers(const std::string &name,
             std::vector<double> &value,
-            const std::string   &documentation,
-            const std::string   &unit);
+            const std::string &documentation,
+            const std::string &unit);
     void
-    choice(const std::string              &name,
-           std::string                    &value,
+    choice(const std::string &name,
+           std::string &value,
            const std::vector<std::string> &words,
-           const std::string              &documentation);
+           const std::string &documentation);
     void
     flag(const std::string &name, bool &value, const std::string &documentation);
     void
     text(const std::string &name,
-         std::string       &value,
+         std::string &value,
          const std::string &expected,
          const std::string &documentation,
          const std::string &unit = "");
@@ -138,20 +138,20 @@ namespace crawler
 
   private:
     void
-    declare(const std::string                              &name,
-            const std::string                              &default_value,
-            const std::string                              &expected,
+    declare(const std::string &name,
+            const std::string &default_value,
+            const std::string &expected,
             const std::function<bool(const std::string &)> &match,
             const std::function<void(const std::string &)> &assign,
-            const std::string                              &documentation,
-            const std::string                              &unit);
+            const std::string &documentation,
+            const std::string &unit);
     std::string
     path_of(const std::string &name) const;
 
     std::unique_ptr<dealii::ParameterHandler> handler_;
-    std::vector<std::string>                  section_; ///< where declarations go at present
-    std::vector<EntryInfo>                    entries_;
-    std::vector<std::string>                  sections_;
+    std::vector<std::string> section_; ///< where declarations go at present
+    std::vector<EntryInfo> entries_;
+    std::vector<std::string> sections_;
   };
 
   /// The words of a path: "A/B/c" -> {"A", "B", "c"}, without blanks around them.

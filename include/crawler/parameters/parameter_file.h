@@ -72,8 +72,8 @@ namespace crawler
     void
     parse(const std::string &text, const std::string &name, unsigned int depth);
 
-    std::string              name_;
-    std::string              text_;
+    std::string name_;
+    std::string text_;
     std::vector<std::string> overrides_;
 
     struct Section
@@ -81,6 +81,6 @@ namespace crawler
       std::string path, place;
     };
     std::vector<Assignment> assignments_;
-    std::vector<Section>    sections_;
+    std::vector<Section> sections_;
   };
 } // namespace crawler

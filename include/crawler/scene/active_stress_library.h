@@ -10,9 +10,9 @@ namespace crawler
   /// Section "Active stress": the generator's name, and the section of each generator.
   struct ActiveStressParameters
   {
-    std::string           generator = "optimal wave";
+    std::string generator = "optimal wave";
     OptimalWaveParameters optimal_wave;
-    ExpressionParameters  expression;
+    ExpressionParameters expression;
 
     void
     add_parameters(Declarations &declarations);

@@ -20,9 +20,7 @@ namespace crawler
 
     /// g and its derivative dg/dw at all stretches @p w (spans of one length).
     virtual void
-    values_and_derivatives(std::span<const double> w,
-                           std::span<double>       g,
-                           std::span<double>       dg) const = 0;
+    values_and_derivatives(std::span<const double> w, std::span<double> g, std::span<double> dg) const = 0;
   };
 
   /// The p-model of Santhosh and Serra, Phys. Rev. E 106, 024610 (2022): g(w) = gamma w^a, a = 1 - p.
@@ -35,13 +33,11 @@ namespace crawler
     void
     values(std::span<const double> w, std::span<double> g) const override;
     void
-    values_and_derivatives(std::span<const double> w,
-                           std::span<double>       g,
-                           std::span<double>       dg) const override;
+    values_and_derivatives(std::span<const double> w, std::span<double> g, std::span<double> dg) const override;
 
   private:
     const double gamma_;
     const double a_;
-    const bool   a_is_small_integer_; ///< then powers are products, which are much cheaper than pow()
+    const bool a_is_small_integer_; ///< then powers are products, which are much cheaper than pow()
   };
 } // namespace crawler

@@ -12,9 +12,9 @@ namespace crawler
   /// The physical problem: a body on the ground, what drives it, and for how long. No numerics.
   struct Scene
   {
-    Body                                body;
-    std::unique_ptr<const FrictionLaw>  friction;
+    Body body;
+    std::unique_ptr<const FrictionLaw> friction;
     std::unique_ptr<const ActiveStress> active_stress;
-    double                              end_time; ///< T [time]
+    double end_time; ///< T [time]
   };
 } // namespace crawler

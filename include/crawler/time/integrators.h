@@ -9,11 +9,11 @@ namespace crawler
   /// A time integrator that users can name.
   struct Integrator
   {
-    std::string  name;       ///< the word in the parameter file
-    std::string  petsc_type; ///< TSType
-    std::string  subtype;    ///< of arkimex
-    unsigned int order;      ///< nominal order; 0: the entry "Order" decides (bdf)
-    bool         adaptive;   ///< has an error estimate
+    std::string name;       ///< the word in the parameter file
+    std::string petsc_type; ///< TSType
+    std::string subtype;    ///< of arkimex
+    unsigned int order;     ///< nominal order; 0: the entry "Order" decides (bdf)
+    bool adaptive;          ///< has an error estimate
   };
 
   /// All integrators that are offered: each reaches its nominal order on M(u) u' = f (tests/convergence).
@@ -24,8 +24,8 @@ namespace crawler
   const Integrator &
   integrator(const std::string &name);
 
-  /// Why an integrator of PETSc (the word of `-ts_type`, or "arkimex TYPE") must not be used for a mass matrix that
-  /// depends on the state; empty if nothing is known against it.
+  /// Why an integrator of PETSc (the word of `-ts_type`, "arkimex TYPE" or "theta endpoint") must not be used for a
+  /// mass matrix that depends on the state; empty for those that are offered. What was not tried is refused too.
   std::string
   reason_against(const std::string &petsc_name);
 } // namespace crawler

@@ -11,13 +11,13 @@ namespace crawler
   /// Section "Time"; what is left empty is chosen from the wanted accuracy.
   struct TimeParameters
   {
-    double                end_time      = 1.;
-    std::string           integrator    = "bdf";
-    unsigned int          order         = 5;
-    std::string           step_control  = "adaptive";
+    double end_time          = 1.;
+    std::string integrator   = "bdf";
+    unsigned int order       = 5;
+    std::string step_control = "adaptive";
     std::optional<double> tolerance;    ///< absolute, in the displacement [length]
     std::optional<double> initial_step; ///< [time]
-    unsigned int          max_steps = 100000000;
+    unsigned int max_steps = 100000000;
 
     std::string petsc_prefix; ///< of PETSc's options; not an entry of the file
 

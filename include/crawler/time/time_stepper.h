@@ -16,11 +16,11 @@ namespace crawler
   /// An accepted step, as the monitor sees it.
   struct Step
   {
-    double        time;
-    double        size; ///< 0 for the initial state
-    unsigned int  number;
-    bool          is_frame; ///< the time is one of the times that were asked for, exactly
-    unsigned int  rejected; ///< rejected steps so far
+    double time;
+    double size; ///< 0 for the initial state
+    unsigned int number;
+    bool is_frame;         ///< the time is one of the times that were asked for, exactly
+    unsigned int rejected; ///< rejected steps so far
     unsigned long newton_iterations;
   };
 
@@ -28,13 +28,13 @@ namespace crawler
   struct TimeOutcome
   {
     /// finished, stopped (by the monitor or the step limit) or failed
-    std::string   status;
-    std::string   reason; ///< one of the names of doc/user_guide.md, empty if finished
-    std::string   message;
-    bool          domain_error = false; ///< failed because implicit_function refused every state tried
-    double        time         = 0.;    ///< of the last accepted state
-    double        step_size    = 0.;    ///< that was tried last
-    unsigned int  steps = 0, rejected_steps = 0;
+    std::string status;
+    std::string reason; ///< one of the names of doc/user_guide.md, empty if finished
+    std::string message;
+    bool domain_error  = false; ///< failed because implicit_function refused every state tried
+    double time        = 0.;    ///< of the last accepted state
+    double step_size   = 0.;    ///< that was tried last
+    unsigned int steps = 0, rejected_steps = 0;
     unsigned long newton_iterations = 0, linear_iterations = 0;
   };
 
@@ -56,12 +56,13 @@ namespace crawler
     using Vector      = std::span<double>;
     using ConstVector = std::span<const double>;
 
-    /// residual = F(t, y, y_dot); false refuses the state (outside of the domain of F): the step is tried again smaller.
+    /// residual = F(t, y, y_dot); false refuses the state (outside of the domain of F): the step is tried again
+    /// smaller.
     std::function<bool(double t, ConstVector y, ConstVector y_dot, Vector residual)> implicit_function;
     /// Prepares dF/dy + alpha dF/dy_dot for the two functions below; false if it is singular.
     std::function<bool(double t, ConstVector y, ConstVector y_dot, double alpha)> setup_jacobian;
-    std::function<void(ConstVector source, Vector destination)>                  solve_with_jacobian;
-    std::function<void(ConstVector source, Vector destination)>                  jacobian_vmult;
+    std::function<void(ConstVector source, Vector destination)> solve_with_jacobian;
+    std::function<void(ConstVector source, Vector destination)> jacobian_vmult;
     /// Sees the initial state and each accepted one; false stops the integration.
     std::function<bool(const Step &step, ConstVector y)> monitor;
 

@@ -24,18 +24,42 @@ namespace crawler
     class FormulaAtPoints : public ActiveStressAtPoints
     {
     public:
-      FormulaAtPoints(const std::string                                 &formula,
+      FormulaAtPoints(const std::string &formula,
                       const std::vector<std::pair<std::string, double>> &constants,
-                      std::vector<double>                                points)
+                      std::vector<double> points)
         : points_(std::move(points))
       {
         // What users of formulas expect besides muParser's own functions.
-        parser_.DefineFun("pow", [](const double x, const double y) { return std::pow(x, y); });
-        parser_.DefineFun("floor", [](const double x) { return std::floor(x); });
-        parser_.DefineFun("ceil", [](const double x) { return std::ceil(x); });
-        parser_.DefineFun("mod", [](const double x, const double y) { return x - y * std::floor(x / y); });
-        parser_.DefineFun("erf", [](const double x) { return std::erf(x); });
-        parser_.DefineFun("erfc", [](const double x) { return std::erfc(x); });
+        parser_.DefineFun("pow",
+                          [](const double x, const double y)
+                          {
+                            return std::pow(x, y);
+                          });
+        parser_.DefineFun("floor",
+                          [](const double x)
+                          {
+                            return std::floor(x);
+                          });
+        parser_.DefineFun("ceil",
+                          [](const double x)
+                          {
+                            return std::ceil(x);
+                          });
+        parser_.DefineFun("mod",
+                          [](const double x, const double y)
+                          {
+                            return x - y * std::floor(x / y);
+                          });
+        parser_.DefineFun("erf",
+                          [](const double x)
+                          {
+                            return std::erf(x);
+                          });
+        parser_.DefineFun("erfc",
+                          [](const double x)
+                          {
+                            return std::erfc(x);
+                          });
         for (const auto &[name, value] : constants)
           parser_.DefineConst(name, value);
         parser_.DefineVar("s", &s_);
@@ -49,16 +73,16 @@ namespace crawler
       {
         t_ = t;
         for (std::size_t i = 0; i < points_.size(); ++i)
-          {
-            s_   = points_[i];
-            m[i] = parser_.Eval();
-          }
+        {
+          s_   = points_[i];
+          m[i] = parser_.Eval();
+        }
       }
 
     private:
       std::vector<double> points_;
-      double              s_ = 0., t_ = 0.;
-      mu::Parser          parser_;
+      double s_ = 0., t_ = 0.;
+      mu::Parser parser_;
     };
 
     /// What muParser has against a formula, as one sentence with a position that counts from 1.
@@ -74,15 +98,16 @@ namespace crawler
       while (!problem.empty() && (problem.back() == '.' || problem.back() == '!'))
         problem.pop_back();
       const std::string token = error.GetToken();
-      if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty() && std::isalpha(static_cast<unsigned char>(token[0])))
-        {
-          const auto near = nearest_names(token,
-                                          {"s",    "t",    "L",    "T",    "pi",   "sin",  "cos", "tan", "asin", "acos", "atan",
-                                           "sinh", "cosh", "tanh", "exp",  "log",  "sqrt", "abs", "sign", "min", "max",  "pow",
-                                           "mod",  "floor", "ceil", "erf", "erfc"},
-                                          1);
-          problem += near.empty() ? "" : "; the nearest name is " + quoted_list(near);
-        }
+      if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty() &&
+          std::isalpha(static_cast<unsigned char>(token[0])))
+      {
+        const auto near = nearest_names(token,
+                                        {"s",    "t",    "L",    "T",    "pi",   "sin",   "cos",  "tan",  "asin",
+                                         "acos", "atan", "sinh", "cosh", "tanh", "exp",   "log",  "sqrt", "abs",
+                                         "sign", "min",  "max",  "pow",  "mod",  "floor", "ceil", "erf",  "erfc"},
+                                        1);
+        problem += near.empty() ? "" : "; the nearest name is " + quoted_list(near);
+      }
       return fmt::format("error in the formula \"{}\" at position {}: {}",
                          formula,
                          std::min<std::size_t>(error.GetPos(), formula.size()) + 1,
@@ -95,55 +120,61 @@ namespace crawler
     {
       int depth = 0;
       for (std::size_t i = 0; i < formula.size(); ++i)
-        {
-          const char c = formula[i], before = i > 0 ? formula[i - 1] : ' ', after = i + 1 < formula.size() ? formula[i + 1] : ' ';
-          depth += (c == '(') - (c == ')');
-          if (c == ',' && depth == 0)
-            throw InputError(fmt::format("error in the formula \"{}\" at position {}: one formula is expected, but there are "
-                                         "several, separated by a comma",
-                                         formula,
-                                         i + 1),
-                             formula_entry);
-          if (c == '=' && after != '=' && std::string("=<>!").find(before) == std::string::npos)
-            throw InputError(fmt::format("error in the formula \"{}\" at position {}: \"=\" is found, but \"==\" is expected "
-                                         "for a comparison",
-                                         formula,
-                                         i + 1),
-                             formula_entry);
-        }
+      {
+        const char c = formula[i], before = i > 0 ? formula[i - 1] : ' ',
+                   after = i + 1 < formula.size() ? formula[i + 1] : ' ';
+        depth += (c == '(') - (c == ')');
+        if (c == ',' && depth == 0)
+          throw InputError(
+            fmt::format("error in the formula \"{}\" at position {}: one formula is expected, but there are "
+                        "several, separated by a comma",
+                        formula,
+                        i + 1),
+            formula_entry);
+        if (c == '=' && after != '=' && std::string("=<>!").find(before) == std::string::npos)
+          throw InputError(
+            fmt::format("error in the formula \"{}\" at position {}: \"=\" is found, but \"==\" is expected "
+                        "for a comparison",
+                        formula,
+                        i + 1),
+            formula_entry);
+      }
     }
 
     std::vector<std::pair<std::string, double>>
     parse_constants(const std::string &text, const double length, const double end_time)
     {
-      std::vector<std::pair<std::string, double>> constants = {{"pi", std::numbers::pi},
-                                                               {"L", length},
-                                                               {"T", end_time}};
+      std::vector<std::pair<std::string, double>> constants = {
+        {"pi", std::numbers::pi}, {"L", length}, {"T", end_time}};
       if (trimmed(text).empty())
         return constants;
       std::istringstream in(text + ",");
-      std::string        item;
+      std::string item;
       while (std::getline(in, item, ','))
-        {
-          const auto        equals = item.find('=');
-          const std::string name   = trimmed(item.substr(0, equals));
-          const auto value = equals == std::string::npos ? std::nullopt : to_number(trimmed(item.substr(equals + 1)));
-          const bool is_name =
-            !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) &&
-            std::all_of(name.begin(), name.end(), [](const unsigned char c) { return std::isalnum(c) || c == '_'; });
-          if (!is_name || !value)
-            throw InputError(fmt::format("found \"{}\" among the constants of the formula, but \"name=number, "
-                                         "name=number, ...\" is expected",
-                                         trimmed(item)),
-                             constants_entry);
-          if (name == "s" || name == "t")
-            throw InputError(fmt::format("\"{}\" is a variable of the formula and cannot be a constant", name),
-                             constants_entry);
-          for (const auto &[other, ignored] : constants)
-            if (other == name)
-              throw InputError(fmt::format("the constant \"{}\" is already defined", name), constants_entry);
-          constants.emplace_back(name, *value);
-        }
+      {
+        const auto equals      = item.find('=');
+        const std::string name = trimmed(item.substr(0, equals));
+        const auto value   = equals == std::string::npos ? std::nullopt : to_number(trimmed(item.substr(equals + 1)));
+        const bool is_name = !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) &&
+                             std::all_of(name.begin(),
+                                         name.end(),
+                                         [](const unsigned char c)
+                                         {
+                                           return std::isalnum(c) || c == '_';
+                                         });
+        if (!is_name || !value)
+          throw InputError(fmt::format("found \"{}\" among the constants of the formula, but \"name=number, "
+                                       "name=number, ...\" is expected",
+                                       trimmed(item)),
+                           constants_entry);
+        if (name == "s" || name == "t")
+          throw InputError(fmt::format("\"{}\" is a variable of the formula and cannot be a constant", name),
+                           constants_entry);
+        for (const auto &[other, ignored] : constants)
+          if (other == name)
+            throw InputError(fmt::format("the constant \"{}\" is already defined", name), constants_entry);
+        constants.emplace_back(name, *value);
+      }
       return constants;
     }
   } // namespace
@@ -160,16 +191,11 @@ namespace crawler
                       "and T (end time) are known, and sin, cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, "
                       "sign, min, max, pow, mod, floor, ceil, erf, erfc, ^, comparisons and a ? b : c.",
                       "force");
-    declarations.text("Constants",
-                      constants,
-                      "name=number, name=number, ...",
-                      "Constants that the formula may use.");
+    declarations.text("Constants", constants, "a list name=number, name=number", "Constants that the formula may use.");
     declarations.leave();
   }
 
-  Expression::Expression(const ExpressionParameters &parameters,
-                         const double                length,
-                         const double                end_time)
+  Expression::Expression(const ExpressionParameters &parameters, const double length, const double end_time)
     : formula_(parameters.active_stress)
     , constants_(parse_constants(parameters.constants, length, end_time))
   {
@@ -178,30 +204,30 @@ namespace crawler
                        formula_entry);
     require_one_value(formula_);
     constexpr unsigned int n = 16;
-    std::vector<double>    points(n + 1), m(n + 1);
+    std::vector<double> points(n + 1), m(n + 1);
     for (unsigned int i = 0; i <= n; ++i)
       points[i] = length * i / n;
     try
+    {
+      const auto at_points = at(points);
+      for (unsigned int j = 0; j <= n; ++j)
       {
-        const auto at_points = at(points);
-        for (unsigned int j = 0; j <= n; ++j)
-          {
-            const double t = end_time * j / n;
-            at_points->values(t, m);
-            for (unsigned int i = 0; i <= n; ++i)
-              if (!std::isfinite(m[i]))
-                throw InputError(fmt::format("the formula \"{}\" gives {} at s = {}, t = {}; a finite number is expected",
-                                             formula_,
-                                             m[i],
-                                             points[i],
-                                             t),
-                                 formula_entry);
-          }
+        const double t = end_time * j / n;
+        at_points->values(t, m);
+        for (unsigned int i = 0; i <= n; ++i)
+          if (!std::isfinite(m[i]))
+            throw InputError(fmt::format("the formula \"{}\" gives {} at s = {}, t = {}; a finite number is expected",
+                                         formula_,
+                                         m[i],
+                                         points[i],
+                                         t),
+                             formula_entry);
       }
+    }
     catch (const mu::ParserError &error)
-      {
-        throw InputError(in_words(error, formula_), formula_entry);
-      }
+    {
+      throw InputError(in_words(error, formula_), formula_entry);
+    }
   }
 
   std::unique_ptr<ActiveStressAtPoints>

@@ -19,34 +19,31 @@ namespace crawler
     /// One harmonic; the parts that depend on s are computed once.
     struct Harmonic
     {
-      double              q, a, b;
+      double q, a, b;
       std::vector<double> sine, cosine; ///< of q s at the points
     };
 
     class WaveAtPoints : public ActiveStressAtPoints
     {
     public:
-      WaveAtPoints(const std::vector<double> &points,
-                   const WaveShape           &shape,
-                   const Body                &body,
-                   const double               chi,
-                   const double               c)
+      WaveAtPoints(
+        const std::vector<double> &points, const WaveShape &shape, const Body &body, const double chi, const double c)
         : body_(body)
         , chi_(chi)
         , c_(c)
       {
         for (unsigned int n = 1; n <= shape.a.size(); ++n)
+        {
+          if (shape.power(n) == 0.)
+            continue;
+          Harmonic harmonic{2. * std::numbers::pi * n / body.length, shape.a[n - 1], shape.b[n - 1], {}, {}};
+          for (const double s : points)
           {
-            if (shape.power(n) == 0.)
-              continue;
-            Harmonic harmonic{2. * std::numbers::pi * n / body.length, shape.a[n - 1], shape.b[n - 1], {}, {}};
-            for (const double s : points)
-              {
-                harmonic.sine.push_back(std::sin(harmonic.q * s));
-                harmonic.cosine.push_back(std::cos(harmonic.q * s));
-              }
-            harmonics_.push_back(std::move(harmonic));
+            harmonic.sine.push_back(std::sin(harmonic.q * s));
+            harmonic.cosine.push_back(std::cos(harmonic.q * s));
           }
+          harmonics_.push_back(std::move(harmonic));
+        }
       }
 
       void
@@ -54,24 +51,24 @@ namespace crawler
       {
         std::fill(m.begin(), m.end(), 0.);
         for (const Harmonic &wave : harmonics_)
-          {
-            // The class formula with sin q(s+ct) and cos q(s+ct) expanded: constant + cosine cos qs + sine sin qs.
-            const double theta = wave.q * c_ * t;
-            const double st = std::sin(theta), ct = std::cos(theta);
-            const double half = std::sin(0.5 * theta), ct_minus_1 = -2. * half * half;
-            const double friction = chi_ * body_.friction_coefficient / wave.q;
-            const double elastic  = chi_ * body_.elastic_modulus / c_;
-            const double constant = friction * (wave.a * ct - wave.b * st);
-            const double cosine   = -constant - elastic * (wave.a * st + wave.b * ct_minus_1);
-            const double sine     = friction * (wave.a * st + wave.b * ct) - elastic * (wave.a * ct_minus_1 - wave.b * st);
-            for (std::size_t i = 0; i < m.size(); ++i)
-              m[i] += constant + cosine * wave.cosine[i] + sine * wave.sine[i];
-          }
+        {
+          // The class formula with sin q(s+ct) and cos q(s+ct) expanded: constant + cosine cos qs + sine sin qs.
+          const double theta = wave.q * c_ * t;
+          const double st = std::sin(theta), ct = std::cos(theta);
+          const double half = std::sin(0.5 * theta), ct_minus_1 = -2. * half * half;
+          const double friction = chi_ * body_.friction_coefficient / wave.q;
+          const double elastic  = chi_ * body_.elastic_modulus / c_;
+          const double constant = friction * (wave.a * ct - wave.b * st);
+          const double cosine   = -constant - elastic * (wave.a * st + wave.b * ct_minus_1);
+          const double sine = friction * (wave.a * st + wave.b * ct) - elastic * (wave.a * ct_minus_1 - wave.b * st);
+          for (std::size_t i = 0; i < m.size(); ++i)
+            m[i] += constant + cosine * wave.cosine[i] + sine * wave.sine[i];
+        }
       }
 
     private:
-      const Body            body_;
-      const double          chi_, c_;
+      const Body body_;
+      const double chi_, c_;
       std::vector<Harmonic> harmonics_;
     };
   } // namespace
@@ -158,45 +155,44 @@ namespace crawler
   OptimalWave::choose_by_energy(const OptimalWaveParameters &parameters)
   {
     const bool by_index = parameters.root == "index";
-    roots_ = find_wave_roots(
+    roots_              = find_wave_roots(
       body_, shape_, chi_, end_time_, parameters.energy, by_index ? std::max(25u, parameters.root_index) : 25);
     const auto &list = roots_->roots;
     if (list.empty())
-      throw InputError(
-        fmt::format("no wave spends the energy H = {}; H from the smallest, {}, to below {} is expected",
-                    parameters.energy,
-                    roots_->smallest_energy,
-                    roots_->largest_energy),
-        section + "Energy");
+      throw InputError(fmt::format("no wave spends the energy H = {}; H from the smallest, {}, to below {} is expected",
+                                   parameters.energy,
+                                   roots_->smallest_energy,
+                                   roots_->largest_energy),
+                       section + "Energy");
     if (by_index)
-      {
-        if (parameters.root_index > list.size())
-          throw InputError(fmt::format("Root index is {}, but a whole number from 1 to {} is expected: so many waves "
-                                       "spend the energy H = {}",
-                                       parameters.root_index,
-                                       list.size(),
-                                       parameters.energy),
-                           section + "Root index");
-        chosen_ = parameters.root_index - 1;
-      }
+    {
+      if (parameters.root_index > list.size())
+        throw InputError(fmt::format("Root index is {}, but a whole number from 1 to {} is expected: so many waves "
+                                     "spend the energy H = {}",
+                                     parameters.root_index,
+                                     list.size(),
+                                     parameters.energy),
+                         section + "Root index");
+      chosen_ = parameters.root_index - 1;
+    }
     else
-      {
-        const bool any   = parameters.root == "largest displacement";
-        bool       found = false;
-        for (std::size_t i = 0; i < list.size(); ++i)
-          if ((any || list[i].admissible()) && (!found || list[i].displacement > list[chosen_].displacement))
-            {
-              chosen_ = i;
-              found   = true;
-            }
-        if (!found)
-          throw InputError(fmt::format("Perturbation parameter is {}, but a smaller one is expected: no wave of energy "
-                                       "H = {} ({} in all) is admissible, the leading-order stretch becomes negative",
-                                       parameters.perturbation_parameter,
-                                       parameters.energy,
-                                       list.size()),
-                           section + "Perturbation parameter");
-      }
+    {
+      const bool any = parameters.root == "largest displacement";
+      bool found     = false;
+      for (std::size_t i = 0; i < list.size(); ++i)
+        if ((any || list[i].admissible()) && (!found || list[i].displacement > list[chosen_].displacement))
+        {
+          chosen_ = i;
+          found   = true;
+        }
+      if (!found)
+        throw InputError(fmt::format("Perturbation parameter is {}, but a smaller one is expected: no wave of energy "
+                                     "H = {} ({} in all) is admissible, the leading-order stretch becomes negative",
+                                     parameters.perturbation_parameter,
+                                     parameters.energy,
+                                     list.size()),
+                         section + "Perturbation parameter");
+    }
     wave_ = list[chosen_];
   }
 
@@ -226,24 +222,24 @@ namespace crawler
                        roots_->complete ? "" : fmt::format("; the first {} of more", list.size()));
     // Long lists: the slowest, those around the chosen one, and the last.
     constexpr std::size_t around = 12;
-    bool                  gap    = false;
+    bool gap                     = false;
     for (std::size_t i = 0; i < list.size(); ++i)
-      {
-        const bool shown = list.size() <= 60 || i < around || i + 3 > list.size() ||
-                           (i + around > chosen_ && i < chosen_ + around);
-        if (shown)
-          out << fmt::format("  {:>7}  {:>12.6f}  {:>12.6f}  {:>12.6g}  {:>11.4g}  {:>11.4g}{}{}\n",
-                             i + 1,
-                             list[i].speed,
-                             list[i].multiplier,
-                             list[i].displacement,
-                             list[i].min_stretch,
-                             list[i].max_stretch,
-                             list[i].admissible() ? "" : "  inadmissible",
-                             i == chosen_ ? "  <- chosen" : "");
-        else if (!gap)
-          out << "      ...\n";
-        gap = !shown;
-      }
+    {
+      const bool shown =
+        list.size() <= 60 || i < around || i + 3 > list.size() || (i + around > chosen_ && i < chosen_ + around);
+      if (shown)
+        out << fmt::format("  {:>7}  {:>12.6f}  {:>12.6f}  {:>12.6g}  {:>11.4g}  {:>11.4g}{}{}\n",
+                           i + 1,
+                           list[i].speed,
+                           list[i].multiplier,
+                           list[i].displacement,
+                           list[i].min_stretch,
+                           list[i].max_stretch,
+                           list[i].admissible() ? "" : "  inadmissible",
+                           i == chosen_ ? "  <- chosen" : "");
+      else if (!gap)
+        out << "      ...\n";
+      gap = !shown;
+    }
   }
 } // namespace crawler

@@ -27,10 +27,10 @@ namespace crawler
     {
       double sum = 0.;
       for (unsigned int n = 1; n <= shape.a.size(); ++n)
-        {
-          const double sine = std::sin(pi * n * x);
-          sum += shape.power(n) * sine * sine;
-        }
+      {
+        const double sine = std::sin(pi * n * x);
+        sum += shape.power(n) * sine * sine;
+      }
       return sum;
     }
 
@@ -49,8 +49,8 @@ namespace crawler
     bracketed_root(const Function &f, const double left, const double right)
     {
       std::uintmax_t iterations = 200;
-      const auto     interval   = boost::math::tools::toms748_solve(
-        f, left, right, boost::math::tools::eps_tolerance<double>(52), iterations);
+      const auto interval =
+        boost::math::tools::toms748_solve(f, left, right, boost::math::tools::eps_tolerance<double>(52), iterations);
       return 0.5 * (interval.first + interval.second);
     }
   } // namespace
@@ -69,19 +69,14 @@ namespace crawler
   wave_energy(const Body &body, const WaveShape &shape, const double end_time, const double c)
   {
     return 2. * body.length * body.friction_coefficient * end_time * shape.delta_2() +
-           body.length * body.elastic_modulus / (c * c) *
-             sine_sum(shape, c * end_time / body.length);
+           body.length * body.elastic_modulus / (c * c) * sine_sum(shape, c * end_time / body.length);
   }
 
   WaveRoot
-  describe_wave(const Body      &body,
-                const WaveShape &shape,
-                const double     chi,
-                const double     end_time,
-                const double     c)
+  describe_wave(const Body &body, const WaveShape &shape, const double chi, const double end_time, const double c)
   {
     const double L = body.length, gamma = body.friction_coefficient, a = body.friction_exponent();
-    WaveRoot     root{};
+    WaveRoot root{};
     root.speed      = c;
     root.multiplier = a / (L * gamma * c);
 
@@ -89,36 +84,35 @@ namespace crawler
     double sum = 0.;
     for (unsigned int n = 1; n <= shape.a.size(); ++n)
       sum += std::sin(2. * pi * n * c * end_time / L) * shape.power(n) / n;
-    root.displacement = chi * chi *
-                        (-2. * a * end_time * shape.delta_2() / c + L * a / (4. * pi * c * c) * sum);
+    root.displacement = chi * chi * (-2. * a * end_time * shape.delta_2() / c + L * a / (4. * pi * c * c) * sum);
 
     // strain = (chi/c) ( g(s + c t) - g(s) ),  g(y) = sum a_n sin q_n y + b_n cos q_n y
-    const unsigned int  points = 128 * static_cast<unsigned int>(shape.a.size());
+    const unsigned int points = 128 * static_cast<unsigned int>(shape.a.size());
     std::vector<double> g(points);
     for (unsigned int i = 0; i < points; ++i)
       for (unsigned int n = 1; n <= shape.a.size(); ++n)
-        g[i] += shape.a[n - 1] * std::sin(2. * pi * n * i / points) +
-                shape.b[n - 1] * std::cos(2. * pi * n * i / points);
-    double       smallest = 0., largest = 0.;
+        g[i] +=
+          shape.a[n - 1] * std::sin(2. * pi * n * i / points) + shape.b[n - 1] * std::cos(2. * pi * n * i / points);
+    double smallest = 0., largest = 0.;
     const double travelled = std::abs(c) * end_time / L;
     if (travelled >= 1.)
-      {
-        const auto [low, high] = std::minmax_element(g.begin(), g.end());
-        smallest               = *low - *high;
-        largest                = *high - *low;
-      }
+    {
+      const auto [low, high] = std::minmax_element(g.begin(), g.end());
+      smallest               = *low - *high;
+      largest                = *high - *low;
+    }
     else
-      {
-        const auto window = static_cast<int>(travelled * points);
-        for (int i = 0; i < static_cast<int>(points); ++i)
-          for (int j = 0; j <= window; ++j)
-            {
-              const int    shifted = ((c > 0 ? i + j : i - j) + static_cast<int>(points)) % static_cast<int>(points);
-              const double change  = g[shifted] - g[i];
-              smallest             = std::min(smallest, change);
-              largest              = std::max(largest, change);
-            }
-      }
+    {
+      const auto window = static_cast<int>(travelled * points);
+      for (int i = 0; i < static_cast<int>(points); ++i)
+        for (int j = 0; j <= window; ++j)
+        {
+          const int shifted   = ((c > 0 ? i + j : i - j) + static_cast<int>(points)) % static_cast<int>(points);
+          const double change = g[shifted] - g[i];
+          smallest            = std::min(smallest, change);
+          largest             = std::max(largest, change);
+        }
+    }
     const double factor = chi / c;
     root.min_stretch    = 1. + std::min(factor * smallest, factor * largest);
     root.max_stretch    = 1. + std::max(factor * smallest, factor * largest);
@@ -126,27 +120,27 @@ namespace crawler
   }
 
   WaveRoots
-  find_wave_roots(const Body        &body,
-                  const WaveShape   &shape,
-                  const double       chi,
-                  const double       end_time,
-                  const double       energy,
+  find_wave_roots(const Body &body,
+                  const WaveShape &shape,
+                  const double chi,
+                  const double end_time,
+                  const double energy,
                   const unsigned int at_least)
   {
     const double L = body.length, gamma = body.friction_coefficient, k = body.elastic_modulus;
-    const double sign = body.friction_exponent() > 0 ? -1. : 1.; // the direction that moves the body to +s
-    const auto   n_harmonics = static_cast<unsigned int>(shape.a.size());
+    const double sign      = body.friction_exponent() > 0 ? -1. : 1.; // the direction that moves the body to +s
+    const auto n_harmonics = static_cast<unsigned int>(shape.a.size());
 
     WaveRoots result{};
     result.smallest_energy = 2. * L * gamma * end_time * shape.delta_2();
-    double       slope     = 0.; // lim S(x)/x^2 for x -> 0
+    double slope           = 0.; // lim S(x)/x^2 for x -> 0
     unsigned int common    = 0;  // greatest common divisor of the harmonics present
     for (unsigned int n = 1; n <= n_harmonics; ++n)
       if (shape.power(n) > 0.)
-        {
-          slope += pi * pi * n * n * shape.power(n);
-          common = std::gcd(common, n);
-        }
+      {
+        slope += pi * pi * n * n * shape.power(n);
+        common = std::gcd(common, n);
+      }
     result.largest_energy = result.smallest_energy + k * end_time * end_time / L * slope;
     const double h        = (energy - result.smallest_energy) * L / (k * end_time * end_time);
     result.double_roots   = std::abs(energy - result.smallest_energy) <= 1e-12 * result.smallest_energy;
@@ -155,32 +149,40 @@ namespace crawler
       return result;
 
     unsigned int admissible = 0;
-    const auto   enough     = [&]() {
-      return result.roots.size() >= most_roots ||
-             (result.roots.size() >= at_least && admissible >= 10);
+    const auto enough       = [&]()
+    {
+      return result.roots.size() >= most_roots || (result.roots.size() >= at_least && admissible >= 10);
     };
-    const auto add = [&](const double x) {
+    const auto add = [&](const double x)
+    {
       result.roots.push_back(describe_wave(body, shape, chi, end_time, sign * x * L / end_time));
       admissible += result.roots.back().admissible();
     };
 
     if (result.double_roots)
-      {
-        result.complete = false;
-        for (unsigned int j = 1; !enough(); ++j)
-          add(static_cast<double>(j) / common);
-        return result;
-      }
+    {
+      result.complete = false;
+      for (unsigned int j = 1; !enough(); ++j)
+        add(static_cast<double>(j) / common);
+      return result;
+    }
 
     // Between the critical points of f(x) = h x^2 - S(x) there is at most one root.
-    const auto   f          = [&](const double x) { return h * x * x - sine_sum(shape, x); };
-    const auto   derivative = [&](const double x) { return 2. * h * x - sine_sum_derivative(shape, x); };
-    const double total      = 4. * shape.delta_2();
-    const double last       = std::sqrt(total / h) * (1. + 1e-12); // S <= total
-    const double step       = 1. / (32. * n_harmonics);
-    const bool   list_all   = 2. * n_harmonics * last <= few_roots;
-    double       previous   = 1e-6 / n_harmonics; // leaves the trivial root x = 0 out
-    const auto   look_until = [&](const double next) {
+    const auto f = [&](const double x)
+    {
+      return h * x * x - sine_sum(shape, x);
+    };
+    const auto derivative = [&](const double x)
+    {
+      return 2. * h * x - sine_sum_derivative(shape, x);
+    };
+    const double total    = 4. * shape.delta_2();
+    const double last     = std::sqrt(total / h) * (1. + 1e-12); // S <= total
+    const double step     = 1. / (32. * n_harmonics);
+    const bool list_all   = 2. * n_harmonics * last <= few_roots;
+    double previous       = 1e-6 / n_harmonics; // leaves the trivial root x = 0 out
+    const auto look_until = [&](const double next)
+    {
       if (f(previous) == 0.)
         add(previous);
       else if (f(previous) * f(next) < 0.)
@@ -188,25 +190,25 @@ namespace crawler
       previous = next;
     };
     for (double x = previous; x < last; x += step)
+    {
+      if (!list_all && enough())
       {
-        if (!list_all && enough())
-          {
-            result.complete = false;
-            break;
-          }
-        const double right = std::min(x + step, last);
-        if (derivative(x) * derivative(right) < 0.)
-          {
-            const double critical = bracketed_root(derivative, x, right);
-            if (std::abs(f(critical)) <= 1e-14 * total)
-              {
-                add(critical);
-                previous = critical + 1e-9 * step;
-              }
-            else
-              look_until(critical);
-          }
+        result.complete = false;
+        break;
       }
+      const double right = std::min(x + step, last);
+      if (derivative(x) * derivative(right) < 0.)
+      {
+        const double critical = bracketed_root(derivative, x, right);
+        if (std::abs(f(critical)) <= 1e-14 * total)
+        {
+          add(critical);
+          previous = critical + 1e-9 * step;
+        }
+        else
+          look_until(critical);
+      }
+    }
     if (result.complete)
       look_until(last);
     return result;

@@ -45,42 +45,43 @@ TEST(ChainMatrix, AgreesWithADenseMatrix)
 {
   for (const unsigned int q : {1u, 2u, 3u, 5u, 8u})
     for (const unsigned int n_cells : {1u, 2u, 3u, 7u, 20u})
-      {
-        const Discretization d(MPI_COMM_WORLD, 1., n_cells, q);
-        ChainMatrix          matrix(d);
-        const auto           first_cell = static_cast<std::size_t>(d.n_local_cells() == 0 ? 0 : std::lround(d.cell_left()[0] * n_cells));
-        fill(matrix, d, first_cell);
+    {
+      const Discretization d(MPI_COMM_WORLD, 1., n_cells, q);
+      ChainMatrix matrix(d);
+      const auto first_cell =
+        static_cast<std::size_t>(d.n_local_cells() == 0 ? 0 : std::lround(d.cell_left()[0] * n_cells));
+      fill(matrix, d, first_cell);
 
-        const unsigned int         N = n_cells * q + 1;
-        dealii::FullMatrix<double> dense(N, N);
-        for (unsigned int c = 0; c < n_cells; ++c)
-          for (unsigned int i = 0; i <= q; ++i)
-            for (unsigned int j = 0; j <= q; ++j)
-              dense(c * q + i, c * q + j) += entry(c, i, j, q + 1);
-        dealii::Vector<double> x(N), b(N);
-        for (unsigned int i = 0; i < N; ++i)
-          x(i) = scattered(1000 + i);
-        dense.vmult(b, x);
+      const unsigned int N = n_cells * q + 1;
+      dealii::FullMatrix<double> dense(N, N);
+      for (unsigned int c = 0; c < n_cells; ++c)
+        for (unsigned int i = 0; i <= q; ++i)
+          for (unsigned int j = 0; j <= q; ++j)
+            dense(c * q + i, c * q + j) += entry(c, i, j, q + 1);
+      dealii::Vector<double> x(N), b(N);
+      for (unsigned int i = 0; i < N; ++i)
+        x(i) = scattered(1000 + i);
+      dense.vmult(b, x);
 
-        const std::size_t   first = first_cell * q + (d.has_left_neighbour() ? 1 : 0);
-        std::vector<double> own(d.n_owned()), result(d.n_owned());
-        for (std::size_t i = 0; i < own.size(); ++i)
-          own[i] = x(first + i);
-        matrix.multiply(own, result);
-        for (std::size_t i = 0; i < own.size(); ++i)
-          EXPECT_NEAR(result[i], b(first + i), 1e-12 * N) << "multiply, degree " << q << ", cells " << n_cells;
+      const std::size_t first = first_cell * q + (d.has_left_neighbour() ? 1 : 0);
+      std::vector<double> own(d.n_owned()), result(d.n_owned());
+      for (std::size_t i = 0; i < own.size(); ++i)
+        own[i] = x(first + i);
+      matrix.multiply(own, result);
+      for (std::size_t i = 0; i < own.size(); ++i)
+        EXPECT_NEAR(result[i], b(first + i), 1e-12 * N) << "multiply, degree " << q << ", cells " << n_cells;
 
-        ASSERT_TRUE(matrix.factorize());
-        matrix.solve(result, result);
-        for (std::size_t i = 0; i < own.size(); ++i)
-          EXPECT_NEAR(result[i], x(first + i), 1e-12) << "solve, degree " << q << ", cells " << n_cells;
-      }
+      ASSERT_TRUE(matrix.factorize());
+      matrix.solve(result, result);
+      for (std::size_t i = 0; i < own.size(); ++i)
+        EXPECT_NEAR(result[i], x(first + i), 1e-12) << "solve, degree " << q << ", cells " << n_cells;
+    }
 }
 
 TEST(ChainMatrix, ReportsASingularMatrix)
 {
   const Discretization d(MPI_COMM_WORLD, 1., 6, 3);
-  ChainMatrix          matrix(d);
+  ChainMatrix matrix(d);
   EXPECT_FALSE(matrix.factorize()); // all zeros
   fill(matrix, d, 0);
   if (d.rank() == 0)
@@ -91,11 +92,11 @@ TEST(ChainMatrix, ReportsASingularMatrix)
 TEST(Discretization, CellsAndUnknownsAreShared)
 {
   for (const unsigned int n_cells : {1u, 2u, 10u})
-    {
-      const Discretization d(MPI_COMM_WORLD, 3., n_cells, 4);
-      EXPECT_EQ(dealii::Utilities::MPI::sum(d.n_local_cells(), MPI_COMM_WORLD), n_cells);
-      EXPECT_EQ(dealii::Utilities::MPI::sum(static_cast<unsigned int>(d.n_owned()), MPI_COMM_WORLD), d.n_unknowns());
-      for (const double h : d.cell_size())
-        EXPECT_NEAR(h, 3. / n_cells, 1e-14);
-    }
+  {
+    const Discretization d(MPI_COMM_WORLD, 3., n_cells, 4);
+    EXPECT_EQ(dealii::Utilities::MPI::sum(d.n_local_cells(), MPI_COMM_WORLD), n_cells);
+    EXPECT_EQ(dealii::Utilities::MPI::sum(static_cast<unsigned int>(d.n_owned()), MPI_COMM_WORLD), d.n_unknowns());
+    for (const double h : d.cell_size())
+      EXPECT_NEAR(h, 3. / n_cells, 1e-14);
+  }
 }

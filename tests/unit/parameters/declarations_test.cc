@@ -13,11 +13,11 @@ namespace
 {
   struct Example
   {
-    double                      length = 1.;
+    double length = 1.;
     std::optional<unsigned int> cells;
-    std::vector<double>         list = {1., 2.};
-    std::string                 word = "yes";
-    Declarations                declarations;
+    std::vector<double> list = {1., 2.};
+    std::string word         = "yes";
+    Declarations declarations;
 
     Example()
     {
@@ -34,13 +34,13 @@ namespace
   error_of(Example &example, const std::string &path, const std::string &value)
   {
     try
-      {
-        example.declarations.set(path, value);
-      }
+    {
+      example.declarations.set(path, value);
+    }
     catch (const InputError &error)
-      {
-        return error.what();
-      }
+    {
+      return error.what();
+    }
     return "";
   }
 } // namespace
@@ -64,7 +64,8 @@ TEST(Declarations, RefusesValuesOutOfRange)
 {
   Example example;
   for (const char *value : {"0", "-1", "nan", "inf", "1e999", "2x", "", "0x10", "1,5"})
-    EXPECT_NE(error_of(example, "Body/Length", value).find("a positive number is expected"), std::string::npos) << value;
+    EXPECT_NE(error_of(example, "Body/Length", value).find("a positive number is expected"), std::string::npos)
+      << value;
   for (const char *value : {"0", "11", "-1", "2.5", "99999999999999999999"})
     EXPECT_NE(error_of(example, "Body/Cells", value).find("from 1 to 10"), std::string::npos) << value;
   for (const char *value : {"", "1,", "1,,2", "a"})
@@ -82,22 +83,23 @@ TEST(Declarations, NamesTheNearestEntry)
 
 TEST(Declarations, PrintsAllEntries)
 {
-  Example            example;
+  Example example;
   std::ostringstream prm, json, markdown;
   example.declarations.print_prm(prm);
   example.declarations.print_json(json);
   example.declarations.print_markdown(markdown);
   for (const char *name : {"Length", "Cells", "List", "Word"})
-    {
-      EXPECT_NE(prm.str().find(name), std::string::npos);
-      EXPECT_NE(json.str().find(name), std::string::npos);
-      EXPECT_NE(markdown.str().find(name), std::string::npos);
-    }
+  {
+    EXPECT_NE(prm.str().find(name), std::string::npos);
+    EXPECT_NE(json.str().find(name), std::string::npos);
+    EXPECT_NE(markdown.str().find(name), std::string::npos);
+  }
 }
 
 TEST(NearestName, RanksByDistance)
 {
-  EXPECT_EQ(nearest_names("anchoring exponet", {"Length", "Anchoring exponent", "Energy"}).front(), "Anchoring exponent");
+  EXPECT_EQ(nearest_names("anchoring exponet", {"Length", "Anchoring exponent", "Energy"}).front(),
+            "Anchoring exponent");
   EXPECT_TRUE(nearest_names("zzzzzzzz", {"Length", "Energy"}).empty());
   EXPECT_EQ(quoted_list({"a", "b", "c"}), "\"a\", \"b\" or \"c\"");
 }

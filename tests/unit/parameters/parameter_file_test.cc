@@ -15,7 +15,7 @@ namespace
     ParameterFile file = ParameterFile::from_text(text, "file.prm");
     for (const auto &assignment : overrides)
       file.add_override(assignment);
-    Parameters   parameters;
+    Parameters parameters;
     Declarations declarations;
     parameters.add_parameters(declarations);
     file.apply(declarations);
@@ -26,13 +26,13 @@ namespace
   error_of(const std::string &text)
   {
     try
-      {
-        read(text);
-      }
+    {
+      read(text);
+    }
     catch (const InputError &error)
-      {
-        return error.what();
-      }
+    {
+      return error.what();
+    }
     return "";
   }
 } // namespace

@@ -36,29 +36,29 @@ TEST(OptimalWave, IsTheFormulaOfThePaper)
   parameters.choose_wave_by         = "wave speed";
   parameters.wave_speed             = -1.3;
   const std::vector<double> points  = {0., 0.3, 1.1, 2.};
-  const double              c       = parameters.wave_speed;
-  const OptimalWave         wave(parameters, body, 1.);
+  const double c                    = parameters.wave_speed;
+  const OptimalWave wave(parameters, body, 1.);
   for (const double t : {0., 0.2, 1.7, 250.})
+  {
+    const auto m = evaluate(wave, points, t);
+    for (std::size_t i = 0; i < points.size(); ++i)
     {
-      const auto m = evaluate(wave, points, t);
-      for (std::size_t i = 0; i < points.size(); ++i)
-        {
-          double       expected = 0.;
-          const double s        = points[i];
-          for (int n = 1; n <= 3; ++n)
-            {
-              const double a = parameters.sine_coefficients[n - 1], b = parameters.cosine_coefficients[n - 1];
-              const double q = 2. * std::numbers::pi * n / body.length;
-              expected += body.friction_coefficient / q *
-                            (a * (std::cos(q * c * t) - std::cos(q * (s + c * t))) +
-                             b * (std::sin(q * (s + c * t)) - std::sin(q * c * t))) -
-                          body.elastic_modulus / c *
-                            (a * (std::sin(q * (s + c * t)) - std::sin(q * s)) +
-                             b * (std::cos(q * (s + c * t)) - std::cos(q * s)));
-            }
-          EXPECT_NEAR(m[i], 0.3 * expected, 1e-11) << "s = " << s << ", t = " << t;
-        }
+      double expected = 0.;
+      const double s  = points[i];
+      for (int n = 1; n <= 3; ++n)
+      {
+        const double a = parameters.sine_coefficients[n - 1], b = parameters.cosine_coefficients[n - 1];
+        const double q = 2. * std::numbers::pi * n / body.length;
+        expected +=
+          body.friction_coefficient / q *
+            (a * (std::cos(q * c * t) - std::cos(q * (s + c * t))) +
+             b * (std::sin(q * (s + c * t)) - std::sin(q * c * t))) -
+          body.elastic_modulus / c *
+            (a * (std::sin(q * (s + c * t)) - std::sin(q * s)) + b * (std::cos(q * (s + c * t)) - std::cos(q * s)));
+      }
+      EXPECT_NEAR(m[i], 0.3 * expected, 1e-11) << "s = " << s << ", t = " << t;
     }
+  }
 }
 
 TEST(OptimalWave, RefusesCoefficientsOfDifferentLength)
@@ -83,9 +83,9 @@ TEST(Expression, EvaluatesWithConstants)
   ExpressionParameters parameters;
   parameters.active_stress = "A*sin(2*pi*(s/L + t/T)) + pow(s, B) + mod(-1, 3) + (s > 0.4 ? 1 : 2)";
   parameters.constants     = "A = 0.3, B=2";
-  const Expression          expression(parameters, 2., 5.);
+  const Expression expression(parameters, 2., 5.);
   const std::vector<double> points = {0., 0.5, 2.};
-  const auto                m      = evaluate(expression, points, 1.25);
+  const auto m                     = evaluate(expression, points, 1.25);
   for (std::size_t i = 0; i < points.size(); ++i)
     EXPECT_NEAR(m[i],
                 0.3 * std::sin(2. * std::numbers::pi * (points[i] / 2. + 0.25)) + points[i] * points[i] + 2. +
@@ -98,15 +98,15 @@ TEST(Expression, ErrorsNameThePosition)
   ExpressionParameters parameters;
   parameters.active_stress = "sin(s) + * t";
   try
-    {
-      const Expression expression(parameters, 1., 1.);
-      FAIL() << "a syntax error was accepted";
-    }
+  {
+    const Expression expression(parameters, 1., 1.);
+    FAIL() << "a syntax error was accepted";
+  }
   catch (const InputError &error)
-    {
-      EXPECT_NE(std::string(error.what()).find("position 10"), std::string::npos) << error.what();
-      EXPECT_EQ(error.entry, "Active stress/Expression/Active stress");
-    }
+  {
+    EXPECT_NE(std::string(error.what()).find("position 10"), std::string::npos) << error.what();
+    EXPECT_EQ(error.entry, "Active stress/Expression/Active stress");
+  }
   parameters.active_stress = "1/s"; // infinite at s = 0
   EXPECT_THROW(Expression(parameters, 1., 1.), InputError);
   parameters.active_stress = "unknown*s";

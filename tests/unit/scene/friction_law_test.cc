@@ -18,36 +18,36 @@ namespace
 TEST(PowerFriction, ValuesAreThePower)
 {
   for (const double a : exponents)
-    {
-      const PowerFriction law(2.5, a);
-      std::vector<double> g(stretches.size());
-      law.values(stretches, g);
-      for (std::size_t i = 0; i < g.size(); ++i)
-        EXPECT_NEAR(g[i] / (2.5 * std::pow(stretches[i], a)), 1., 1e-13) << "a = " << a << ", w = " << stretches[i];
-    }
+  {
+    const PowerFriction law(2.5, a);
+    std::vector<double> g(stretches.size());
+    law.values(stretches, g);
+    for (std::size_t i = 0; i < g.size(); ++i)
+      EXPECT_NEAR(g[i] / (2.5 * std::pow(stretches[i], a)), 1., 1e-13) << "a = " << a << ", w = " << stretches[i];
+  }
 }
 
 TEST(PowerFriction, DerivativeMatchesDifferences)
 {
   for (const double a : exponents)
+  {
+    const PowerFriction law(0.7, a);
+    std::vector<double> g(stretches.size()), dg(stretches.size()), plus(stretches.size()), minus(stretches.size());
+    law.values_and_derivatives(stretches, g, dg);
+    const double epsilon       = 1e-5;
+    std::vector<double> w_plus = stretches, w_minus = stretches;
+    for (std::size_t i = 0; i < stretches.size(); ++i)
     {
-      const PowerFriction law(0.7, a);
-      std::vector<double> g(stretches.size()), dg(stretches.size()), plus(stretches.size()), minus(stretches.size());
-      law.values_and_derivatives(stretches, g, dg);
-      const double        epsilon = 1e-5;
-      std::vector<double> w_plus = stretches, w_minus = stretches;
-      for (std::size_t i = 0; i < stretches.size(); ++i)
-        {
-          w_plus[i] *= 1. + epsilon;
-          w_minus[i] *= 1. - epsilon;
-        }
-      law.values(w_plus, plus);
-      law.values(w_minus, minus);
-      for (std::size_t i = 0; i < g.size(); ++i)
-        {
-          const double difference = (plus[i] - minus[i]) / (2. * epsilon * stretches[i]);
-          EXPECT_NEAR(dg[i], difference, 1e-7 * (std::abs(g[i] / stretches[i]) + std::abs(difference)))
-            << "a = " << a << ", w = " << stretches[i];
-        }
+      w_plus[i] *= 1. + epsilon;
+      w_minus[i] *= 1. - epsilon;
     }
+    law.values(w_plus, plus);
+    law.values(w_minus, minus);
+    for (std::size_t i = 0; i < g.size(); ++i)
+    {
+      const double difference = (plus[i] - minus[i]) / (2. * epsilon * stretches[i]);
+      EXPECT_NEAR(dg[i], difference, 1e-7 * (std::abs(g[i] / stretches[i]) + std::abs(difference)))
+        << "a = " << a << ", w = " << stretches[i];
+    }
+  }
 }

@@ -51,33 +51,34 @@ TEST(WaveRoots, EveryRootSpendsTheEnergy)
   body.friction_coefficient = 0.7;
   body.anchoring_exponent   = 3.;
   const WaveShape shape{{1., 0., 0.3}, {0.2, 0.5, 0.}};
-  const double    T        = 4.;
-  const double    smallest = find_wave_roots(body, shape, 0.1, T, 1.).smallest_energy;
-  const WaveRoots found    = find_wave_roots(body, shape, 0.1, T, 1.2 * smallest);
+  const double T        = 4.;
+  const double smallest = find_wave_roots(body, shape, 0.1, T, 1.).smallest_energy;
+  const WaveRoots found = find_wave_roots(body, shape, 0.1, T, 1.2 * smallest);
   EXPECT_GT(found.roots.size(), 5u);
   for (const WaveRoot &root : found.roots)
-    {
-      EXPECT_NEAR(wave_energy(body, shape, T, root.speed) / (1.2 * smallest), 1., 1e-12);
-      // c = a/(L gamma alpha)
-      EXPECT_NEAR(root.speed * body.length * body.friction_coefficient * root.multiplier, body.friction_exponent(), 1e-12);
-    }
+  {
+    EXPECT_NEAR(wave_energy(body, shape, T, root.speed) / (1.2 * smallest), 1., 1e-12);
+    // c = a/(L gamma alpha)
+    EXPECT_NEAR(
+      root.speed * body.length * body.friction_coefficient * root.multiplier, body.friction_exponent(), 1e-12);
+  }
 }
 
 /// H = 2 L gamma T Delta_2 in both of the paper's parameter sets: every root is a double one, cT/L = j.
 TEST(WaveRoots, DoubleRootsOfThePaper)
 {
   for (const auto &[T, H] : {std::pair<double, double>{1., 0.5}, {20., 10.}})
+  {
+    const WaveRoots found = find_wave_roots(Body(), one_harmonic, 0.4, T, H);
+    EXPECT_TRUE(found.double_roots);
+    EXPECT_FALSE(found.complete);
+    ASSERT_GE(found.roots.size(), 25u);
+    for (unsigned int j = 1; j <= found.roots.size(); ++j)
     {
-      const WaveRoots found = find_wave_roots(Body(), one_harmonic, 0.4, T, H);
-      EXPECT_TRUE(found.double_roots);
-      EXPECT_FALSE(found.complete);
-      ASSERT_GE(found.roots.size(), 25u);
-      for (unsigned int j = 1; j <= found.roots.size(); ++j)
-        {
-          EXPECT_NEAR(found.roots[j - 1].speed * T, j, 1e-9);
-          EXPECT_NEAR(found.roots[j - 1].multiplier, -T / j, 1e-9); // alpha_j = a T/(j L^2 gamma)
-        }
+      EXPECT_NEAR(found.roots[j - 1].speed * T, j, 1e-9);
+      EXPECT_NEAR(found.roots[j - 1].multiplier, -T / j, 1e-9); // alpha_j = a T/(j L^2 gamma)
     }
+  }
 }
 
 TEST(WaveRoots, DoubleRootsOfHigherHarmonicsOnly)
@@ -125,10 +126,10 @@ TEST(WaveRoots, LeadingOrderStretchAndDirection)
   Body snail;
   snail.anchoring_exponent = 0.;
   for (const WaveRoot &root : find_wave_roots(snail, one_harmonic, 0.1, 1., 0.6).roots)
-    {
-      EXPECT_LT(root.speed, 0.);
-      EXPECT_GT(root.displacement, 0.);
-    }
+  {
+    EXPECT_LT(root.speed, 0.);
+    EXPECT_GT(root.displacement, 0.);
+  }
   for (const WaveRoot &root : find_wave_roots(Body(), one_harmonic, 0.1, 1., 0.6).roots)
     EXPECT_GT(root.displacement, 0.);
 }
@@ -157,12 +158,12 @@ TEST(OptimalWave, ErrorStatesTheSmallestEnergy)
   OptimalWaveParameters parameters;
   parameters.energy = 9.;
   try
-    {
-      const OptimalWave wave(parameters, Body(), 20.);
-      FAIL() << "no wave spends H = 9";
-    }
+  {
+    const OptimalWave wave(parameters, Body(), 20.);
+    FAIL() << "no wave spends H = 9";
+  }
   catch (const InputError &error)
-    {
-      EXPECT_NE(std::string(error.what()).find("the smallest, 10"), std::string::npos) << error.what();
-    }
+  {
+    EXPECT_NE(std::string(error.what()).find("the smallest, 10"), std::string::npos) << error.what();
+  }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The time stepper on a scalar equation with a mass that depends on the state, no mesh: (1 + y^2) y' = (1 + sin^2 t) cos t,
-// whose solution from y(0) = 0 is y = sin t.
+// The time stepper on a scalar equation with a mass that depends on the state, no mesh: (1 + y^2) y' = (1 + sin^2 t)
+// cos t, whose solution from y(0) = 0 is y = sin t.
 #include "../../support/observed_order.h"
 
 #include <crawler/base/exceptions.h>
@@ -23,18 +23,27 @@ namespace
     explicit ScalarEquation(const TimeParameters &parameters)
       : stepper(MPI_COMM_SELF, 1, parameters)
     {
-      stepper.implicit_function = [this](double t, auto y, auto y_dot, auto F) {
+      stepper.implicit_function = [this](double t, auto y, auto y_dot, auto F)
+      {
         ++evaluations;
         F[0] = (1. + y[0] * y[0]) * y_dot[0] - (1. + std::sin(t) * std::sin(t)) * std::cos(t);
         return y[0] < largest_admissible;
       };
-      stepper.setup_jacobian = [this](double, auto y, auto y_dot, double alpha) {
+      stepper.setup_jacobian = [this](double, auto y, auto y_dot, double alpha)
+      {
         jacobian = alpha * (1. + y[0] * y[0]) + 2. * y[0] * y_dot[0];
         return !singular;
       };
-      stepper.solve_with_jacobian = [this](auto b, auto x) { x[0] = b[0] / jacobian; };
-      stepper.jacobian_vmult      = [this](auto x, auto y) { y[0] = jacobian * x[0]; };
-      stepper.monitor             = [this](const Step &step, auto y) {
+      stepper.solve_with_jacobian = [this](auto b, auto x)
+      {
+        x[0] = b[0] / jacobian;
+      };
+      stepper.jacobian_vmult = [this](auto x, auto y)
+      {
+        y[0] = jacobian * x[0];
+      };
+      stepper.monitor = [this](const Step &step, auto y)
+      {
         steps.push_back(step);
         states.push_back(y[0]);
         if (throw_at > 0. && step.time >= throw_at)
@@ -52,12 +61,12 @@ namespace
       return stepper.solve(y, frames, tolerance, step);
     }
 
-    TimeStepper         stepper;
+    TimeStepper stepper;
     std::vector<double> y, states;
-    std::vector<Step>   steps;
-    double              jacobian = 1., largest_admissible = 10., stop_at = 1e9, throw_at = 0.;
-    bool                singular    = false;
-    unsigned long       evaluations = 0;
+    std::vector<Step> steps;
+    double jacobian = 1., largest_admissible = 10., stop_at = 1e9, throw_at = 0.;
+    bool singular             = false;
+    unsigned long evaluations = 0;
   };
 
   TimeParameters
@@ -74,45 +83,46 @@ namespace
 TEST(TimeStepper, EveryIntegratorReachesItsOrder)
 {
   for (const Integrator &method : integrators())
+  {
+    // Those that start with a step of lower order are in convergence/time_test.cc.
+    if (method.name == "bdf" || method.order > 3)
+      continue;
+    std::vector<double> n_steps, errors;
+    for (const unsigned int n : {12u, 24u, 48u})
     {
-      // Those that start with a step of lower order are in convergence/time_test.cc.
-      if (method.name == "bdf" || method.order > 3)
-        continue;
-      std::vector<double> n_steps, errors;
-      for (const unsigned int n : {12u, 24u, 48u})
-        {
-          ScalarEquation equation(parameters_for(method.name, "fixed"));
-          ASSERT_EQ(equation.solve(1e-12, 1.5 / n).status, "finished") << method.name;
-          n_steps.push_back(n);
-          errors.push_back(std::abs(equation.y[0] - std::sin(1.5)));
-        }
-      EXPECT_GE(test::observed_order(n_steps, errors), method.order - 0.25) << method.name << " " << errors[0] << " " << errors[2];
+      ScalarEquation equation(parameters_for(method.name, "fixed"));
+      ASSERT_EQ(equation.solve(1e-12, 1.5 / n).status, "finished") << method.name;
+      n_steps.push_back(n);
+      errors.push_back(std::abs(equation.y[0] - std::sin(1.5)));
     }
+    EXPECT_GE(test::observed_order(n_steps, errors), method.order - 0.25)
+      << method.name << " " << errors[0] << " " << errors[2];
+  }
 }
 
 TEST(TimeStepper, StepsEndExactlyOnFrames)
 {
   for (const std::string control : {"adaptive", "fixed"})
-    {
-      ScalarEquation            equation(parameters_for("bdf", control));
-      const std::vector<double> frames = {0.1, 1. / 3., 0.7, 0.7000001, 1.5};
-      ASSERT_EQ(equation.solve(1e-9, 1e-3, frames).status, "finished");
-      std::vector<double> found;
-      for (const Step &step : equation.steps)
-        if (step.is_frame)
-          found.push_back(step.time);
-      EXPECT_EQ(found, frames); // exactly
-      EXPECT_EQ(equation.steps.back().time, 1.5);
-      EXPECT_EQ(equation.steps.front().number, 0u);
-      EXPECT_NEAR(equation.y[0], std::sin(1.5), control == "fixed" ? 1e-4 : 1e-7);
-    }
+  {
+    ScalarEquation equation(parameters_for("bdf", control));
+    const std::vector<double> frames = {0.1, 1. / 3., 0.7, 0.7000001, 1.5};
+    ASSERT_EQ(equation.solve(1e-9, 1e-3, frames).status, "finished");
+    std::vector<double> found;
+    for (const Step &step : equation.steps)
+      if (step.is_frame)
+        found.push_back(step.time);
+    EXPECT_EQ(found, frames); // exactly
+    EXPECT_EQ(equation.steps.back().time, 1.5);
+    EXPECT_EQ(equation.steps.front().number, 0u);
+    EXPECT_NEAR(equation.y[0], std::sin(1.5), control == "fixed" ? 1e-4 : 1e-7);
+  }
 }
 
 TEST(TimeStepper, SolvesAgainWithTheSameResult)
 {
   ScalarEquation equation(parameters_for("bdf"));
-  const auto     first = equation.solve(1e-9, 1e-5);
-  const double   y     = equation.y[0];
+  const auto first = equation.solve(1e-9, 1e-5);
+  const double y   = equation.y[0];
   equation.solve(1e-4, 1e-3);
   const auto again = equation.solve(1e-9, 1e-5);
   EXPECT_EQ(equation.y[0], y);
@@ -159,7 +169,8 @@ TEST(TimeStepper, FailuresHaveNames)
   }
   {
     ScalarEquation equation(parameters_for("bdf"));
-    equation.stepper.implicit_function = [](double, auto, auto, auto F) {
+    equation.stepper.implicit_function = [](double, auto, auto, auto F)
+    {
       F[0] = std::numeric_limits<double>::quiet_NaN();
       return true;
     };
@@ -167,7 +178,10 @@ TEST(TimeStepper, FailuresHaveNames)
   }
   {
     ScalarEquation equation(parameters_for("bdf"));
-    equation.stepper.solve_with_jacobian = [](auto b, auto x) { x[0] = -b[0]; }; // a wrong direction
+    equation.stepper.solve_with_jacobian = [](auto b, auto x)
+    {
+      x[0] = -b[0];
+    }; // a wrong direction
     const auto outcome = equation.solve(1e-8, 1e-4);
     EXPECT_EQ(outcome.status, "failed");
     EXPECT_NE(outcome.reason, "");
@@ -176,7 +190,7 @@ TEST(TimeStepper, FailuresHaveNames)
     TimeParameters parameters = parameters_for("bdf");
     parameters.max_steps      = 3;
     ScalarEquation equation(parameters);
-    const auto     outcome = equation.solve(1e-8, 1e-4);
+    const auto outcome = equation.solve(1e-8, 1e-4);
     EXPECT_EQ(outcome.status, "stopped");
     EXPECT_EQ(outcome.reason, "step_limit");
     EXPECT_EQ(outcome.steps, 3u);
@@ -186,16 +200,16 @@ TEST(TimeStepper, FailuresHaveNames)
 TEST(TimeStepper, UnsoundIntegratorsAreRefusedWithTheReason)
 {
   for (const char *name : {"rosw", "irk", "glle", "theta endpoint", "arkimex 2c", "rk"})
-    {
-      EXPECT_NE(reason_against(name), "") << name;
-      TimeParameters parameters = parameters_for(name);
-      EXPECT_THROW(parameters.validate(), InputError) << name;
-    }
+  {
+    EXPECT_NE(reason_against(name), "") << name;
+    TimeParameters parameters = parameters_for(name);
+    EXPECT_THROW(parameters.validate(), InputError) << name;
+  }
   for (const Integrator &method : integrators())
-    {
-      EXPECT_EQ(reason_against(method.petsc_type + (method.subtype.empty() ? "" : " " + method.subtype)), "");
-      TimeParameters parameters = parameters_for(method.name, method.adaptive ? "adaptive" : "fixed");
-      parameters.initial_step   = 0.1;
-      EXPECT_NO_THROW(parameters.validate());
-    }
+  {
+    EXPECT_EQ(reason_against(method.petsc_type + (method.subtype.empty() ? "" : " " + method.subtype)), "");
+    TimeParameters parameters = parameters_for(method.name, method.adaptive ? "adaptive" : "fixed");
+    parameters.initial_step   = 0.1;
+    EXPECT_NO_THROW(parameters.validate());
+  }
 }

@@ -39,7 +39,7 @@ namespace crawler
     at(const std::vector<double> &points) const override;
 
   private:
-    std::string                                 formula_;
+    std::string formula_;
     std::vector<std::pair<std::string, double>> constants_;
   };
 } // namespace crawler

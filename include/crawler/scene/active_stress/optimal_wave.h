@@ -15,14 +15,14 @@ namespace crawler
   /// Section "Active stress/Optimal wave".
   struct OptimalWaveParameters
   {
-    double              perturbation_parameter = 0.4; ///< chi [1]
-    std::vector<double> sine_coefficients      = {1.};
-    std::vector<double> cosine_coefficients    = {0.};
-    std::string         choose_wave_by         = "energy";
-    double              energy                 = 0.5;
-    std::string         root                   = "largest admissible displacement";
-    unsigned int        root_index             = 1;
-    double              wave_speed             = 1.;
+    double perturbation_parameter           = 0.4; ///< chi [1]
+    std::vector<double> sine_coefficients   = {1.};
+    std::vector<double> cosine_coefficients = {0.};
+    std::string choose_wave_by              = "energy";
+    double energy                           = 0.5;
+    std::string root                        = "largest admissible displacement";
+    unsigned int root_index                 = 1;
+    double wave_speed                       = 1.;
 
     void
     add_parameters(Declarations &declarations);
@@ -64,12 +64,12 @@ namespace crawler
     void
     choose_by_energy(const OptimalWaveParameters &parameters);
 
-    const Body               body_;
-    const double             chi_;
-    const double             end_time_;
-    WaveShape                shape_;
-    WaveRoot                 wave_{};
+    const Body body_;
+    const double chi_;
+    const double end_time_;
+    WaveShape shape_;
+    WaveRoot wave_{};
     std::optional<WaveRoots> roots_; ///< if the wave was chosen by its energy
-    std::size_t              chosen_ = 0;
+    std::size_t chosen_ = 0;
   };
 } // namespace crawler

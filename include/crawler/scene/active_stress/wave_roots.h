@@ -42,11 +42,11 @@ namespace crawler
 
   struct WaveRoots
   {
-    std::vector<WaveRoot> roots;               ///< slowest wave first
-    bool                  double_roots;        ///< H is the smallest admissible one: infinitely many
-    bool                  complete;            ///< false if there are further, faster waves
-    double                smallest_energy = 0; ///< 2 L gamma T Delta_2 [force length / chi^2]
-    double                largest_energy  = 0; ///< there are waves below this energy only
+    std::vector<WaveRoot> roots; ///< slowest wave first
+    bool double_roots;           ///< H is the smallest admissible one: infinitely many
+    bool complete;               ///< false if there are further, faster waves
+    double smallest_energy = 0;  ///< 2 L gamma T Delta_2 [force length / chi^2]
+    double largest_energy  = 0;  ///< there are waves below this energy only
   };
 
   /// H of the wave with speed @p c: theory.md section 3, H = 2 L gamma T Delta_2 + (L k/c^2) sum P_n sin^2(pi n c T/L).
@@ -67,10 +67,6 @@ namespace crawler
    * h = 0 (to 1e-12 of H) every root is a double one, where all sines vanish: no sign changes there.
    */
   WaveRoots
-  find_wave_roots(const Body      &body,
-                  const WaveShape &shape,
-                  double           chi,
-                  double           end_time,
-                  double           energy,
-                  unsigned int     at_least = 25);
+  find_wave_roots(
+    const Body &body, const WaveShape &shape, double chi, double end_time, double energy, unsigned int at_least = 25);
 } // namespace crawler
