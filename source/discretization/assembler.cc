@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/parabola.h>
 #include <crawler/discretization/assembler.h>
 
 #include <algorithm>
@@ -151,29 +152,63 @@ namespace crawler
     const auto &element = discretization_.element();
     const unsigned n = element.n, q = element.degree;
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    StretchRange range{{infinity, 0.}, {-infinity, 0.}};
-    for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+
+    // Where the stretch is looked at in a cell, from left to right.
+    const auto place = [&](const unsigned int i)
     {
-      const double h  = discretization_.cell_size()[c];
-      const auto look = [&](const double *derivatives, const double x)
+      return i == 0 ? 0. : i == n + 1 ? 1. : element.points[i - 1];
+    };
+    const auto stretch_at = [&](const unsigned int c, const unsigned int i)
+    {
+      const double *derivatives = i == 0       ? element.left_derivatives.data()
+                                  : i == n + 1 ? element.right_derivatives.data()
+                                               : &element.derivatives[(i - 1) * n];
+      double w                  = 0.;
+      for (unsigned int j = 0; j < n; ++j)
+        w += derivatives[j] * local[c * q + j];
+      return 1. + w / discretization_.cell_size()[c];
+    };
+
+    struct Found
+    {
+      double w;
+      unsigned int cell, i;
+    };
+    Found smallest{infinity, 0, 0}, largest{-infinity, 0, 0};
+    for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+      for (unsigned int i = 0; i < n + 2; ++i)
       {
-        double w = 0.;
-        for (unsigned int i = 0; i < n; ++i)
-          w += derivatives[i] * local[c * q + i];
-        w = 1. + w / h;
-        if (w < range.min.value || (std::isnan(w) && !std::isnan(range.min.value)))
-          range.min = {w, discretization_.cell_left()[c] + h * x};
-        if (w > range.max.value)
-          range.max = {w, discretization_.cell_left()[c] + h * x};
-      };
-      look(element.left_derivatives.data(), 0.);
-      for (unsigned int p = 0; p < n; ++p)
-        look(&element.derivatives[p * n], element.points[p]);
-      look(element.right_derivatives.data(), 1.);
-    }
-    range.min = reduce_minimum(range.min, 1., discretization_);
-    range.max = reduce_minimum(range.max, -1., discretization_);
-    return range;
+        const double w = stretch_at(c, i);
+        if (w < smallest.w || (std::isnan(w) && !std::isnan(smallest.w)))
+          smallest = {w, c, i};
+        if (w > largest.w)
+          largest = {w, c, i};
+      }
+
+    // Inside a cell the parabola through the neighbours comes closer to the extreme than the sample.
+    const auto sharpened = [&](const Found &found)
+    {
+      double x = place(found.i), w = found.w;
+      if (discretization_.n_local_cells() == 0)
+        return StretchAt{w, 0.};
+      if (found.i > 0 && found.i <= n && std::isfinite(w))
+      {
+        const auto [vertex_x, vertex_w] = parabola_vertex(place(found.i - 1),
+                                                          stretch_at(found.cell, found.i - 1),
+                                                          x,
+                                                          w,
+                                                          place(found.i + 1),
+                                                          stretch_at(found.cell, found.i + 1));
+        if (w <= 0. || vertex_w > 0.)
+        {
+          x = vertex_x;
+          w = vertex_w;
+        }
+      }
+      return StretchAt{w, discretization_.cell_left()[found.cell] + discretization_.cell_size()[found.cell] * x};
+    };
+    return {reduce_minimum(sharpened(smallest), 1., discretization_),
+            reduce_minimum(sharpened(largest), -1., discretization_)};
   }
 
   Resolution

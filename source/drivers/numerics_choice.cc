@@ -18,7 +18,7 @@ namespace crawler
     /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
     constexpr double resolved = 1e-3;
     /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
-    constexpr double space_factor = 1.;
+    constexpr double space_factor = 4.;
     /// Error of the displacement in time is below this times the number of steps times the tolerance.
     constexpr double time_factor = 0.25;
     /// The displacement counts as no smaller than this part of the body's largest deformation.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/parabola.h>
 #include <crawler/drivers/simulation.h>
 
 #include <fmt/format.h>
@@ -140,10 +141,10 @@ namespace crawler
       return false;
     }
     previous_min_stretch_ = stretch_.min.value;
-    if (step.number == 0 || stretch_.min.value < result_.min_stretch.value)
-      result_.min_stretch = {stretch_.min.value, stretch_.min.s, step.time};
-    if (step.number == 0 || stretch_.max.value > result_.max_stretch.value)
-      result_.max_stretch = {stretch_.max.value, stretch_.max.s, step.time};
+    const bool is_first   = step.number == 0;
+    const StretchAt &low = stretch_.min, &high = stretch_.max;
+    record({low.value, low.s, step.time}, 1., is_first, min_history_, result_.min_stretch);
+    record({high.value, high.s, step.time}, -1., is_first, max_history_, result_.max_stretch);
 
     // Pictures need the velocity at frames only, the ledger always.
     const bool with_velocity = options.ledger || (has_observers && (step.is_frame || step.number == 0));
@@ -203,6 +204,32 @@ namespace crawler
       result_.largest_u           = std::max(result_.largest_u, assembler_.root_mean_square(u));
     }
     return true;
+  }
+
+  /// Keeps the smallest value (times sign) so far. Between steps the parabola through three of them comes closer.
+  void
+  Simulation::record(const SimulationResult::Extreme &now,
+                     const double sign,
+                     const bool is_first,
+                     History &history,
+                     SimulationResult::Extreme &extreme)
+  {
+    if (is_first)
+    {
+      history.fill(now);
+      extreme = now;
+      return;
+    }
+    history = {{history[1], history[2], now}};
+    if (sign * now.value < sign * extreme.value)
+      extreme = now;
+    const auto &[before, middle, after] = history;
+    if (before.t < middle.t && sign * middle.value < sign * before.value && sign * middle.value < sign * after.value)
+    {
+      const auto [t, value] = parabola_vertex(before.t, before.value, middle.t, middle.value, after.t, after.value);
+      if (sign * value < sign * extreme.value && value > 0.)
+        extreme = {value, middle.s, t};
+    }
   }
 
   /**

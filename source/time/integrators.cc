@@ -66,11 +66,16 @@ namespace crawler
       {"arkimex ars122", "it is of first order only here"},
       {"arkimex 1bee", "it is of first order only here"},
     };
+    const auto found = reasons.find(petsc_name);
+    return found == reasons.end() ? "" : found->second;
+  }
+
+  bool
+  is_offered(const std::string &petsc_name)
+  {
     for (const Integrator &entry : integrators())
       if (petsc_name == entry.petsc_type + (entry.subtype.empty() ? "" : " " + entry.subtype))
-        return "";
-    const auto found = reasons.find(petsc_name);
-    return found == reasons.end() ? "it has not been verified for a mass matrix that depends on the state"
-                                  : found->second;
+        return true;
+    return false;
   }
 } // namespace crawler

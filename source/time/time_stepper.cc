@@ -268,9 +268,12 @@ namespace crawler
       if (endpoint)
         name += " endpoint";
     }
+    if (is_offered(name))
+      return;
     const std::string reason = reason_against(name);
-    if (!reason.empty())
-      throw InputError("the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " + reason);
+    throw InputError(
+      "the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " +
+      (reason.empty() ? "it has not been verified for a mass matrix that depends on the state" : reason));
   }
 
   PetscErrorCode

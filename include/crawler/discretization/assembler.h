@@ -19,7 +19,8 @@ namespace crawler
     double s;     ///< [length]
   };
 
-  /// The smallest and the largest stretch of a state, at the quadrature points and the ends of all cells.
+  /// The smallest and the largest stretch of a state: looked for at the quadrature points and the ends of all cells,
+  /// and sharpened by a parabola inside a cell.
   struct StretchRange
   {
     StretchAt min, max;

@@ -5,6 +5,7 @@
 #include <crawler/observers/observer.h>
 #include <crawler/time/time_stepper.h>
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -95,6 +96,15 @@ namespace crawler
     double setup_seconds_ = 0.;
 
     // The state of one run().
+    /// The last three extremes of one kind, newest last, to sharpen those between steps.
+    using History = std::array<SimulationResult::Extreme, 3>;
+    static void
+    record(const SimulationResult::Extreme &now,
+           double sign,
+           bool is_first,
+           History &history,
+           SimulationResult::Extreme &extreme);
+
     struct Diagnosis
     {
       std::string status, reason, message;
@@ -105,6 +115,7 @@ namespace crawler
     Resolution largest_{}; ///< over time, if looked at
     CellIntegrals integrals_;
     StretchRange stretch_;
+    History min_history_, max_history_;
     double previous_min_stretch_ = 1.;
     std::vector<double> u_, v_;
   };

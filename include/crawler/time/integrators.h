@@ -24,8 +24,12 @@ namespace crawler
   const Integrator &
   integrator(const std::string &name);
 
-  /// Why an integrator of PETSc (the word of `-ts_type`, "arkimex TYPE" or "theta endpoint") must not be used for a
-  /// mass matrix that depends on the state; empty for those that are offered. What was not tried is refused too.
+  /// What is known against an integrator of PETSc (the word of `-ts_type`, "arkimex TYPE" or "theta endpoint") for a
+  /// mass matrix that depends on the state; empty if nothing is.
   std::string
   reason_against(const std::string &petsc_name);
+
+  /// Is it one of integrators(), by PETSc's name for it? Only those have been verified.
+  bool
+  is_offered(const std::string &petsc_name);
 } // namespace crawler

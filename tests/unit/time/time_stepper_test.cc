@@ -202,12 +202,15 @@ TEST(TimeStepper, UnsoundIntegratorsAreRefusedWithTheReason)
   for (const char *name : {"rosw", "irk", "glle", "theta endpoint", "arkimex 2c", "rk"})
   {
     EXPECT_NE(reason_against(name), "") << name;
+    EXPECT_FALSE(is_offered(name)) << name;
     TimeParameters parameters = parameters_for(name);
     EXPECT_THROW(parameters.validate(), InputError) << name;
   }
   for (const Integrator &method : integrators())
   {
-    EXPECT_EQ(reason_against(method.petsc_type + (method.subtype.empty() ? "" : " " + method.subtype)), "");
+    const std::string petsc_name = method.petsc_type + (method.subtype.empty() ? "" : " " + method.subtype);
+    EXPECT_EQ(reason_against(petsc_name), "");
+    EXPECT_TRUE(is_offered(petsc_name));
     TimeParameters parameters = parameters_for(method.name, method.adaptive ? "adaptive" : "fixed");
     parameters.initial_step   = 0.1;
     EXPECT_NO_THROW(parameters.validate());
