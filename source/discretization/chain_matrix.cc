@@ -13,7 +13,7 @@ namespace crawler
     const std::size_t n_cells = discretization.n_local_cells(), n = discretization.element().n;
     blocks_.resize(n_cells * n * n);
     schur_.resize(n_cells * 4);
-    for (auto *array : {&inverse_, &row_zero_, &column_zero_, &next_, &below_, &line_})
+    for (auto *array : {&inverse_, &row_zero_, &column_zero_, &next_, &below_})
       array->resize(n_cells + 1);
     reduced_.resize(4 * discretization.n_active_ranks());
     reduced_rhs_.resize(discretization.n_active_ranks() + 1);

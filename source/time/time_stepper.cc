@@ -616,12 +616,4 @@ namespace crawler
       result.status = "stopped";
     return result;
   }
-
-  std::string
-  TimeStepper::petsc_type() const
-  {
-    TSType type = nullptr;
-    TSGetType(implementation_->ts.get(), &type);
-    return type;
-  }
 } // namespace crawler

@@ -42,7 +42,7 @@ namespace crawler
     // the couplings row/column 0, and to the next node.
     std::vector<double> inverse_, row_zero_, column_zero_, next_, below_;
     std::vector<double> reduced_; ///< [rank][4] the 2x2 systems of all ranks
-    mutable std::vector<double> local_, line_, reduced_rhs_;
+    mutable std::vector<double> local_, reduced_rhs_;
     mutable std::vector<double> x_local_;
   };
 } // namespace crawler

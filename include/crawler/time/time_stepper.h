@@ -75,10 +75,6 @@ namespace crawler
     TimeOutcome
     solve(std::vector<double> &y, const std::vector<double> &frames, double tolerance, double initial_step);
 
-    /// PETSc's name of the integrator in use, with options from the command line taken into account.
-    std::string
-    petsc_type() const;
-
   private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
