@@ -71,7 +71,12 @@ namespace crawler
 
     TimeParameters pilot_time = parameters.time;
     pilot_time.step_control   = "adaptive";
-    pilot_time.petsc_prefix   = "pilot_"; // options after "--" are for the real run
+    if (!integrator(pilot_time.integrator).adaptive)
+    {
+      pilot_time.integrator = "bdf";
+      pilot_time.order      = 5;
+    }
+    pilot_time.petsc_prefix = "pilot_"; // options after "--" are for the real run
     const double guess = displacement_scale(scene), scale = guess > 0. ? guess : L;
 
     double tolerance = 1e-3 * scale, size = 0.;
@@ -121,15 +126,17 @@ namespace crawler
     const double wanted = accuracy * size / (time_factor * std::max(pilot.time.steps, 1u) * std::pow(tolerance, r));
     numerics.tolerance =
       user_tolerance.value_or(std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance), 1e-15 * scale));
-    choice.pilot_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     choice.explanation =
-      predicts ? fmt::format("for Accuracy {:g}; from {} pilot runs with up to {} cells: displacement about {:.3g}, "
-                             "unresolved part of the strain {:.1e}",
-                             accuracy,
-                             n_pilots,
-                             n_cells,
-                             pilot.displacement,
-                             std::sqrt(pilot.unresolved))
+      predicts ? fmt::format(
+                   "for Accuracy {:g}; from {} pilot runs with up to {} cells in {:.2g} s: displacement about {:.3g}, "
+                   "unresolved part of the strain {:.1e}",
+                   accuracy,
+                   n_pilots,
+                   n_cells,
+                   seconds,
+                   pilot.displacement,
+                   std::sqrt(pilot.unresolved))
                : fmt::format("for Accuracy {:g}; the last of {} pilot runs, with {} cells, ended early: {}",
                              accuracy,
                              n_pilots,

@@ -13,7 +13,6 @@ namespace crawler
   {
     Numerics numerics;
     std::string explanation;
-    double pilot_seconds = 0.;
   };
 
   /**
