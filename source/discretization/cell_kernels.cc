@@ -42,13 +42,14 @@ namespace crawler
           const double h  = in.cell_size[c];
           const double *u = in.u + c * q, *m = in.m + c * n;
           double *f = F + c * q;
-          Points w, g, v, friction, force;
-          evaluate<n>(derivatives, u, 1. / h, 1., w.data());
+          Points e, w, g, v, friction, force;
+          evaluate<n>(derivatives, u, 1. / h, 0., e.data());
           for (int p = 0; p < n; ++p)
           {
+            w[p] = 1. + e[p];
             if (!(w[p] > 0.) && bad < 0)
               bad = static_cast<long>(c) * n + p;
-            force[p] = weights[p] * equation::body_force(w[p], m[p], in.k);
+            force[p] = weights[p] * equation::body_force(e[p], m[p], in.k);
           }
           if (in.v != nullptr)
           {
@@ -130,8 +131,10 @@ namespace crawler
         {
           const double h  = in.cell_size[c];
           const double *m = in.m + c * n;
-          Points w, g, u, v, v_s;
-          evaluate<n>(derivatives, in.u + c * q, 1. / h, 1., w.data());
+          Points e, w, g, u, v, v_s;
+          evaluate<n>(derivatives, in.u + c * q, 1. / h, 0., e.data());
+          for (int p = 0; p < n; ++p)
+            w[p] = 1. + e[p];
           evaluate<n>(values, in.u + c * q, 1., 0., u.data());
           evaluate<n>(values, in.v + c * q, 1., 0., v.data());
           evaluate<n>(derivatives, in.v + c * q, 1. / h, 0., v_s.data());
@@ -142,7 +145,7 @@ namespace crawler
             const double friction = equation::friction_force(g[p], v[p]);
             sum.displacement += ds * u[p];
             sum.velocity += ds * v[p];
-            sum.elastic_energy += ds * equation::elastic_energy(w[p], in.k);
+            sum.elastic_energy += ds * equation::elastic_energy(e[p], in.k);
             sum.stress_power += ds * power;
             sum.positive_power += ds * std::max(power, 0.);
             sum.absolute_power += ds * std::abs(power);

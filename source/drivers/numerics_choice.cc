@@ -79,7 +79,9 @@ namespace crawler
     pilot_time.petsc_prefix = "pilot_"; // options after "--" are for the real run
     const double guess = displacement_scale(scene), scale = guess > 0. ? guess : L;
 
-    double tolerance = 1e-3 * scale, size = 0.;
+    // Motions far below this are nothing, and their squares underflow.
+    const double smallest = 1e-25 * L;
+    double tolerance = std::max(1e-3 * scale, smallest), size = 0.;
     unsigned int n_cells = user_cells.value_or(fewest_cells), n_pilots = 0;
     SimulationResult pilot;
     bool good = false;
@@ -124,8 +126,8 @@ namespace crawler
     const unsigned int nominal = integrator(parameters.time.integrator).order;
     const double r             = 1. / (1. + (nominal > 0 ? nominal : parameters.time.order));
     const double wanted = accuracy * size / (time_factor * std::max(pilot.time.steps, 1u) * std::pow(tolerance, r));
-    numerics.tolerance =
-      user_tolerance.value_or(std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance), 1e-15 * scale));
+    numerics.tolerance  = user_tolerance.value_or(
+      std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance), std::max(1e-15 * scale, smallest)));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     choice.explanation =
       predicts ? fmt::format(

@@ -47,19 +47,19 @@ namespace crawler
     const double k = scene_.body.elastic_modulus;
     for (std::size_t p = 0; p < points_.size(); ++p)
     {
-      double u_p = 0., v_p = 0., w = 1.;
+      double u_p = 0., v_p = 0., e = 0.;
       for (unsigned int i = 0; i < n; ++i)
       {
         const std::size_t node = static_cast<std::size_t>(points_[p].cell) * q + i;
         u_p += values_[p * n + i] * u_local[node];
         v_p += values_[p * n + i] * v_local[node];
-        w += derivatives_[p * n + i] * u_local[node];
+        e += derivatives_[p * n + i] * u_local[node];
       }
       fields_.displacement[p]   = u_p;
       fields_.position[p]       = coordinates_[p] + u_p;
       fields_.velocity[p]       = v_p;
-      fields_.stretch[p]        = w;
-      fields_.elastic_stress[p] = equation::body_force(w, 0., k);
+      fields_.stretch[p]        = 1. + e;
+      fields_.elastic_stress[p] = equation::body_force(e, 0., k);
     }
     stress_->values(t, fields_.active_stress);
     scene_.friction->values(fields_.stretch, fields_.friction_force);

@@ -12,17 +12,18 @@
 namespace crawler::equation
 {
   /// N, the force in the body [force]; it vanishes at the ends.
+  /// Takes the strain e = w - 1 = u_s itself: for small motions 1 + e has lost its digits.
   inline double
-  body_force(const double w, const double m, const double k)
+  body_force(const double e, const double m, const double k)
   {
-    return m + k * (w - 1.);
+    return m + k * e;
   }
 
-  /// Elastic energy per reference length [force].
+  /// Elastic energy per reference length [force], for the strain e.
   inline double
-  elastic_energy(const double w, const double k)
+  elastic_energy(const double e, const double k)
   {
-    return 0.5 * k * (w - 1.) * (w - 1.);
+    return 0.5 * k * e * e;
   }
 
   /// Friction force per reference length [force/length], for g = g(w).
