@@ -86,6 +86,7 @@ namespace crawler
     bool stopped           = false;
     bool jacobian_ok       = true;
     double refused_at      = -1.;                    ///< time of the last state that implicit_function refused
+    double nonfinite_at    = -1.;                    ///< time of the last residual that was not a finite number
     bool underflow         = false;                  ///< a step is below the resolution of the time
     std::optional<double> user_tolerance, user_step; ///< options -ts_atol and -ts_dt
     double relative_tolerance   = 0.;                ///< option -ts_rtol
@@ -286,7 +287,12 @@ namespace crawler
       {
         const ReadAccess y_access(y), y_dot_access(y_dot);
         const WriteAccess F_access(F);
-        accepted = self.owner.implicit_function(t, y_access.span, y_dot_access.span, F_access.span);
+        accepted   = self.owner.implicit_function(t, y_access.span, y_dot_access.span, F_access.span);
+        double sum = 0.;
+        for (const double value : F_access.span)
+          sum += value;
+        if (accepted && !std::isfinite(sum))
+          self.nonfinite_at = t;
       });
     if (code == 0 && !accepted)
     {
@@ -516,8 +522,13 @@ namespace crawler
       SNESConvergedReason newton_reason;
       TSGetSNES(stepper, &snes);
       SNESGetConvergedReason(snes, &newton_reason);
-      // Refused states on the way to this one count if they were close: the steps became small because of them.
-      result.domain_error = refused_at >= time - 1e-6 * parameters.end_time;
+      // Refused states and residuals on the way to this one count if they were close: the steps became small because
+      // of them. Each rank knows of its own.
+      double latest[2] = {refused_at, nonfinite_at};
+      MPI_Allreduce(
+        MPI_IN_PLACE, latest, 2, MPI_DOUBLE, MPI_MAX, PetscObjectComm(reinterpret_cast<PetscObject>(stepper)));
+      const double close  = time - 1e-6 * parameters.end_time;
+      result.domain_error = latest[0] >= close;
       if (code != 0)
       {
         const char *text = nullptr;
@@ -525,7 +536,7 @@ namespace crawler
         result.reason  = "petsc_error";
         result.message = std::string("PETSc stopped with the error: ") + (text != nullptr ? text : "unknown");
       }
-      else if (newton_reason == SNES_DIVERGED_FNORM_NAN)
+      else if (latest[1] >= close)
       {
         result.reason  = "nonfinite";
         result.message = "the residual is not a finite number";
@@ -578,6 +589,7 @@ namespace crawler
     self.stopped              = false;
     self.exception            = nullptr;
     self.refused_at           = -1.;
+    self.nonfinite_at         = -1.;
     self.underflow            = false;
     self.tolerance            = self.user_tolerance.value_or(tolerance);
     const double first_step   = self.user_step.value_or(initial_step);
