@@ -15,6 +15,7 @@ namespace crawler
     // The constants of the rule; doc/numerics.md says how they were found.
     constexpr unsigned int automatic_degree = 6;
     constexpr unsigned int fewest_cells = 4, most_cells = 4096;
+    constexpr unsigned int most_pilot_steps = 100000;
     /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
     constexpr double resolved = 1e-3;
     /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
@@ -24,25 +25,45 @@ namespace crawler
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;
 
-    /// A first idea of the size of the displacement field: of the stiff body, or of the one that is held by friction.
-    double
-    displacement_scale(const Scene &scene)
+    /// What a look at the active stress alone tells: pilots cannot miss what this has seen.
+    struct StressScales
     {
-      constexpr unsigned int n = 32;
-      std::vector<double> points(n + 1), m(n + 1);
-      for (unsigned int i = 0; i <= n; ++i)
-        points[i] = scene.body.length * i / n;
-      const auto stress = scene.active_stress->at(points);
-      double largest    = 0.;
-      for (unsigned int j = 0; j <= n; ++j)
+      double displacement; ///< of the stiff body, or of the one that is held by friction [length]
+      double length;       ///< largest |m| over largest |m_s| [length]
+      double time;         ///< largest |m| over largest |m_t| [time]
+    };
+
+    StressScales
+    stress_scales(const Scene &scene)
+    {
+      constexpr unsigned int fine = 512, coarse = 16;
+      const double L = scene.body.length, T = scene.end_time;
+      double largest = 0., along = 0., over = 0.;
+      const auto look = [&](const unsigned int n_points, const unsigned int n_times)
       {
-        stress->values(scene.end_time * j / n, m);
-        for (const double value : m)
-          largest = std::max(largest, std::abs(value));
-      }
-      const double L = scene.body.length;
-      return std::min(largest * L / scene.body.elastic_modulus,
-                      largest * scene.end_time / (L * scene.body.friction_coefficient));
+        std::vector<double> points(n_points + 1), m(n_points + 1), before;
+        for (unsigned int i = 0; i <= n_points; ++i)
+          points[i] = L * i / n_points;
+        const auto stress = scene.active_stress->at(points);
+        for (unsigned int j = 0; j <= n_times; ++j)
+        {
+          before = m;
+          stress->values(T * j / n_times, m);
+          for (unsigned int i = 0; i <= n_points; ++i)
+          {
+            largest = std::max(largest, std::abs(m[i]));
+            if (i > 0)
+              along = std::max(along, std::abs(m[i] - m[i - 1]) / (points[i] - points[i - 1]));
+            if (j > 0)
+              over = std::max(over, std::abs(m[i] - before[i]) * n_times / T);
+          }
+        }
+      };
+      look(fine, coarse);
+      look(coarse, fine);
+      return {std::min(largest * L / scene.body.elastic_modulus, largest * T / (L * scene.body.friction_coefficient)),
+              along > 0. ? largest / along : L,
+              over > 0. ? largest / over : T};
     }
   } // namespace
 
@@ -59,6 +80,9 @@ namespace crawler
     numerics.initial_step = parameters.time.initial_step.value_or(1e-5 * T);
     // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
     const unsigned int pilot_degree = std::max(numerics.degree, 2u);
+
+    const StressScales scales = stress_scales(scene);
+    numerics.largest_step     = scales.time;
 
     const bool fixed = parameters.time.step_control == "fixed";
     if (user_cells && (user_tolerance || fixed))
@@ -77,17 +101,21 @@ namespace crawler
       pilot_time.order      = 5;
     }
     pilot_time.petsc_prefix = "pilot_"; // options after "--" are for the real run
-    const double guess = displacement_scale(scene), scale = guess > 0. ? guess : L;
+    const double scale      = scales.displacement > 0. ? scales.displacement : L;
+    pilot_time.max_steps    = std::min(pilot_time.max_steps, most_pilot_steps);
 
     // Motions far below this are nothing, and their squares underflow.
     const double smallest = 1e-25 * L;
     double tolerance = std::max(1e-3 * scale, smallest), size = 0.;
-    unsigned int n_cells = user_cells.value_or(fewest_cells), n_pilots = 0;
+    unsigned int n_pilots = 0;
+    // A cell of this degree resolves a stress whose scale is a quarter of its size.
+    const double seen    = std::clamp(std::ceil(0.25 * L / scales.length), 1. * fewest_cells, 0.25 * most_cells);
+    unsigned int n_cells = user_cells.value_or(static_cast<unsigned int>(seen));
     SimulationResult pilot;
     bool good = false;
     while (!good && n_pilots < 20)
     {
-      Simulation simulation(communicator, scene, pilot_time, {pilot_degree, n_cells, tolerance, 1e-5 * T});
+      Simulation simulation(communicator, scene, pilot_time, {pilot_degree, n_cells, tolerance, 1e-5 * T, scales.time});
       pilot = simulation.run({}, {.ledger = false, .resolution = true});
       ++n_pilots;
       const bool finished = pilot.time.status == "finished";
@@ -106,7 +134,8 @@ namespace crawler
       else
         good = true;
     }
-    const bool predicts = pilot.time.status == "finished";
+    const bool predicts       = pilot.time.status == "finished";
+    const double enough_cells = n_cells; // fewer failed or left too much unresolved
     if (size == 0.)
       size = scale;
 
@@ -120,7 +149,8 @@ namespace crawler
       double unresolved = pilot.unresolved, rate = 0.;
       while (rate < 0.5 * full_rate && 2 * n_cells <= most_cells / 4)
       {
-        Simulation simulation(communicator, scene, pilot_time, {pilot_degree, 2 * n_cells, 0.01 * tolerance, 1e-5 * T});
+        Simulation simulation(
+          communicator, scene, pilot_time, {pilot_degree, 2 * n_cells, 0.01 * tolerance, 1e-5 * T, scales.time});
         const SimulationResult finer = simulation.run({}, {.ledger = false, .resolution = true});
         ++n_pilots;
         if (finer.time.status != "finished" || finer.unresolved == 0.)
@@ -132,8 +162,8 @@ namespace crawler
           break;
       }
       const double cells = rate > 0. ? n_cells * std::pow(unresolved / wanted_part, 1. / rate) : n_cells;
-      numerics.n_cells   = static_cast<unsigned int>(
-        std::clamp(std::ceil(cells), static_cast<double>(fewest_cells), static_cast<double>(most_cells)));
+      numerics.n_cells =
+        static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(most_cells)));
     }
     // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
     // size.

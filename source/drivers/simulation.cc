@@ -92,7 +92,7 @@ namespace crawler
       result_.output_seconds += now() - before;
       return !keep_going || keep_going();
     };
-    result_.time     = stepper_.solve(u_, frames, numerics_.tolerance, numerics_.initial_step);
+    result_.time     = stepper_.solve(u_, frames, numerics_.tolerance, numerics_.initial_step, numerics_.largest_step);
     stepper_.monitor = nullptr;
 
     if (!diagnosis_ && result_.time.status == "failed" && result_.time.domain_error)

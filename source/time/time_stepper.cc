@@ -85,8 +85,9 @@ namespace crawler
     double fixed_step      = 0.;
     bool stopped           = false;
     bool jacobian_ok       = true;
-    double refused_at      = -1.;                    ///< time of the last state that implicit_function refused
-    double nonfinite_at    = -1.;                    ///< time of the last residual that was not a finite number
+    double refused_at      = -1.; ///< time of the last state that implicit_function refused
+    double nonfinite_at    = -1.; ///< time of the last residual that was not a finite number
+    double largest_step    = 0.;
     bool underflow         = false;                  ///< a step is below the resolution of the time
     std::optional<double> user_tolerance, user_step; ///< options -ts_atol and -ts_dt
     double relative_tolerance   = 0.;                ///< option -ts_rtol
@@ -410,6 +411,8 @@ namespace crawler
     TSGetTimeStep(ts, &size);
     if (self.fixed_step > 0.)
       size = self.fixed_step;
+    else
+      size = std::min(size, self.largest_step);
     const double remaining = self.frames[self.next_frame] - time;
     if (size >= remaining * (1. - 1e-9))
       size = remaining;
@@ -578,7 +581,8 @@ namespace crawler
   TimeStepper::solve(std::vector<double> &y,
                      const std::vector<double> &frames,
                      const double tolerance,
-                     const double initial_step)
+                     const double initial_step,
+                     const double largest_step)
   {
     Implementation &self = *implementation_;
     TS ts                = self.ts.get();
@@ -590,6 +594,7 @@ namespace crawler
     self.exception            = nullptr;
     self.refused_at           = -1.;
     self.nonfinite_at         = -1.;
+    self.largest_step         = largest_step;
     self.underflow            = false;
     self.tolerance            = self.user_tolerance.value_or(tolerance);
     const double first_step   = self.user_step.value_or(initial_step);

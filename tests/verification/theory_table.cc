@@ -61,12 +61,13 @@ main(int argc, char **argv)
       const auto &result     = outcome.result;
       const double reference = row["values"]["displacement"], work = row["values"]["stress_power"];
       const double error = std::abs(result.displacement / reference - 1.);
-      // At a = 0 the body never moves; the extremes are promised for the log-stretch form only.
-      const bool still   = std::abs(reference) < 1e-12;
-      const bool extreme = row["name"] == "extreme";
-      const bool ok      = result.time.status == "finished" &&
-                      (still ? std::abs(result.displacement) < 1e-12 : error <= accuracy || extreme);
-      any = true;
+      // At a = 0 the body never moves. The extremes are not promised; they may end as under_resolved, by name.
+      const bool still    = std::abs(reference) < 1e-12;
+      const bool finished = result.time.status == "finished";
+      const bool ok       = row["name"] == "extreme"
+                              ? finished || result.time.reason == "under_resolved"
+                              : finished && (still ? std::abs(result.displacement) < 1e-12 : error <= accuracy);
+      any                 = true;
       failures += !ok;
       fmt::print("{:>4g} {:>6g} {:>3g} {:>4g} {:>5g} {:>9.0e} {:>18.12g} {:>18.12g} {:>10.1e} {:>10.1e} {:>9.1e} {:>5} "
                  "{:>6} {:>8.2f}{}\n",
@@ -84,7 +85,7 @@ main(int argc, char **argv)
                  outcome.choice.numerics.n_cells,
                  result.time.steps,
                  1e3 * result.solve_seconds,
-                 ok ? "" : "  <- FAILS " + result.time.reason);
+                 finished && ok ? "" : "  <- " + result.time.reason + (ok ? " (extreme)" : " FAILS"));
     }
   fmt::print("{} runs failed\n", failures);
   return failures == 0 && any ? 0 : 1;

@@ -19,8 +19,9 @@ namespace crawler
   {
     unsigned int degree  = 0;
     unsigned int n_cells = 0;
-    double tolerance     = 0.; ///< [length]
-    double initial_step  = 0.; ///< [time]
+    double tolerance     = 0.;                                      ///< [length]
+    double initial_step  = 0.;                                      ///< [time]
+    double largest_step  = std::numeric_limits<double>::infinity(); ///< [time]
   };
 
   /// What one simulation gives.

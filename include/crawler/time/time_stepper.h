@@ -6,6 +6,7 @@
 #include <mpi.h>
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -70,10 +71,14 @@ namespace crawler
      * Integrates from time 0 to parameters.end_time. @p y is the initial state on entry and the last accepted state on
      * return. Steps end exactly on @p frames (ascending, within (0, end_time]) and on the end time. The same object can
      * solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p initial_step [time] replace
-     * the parameters' automatic values.
+     * the parameters' automatic values. No adaptive step is longer than @p largest_step.
      */
     TimeOutcome
-    solve(std::vector<double> &y, const std::vector<double> &frames, double tolerance, double initial_step);
+    solve(std::vector<double> &y,
+          const std::vector<double> &frames,
+          double tolerance,
+          double initial_step,
+          double largest_step = std::numeric_limits<double>::infinity());
 
   private:
     struct Implementation;
