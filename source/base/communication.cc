@@ -33,6 +33,27 @@ namespace crawler
     return result;
   }
 
+  std::vector<std::string>
+  gather(const std::string &text, MPI_Comm communicator)
+  {
+    const bool first = rank_of(communicator) == 0;
+    const int length = static_cast<int>(text.size());
+    std::vector<int> lengths(first ? size_of(communicator) : 0), starts;
+    MPI_Gather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, 0, communicator);
+    int total = 0;
+    for (const int one : lengths)
+    {
+      starts.push_back(total);
+      total += one;
+    }
+    std::string all(total, ' ');
+    MPI_Gatherv(text.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(), MPI_CHAR, 0, communicator);
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < lengths.size(); ++i)
+      texts.push_back(all.substr(starts[i], lengths[i]));
+    return texts;
+  }
+
   std::string
   on_first_rank(MPI_Comm communicator, const std::function<std::string()> &action)
   {

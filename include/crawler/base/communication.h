@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace crawler
 {
@@ -17,6 +18,10 @@ namespace crawler
   /// The text of rank 0, on all ranks.
   std::string
   broadcast(const std::string &text, MPI_Comm communicator);
+
+  /// The texts of all ranks in their order, on rank 0; nothing on the others (collective).
+  std::vector<std::string>
+  gather(const std::string &text, MPI_Comm communicator);
 
   /**
    * Runs @p action on rank 0 only and returns its text on all ranks. An InputError or FileError that it throws is
