@@ -62,20 +62,24 @@ namespace crawler
     }
   } // namespace
 
-  Input
-  read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides)
+  ParameterFile
+  read_file(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides)
   {
-    ParameterFile own;
     const std::string text = on_first_rank(communicator,
                                            [&]()
                                            {
-                                             own = ParameterFile::read(file_name);
-                                             return own.text();
+                                             return ParameterFile::read(file_name).text();
                                            });
     ParameterFile file     = ParameterFile::from_text(text, file_name == "-" ? "standard input" : file_name);
     for (const std::string &assignment : overrides)
       file.add_override(assignment);
+    return file;
+  }
 
+  Input
+  read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides)
+  {
+    const ParameterFile file = read_file(communicator, file_name, overrides);
     Parameters parameters;
     Declarations declarations;
     parameters.add_parameters(declarations);

@@ -22,6 +22,10 @@ namespace crawler
   };
 
   /// Reads @p file_name on rank 0 and gives it to all (collective). Throws InputError or FileError, on all ranks.
+  ParameterFile
+  read_file(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides);
+
+  /// The same, understood: the scene is built too.
   Input
   read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides);
 } // namespace crawler

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/drivers/parameters.h>
+#include <crawler/drivers/simulation.h>
+
+namespace crawler
+{
+  /// Names a finished run whose identities do not hold a failure: the ledger must close, the friction forces balance.
+  void
+  check_identities(SimulationResult &result, const Parameters &parameters);
+} // namespace crawler

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/drivers/self_check.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace crawler
+{
+  void
+  check_identities(SimulationResult &result, const Parameters &parameters)
+  {
+    if (result.time.status != "finished" || !result.ledger)
+      return;
+    const bool own_numerics = parameters.time.tolerance || parameters.time.integrator != "bdf" ||
+                              parameters.time.order < 4 || parameters.time.step_control == "fixed";
+    const double tolerance =
+      parameters.output.ledger_tolerance.value_or(own_numerics ? 0.1 : std::max(1e-8, 10. * parameters.accuracy));
+    constexpr double friction_tolerance = 1e-6;
+    std::string problem;
+    if (!(result.ledger->residual() <= tolerance))
+    {
+      result.time.reason  = "ledger_residual";
+      result.time.message = fmt::format("the ledger does not close: its residual is {:.3g}, above {:.3g}; a smaller "
+                                        "Time/Tolerance (or Accuracy) is needed",
+                                        result.ledger->residual(),
+                                        tolerance);
+    }
+    else if (!(result.net_friction <= friction_tolerance))
+    {
+      result.time.reason = "net_friction";
+      result.time.message =
+        fmt::format("the friction forces do not balance: {:.3g} of their sum is left over, above {:.3g}",
+                    result.net_friction,
+                    friction_tolerance);
+    }
+    else
+      return;
+    result.time.status = "failed";
+  }
+} // namespace crawler
