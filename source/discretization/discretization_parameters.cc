@@ -9,6 +9,12 @@ namespace crawler
   DiscretizationParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Discretization");
+    declarations.choice("Formulation",
+                        formulation,
+                        {"position", "log stretch", "automatic"},
+                        "What is discretized: the position, or the logarithm of the stretch.");
+    declarations.choice(
+      "Mesh", mesh, {"uniform", "adaptive", "automatic"}, "Whether the cells have one size or follow the solution.");
     declarations.whole_number("Degree",
                               degree,
                               1,

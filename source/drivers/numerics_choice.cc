@@ -172,6 +172,8 @@ namespace crawler
     const double wanted = accuracy * size / (time_factor * std::max(pilot.time.steps, 1u) * std::pow(tolerance, r));
     numerics.tolerance  = user_tolerance.value_or(
       std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance), std::max(1e-15 * scale, smallest)));
+    if (!user_cells && !user_tolerance && !fixed)
+      choice.promised_error = accuracy * size;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     choice.explanation =
       predicts ? fmt::format(

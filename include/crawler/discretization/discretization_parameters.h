@@ -11,6 +11,8 @@ namespace crawler
   /// Section "Discretization"; what is left empty is chosen from the wanted accuracy.
   struct DiscretizationParameters
   {
+    std::string formulation = "automatic";
+    std::string mesh        = "automatic";
     std::optional<unsigned int> degree;
     std::optional<unsigned int> n_cells;
     std::string share_cells = "automatic";

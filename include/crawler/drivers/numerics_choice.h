@@ -4,6 +4,7 @@
 #include <crawler/drivers/parameters.h>
 #include <crawler/drivers/simulation.h>
 
+#include <limits>
 #include <string>
 
 namespace crawler
@@ -13,6 +14,8 @@ namespace crawler
   {
     Numerics numerics;
     std::string explanation;
+    /// The error of the displacement that Accuracy stands for [length]; not a number if the user chose the numerics.
+    double promised_error = std::numeric_limits<double>::quiet_NaN();
   };
 
   /**
