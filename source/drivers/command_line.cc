@@ -3,6 +3,7 @@
 #include <crawler/base/nearest_name.h>
 #include <crawler/base/petsc_object.h>
 #include <crawler/base/versions.h>
+#include <crawler/drivers/atlas.h>
 #include <crawler/drivers/command_line.h>
 #include <crawler/drivers/parameters.h>
 #include <crawler/drivers/run.h>
@@ -131,8 +132,14 @@ namespace crawler
       };
       CLI::App *run_command = app.add_subcommand("run", "Runs the crawler of a parameter file");
       common(run_command);
-      run_command->add_flag("--overwrite", options.overwrite, "Replaces the results in the output folder");
-      run_command->add_flag("--quiet", options.quiet, "Prints nothing but errors");
+      CLI::App *atlas_command =
+        app.add_subcommand("atlas", "Maps two entries of a parameter file: runs every point in all forms and compares");
+      common(atlas_command);
+      for (CLI::App *command : {run_command, atlas_command})
+      {
+        command->add_flag("--overwrite", options.overwrite, "Replaces the results in the output folder");
+        command->add_flag("--quiet", options.quiet, "Prints nothing but errors");
+      }
       CLI::App *check_command =
         app.add_subcommand("check", "Says what run would do with a parameter file; runs and writes nothing");
       common(check_command);
@@ -163,6 +170,8 @@ namespace crawler
       }
       if (*parameter_command)
         return first ? print_parameters(format) : 0;
+      if (*atlas_command)
+        return static_cast<int>(atlas(communicator, options));
       return static_cast<int>(*run_command ? run(communicator, options) : check(communicator, options));
     }
   } // namespace

@@ -60,7 +60,11 @@ namespace crawler
                              "statistics.csv",
                              "summary.json",
                              "solution.pvd",
-                             "kymograph.vts"})
+                             "kymograph.vts",
+                             "atlas.csv",
+                             "atlas.h5",
+                             "atlas.png",
+                             "atlas.svg"})
       fs::remove(folder / name, error);
     if (fs::is_directory(folder / "solution", error))
       for (const auto &file : fs::directory_iterator(folder / "solution"))

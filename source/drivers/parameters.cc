@@ -20,6 +20,7 @@ namespace crawler
     discretization.add_parameters(declarations);
     time.add_parameters(declarations);
     output.add_parameters(declarations);
+    atlas.add_parameters(declarations);
   }
 
   Scene

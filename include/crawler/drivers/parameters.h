@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/discretization/discretization_parameters.h>
+#include <crawler/drivers/atlas_parameters.h>
 #include <crawler/observers/output_parameters.h>
 #include <crawler/scene/active_stress_library.h>
 #include <crawler/scene/scene.h>
@@ -23,6 +24,7 @@ namespace crawler
     DiscretizationParameters discretization;
     TimeParameters time;
     OutputParameters output;
+    AtlasParameters atlas;
 
     void
     add_parameters(Declarations &declarations);

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// What one run says about a scene.
+  struct Claim
+  {
+    std::string run;    ///< its name in explanations
+    std::string status; ///< finished and inverted are answers; anything else (failed, stopped, ...) claims nothing
+    double displacement   = std::numeric_limits<double>::quiet_NaN(); ///< at the end time, if finished [length]
+    double promised_error = std::numeric_limits<double>::quiet_NaN(); ///< of the displacement, if promised [length]
+    double inversion_time = std::numeric_limits<double>::quiet_NaN(); ///< if inverted [time]
+  };
+
+  /// What is known about the inversion of a scene without a run (doc/theory.md, "When a body can invert").
+  struct InversionFacts
+  {
+    double end_time      = 1.;   ///< T [time]
+    bool possible_inside = true; ///< a > -1
+    /// An end inverts between these two times; infinite if it does not.
+    double earliest_at_end = std::numeric_limits<double>::infinity();
+    double latest_at_end   = std::numeric_limits<double>::infinity();
+  };
+
+  /// Times of inversion that differ by more than this part of the end time disagree.
+  constexpr double inversion_time_tolerance = 1e-3;
+
+  /// Whether the runs of one scene can all be right.
+  struct Verdict
+  {
+    enum Kind
+    {
+      agree,               ///< all answers fit together
+      unchecked,           ///< there are no two answers to compare
+      silent_wrong_answer, ///< two answers contradict each other, or one contradicts the theory
+    };
+    Kind kind = unchecked;
+    std::string explanation; ///< of a wrong answer, in a sentence
+
+    /// "agree", "unchecked" or "silent wrong answer".
+    std::string
+    in_words() const;
+  };
+
+  /**
+   * Compares answers to one scene. Each of @p runs is compared with @p refined, or, if that one gave no answer, with
+   * each other; and each, refined too, with the theory. Two answers contradict each other if
+   * - both finished, and the displacements differ by more than the sum of the promised errors (no promise, no check);
+   * - one finished, and the other inverted before T;
+   * - both inverted, at different times.
+   * An answer contradicts the theory if
+   * - an end must have inverted, but the run did not invert by then;
+   * - it inverted earlier than an end, where the body cannot invert inside (a <= -1).
+   * Times differ if they do so by more than inversion_time_tolerance T. A run that failed with a name, was stopped or
+   * refused is not an answer, and so never wrong.
+   */
+  Verdict
+  cross_check(const std::vector<Claim> &runs, const Claim &refined, const InversionFacts &facts);
+} // namespace crawler

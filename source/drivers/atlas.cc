@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
+#include <crawler/base/files.h>
+#include <crawler/base/process.h>
+#include <crawler/base/stop_signal.h>
+#include <crawler/base/versions.h>
+#include <crawler/base/work_queue.h>
+#include <crawler/drivers/atlas.h>
+#include <crawler/drivers/atlas_results.h>
+#include <crawler/drivers/input.h>
+#include <crawler/drivers/log.h>
+#include <crawler/drivers/output_folder.h>
+#include <crawler/parameters/declarations.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    double
+    now()
+    {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    }
+
+    /// The parameter file as a form in which the two entries of the axes can be filled in.
+    class Form
+    {
+    public:
+      explicit Form(const ParameterFile &file)
+      {
+        parameters_.add_parameters(declarations_);
+        file.apply(declarations_);
+      }
+      Form(const Form &) = delete;
+
+      const Parameters &
+      parameters() const
+      {
+        return parameters_;
+      }
+
+      const Parameters &
+      filled(const AtlasAxes &axes, const unsigned long index)
+      {
+        declarations_.set(axes.first.entry, axes.first.values[index / axes.second.values.size()]);
+        declarations_.set(axes.second.entry, axes.second.values[index % axes.second.values.size()]);
+        return parameters_;
+      }
+
+      Declarations &
+      declarations()
+      {
+        return declarations_;
+      }
+
+      std::string
+      text() const
+      {
+        std::ostringstream out;
+        declarations_.print_prm(out);
+        return out.str();
+      }
+
+    private:
+      Parameters parameters_;
+      Declarations declarations_; ///< its entries are the members of parameters_
+    };
+
+    std::string
+    unit_of(const std::string &path, const Declarations &declarations)
+    {
+      for (const EntryInfo &entry : declarations.entries())
+        if (entry.path == path)
+          return entry.unit;
+      return "";
+    }
+
+    /// Reads both axes and looks at all their values. Throws InputError.
+    AtlasAxes
+    read_axes(const ParameterFile &file)
+    {
+      Form scratch(file);
+      const std::string first_name = "Atlas/First axis", second_name = "Atlas/Second axis";
+      const auto read = [&](const std::string &text, const std::string &name)
+      {
+        const Axis axis = parse_axis(text, name);
+        if (axis.entry.starts_with("Atlas/"))
+          throw InputError(
+            fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", name, axis.entry), name);
+        require_valid(axis, name, scratch.declarations());
+        numbers_of(axis, name);
+        return axis;
+      };
+      try
+      {
+        const AtlasParameters texts = scratch.parameters().atlas;
+        AtlasAxes axes{read(texts.first_axis, first_name), read(texts.second_axis, second_name), "", ""};
+        if (axes.first.entry == axes.second.entry)
+          throw InputError(fmt::format("\"{}\" is on both axes; two different entries are expected", axes.first.entry),
+                           second_name);
+        axes.first_unit  = unit_of(axes.first.entry, scratch.declarations());
+        axes.second_unit = unit_of(axes.second.entry, scratch.declarations());
+        return axes;
+      }
+      catch (const InputError &error)
+      {
+        throw file.with_place(error);
+      }
+    }
+
+    /// A line every few seconds at most: points done, speed, time left.
+    class PointProgress
+    {
+    public:
+      PointProgress(Log &log, const unsigned long n_points)
+        : log_(log)
+        , n_points_(n_points)
+      {
+      }
+
+      void
+      report(const unsigned long done)
+      {
+        constexpr double pause = 5.; // seconds
+        if (now() < last_ + pause)
+          return;
+        last_             = now();
+        const double rate = done / (last_ - start_);
+        log_.line(fmt::format("  {:3.0f} %  {} of {} points, {:.3g} points/s, {:.0f} s left",
+                              100. * done / n_points_,
+                              done,
+                              n_points_,
+                              rate,
+                              (n_points_ - done) / rate));
+      }
+
+    private:
+      Log &log_;
+      const unsigned long n_points_;
+      const double start_ = now();
+      double last_        = now();
+    };
+
+    /// This rank's share of the points. A signal ends the work of all ranks; each drops the point it is at.
+    std::vector<AtlasPoint>
+    compute_points(
+      MPI_Comm communicator, const ParameterFile &file, const AtlasAxes &axes, const StopSignal &stop_signal, Log &log)
+    {
+      Form form(file);
+      const std::vector<double> first = numbers_of(axes.first, ""), second = numbers_of(axes.second, "");
+      WorkQueue queue(communicator, axes.n_points());
+      PointProgress progress(log, axes.n_points());
+      const auto interrupted = [&stop_signal]()
+      {
+        return stop_signal.arrived_anywhere(MPI_COMM_SELF);
+      };
+      std::vector<AtlasPoint> points;
+      while (const auto index = queue.next())
+      {
+        auto point = compute_point(form.filled(axes, *index), interrupted);
+        if (!point)
+        {
+          queue.close();
+          break;
+        }
+        point->index  = *index;
+        point->first  = first[*index / second.size()];
+        point->second = second[*index % second.size()];
+        points.push_back(*point);
+        progress.report(queue.done());
+      }
+      return points;
+    }
+
+    /// The points of all ranks in their order, on rank 0.
+    std::vector<AtlasPoint>
+    collect(MPI_Comm communicator, const std::vector<AtlasPoint> &own)
+    {
+      std::vector<AtlasPoint> all;
+      for (const std::string &text : gather(pack(own), communicator))
+        for (const AtlasPoint &point : unpack(text))
+          all.push_back(point);
+      std::sort(all.begin(),
+                all.end(),
+                [](const AtlasPoint &a, const AtlasPoint &b)
+                {
+                  return a.index < b.index;
+                });
+      return all;
+    }
+
+    /// Where the effective parameters, versions and command come from: attributes of the HDF5 file.
+    std::map<std::string, std::string>
+    provenance(const std::string &effective, const CommandOptions &options)
+    {
+      std::map<std::string, std::string> attributes = {{"parameters.prm", effective},
+                                                       {"command line", options.command_line}};
+      for (const auto &[name, version] : versions())
+        attributes["version of " + name] = version;
+      return attributes;
+    }
+
+    /// Draws the picture with Python, or says how to.
+    void
+    draw(const std::filesystem::path &folder, Log &log)
+    {
+      const std::string script  = CRAWLER_SOURCE_DIR "/contrib/plot/atlas.py";
+      const std::string debians = "/usr/bin/python3";
+      for (const std::string &python : {debians, std::string("python3")})
+        if (run_silently({python, script, folder.string()}))
+          return;
+      log.line(fmt::format("There is no picture (it needs Python with numpy and matplotlib); draw it with: "
+                           "python3 contrib/plot/atlas.py {}",
+                           folder.string()));
+    }
+
+    /// The points in which something is wrong, the first few.
+    void
+    report_wrong_answers(const std::vector<AtlasPoint> &points, const AtlasAxes &axes, Log &log)
+    {
+      constexpr unsigned int most = 10;
+      unsigned int n              = 0;
+      for (const AtlasPoint &point : points)
+        if (point.verdict.kind == Verdict::silent_wrong_answer && ++n <= most)
+          log.line(fmt::format("Silent wrong answer at {} = {:g}, {} = {:g}: {}",
+                               split_path(axes.first.entry).back(),
+                               point.first,
+                               split_path(axes.second.entry).back(),
+                               point.second,
+                               point.verdict.explanation));
+      if (n > most)
+        log.line(fmt::format("... and {} more (column verdict of atlas.csv)", n - most));
+    }
+  } // namespace
+
+  ExitCode
+  atlas(MPI_Comm communicator, const CommandOptions &options)
+  {
+    const StopSignal stop_signal; // from here on a signal ends the atlas in order
+    const double start = now();
+    Log log(rank_of(communicator) == 0, options.quiet);
+    const ParameterFile file    = read_file(communicator, options.file, options.overrides);
+    const AtlasAxes axes        = read_axes(file);
+    const std::string effective = Form(file).text();
+    const auto folder           = output_folder(options.output, options.file);
+    const unsigned int n_ranks  = size_of(communicator);
+
+    on_first_rank(communicator,
+                  [&]()
+                  {
+                    require_usable(folder, options.overwrite);
+                    prepare(folder);
+                    write_file(folder / "original.prm", file.text());
+                    write_file(folder / "parameters.prm", effective);
+                    log.open(folder / "log.txt");
+                    return "";
+                  });
+    log.line(fmt::format("Atlas: {} values of {} times {} of {}, {} points on {} rank{}",
+                         axes.first.values.size(),
+                         axes.first.entry,
+                         axes.second.values.size(),
+                         axes.second.entry,
+                         axes.n_points(),
+                         n_ranks,
+                         n_ranks == 1 ? "" : "s"));
+
+    const auto points    = collect(communicator, compute_points(communicator, file, axes, stop_signal, log));
+    const auto summary   = summarize(points, axes);
+    const double seconds = now() - start;
+    on_first_rank(
+      communicator,
+      [&]()
+      {
+        const Table table = atlas_table(points, axes);
+        write_file(folder / "atlas.csv", csv(table));
+        write_hdf5(folder / "atlas.h5", "atlas", table, provenance(effective, options));
+        const std::string status = summary.computed() == summary.points ? "finished" : "stopped";
+        write_file(folder / "summary.json", atlas_json(summary, axes, status, seconds, n_ranks, options.command_line));
+        draw(folder, log);
+        report_wrong_answers(points, axes, log);
+        log.line(in_words(summary, axes, seconds, n_ranks));
+        if (status == "stopped")
+          log.warn(fmt::format("stopped by a signal after {} of {} points", summary.computed(), summary.points));
+        log.line(fmt::format("Results are in {}/.", folder.string()));
+        return "";
+      });
+    int code = static_cast<int>(summary.computed() == summary.points ? ExitCode::finished : ExitCode::stopped);
+    MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
+    return static_cast<ExitCode>(code);
+  }
+} // namespace crawler
