@@ -16,6 +16,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <numeric>
 #include <sstream>
 
 namespace crawler
@@ -147,6 +149,18 @@ namespace crawler
       double last_        = now();
     };
 
+    /// A number without common divisor with @p n, near the golden section of it: its multiples modulo n visit all of n
+    /// points, spread out from the beginning. So the time left is known early, and an atlas that is stopped is a coarse
+    /// map of everything.
+    unsigned long
+    golden_stride(const unsigned long n)
+    {
+      auto stride = static_cast<unsigned long>(std::ceil(0.618034 * n));
+      while (std::gcd(stride, n) != 1)
+        ++stride;
+      return stride;
+    }
+
     /// This rank's share of the points. A signal ends the work of all ranks; each drops the point it is at.
     std::vector<AtlasPoint>
     compute_points(
@@ -161,17 +175,19 @@ namespace crawler
         return stop_signal.arrived_anywhere(MPI_COMM_SELF);
       };
       std::vector<AtlasPoint> points;
-      while (const auto index = queue.next())
+      const unsigned long stride = golden_stride(axes.n_points());
+      while (const auto number = queue.next())
       {
-        auto point = compute_point(form.filled(axes, *index), interrupted);
+        const unsigned long index = *number * stride % axes.n_points();
+        auto point                = compute_point(form.filled(axes, index), interrupted);
         if (!point)
         {
           queue.close();
           break;
         }
-        point->index  = *index;
-        point->first  = first[*index / second.size()];
-        point->second = second[*index % second.size()];
+        point->index  = index;
+        point->first  = first[index / second.size()];
+        point->second = second[index % second.size()];
         points.push_back(*point);
         progress.report(queue.done());
       }
@@ -287,6 +303,7 @@ namespace crawler
         log.line(in_words(summary, axes, seconds, n_ranks));
         if (status == "stopped")
           log.warn(fmt::format("stopped by a signal after {} of {} points", summary.computed(), summary.points));
+        draw(folder, log);
         log.line(fmt::format("Results are in {}/.", folder.string()));
         return "";
       });

@@ -201,6 +201,48 @@ namespace
     };
   }
 
+  BadInput
+  bad_atlas(const std::string &name, const std::string &lines, const Words &message)
+  {
+    return {name, in_section("Atlas", lines), message, 2, {"atlas", "bad.prm", "--output", "results"}};
+  }
+
+  std::vector<BadInput>
+  atlases()
+  {
+    return {
+      bad_atlas("AxisOfUnknownEntry",
+                "set First axis = Body/Lenght : 1, 2",
+                {"bad.prm, line 2", "\"Atlas/First axis\"", "in section \"Body\"", "nearest name is \"Length\""}),
+      bad_atlas("AxisOfUnknownSection",
+                "set Second axis = Boddy/Length : 1, 2",
+                {"bad.prm, line 2", "\"Atlas/Second axis\"", "\"Boddy\"", "\"Body\""}),
+      bad_atlas("AxisValueOutOfRange",
+                "set Second axis = Body/Anchoring exponent : linspace(0, 200, 3)",
+                {"bad.prm, line 2", "\"200\"", "a number from -100 to 100 is expected"}),
+      bad_atlas("AxisOfHalfCells",
+                "set First axis = Discretization/Number of cells : linspace(2, 5, 3)",
+                {"bad.prm, line 2", "\"3.5\"", "a whole number"}),
+      bad_atlas("AxisOfWords",
+                "set First axis = Active stress/Generator : none, optimal wave",
+                {"bad.prm, line 2", "\"none\"", "a number is expected"}),
+      bad_atlas(
+        "AxisWithoutValues", "set First axis = Body/Length", {"bad.prm, line 2", "linspace(first, last, count)"}),
+      bad_atlas("AxisWithUnknownFunction",
+                "set First axis = Body/Length : lospace(0, 1, 3)",
+                {"bad.prm, line 2", "\"lospace\"", "the nearest is \"logspace\""}),
+      bad_atlas("AxisOfTheAtlasItself",
+                "set First axis = Atlas/Refinement : 2, 3",
+                {"bad.prm, line 2", "cannot vary", "another section is expected"}),
+      bad_atlas("SameAxisTwice",
+                "set First axis = Body/Anchoring exponent : 1, 2",
+                {"bad.prm", "\"Body/Anchoring exponent\" is on both axes"}),
+      bad_atlas("RefinementThatIsNone", "set Refinement = 0.1", {"bad.prm, line 2", "a number from 1"}),
+      bad_arguments("AtlasWithoutFile", {"atlas"}, {"FILE is required"}),
+      bad_arguments("AtlasInFullFolder", {"atlas", "good.prm", "--output", "full"}, {"\"full\" is not empty"}),
+    };
+  }
+
   std::vector<BadInput>
   files()
   {
@@ -361,6 +403,7 @@ INSTANTIATE_TEST_SUITE_P(Names, BadInputTest, testing::ValuesIn(names()), name_o
 INSTANTIATE_TEST_SUITE_P(Values, BadInputTest, testing::ValuesIn(values()), name_of);
 INSTANTIATE_TEST_SUITE_P(Formulas, BadInputTest, testing::ValuesIn(formulas()), name_of);
 INSTANTIATE_TEST_SUITE_P(Waves, BadInputTest, testing::ValuesIn(waves()), name_of);
+INSTANTIATE_TEST_SUITE_P(Atlases, BadInputTest, testing::ValuesIn(atlases()), name_of);
 INSTANTIATE_TEST_SUITE_P(Files, BadInputTest, testing::ValuesIn(files()), name_of);
 INSTANTIATE_TEST_SUITE_P(CommandLines, BadInputTest, testing::ValuesIn(command_lines()), name_of);
 

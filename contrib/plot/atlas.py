@@ -1,0 +1,242 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Draws an atlas of crawler: the outcome of every point, and how the measured error compares with the reported one.
+
+    python3 atlas.py OUTPUT_FOLDER
+
+Reads atlas.csv and parameters.prm of the folder and writes atlas.png and atlas.svg there; needs numpy and matplotlib
+(Debian: python3-matplotlib). Colours are those of Okabe and Ito, safe for colour-blind readers.
+"""
+import argparse
+import csv
+import math
+import pathlib
+import re
+import sys
+
+CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
+SYMBOLS = {CHI: r"$\chi$", P: "$p$", "Body/Elastic modulus": "$k$", "Body/Friction coefficient": r"$\gamma$",
+           "Body/Length": "$L$", "Active stress/Optimal wave/Wave speed": "$c$", "Time/End time": "$T$"}
+WRONG = "silent wrong answer"
+COLOURS = {"finished": "#A6D0EC", "inverted inside": "#E69F00", "inverted at end": "#8C510A", "refused": "#D9D9D9",
+           "not computed": "#FFFFFF", WRONG: "#D40000"}
+FAILURES = ("#CC79A7", "#7F7F7F", "#009E73", "#0072B2", "#F0E442", "#B3A2D4", "#333333")  # the most frequent first
+INK = "0.15"
+
+
+class Problem(Exception):
+    """What to tell the user."""
+
+
+class Atlas:
+    """The columns of atlas.csv as grids: row i is the i-th value of the second axis, column j that of the first."""
+
+    def __init__(self, folder):
+        import numpy as np
+        path = folder / "atlas.csv"
+        if not path.is_file():
+            raise Problem(f"{path} does not exist; the output folder of crawler atlas is expected")
+        with open(path, newline="", encoding="utf-8") as file:
+            reader = csv.DictReader(file)
+            self.rows = list(reader)
+        self.entries = reader.fieldnames[1:3]
+        if not self.rows or "outcome" not in reader.fieldnames:
+            raise Problem(f"{path} has no points")
+        self.x, self.y = (sorted({float(row[name]) for row in self.rows}) for name in self.entries)
+        self.outcome = np.full((len(self.y), len(self.x)), "not computed", dtype=object)
+        self.ratio, self.error = (np.full(self.outcome.shape, math.nan) for _ in range(2))
+        for row in self.rows:
+            i, j = self.y.index(float(row[self.entries[1]])), self.x.index(float(row[self.entries[0]]))
+            self.outcome[i, j] = row["outcome"]
+            measured, promised = number(row["run measured error"]), (number(row["run promised error"])
+                                                                     + number(row["refined promised error"]))
+            self.error[i, j] = measured
+            self.ratio[i, j] = measured / promised if promised > 0 else math.nan
+        text = folder / "parameters.prm"
+        self.parameters = text.read_text(encoding="utf-8") if text.is_file() else ""
+
+    def entry(self, name):
+        """The value of an entry of parameters.prm whose name occurs once."""
+        match = re.search(rf"^\s*set {name}\s*=\s*([^#\n]*?)\s*(?:#.*)?$", self.parameters, re.MULTILINE)
+        return match[1] if match else ""
+
+
+def number(text):
+    """What is not known is not a number."""
+    return float(text) if text else math.nan
+
+
+def is_logarithmic(values):
+    """Whether the ratios of neighbours are alike, and not their differences."""
+    if len(values) < 3 or values[0] <= 0:
+        return False
+    ratios = [b / a for a, b in zip(values, values[1:])]
+    return max(ratios) / min(ratios) < 1.05 and max(ratios) > 1.1
+
+
+def edges(values):
+    """The borders of cells around the values."""
+    if is_logarithmic(values):
+        return [math.exp(edge) for edge in edges([math.log(value) for value in values])]
+    middle = [(a + b) / 2 for a, b in zip(values, values[1:])]
+    if not middle:
+        return [values[0] - 0.5, values[0] + 0.5]
+    return [2 * values[0] - middle[0], *middle, 2 * values[-1] - middle[-1]]
+
+
+def label(entry):
+    """The name of an axis: the entry's last word, and its letter."""
+    symbol = SYMBOLS.get(entry)
+    return entry.split("/")[-1].lower() + (f" {symbol}" if symbol else "")
+
+
+def end_inversion(atlas):
+    """The chi from which on an end inverts, 1 + (chi a_1/c) sin(2 pi c t/L) <= 0 at some t <= T; None if not known."""
+    try:
+        c, length, duration, a_1 = (float(atlas.entry(name))
+                                    for name in ("Wave speed", "Length", "End time", "Sine coefficients"))
+    except ValueError:
+        return None
+    if (atlas.entry("Generator") != "optimal wave" or atlas.entry("Choose wave by") != "wave speed"
+            or atlas.entry("Cosine coefficients") != "0"):
+        return None
+    steps = [a_1 / c * math.sin(2 * math.pi * c * duration / length * i / 1000) for i in range(1001)]
+    return -1 / min(steps) if min(steps) < 0 else None
+
+
+def draw_theory(axes, atlas):
+    """What is known without a run, if the axes are chi and p; returns the handles of the legend."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles = []
+    if atlas.entries != [CHI, P]:
+        return handles
+    (left, right), (low, high) = ((edges(values)[0], edges(values)[-1]) for values in (atlas.x, atlas.y))
+    if low < 2 < high:
+        axes.axhspan(2, high, facecolor="none", edgecolor=INK, alpha=0.3, hatch="////", linewidth=0)
+        axes.axhline(2, color=INK, linewidth=0.9)
+        handles.append(Patch(facecolor="none", edgecolor="0.6", hatch="////", linewidth=0.5,
+                             label=r"theory: cannot invert inside ($p\geq2$)"))
+    if low < 1 < high:
+        axes.axhline(1, color=INK, linewidth=0.9, linestyle=(0, (4, 3)))
+        handles.append(Line2D([], [], color=INK, linewidth=0.9, linestyle=(0, (4, 3)), label="theory: stays in place"))
+    chi = end_inversion(atlas)
+    if chi is not None and left < chi < right:
+        axes.axvline(chi, color=INK, linewidth=1.2, linestyle="-.")
+        handles.append(Line2D([], [], color=INK, linewidth=1.2, linestyle="-.", label="theory: an end inverts"))
+    return handles
+
+
+def grid_lines(atlas):
+    """White lines between the cells, if these are large enough for them."""
+    few = max(len(atlas.x), len(atlas.y)) <= 30
+    return dict(edgecolors="white", linewidth=0.3) if few else dict(edgecolors="face", linewidth=0.1)
+
+
+def mark_wrong(axes, atlas):
+    """A cross on each silent wrong answer, as large as the cells allow."""
+    places = [(atlas.x[j], atlas.y[i]) for i in range(len(atlas.y)) for j in range(len(atlas.x))
+              if atlas.outcome[i, j] == WRONG]
+    if places:
+        size = min(5.0, 110 / max(len(atlas.x), len(atlas.y)))  # points
+        axes.scatter(*zip(*places), marker="x", s=size**2, color="black", linewidths=0.12 * size, zorder=5)
+
+
+def draw_outcomes(axes, legend, atlas):
+    """Left panel: named colours, and their legend in axes of its own."""
+    import numpy as np
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    present = {str(name) for name in atlas.outcome.flat}
+    names = [name for name in COLOURS if name in present]
+    failures = sorted(present - set(COLOURS), key=lambda name: -(atlas.outcome == name).sum())
+    colours = dict(COLOURS, **{name: FAILURES[i % len(FAILURES)] for i, name in enumerate(failures)})
+    names = [*names[:-1], *failures, names[-1]] if WRONG in names else [*names, *failures]
+    values = np.vectorize(names.index)(atlas.outcome)
+    axes.pcolormesh(edges(atlas.x), edges(atlas.y), values, cmap=ListedColormap([colours[name] for name in names]),
+                    vmin=-0.5, vmax=len(names) - 0.5, **grid_lines(atlas))
+    theory = draw_theory(axes, atlas)
+    mark_wrong(axes, atlas)
+    handles = [Patch(facecolor=colours[name], edgecolor="0.4", linewidth=0.5,
+                     label=f"{name} ({int((atlas.outcome == name).sum())})") for name in names]
+    if WRONG not in present:
+        handles.append(Patch(facecolor=colours[WRONG], edgecolor="0.4", linewidth=0.5, label=f"{WRONG} (0)"))
+    legend.axis("off")
+    legend.legend(handles=handles + theory, loc="center", ncols=3, fontsize=8, frameon=False, borderpad=0, borderaxespad=0)
+    axes.set_title(f"outcome of {len(atlas.rows)} points")
+
+
+def draw_errors(figure, axes, atlas):
+    """Right panel: the measured error over the reported one, or the measured error if none was reported."""
+    import numpy as np
+    from matplotlib import colormaps
+    from matplotlib.colors import LogNorm
+
+    relative = bool(np.isfinite(atlas.ratio).any())
+    values = atlas.ratio if relative else atlas.error
+    known = values[np.isfinite(values) & (values > 0)]
+    if known.size == 0:
+        axes.text(0.5, 0.5, "no error could be measured", transform=axes.transAxes, ha="center", va="center")
+        return
+    lowest = 1e-3 if relative else max(known.min(), 1e-16)
+    norm = LogNorm(lowest, 1 if relative else max(known.max(), 10 * lowest), clip=False)
+    colours = colormaps["cividis"].with_extremes(over=COLOURS[WRONG], bad="0.93")
+    shown = np.where(np.isfinite(values), np.maximum(values, lowest), np.nan)
+    mesh = axes.pcolormesh(edges(atlas.x), edges(atlas.y), shown, cmap=colours, norm=norm,
+                           **grid_lines(atlas))
+    axes.set_facecolor("0.93")  # where nothing is known
+    mark_wrong(axes, atlas)
+    bar = figure.colorbar(mesh, ax=axes, extend="both" if relative else "neither", pad=0.03)
+    bar.set_label("measured error / reported error" if relative else "measured error [length]")
+    axes.set_title("error of the displacement")
+
+
+def draw(folder):
+    """Reads the files and writes the pictures."""
+    try:
+        import matplotlib
+    except ImportError:
+        raise Problem("matplotlib is missing; install it (Debian: apt install python3-matplotlib)") from None
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    atlas = Atlas(folder)
+    plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "xtick.labelsize": 9,
+                         "ytick.labelsize": 9, "axes.linewidth": 0.7, "hatch.linewidth": 0.5,
+                         "svg.hashsalt": "crawler"})
+    figure = plt.figure(figsize=(7.5, 4.5), layout="constrained")
+    left, right, legend = figure.subplot_mosaic("oe;ll", width_ratios=(1, 1.15), height_ratios=(1, 0.18)).values()
+    draw_outcomes(left, legend, atlas)
+    draw_errors(figure, right, atlas)
+    left.set_ylabel(label(atlas.entries[1]))
+    for axes in left, right:
+        axes.set_xlabel(label(atlas.entries[0]))
+        axes.set(xlim=(edges(atlas.x)[0], edges(atlas.x)[-1]), ylim=(edges(atlas.y)[0], edges(atlas.y)[-1]))
+        for name, values in ("x", atlas.x), ("y", atlas.y):
+            if is_logarithmic(values):
+                axes.set(**{f"{name}scale": "log"})
+            else:
+                axes.locator_params(axis=name, steps=(1, 2, 5, 10), nbins=6)
+    try:
+        figure.savefig(folder / "atlas.png", dpi=200)
+        figure.savefig(folder / "atlas.svg", metadata={"Date": None})
+    except OSError as error:
+        raise Problem(f"cannot write the pictures: {error}") from None
+
+
+def main():
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path, help="output folder of crawler atlas")
+    options = parser.parse_args()
+    try:
+        draw(options.folder)
+    except (Problem, OSError, ValueError) as problem:
+        sys.exit(f"atlas.py: {problem}")
+    print(f"wrote {options.folder / 'atlas.png'} and {options.folder / 'atlas.svg'}")
+
+
+if __name__ == "__main__":
+    main()
