@@ -160,7 +160,8 @@ def draw_outcomes(axes, legend, atlas):
     theory = draw_theory(axes, atlas)
     mark_wrong(axes, atlas)
     handles = [Patch(facecolor=colours[name], edgecolor="0.4", linewidth=0.5,
-                     label=f"{name} ({int((atlas.outcome == name).sum())})") for name in names]
+                     label=name if name == "not computed" else f"{name} ({(atlas.outcome == name).sum()})")
+               for name in names]
     if WRONG not in present:
         handles.append(Patch(facecolor=colours[WRONG], edgecolor="0.4", linewidth=0.5, label=f"{WRONG} (0)"))
     legend.axis("off")
@@ -217,6 +218,9 @@ def draw(folder):
         for name, values in ("x", atlas.x), ("y", atlas.y):
             if is_logarithmic(values):
                 axes.set(**{f"{name}scale": "log"})
+                if len(values) <= 8:
+                    axes.set(**{f"{name}ticks": values, f"{name}ticklabels": [f"{value:.3g}" for value in values]})
+                    axes.tick_params(axis=name, which="minor", length=0)
             else:
                 axes.locator_params(axis=name, steps=(1, 2, 5, 10), nbins=6)
     try:

@@ -217,8 +217,7 @@ namespace crawler
       for (const AtlasRun &one : point.runs)
       {
         const double ratio = one.measured_error / (one.promised_error + point.runs[AtlasPoint::refined].promised_error);
-        if (ratio > summary.largest_error_ratio) // false if it is not known
-          summary.largest_error_ratio = ratio;
+        summary.largest_error_ratio = std::fmax(summary.largest_error_ratio, ratio); // passes over what is not known
       }
     }
     return summary;
@@ -232,8 +231,9 @@ namespace crawler
       reasons.push_back(fmt::format("{} {}", reason, count));
     return fmt::format(
       "Atlas over {} and {}: {} points{}, {} finished, {} inverted, {} failed with a name, {} stopped, {} refused{}. "
-      "{} points could be cross-checked; {} disagree beyond the reported error (silent wrong answers). The largest "
-      "measured error is {:.2g} of the reported one. {:.0f} s on {} rank{}.",
+      "{} points could be cross-checked; {} disagree beyond the reported error (silent wrong answers). {}{:.0f} s on "
+      "{} "
+      "rank{}.",
       axis_in_words(axes.first),
       axis_in_words(axes.second),
       summary.points,
@@ -246,7 +246,9 @@ namespace crawler
       reasons.empty() ? "" : fmt::format(" ({})", fmt::join(reasons, ", ")),
       summary.checked,
       summary.silent_wrong_answers,
-      summary.largest_error_ratio,
+      std::isnan(summary.largest_error_ratio)
+        ? ""
+        : fmt::format("The largest measured error is {:.2g} of the reported one. ", summary.largest_error_ratio),
       seconds,
       n_ranks,
       n_ranks == 1 ? "" : "s");

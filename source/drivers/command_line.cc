@@ -132,6 +132,9 @@ namespace crawler
       };
       CLI::App *run_command = app.add_subcommand("run", "Runs the crawler of a parameter file");
       common(run_command);
+      CLI::App *check_command =
+        app.add_subcommand("check", "Says what run would do with a parameter file; runs and writes nothing");
+      common(check_command);
       CLI::App *atlas_command =
         app.add_subcommand("atlas", "Maps two entries of a parameter file: runs every point in all forms and compares");
       common(atlas_command);
@@ -140,9 +143,6 @@ namespace crawler
         command->add_flag("--overwrite", options.overwrite, "Replaces the results in the output folder");
         command->add_flag("--quiet", options.quiet, "Prints nothing but errors");
       }
-      CLI::App *check_command =
-        app.add_subcommand("check", "Says what run would do with a parameter file; runs and writes nothing");
-      common(check_command);
       std::string format          = "prm";
       CLI::App *parameter_command = app.add_subcommand("parameters", "Prints every entry of the parameter file");
       parameter_command->add_option("--format", format, "prm, json or markdown")

@@ -43,7 +43,8 @@ namespace crawler
     unsigned long checked              = 0; ///< points with two answers at least
     unsigned long silent_wrong_answers = 0;
     std::map<std::string, unsigned long> reasons; ///< of the answers that are not finished
-    double largest_error_ratio = 0.; ///< measured error over the sum of the promised ones, largest over points and runs
+    /// Measured error over the sum of the promised ones, largest over points and runs; not a number if none is known.
+    double largest_error_ratio = AtlasRun::unknown;
 
     unsigned long
     computed() const
