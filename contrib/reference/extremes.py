@@ -76,7 +76,7 @@ def strides(p, count=6, points=80):
     steps = [y - x for x, y in zip(d, d[1:])]
     left = p["end_time"] - count
     other = float(run(count, points * 3 // 2, 6) - run(count - 1, points * 3 // 2, 6))
-    return dict(displacement=d[-1] + left * steps[-1], error=left * max(abs(steps[-1] - steps[-2]), abs(steps[-1] - other)),
+    return dict(displacement=d[-1] + left * steps[-1], error=left * max(abs(steps[-1] - steps[-2]), abs(steps[-1] - other), 1e-12),
                 cycles=d, per_cycle=steps[-1], method="Chebyshev, settled cycle")
 
 
