@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/parabola.h>
 #include <crawler/discretization/assembler.h>
+#include <crawler/discretization/log_stretch_form.h>
+#include <crawler/discretization/position_form.h>
+#include <crawler/model/crawler_equation.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +14,9 @@ namespace crawler
 {
   namespace
   {
+    /// Errors of a stretch are relative to it, but not to less than this: what is emptied sticks and pushes no more.
+    constexpr double smallest_scale = 0.05;
+
     /// The entry of the rank with the smallest key, on all ranks.
     StretchAt
     reduce_minimum(const StretchAt own, const double sign, const Discretization &discretization)
@@ -27,16 +33,28 @@ namespace crawler
           best = {all[2 * r], all[2 * r + 1]};
       return best;
     }
+
+    /// Where the stretch is looked at in a cell: its ends and the quadrature points, from left to right.
+    std::vector<double>
+    sampled_places(const ReferenceElement &element)
+    {
+      std::vector<double> places = {0.};
+      places.insert(places.end(), element.points.begin(), element.points.end());
+      places.push_back(1.);
+      return places;
+    }
   } // namespace
 
-  Assembler::Assembler(const Scene &scene, const Discretization &discretization)
+  Assembler::Assembler(const Scene &scene,
+                       const Discretization &discretization,
+                       const std::vector<double> &stress_points)
     : scene_(scene)
     , discretization_(discretization)
-    , kernels_(cell_kernels(discretization.element().degree))
-    , stress_(scene.active_stress->at(discretization.quadrature_points()))
+    , stress_(scene.active_stress->at(stress_points))
     , end_stress_(scene.active_stress->at({0., scene.body.length}))
-    , m_(discretization.n_local_cells() * discretization.element().n)
+    , m_(stress_points.size())
     , m_time_(std::numeric_limits<double>::quiet_NaN())
+    , sampler_(discretization.element(), sampled_places(discretization.element()))
   {
     // The stretch is a polynomial of degree q - 1 in a cell.
     const auto &element = discretization.element();
@@ -45,128 +63,66 @@ namespace crawler
                               std::legendre(element.degree - 1, 2. * element.points[p] - 1.));
   }
 
+  Assembler::~Assembler() = default;
+
   CellInput
-  Assembler::input(const double t, const std::span<const double> u, const std::span<const double> v)
+  Assembler::input(const double t, const ConstVector u, const ConstVector v)
   {
     if (t != m_time_)
     {
       stress_->values(t, m_);
       m_time_ = t;
     }
-    const auto local_u = discretization_.to_local(u, u_local_);
-    const auto local_v = v.data() == nullptr ? v : discretization_.to_local(v, v_local_);
+    CellInput in = geometry();
+    in.u         = discretization_.to_local(u, u_local_).data();
+    in.v         = v.data() == nullptr ? nullptr : discretization_.to_local(v, v_local_).data();
+    in.m         = m_.data();
+    return in;
+  }
+
+  CellInput
+  Assembler::geometry() const
+  {
     return {discretization_.n_local_cells(),
             discretization_.cell_size().data(),
             &discretization_.element(),
             scene_.friction.get(),
             scene_.body.elastic_modulus,
-            local_u.data(),
-            local_v.data(),
-            m_.data()};
-  }
-
-  bool
-  Assembler::residual(const double t,
-                      const std::span<const double> u,
-                      const std::span<const double> v,
-                      const std::span<double> F)
-  {
-    const CellInput in = input(t, u, v);
-    const bool one     = discretization_.n_active_ranks() == 1;
-    double *data       = F.data();
-    if (one)
-      std::fill(F.begin(), F.end(), 0.);
-    else
-    {
-      F_local_.assign(discretization_.n_local(), 0.);
-      data = F_local_.data();
-    }
-    const long bad = kernels_.residual(in, data);
-    if (!one)
-      discretization_.add_to_owned(F_local_, F);
-
-    StretchAt found{std::numeric_limits<double>::infinity(), 0.};
-    if (bad >= 0)
-    {
-      const auto &element      = discretization_.element();
-      const unsigned int cell  = static_cast<unsigned int>(bad) / element.n,
-                         point = static_cast<unsigned int>(bad) % element.n;
-      const double h           = discretization_.cell_size()[cell];
-      double w                 = 1.;
-      for (unsigned int i = 0; i < element.n; ++i)
-        w += element.derivatives[point * element.n + i] / h * in.u[cell * element.degree + i];
-      found = {w, discretization_.cell_left()[cell] + h * element.points[point]};
-    }
-    int any = bad >= 0;
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, discretization_.communicator());
-    if (any == 0)
-      return true;
-    bad_stretch_ = reduce_minimum(found, 1., discretization_);
-    return false;
+            nullptr,
+            nullptr,
+            nullptr};
   }
 
   void
-  Assembler::jacobian(const double t,
-                      const std::span<const double> u,
-                      const std::span<const double> v,
-                      const double sigma,
-                      ChainMatrix &A)
+  Assembler::sum_over_ranks(CellIntegrals &sum) const
   {
-    kernels_.jacobian(input(t, u, v), sigma, A.blocks().data());
-  }
-
-  bool
-  Assembler::velocity(const double t, const std::span<const double> u, const std::span<double> v)
-  {
-    if (!mass_)
-      mass_ = std::make_unique<ChainMatrix>(discretization_);
-    if (!residual(t, u, {}, v))
-      return false;
-    for (double &value : v)
-      value = -value;
-    kernels_.mass(input(t, u, {}), mass_->blocks().data());
-    if (!mass_->factorize())
-      return false;
-    mass_->solve(v, v);
-    return true;
-  }
-
-  CellIntegrals
-  Assembler::integrals(const double t, const std::span<const double> u, const std::span<const double> v)
-  {
-    CellIntegrals sum;
-    kernels_.integrals(input(t, u, v), sum);
     static_assert(sizeof(CellIntegrals) % sizeof(double) == 0);
-    if (discretization_.n_ranks() == 1)
-      return sum;
-    MPI_Allreduce(
-      MPI_IN_PLACE, &sum, sizeof(CellIntegrals) / sizeof(double), MPI_DOUBLE, MPI_SUM, discretization_.communicator());
-    return sum;
+    if (discretization_.n_ranks() > 1)
+      MPI_Allreduce(
+        MPI_IN_PLACE, &sum, sizeof(CellIntegrals) / sizeof(double), MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+  }
+
+  StretchAt
+  Assembler::smallest_of_ranks(const StretchAt own) const
+  {
+    return reduce_minimum(own, 1., discretization_);
   }
 
   StretchRange
-  Assembler::stretch_range(const std::span<const double> u)
+  Assembler::stretch_range(const ConstVector y)
   {
-    const auto local    = discretization_.to_local(u, u_local_);
-    const auto &element = discretization_.element();
-    const unsigned n = element.n, q = element.degree;
+    const auto local  = discretization_.to_local(displacement(y), u_local_);
+    const unsigned n  = discretization_.element().n;
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    // Where the stretch is looked at in a cell, from left to right.
-    const auto place = [&](const unsigned int i)
+    const auto log_w      = log_stretch(y);
+    const auto place      = [&](const unsigned int i)
     {
-      return i == 0 ? 0. : i == n + 1 ? 1. : element.points[i - 1];
+      return sampler_.places()[i];
     };
     const auto stretch_at = [&](const unsigned int c, const unsigned int i)
     {
-      const double *derivatives = i == 0       ? element.left_derivatives.data()
-                                  : i == n + 1 ? element.right_derivatives.data()
-                                               : &element.derivatives[(i - 1) * n];
-      double w                  = 0.;
-      for (unsigned int j = 0; j < n; ++j)
-        w += derivatives[j] * local[c * q + j];
-      return 1. + w / discretization_.cell_size()[c];
+      return sampler_.stretch(local, log_w, c, discretization_.cell_size()[c], i);
     };
 
     struct Found
@@ -212,27 +168,24 @@ namespace crawler
   }
 
   Resolution
-  Assembler::resolution(const std::span<const double> u)
+  Assembler::resolution(const ConstVector y)
   {
-    const auto local    = discretization_.to_local(u, u_local_);
+    const auto local    = discretization_.to_local(displacement(y), u_local_);
+    const auto log_w    = log_stretch(y);
     const auto &element = discretization_.element();
-    const unsigned n = element.n, q = element.degree;
-    double sums[2] = {0., 0.};
+    double sums[2]      = {0., 0.};
     for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
     {
       const double h = discretization_.cell_size()[c];
       double mode = 0., strain = 0., smallest = std::numeric_limits<double>::infinity();
-      for (unsigned int p = 0; p < n; ++p)
+      for (unsigned int p = 0; p < element.n; ++p)
       {
-        double e = 0.;
-        for (unsigned int i = 0; i < n; ++i)
-          e += element.derivatives[p * n + i] * local[c * q + i];
-        e /= h;
+        const double e = sampler_.strain(local, log_w, c, h, p + 1);
         mode += highest_mode_[p] * e;
         strain += element.weights[p] * e * e;
         smallest = std::min(smallest, 1. + e);
       }
-      sums[0] += h / (2. * q - 1.) * (mode / smallest) * (mode / smallest);
+      sums[0] += h / (2. * element.degree - 1.) * (mode / smallest) * (mode / smallest);
       sums[1] += h * strain;
     }
     if (discretization_.n_ranks() > 1)
@@ -240,11 +193,60 @@ namespace crawler
     return {sums[0], sums[1]};
   }
 
+  std::vector<double>
+  Assembler::error_indicators(const double t, const ConstVector y, const ConstVector v)
+  {
+    const auto &element       = discretization_.element();
+    const auto &to_points     = friction_integration(); // [quadrature point][friction point]
+    const unsigned int n      = element.n, n_cells = discretization_.n_local_cells();
+    const double k            = scene_.body.elastic_modulus;
+    if (!quadrature_stress_)
+      quadrature_stress_ = scene_.active_stress->at(discretization_.points(element.points));
+    m_at_quadrature_.resize(static_cast<std::size_t>(n_cells) * n);
+    quadrature_stress_->values(t, m_at_quadrature_);
+    friction(t, y, v, friction_at_);
+    const std::vector<double> &weights = friction_weights();
+
+    // N* at the left end of the own cells.
+    double own = 0., balance = 0.;
+    for (unsigned int c = 0; c < n_cells; ++c)
+      for (unsigned int i = 0; i < n; ++i)
+        own += discretization_.cell_size()[c] * weights[i] * friction_at_[c * n + i];
+    if (discretization_.n_ranks() > 1)
+    {
+      MPI_Exscan(&own, &balance, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+      if (discretization_.rank() == 0)
+        balance = 0.;
+    }
+
+    const auto local = discretization_.to_local(displacement(y), u_local_);
+    const auto log_w = log_stretch(y);
+    std::vector<double> indicators(n_cells, 0.);
+    for (unsigned int c = 0; c < n_cells; ++c)
+    {
+      const double h    = discretization_.cell_size()[c];
+      const double *g_v = &friction_at_[c * n];
+      for (unsigned int p = 0; p < n; ++p)
+      {
+        double N = balance;
+        for (unsigned int i = 0; i < n; ++i)
+          N += h * to_points[p * n + i] * g_v[i];
+        const double e = sampler_.strain(local, log_w, c, h, p + 1);
+        const double d = (N - equation::body_force(e, m_at_quadrature_[c * n + p], k)) / k;
+        const double relative = d / std::max(1. + e, smallest_scale);
+        indicators[c] += h * element.weights[p] * relative * relative;
+      }
+      for (unsigned int i = 0; i < n; ++i)
+        balance += h * weights[i] * g_v[i];
+    }
+    return indicators;
+  }
+
   double
-  Assembler::root_mean_square(const std::span<const double> u) const
+  Assembler::root_mean_square(const ConstVector y) const
   {
     double sum = 0.;
-    for (const double value : u)
+    for (const double value : displacement(y))
       sum += value * value;
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
@@ -260,7 +262,7 @@ namespace crawler
   }
 
   double
-  Assembler::end_power(const double t, const std::span<const double> v)
+  Assembler::end_power(const double t, const ConstVector v)
   {
     const auto [m_left, m_right] = end_stress(t);
     double power                 = 0.;
@@ -271,5 +273,13 @@ namespace crawler
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
     return power;
+  }
+
+  std::unique_ptr<Assembler>
+  create_assembler(const Formulation formulation, const Scene &scene, const Discretization &discretization)
+  {
+    if (formulation == Formulation::position)
+      return std::make_unique<PositionForm>(scene, discretization);
+    return std::make_unique<LogStretchForm>(scene, discretization);
   }
 } // namespace crawler

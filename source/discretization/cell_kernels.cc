@@ -81,13 +81,13 @@ namespace crawler
           Points w, g, dg, v;
           evaluate<n>(derivatives, in.u + c * q, 1. / h, 1., w.data());
           evaluate<n>(values, in.v + c * q, 1., 0., v.data());
-          in.friction->values_and_derivatives(w, g, dg);
+          in.friction->values_and_log_derivatives(w, g, dg);
           for (int i = 0; i < n * n; ++i)
             J[i] = k_over_h * stiffness[i];
           for (int p = 0; p < n; ++p)
           {
             const double from_v = h * weights[p] * sigma * g[p];
-            const double from_w = weights[p] * dg[p] * v[p]; // h * (1/h)
+            const double from_w = weights[p] * dg[p] / w[p] * v[p]; // h * (1/h)
             Points column;
             for (int j = 0; j < n; ++j)
               column[j] = from_v * values[p * n + j] + from_w * derivatives[p * n + j];

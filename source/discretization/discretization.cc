@@ -2,98 +2,175 @@
 #include <crawler/discretization/discretization.h>
 
 #include <deal.II/distributed/shared_tria.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/fe_q.h>
 #include <deal.II/grid/grid_generator.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace crawler
 {
   struct Discretization::Mesh
   {
-    Mesh(MPI_Comm communicator, const unsigned int degree)
+    Mesh(MPI_Comm communicator, const double length, const unsigned int n_cells)
       : triangulation(communicator,
                       dealii::Triangulation<1>::none,
                       /*allow_artificial_cells=*/false,
                       dealii::parallel::shared::Triangulation<1>::partition_custom_signal)
-      , element(degree)
-      , dof_handler(triangulation)
+      , n_ranks(dealii::Utilities::MPI::n_mpi_processes(communicator))
+      , n_coarse_cells(n_cells)
     {
+      const auto assign = [this]()
+      {
+        assign_ranks();
+      };
+      triangulation.signals.create.connect(assign); // the first mesh does not count as a refinement
+      triangulation.signals.post_refinement.connect(assign);
+      dealii::GridGenerator::subdivided_hyper_cube(triangulation, n_cells, 0., length);
+    }
+
+    using Iterator = dealii::Triangulation<1>::active_cell_iterator;
+
+    /// The active cells from left to right; deal.II has them level by level.
+    std::vector<Iterator>
+    cells_along_the_body() const
+    {
+      std::vector<Iterator> cells;
+      cells.reserve(triangulation.n_active_cells());
+      for (const auto &cell : triangulation.active_cell_iterators())
+        cells.push_back(cell);
+      if (triangulation.n_levels() > 1)
+        std::sort(cells.begin(),
+                  cells.end(),
+                  [](const Iterator &a, const Iterator &b)
+                  {
+                    return a->vertex(0)[0] < b->vertex(0)[0];
+                  });
+      return cells;
+    }
+
+    /// Each rank owns a run of neighbouring cells.
+    void
+    assign_ranks()
+    {
+      const auto cells         = cells_along_the_body();
+      const std::uint64_t n    = cells.size();
+      const std::uint64_t used = std::min<std::uint64_t>(n, n_ranks);
+      for (std::uint64_t i = 0; i < n; ++i)
+        cells[i]->set_subdomain_id(static_cast<dealii::types::subdomain_id>(i * used / n));
     }
 
     dealii::parallel::shared::Triangulation<1> triangulation;
-    dealii::FE_Q<1> element; // Gauss-Lobatto nodes
-    dealii::DoFHandler<1> dof_handler;
+    const unsigned int n_ranks, n_coarse_cells;
   };
 
   Discretization::Discretization(MPI_Comm communicator,
                                  const double length,
                                  const unsigned int n_cells,
                                  const unsigned int degree)
+    : Discretization(communicator, length, degree, std::make_shared<Mesh>(communicator, length, n_cells))
+  {
+  }
+
+  Discretization::Discretization(MPI_Comm communicator,
+                                 const double length,
+                                 const unsigned int degree,
+                                 std::shared_ptr<Mesh> mesh)
     : communicator_(communicator)
     , length_(length)
-    , n_cells_(n_cells)
     , element_(degree)
     , rank_(dealii::Utilities::MPI::this_mpi_process(communicator))
     , n_ranks_(dealii::Utilities::MPI::n_mpi_processes(communicator))
-    , n_active_ranks_(std::min(n_cells, n_ranks_))
+    , mesh_(std::move(mesh))
   {
-    make_mesh();
+    read_mesh();
   }
 
   Discretization::~Discretization() = default;
 
   void
-  Discretization::make_mesh()
+  Discretization::read_mesh()
   {
-    mesh_      = std::make_unique<Mesh>(communicator_, element_.degree);
-    auto &tria = mesh_->triangulation;
-    auto &dofs = mesh_->dof_handler;
-
-    // Each rank owns a run of neighbouring cells.
-    const auto assign = [&]()
+    const double coarse_size = length_ / mesh_->n_coarse_cells;
+    for (const auto &cell : mesh_->cells_along_the_body())
     {
-      const auto n         = static_cast<std::uint64_t>(tria.n_active_cells());
-      std::uint64_t number = 0;
-      for (const auto &cell : tria.active_cell_iterators())
-        cell->set_subdomain_id(static_cast<dealii::types::subdomain_id>(number++ * n_active_ranks_ / n));
-    };
-    tria.signals.create.connect(assign); // the first mesh does not count as a refinement
-    tria.signals.post_refinement.connect(assign);
-    dealii::GridGenerator::subdivided_hyper_cube(tria, n_cells_, 0., length_);
-    dofs.distribute_dofs(mesh_->element);
-
-    // Number the unknowns along the body. FE_Q lists the two ends of a cell before its inside.
-    const unsigned int q = element_.degree;
-    std::vector<dealii::types::global_dof_index> numbers(dofs.n_dofs()), of_cell(q + 1);
-    std::size_t cell_number = 0;
-    for (const auto &cell : dofs.active_cell_iterators())
-    {
-      cell->get_dof_indices(of_cell);
-      numbers[of_cell[0]] = cell_number * q;
-      numbers[of_cell[1]] = (cell_number + 1) * q;
-      for (unsigned int i = 1; i < q; ++i)
-        numbers[of_cell[i + 1]] = cell_number * q + i;
-      if (cell->is_locally_owned())
-      {
-        cell_left_.push_back(cell->vertex(0)[0]);
-        cell_size_.push_back(cell->vertex(1)[0] - cell->vertex(0)[0]);
-      }
-      ++cell_number;
+      const auto level = static_cast<unsigned int>(cell->level());
+      cells_.push_back({cell->vertex(0)[0], std::ldexp(coarse_size, -static_cast<int>(level)), level});
+      if (!cell->is_locally_owned())
+        continue;
+      if (cell_left_.empty())
+        first_cell_ = static_cast<unsigned int>(cells_.size()) - 1;
+      cell_left_.push_back(cells_.back().left);
+      cell_size_.push_back(cells_.back().size);
     }
-    dofs.renumber_dofs(numbers);
-    if (dofs.n_locally_owned_dofs() != n_owned() || (rank_ < n_active_ranks_) == cell_left_.empty())
-      throw std::logic_error("deal.II's ownership of unknowns is not the one of the chain numbering");
+    n_active_ranks_ = std::min(n_cells(), n_ranks_);
+    if ((rank_ < n_active_ranks_) == cell_left_.empty())
+      throw std::logic_error("deal.II's ownership of cells is not the one that was asked for");
+  }
+
+  std::unique_ptr<Discretization>
+  Discretization::adapted(std::vector<CellChange> changes) const
+  {
+    const unsigned int n = n_cells();
+    const auto cells     = mesh_->cells_along_the_body();
+    if (cells.size() != n)
+      throw std::logic_error("only the latest of a sequence of meshes can be adapted");
+
+    // Joining takes both halves of a cell.
+    for (unsigned int c = 0; c < n; ++c)
+      if (changes[c] == CellChange::join)
+      {
+        const auto place     = static_cast<std::uint64_t>(std::llround(cells_[c].left / cells_[c].size));
+        const bool left_half = place % 2 == 0;
+        const bool is_pair   = cells_[c].level > 0 && left_half && c + 1 < n && cells_[c + 1].level == cells_[c].level &&
+                             changes[c + 1] == CellChange::join;
+        if (is_pair)
+          ++c;
+        else
+          changes[c] = CellChange::keep;
+      }
+    // Neighbours differ by one level at most.
+    const auto level = [&](const unsigned int c)
+    {
+      return static_cast<int>(cells_[c].level) + static_cast<int>(changes[c]);
+    };
+    const auto keep = [&](const unsigned int c)
+    {
+      // The other half cannot be joined alone.
+      const auto place = static_cast<std::uint64_t>(std::llround(cells_[c].left / cells_[c].size));
+      changes[c]       = CellChange::keep;
+      changes[place % 2 == 0 ? c + 1 : c - 1] = CellChange::keep;
+    };
+    for (bool changed = true; changed;)
+    {
+      changed = false;
+      for (unsigned int c = 0; c < n; ++c)
+        for (const int side : {-1, 1})
+        {
+          if ((side < 0 && c == 0) || (side > 0 && c + 1 == n) || level(c + side) - level(c) <= 1)
+            continue;
+          if (changes[c] == CellChange::join)
+            keep(c);
+          else
+            changes[c] = CellChange::divide;
+          changed = true;
+        }
+    }
+    for (unsigned int c = 0; c < n; ++c)
+      if (changes[c] == CellChange::divide)
+        cells[c]->set_refine_flag();
+      else if (changes[c] == CellChange::join)
+        cells[c]->set_coarsen_flag();
+    mesh_->triangulation.execute_coarsening_and_refinement();
+    return std::unique_ptr<Discretization>(new Discretization(communicator_, length_, element_.degree, mesh_));
   }
 
   std::vector<double>
-  Discretization::quadrature_points() const
+  Discretization::points(const std::vector<double> &places) const
   {
     std::vector<double> points;
-    points.reserve(cell_left_.size() * element_.n);
+    points.reserve(cell_left_.size() * places.size());
     for (std::size_t c = 0; c < cell_left_.size(); ++c)
-      for (const double x : element_.points)
+      for (const double x : places)
         points.push_back(cell_left_[c] + x * cell_size_[c]);
     return points;
   }

@@ -83,6 +83,13 @@ namespace crawler
 
     const StressScales scales = stress_scales(scene);
     numerics.largest_step     = scales.time;
+    const std::string &formulation = parameters.discretization.formulation;
+    numerics.formulation           = formulation == "position"    ? FormulationChoice::position :
+                                     formulation == "log stretch" ? FormulationChoice::log_stretch :
+                                                                    FormulationChoice::automatic;
+    if (parameters.discretization.mesh == "adaptive")
+      numerics.mesh = {parameters.discretization.mesh_tolerance.value_or(1e-6) * L,
+                       parameters.discretization.smallest_cell.value_or(1e-6 * L)};
 
     const bool fixed = parameters.time.step_control == "fixed";
     if (user_cells && (user_tolerance || fixed))

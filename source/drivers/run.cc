@@ -156,13 +156,13 @@ namespace crawler
     const bool writes = shared || first;
     if (writes && output.n_snapshots > 0)
     {
-      observers.push_back(std::make_unique<VtuWriter>(input.scene, simulation.discretization(), folder));
+      observers.push_back(std::make_unique<VtuWriter>(folder));
       if (output.kymograph)
-        observers.push_back(std::make_unique<KymographWriter>(input.scene, simulation.discretization(), folder));
+        observers.push_back(std::make_unique<KymographWriter>(input.scene.end_time, folder));
     }
     if (writes && output.statistics)
       observers.push_back(
-        std::make_unique<StatisticsWriter>(input.scene, simulation.discretization(), folder, output.ledger));
+        std::make_unique<StatisticsWriter>(input.scene.body.length, first, folder, output.ledger));
     if (writes && !options.quiet)
       observers.push_back(std::make_unique<Progress>(log, input.scene));
 

@@ -1,24 +1,67 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/parabola.h>
+#include <crawler/discretization/mesh_transfer.h>
 #include <crawler/drivers/simulation.h>
 
+#include <boost/math/tools/toms748_solve.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 namespace crawler
 {
   namespace
   {
-    /// A stretch below this is lost: nothing that is computed from it has a digit left.
-    constexpr double lost = 1e-12;
+    /// In the position form a stretch below this is lost: nothing that is computed from it has a digit left.
+    constexpr double lost_in_position = 1e-12;
+    /// `automatic` changes to the log-stretch form when the stretch falls below this.
+    constexpr double small_stretch = 0.1;
+    /// The error of log w that counts as much as an error of 1 in the displacement; see doc/numerics.md.
+    constexpr double log_weight = 10.;
 
     double
     now()
     {
       return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    }
+
+    /**
+     * In the log-stretch form the stretch can be followed much further. Near an inversion w^(1+a) goes linearly to 0 for
+     * -1 < a < 0 (w itself for a >= 0), so this is where 1e-10 of it is left; for a <= -1 there is none, and what limits
+     * w is the range of doubles.
+     */
+    double
+    lost_in_log_form(const double a)
+    {
+      return a <= -1. ? std::exp(-700.) : std::exp(std::max(-690., -23. / (1. + std::min(a, 0.))));
+    }
+
+    Numerics
+    in_units(Numerics numerics, const Units &units)
+    {
+      numerics.tolerance /= units.length;
+      numerics.initial_step /= units.time;
+      numerics.largest_step /= units.time;
+      numerics.mesh.tolerance /= units.length;
+      numerics.mesh.smallest_cell /= units.length;
+      return numerics;
+    }
+
+    /// The time in [from, to] where @p function, positive at @p from and not at @p to, becomes 0.
+    template <typename Function>
+    double
+    first_zero(const Function &function, const double from, const double to)
+    {
+      const double at_from = function(from), at_to = function(to);
+      if (!(at_from > 0.) || !(at_to < 0.))
+        return at_from > 0. ? to : from;
+      std::uintmax_t iterations = 100;
+      const auto bracket        = boost::math::tools::toms748_solve(
+        function, from, to, at_from, at_to, boost::math::tools::eps_tolerance<double>(50), iterations);
+      return 0.5 * (bracket.first + bracket.second);
     }
   } // namespace
 
@@ -26,37 +69,56 @@ namespace crawler
                          const Scene &scene,
                          const TimeParameters &time,
                          const Numerics &numerics)
-    : scene_(scene)
-    , numerics_(numerics)
-    , discretization_(communicator, scene.body.length, numerics.n_cells, numerics.degree)
-    , assembler_(scene, discretization_)
-    , jacobian_(discretization_)
-    , stepper_(communicator, discretization_.n_owned(), time)
-    , u_(discretization_.n_owned())
-    , v_(discretization_.n_owned())
+    : physical_scene_(scene)
+    , units_(natural_units(scene))
+    , scene_(crawler::in_units(scene, units_))
+    , numerics_(in_units(numerics, units_))
+    , time_(time)
+    , communicator_(communicator)
   {
-    using Vector               = TimeStepper::Vector;
-    using ConstVector          = TimeStepper::ConstVector;
-    stepper_.implicit_function = [this](const double t, const ConstVector u, const ConstVector v, const Vector F)
-    {
-      return assembler_.residual(t, u, v, F);
-    };
-    stepper_.setup_jacobian = [this](const double t, const ConstVector u, const ConstVector v, const double shift)
-    {
-      assembler_.jacobian(t, u, v, shift, jacobian_);
-      return jacobian_.factorize();
-    };
-    stepper_.solve_with_jacobian = [this](const ConstVector b, const Vector x)
-    {
-      jacobian_.solve(b, x);
-    };
-    stepper_.jacobian_vmult = [this](const ConstVector x, const Vector y)
-    {
-      jacobian_.multiply(x, y);
-    };
+    time_.end_time = 1.;
+    build(std::make_unique<Discretization>(communicator, 1., numerics.n_cells, numerics.degree),
+          numerics.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
+    as_at_start_ = true;
   }
 
   Simulation::~Simulation() = default;
+
+  /// Equation and time stepper on a mesh.
+  void
+  Simulation::build(std::unique_ptr<Discretization> discretization, const Formulation formulation)
+  {
+    using Vector      = TimeStepper::Vector;
+    using ConstVector = TimeStepper::ConstVector;
+    stepper_.reset();
+    assembler_.reset();
+    discretization_ = std::move(discretization);
+    assembler_      = create_assembler(formulation, scene_, *discretization_);
+    std::vector<double> weights(assembler_->n_owned(), 1.);
+    std::fill(weights.begin() + static_cast<std::ptrdiff_t>(discretization_->n_owned()), weights.end(), log_weight);
+    stepper_ = std::make_unique<TimeStepper>(communicator_, weights, time_);
+    y_.resize(assembler_->n_owned());
+    v_.resize(discretization_->n_owned());
+    ++mesh_number_;
+    as_at_start_ = false;
+
+    stepper_->implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F)
+    {
+      return assembler_->residual(t, y, y_dot, F);
+    };
+    stepper_->setup_jacobian = [this](const double t, const ConstVector y, const ConstVector y_dot, const double shift)
+    {
+      return assembler_->setup_jacobian(t, y, y_dot, shift);
+    };
+    stepper_->solve_with_jacobian = [this](const ConstVector b, const Vector x)
+    {
+      assembler_->solve_with_jacobian(b, x);
+    };
+    stepper_->jacobian_vmult = [this](const ConstVector x, const Vector y)
+    {
+      assembler_->jacobian_vmult(x, y);
+    };
+  }
 
   SimulationResult
   Simulation::run(const std::vector<double> &frames,
@@ -64,43 +126,36 @@ namespace crawler
                   const std::vector<std::unique_ptr<Observer>> &observers,
                   const std::function<bool()> &keep_going)
   {
-    const double start    = now();
-    result_               = {};
-    quadrature_           = {};
-    diagnosis_            = {};
-    largest_              = {};
-    previous_min_stretch_ = 1.;
-    std::fill(u_.begin(), u_.end(), 0.);
+    const double start = now();
+    if (!as_at_start_)
+    {
+      build(std::make_unique<Discretization>(communicator_, 1., numerics_.n_cells, numerics_.degree),
+            numerics_.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
+      as_at_start_ = true;
+    }
+    options_       = options;
+    has_observers_ = !observers.empty();
+    result_        = {};
+    quadrature_    = {};
+    diagnosis_     = {};
+    largest_       = {};
+    before_        = {};
+    frames_        = &frames;
+    next_frame_    = 0;
+    integrals_     = {};
     if (options.ledger)
       result_.ledger.emplace();
-    const Ledger no_ledger;
+    if (numerics_.formulation == FormulationChoice::log_stretch)
+      result_.log_stretch_since = 0.;
+    std::fill(y_.begin(), y_.end(), 0.);
+    accepted_             = y_;
+    accepted_time_        = 0.;
+    accepted_min_stretch_ = 1.;
+    next_step_            = numerics_.initial_step;
 
-    stepper_.monitor = [&](const Step &step, const std::span<const double> u)
-    {
-      const bool ok = examine(step, u, options, !observers.empty());
-      if (!ok)
-        return false; // an inverted state is not shown to anybody
-      const double before = now();
-      for (const auto &observer : observers)
-        observer->observe({step,
-                           step.number == 0 || step.is_frame,
-                           u,
-                           v_,
-                           integrals_,
-                           stretch_,
-                           result_.ledger ? *result_.ledger : no_ledger});
-      result_.output_seconds += now() - before;
-      return !keep_going || keep_going();
-    };
-    result_.time     = stepper_.solve(u_, frames, numerics_.tolerance, numerics_.initial_step, numerics_.largest_step);
-    stepper_.monitor = nullptr;
-
-    if (!diagnosis_ && result_.time.status == "failed" && result_.time.domain_error)
-    {
-      // No state with positive stretch could be found, however small the step.
-      const auto &bad = assembler_.bad_stretch();
-      lost_stretch(bad ? bad->value : 0., bad ? bad->s : 0., result_.time.time, 1e-9 * scene_.end_time);
-    }
+    result_.time = integrate(frames, observers, keep_going);
+    if (!diagnosis_ && result_.time.status == "failed")
+      explain_failure();
     if (diagnosis_)
     {
       result_.time.status  = diagnosis_->status;
@@ -108,101 +163,249 @@ namespace crawler
       result_.time.message = diagnosis_->message;
     }
     else if (!options.ledger && observers.empty())
-      result_.displacement = assembler_.integrals(result_.time.time, u_, v_).displacement / scene_.body.length;
+      result_.displacement = assembler_->integrals(result_.time.time, y_, v_).displacement;
 
     for (const auto &observer : observers)
       observer->end();
     result_.solve_seconds = now() - start - result_.output_seconds;
-    return result_;
+    return in_physical_units();
   }
 
-  /// Looks at an accepted state; returns false if it must not be used.
-  bool
-  Simulation::examine(const Step &step,
-                      const std::span<const double> u,
-                      const Options &options,
-                      const bool has_observers)
+  /// From the first state to the end, with changes of mesh and formulation on the way.
+  TimeOutcome
+  Simulation::integrate(const std::vector<double> &frames,
+                        const std::vector<std::unique_ptr<Observer>> &observers,
+                        const std::function<bool()> &keep_going)
   {
-    stretch_          = assembler_.stretch_range(u);
-    const bool finite = std::isfinite(stretch_.min.value) && std::isfinite(stretch_.max.value);
+    for (;;)
+    {
+      request_         = Request::none;
+      bool resumed     = accepted_time_ > 0.;
+      stepper_->monitor = [&](const Step &part, const std::span<const double> y)
+      {
+        if (resumed) // the state from which this part starts has been seen already
+        {
+          resumed = false;
+          return true;
+        }
+        Step step   = part;
+        step.number += before_.steps;
+        step.rejected += before_.rejected_steps;
+        step.newton_iterations += before_.newton_iterations;
+        if (!examine(step, y))
+          return false; // an inverted state is not shown to anybody
+        const double before = now();
+        show(step, y, observers);
+        result_.output_seconds += now() - before;
+        if (step.is_frame && next_frame_ < frames.size())
+          ++next_frame_;
+        if (keep_going && !keep_going())
+          return false;
+        look_for_coarser_mesh(step, y);
+        return request_ == Request::none;
+      };
+      std::vector<double> rest;
+      for (std::size_t i = next_frame_; i < frames.size(); ++i)
+        rest.push_back(i + 1 == frames.size() && frames[i] == physical_scene_.end_time ? 1. : frames[i] / units_.time);
+      TimeOutcome outcome =
+        stepper_->solve(y_, rest, numerics_.tolerance, next_step_, numerics_.largest_step, accepted_time_);
+      stepper_->monitor = nullptr;
+      outcome.steps += before_.steps;
+      outcome.rejected_steps += before_.rejected_steps;
+      outcome.newton_iterations += before_.newton_iterations;
+      outcome.linear_iterations += before_.linear_iterations;
+      result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
+      // A form that cannot go on because the stretch becomes small is changed, too.
+      if (request_ == Request::none && !diagnosis_ && outcome.status == "failed" && outcome.domain_error &&
+          numerics_.formulation == FormulationChoice::automatic &&
+          assembler_->formulation() == Formulation::position && !end_inverts(accepted_time_, accepted_time_ + 1e-9))
+        request_ = Request::log_stretch;
+      if (request_ == Request::none || diagnosis_ || outcome.status == "finished")
+        return outcome;
+      before_ = outcome;
+      // A state that was not accepted is done again, and its step does not count.
+      if (outcome.time > accepted_time_)
+      {
+        before_.steps -= std::min(before_.steps, 1u);
+        ++before_.rejected_steps;
+      }
+      next_step_ = std::min(outcome.step_size, numerics_.largest_step);
+      if (time_.integrator == "bdf") // starts anew with order 1
+        next_step_ = std::min(next_step_, numerics_.initial_step);
+      change();
+    }
+  }
+
+  /// Changes mesh or formulation and carries the last accepted state over.
+  void
+  Simulation::change()
+  {
+    const auto old_assembler      = std::move(assembler_);
+    const auto old_discretization = std::move(discretization_);
+    const bool to_log             = request_ == Request::log_stretch;
+    const Formulation formulation = to_log ? Formulation::log_stretch : old_assembler->formulation();
+    auto mesh = old_discretization->adapted(to_log ? std::vector<CellChange>(old_discretization->n_cells(),
+                                                                             CellChange::keep) :
+                                                     changes_);
+    build(std::move(mesh), formulation);
+    const MeshTransfer transfer(discretization_->element());
+    y_ = transfer.transfer(*old_assembler, accepted_, *assembler_);
+    if (options_.ledger)
+    {
+      const std::vector<double> old_v(old_discretization->n_owned(), 0.), new_v(v_.size(), 0.);
+      result_.ledger->transfer_loss += old_assembler->integrals(accepted_time_, accepted_, old_v).elastic_energy -
+                                       assembler_->integrals(accepted_time_, y_, new_v).elastic_energy;
+    }
+    accepted_ = y_;
+    if (to_log)
+      result_.log_stretch_since = accepted_time_;
+    else
+      ++result_.mesh_changes;
+    result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
+  }
+
+  /// Looks at a state that the time stepper has accepted; returns false if it must not be used.
+  bool
+  Simulation::examine(const Step &step, const std::span<const double> y)
+  {
+    stretch_            = assembler_->stretch_range(y);
+    const double before = step.time - step.size;
+    const bool finite   = std::isfinite(stretch_.min.value) && std::isfinite(stretch_.max.value);
     if (!finite)
     {
-      diagnosis_ = {
-        "failed",
-        "nonfinite",
-        fmt::format("the stretch at s = {:.6g}, t = {:.6g} is not a finite number", stretch_.min.s, step.time)};
+      diagnosis_ = {"failed",
+                    "nonfinite",
+                    fmt::format("the stretch at s = {:.6g}, t = {:.6g} is not a finite number",
+                                stretch_.min.s * units_.length,
+                                step.time * units_.time)};
       return false;
     }
-    if (stretch_.min.value <= lost)
+    if (end_inverts(before, step.time))
+      return false;
+    const bool in_position = assembler_->formulation() == Formulation::position;
+    if (in_position && numerics_.formulation == FormulationChoice::automatic && stretch_.min.value < small_stretch)
     {
-      // The place is known; the time by linear interpolation within the step.
-      const double w0 = previous_min_stretch_, w1 = stretch_.min.value;
-      lost_stretch(w1, stretch_.min.s, step.time - step.size * w1 / (w1 - w0), step.size);
+      // From this state if it is good, else from the one before.
+      if (stretch_.min.value < 0.5 * small_stretch && step.size > 0.)
+      {
+        request_ = Request::log_stretch;
+        return false;
+      }
+      request_ = Request::log_stretch;
+    }
+    else if (stretch_.min.value <=
+             (in_position ? lost_in_position : lost_in_log_form(scene_.body.friction_exponent())))
+    {
+      locate_inversion(step);
       return false;
     }
-    previous_min_stretch_ = stretch_.min.value;
-    const bool is_first   = step.number == 0;
+    const bool adaptive = numerics_.mesh.tolerance > 0.;
+    // Pictures need the velocity at frames only, the ledger and adaptive meshes always.
+    if (options_.ledger || adaptive || (has_observers_ && (step.is_frame || step.number == 0)))
+      if (!assembler_->velocity(step.time, y, v_))
+      {
+        diagnosis_ = {"failed",
+                      "linear_failed",
+                      fmt::format("the velocity at t = {:.6g} cannot be computed: the friction matrix is singular",
+                                  step.time * units_.time)};
+        return false;
+      }
+    if (adaptive && !mesh_is_good(step, y))
+      return false;
+    const bool is_first  = step.number == 0;
     const StretchAt &low = stretch_.min, &high = stretch_.max;
     record({low.value, low.s, step.time}, 1., is_first, min_history_, result_.min_stretch);
     record({high.value, high.s, step.time}, -1., is_first, max_history_, result_.max_stretch);
-
-    // Pictures need the velocity at frames only, the ledger always.
-    const bool with_velocity = options.ledger || (has_observers && (step.is_frame || step.number == 0));
-    if (with_velocity)
+    if (!compute_integrals(step, y))
+      return false;
+    if (options_.resolution)
     {
-      if (!assembler_.velocity(step.time, u, v_))
-      {
-        diagnosis_ = {
-          "failed",
-          "linear_failed",
-          fmt::format("the velocity at t = {:.6g} cannot be computed: the friction matrix is singular", step.time)};
-        return false;
-      }
-    }
-    if (options.ledger || has_observers)
-    {
-      integrals_           = assembler_.integrals(step.time, u, v_);
-      result_.displacement = integrals_.displacement / scene_.body.length;
-      if (with_velocity && !std::isfinite(integrals_.dissipation))
-      {
-        diagnosis_ = {
-          "failed",
-          "nonfinite",
-          fmt::format("the velocity at t = {:.6g} is not a finite number; the smallest stretch is {:.3g} at "
-                      "s = {:.6g}",
-                      step.time,
-                      stretch_.min.value,
-                      stretch_.min.s)};
-        return false;
-      }
-    }
-    if (options.ledger)
-    {
-      Ledger &ledger                        = *result_.ledger;
-      const RateQuadrature::Rates rates     = {{integrals_.stress_power,
-                                                integrals_.dissipation,
-                                                integrals_.positive_power,
-                                                integrals_.absolute_power,
-                                                assembler_.end_power(step.time, v_)}};
-      const RateQuadrature::Rates increment = quadrature_.advance(step.time, rates);
-      ledger.stress_power += increment[0];
-      ledger.dissipation += increment[1];
-      ledger.positive_power += increment[2];
-      ledger.exchanged += increment[3];
-      ledger.end_work += increment[4];
-      ledger.elastic_energy = integrals_.elastic_energy;
-      if (integrals_.abs_friction > 0.)
-        result_.net_friction =
-          std::max(result_.net_friction, std::abs(integrals_.net_friction) / integrals_.abs_friction);
-    }
-    if (options.resolution)
-    {
-      const Resolution resolution = assembler_.resolution(u);
+      const Resolution resolution = assembler_->resolution(y);
       largest_.highest_mode       = std::max(largest_.highest_mode, resolution.highest_mode);
       largest_.strain             = std::max(largest_.strain, resolution.strain);
       result_.unresolved          = largest_.strain > 0. ? largest_.highest_mode / largest_.strain : 0.;
-      result_.largest_u           = std::max(result_.largest_u, assembler_.root_mean_square(u));
+      result_.strain              = largest_.strain;
+      result_.largest_u           = std::max(result_.largest_u, assembler_->root_mean_square(y));
     }
+    accepted_.assign(y.begin(), y.end());
+    accepted_time_        = step.time;
+    accepted_min_stretch_ = stretch_.min.value;
+    return true;
+  }
+
+  /// Is the sum of the error indicators admissible? If not, and if cells can be divided, asks for that.
+  bool
+  Simulation::mesh_is_good(const Step &step, const std::span<const double> y)
+  {
+    const auto indicators = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
+    const double sum      = std::accumulate(indicators.begin(), indicators.end(), 0.);
+    if (!(sum > numerics_.mesh.tolerance))
+    {
+      result_.largest_indicator = std::max(result_.largest_indicator, sum);
+      return true;
+    }
+    changes_ = mark_for_division(indicators, *discretization_, numerics_.mesh);
+    if (changes_.empty())
+    {
+      result_.largest_indicator = std::max(result_.largest_indicator, sum);
+      return true;
+    }
+    request_ = Request::mesh;
+    return false;
+  }
+
+  void
+  Simulation::look_for_coarser_mesh(const Step &step, const std::span<const double> y)
+  {
+    constexpr unsigned int most_joins_every = 10;
+    if (numerics_.mesh.tolerance <= 0. || request_ != Request::none || step.number == 0 ||
+        step.number % most_joins_every != 0 || step.time >= 1.)
+      return;
+    const auto indicators = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
+    changes_              = mark_for_joining(indicators, *discretization_, numerics_.mesh);
+    if (!changes_.empty())
+      request_ = Request::mesh;
+  }
+
+  /// Displacement, and if wanted the ledger, at an accepted state.
+  bool
+  Simulation::compute_integrals(const Step &step, const std::span<const double> y)
+  {
+    if (!options_.ledger && !has_observers_)
+      return true;
+    integrals_           = assembler_->integrals(step.time, y, v_);
+    result_.displacement = integrals_.displacement;
+    if (!options_.ledger && !step.is_frame && step.number != 0)
+      return true;
+    if (!std::isfinite(integrals_.dissipation))
+    {
+      diagnosis_ = {"failed",
+                    "nonfinite",
+                    fmt::format("the velocity at t = {:.6g} is not a finite number; the smallest stretch is {:.3g} at "
+                                "s = {:.6g}",
+                                step.time * units_.time,
+                                stretch_.min.value,
+                                stretch_.min.s * units_.length)};
+      return false;
+    }
+    if (!options_.ledger)
+      return true;
+    Ledger &ledger                        = *result_.ledger;
+    const RateQuadrature::Rates rates     = {{integrals_.stress_power,
+                                              integrals_.dissipation,
+                                              integrals_.positive_power,
+                                              integrals_.absolute_power,
+                                              assembler_->end_power(step.time, v_)}};
+    const RateQuadrature::Rates increment = quadrature_.advance(step.time, rates);
+    ledger.stress_power += increment[0];
+    ledger.dissipation += increment[1];
+    ledger.positive_power += increment[2];
+    ledger.exchanged += increment[3];
+    ledger.end_work += increment[4];
+    ledger.elastic_energy = integrals_.elastic_energy;
+    if (integrals_.abs_friction > 0.)
+      result_.net_friction =
+        std::max(result_.net_friction, std::abs(integrals_.net_friction) / integrals_.abs_friction);
     return true;
   }
 
@@ -232,44 +435,195 @@ namespace crawler
     }
   }
 
+  /// Has the stretch that the end conditions prescribe, 1 - m/k, become 0 since @p from? Then the diagnosis says so.
+  bool
+  Simulation::end_inverts(const double from, const double to)
+  {
+    constexpr int parts      = 4;
+    const auto smallest      = [this](const double t)
+    {
+      const auto [left, right] = assembler_->end_stress(t);
+      return 1. - std::max(left, right) / scene_.body.elastic_modulus;
+    };
+    double begin = from;
+    for (int i = from < to ? 1 : parts; i <= parts; ++i)
+    {
+      const double end = i == parts ? to : from + (to - from) * i / parts;
+      if (!(smallest(end) <= 0.))
+      {
+        begin = end;
+        continue;
+      }
+      const double t           = begin < end ? first_zero(smallest, begin, end) : end;
+      const auto [left, right] = assembler_->end_stress(t);
+      const double s           = left >= right ? 0. : 1.;
+      result_.inversion        = SimulationResult::Extreme{0., s, t};
+      diagnosis_ = {"inverted",
+                    "inverted_at_end",
+                    fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, where "
+                                "1 - m/k is not positive; the model ends there",
+                                s * units_.length,
+                                t * units_.time)};
+      return true;
+    }
+    return false;
+  }
+
+  /// The stretch was lost inside within the step: finds where and when on the integrator's dense output.
+  void
+  Simulation::locate_inversion(const Step &step)
+  {
+    const double threshold = assembler_->formulation() == Formulation::position ?
+                               lost_in_position :
+                               lost_in_log_form(scene_.body.friction_exponent());
+    std::vector<double> y(assembler_->n_owned());
+    StretchAt smallest       = stretch_.min;
+    const auto above         = [&](const double t)
+    {
+      stepper_->interpolate(t, y);
+      smallest = assembler_->stretch_range(y).min;
+      return smallest.value - threshold;
+    };
+    double t = step.time;
+    if (step.size > 0.)
+      t = first_zero(above, step.time - step.size, step.time);
+    inverted_inside(stretch_.min.value, smallest.s, t);
+  }
+
+  /// What a failure of the time stepper means.
+  void
+  Simulation::explain_failure()
+  {
+    TimeOutcome &outcome = result_.time;
+    const double t       = accepted_time_;
+    // Very small steps may be the end of the model.
+    const double reach = std::max(1e-9, 2. * outcome.step_size);
+    if (outcome.domain_error || outcome.reason == "step_underflow" || outcome.reason == "rejection_limit" ||
+        outcome.reason == "newton_diverged")
+    {
+      if (end_inverts(t, std::min(t + reach, 1.)))
+        return;
+      // How long is left at the present rate?
+      const StretchAt smallest = assembler_->stretch_range(accepted_).min;
+      const double before      = min_history_[1].value, before_t = min_history_[1].t;
+      const double rate        = t > before_t ? (before - smallest.value) / (t - before_t) : 0.;
+      const double left        = rate > 0. ? smallest.value / rate : 1.;
+      if (outcome.domain_error || left < 1e-6)
+      {
+        inverted_inside(smallest.value, smallest.s, std::min(t + (left < 1e-6 ? left : 0.), 1.));
+        return;
+      }
+    }
+    outcome.message += fmt::format(
+      ", at t = {:.9g} with step size {:.3g}", outcome.time * units_.time, outcome.step_size * units_.time);
+  }
+
   /**
    * For a <= -1 the stretch inside stays positive as long as the ends do (doc/theory.md, "When a body can invert"), so
-   * a loss of stretch that is not that of an end, 1 - m/k <= 0, is an error of the mesh and is called that.
+   * a loss of stretch there is an error of the mesh and is called that.
    */
   void
-  Simulation::lost_stretch(const double value, double s, const double t, const double reach)
+  Simulation::inverted_inside(const double value, const double s, const double t)
   {
-    const double k = scene_.body.elastic_modulus, length = scene_.body.length;
-    // The stretch that the end conditions prescribe, m + k (w - 1) = 0, at t and a little later.
-    const auto [left, right]             = assembler_.end_stress(t);
-    const auto [left_later, right_later] = assembler_.end_stress(t + reach);
-    const double left_stretch            = 1. - std::max(left, left_later) / k,
-                 right_stretch           = 1. - std::max(right, right_later) / k;
-    const bool at_end                    = left_stretch <= 0. || right_stretch <= 0.;
-    if (!at_end && scene_.body.friction_exponent() <= -1.)
+    if (scene_.body.friction_exponent() <= -1.)
     {
-      diagnosis_ = {
-        "failed",
-        "under_resolved",
-        fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, where the body itself stays "
-                    "uninverted (a <= -1): {} cells of degree {} are too coarse; a larger "
-                    "Discretization/Number of cells is needed",
-                    value,
-                    s,
-                    t,
-                    numerics_.n_cells,
-                    numerics_.degree)};
+      under_resolved(value, s, t);
       return;
     }
-    if (at_end)
-      s = left_stretch <= right_stretch ? 0. : length;
-    result_.inversion = SimulationResult::Extreme{value, s, t};
-    diagnosis_        = {
-             "inverted",
-      at_end ? "inverted_at_end" : "inverted_inside",
-             fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.6g}{}; the model ends there",
-                  s,
-                  t,
-                  at_end ? " (at this end 1 - m/k is not positive)" : "")};
+    result_.inversion = SimulationResult::Extreme{std::min(value, 0.), s, t};
+    diagnosis_        = {"inverted",
+                         "inverted_inside",
+                         fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model ends "
+                                     "there",
+                              s * units_.length,
+                              t * units_.time)};
+  }
+
+  void
+  Simulation::under_resolved(const double value, const double s, const double t)
+  {
+    diagnosis_ = {"failed",
+                  "under_resolved",
+                  fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, where the body itself "
+                              "stays uninverted (a <= -1): {} cells of degree {} are too coarse; {}",
+                              value,
+                              s * units_.length,
+                              t * units_.time,
+                              discretization_->n_cells(),
+                              discretization_->element().degree,
+                              assembler_->formulation() == Formulation::position ?
+                                "Discretization/Formulation = automatic or a larger Number of cells is needed" :
+                                "a larger Discretization/Number of cells is needed")};
+  }
+
+  /// Frames have the times that were asked for, exactly.
+  double
+  Simulation::physical_time(const Step &step) const
+  {
+    if (step.is_frame && next_frame_ < frames_->size())
+      return (*frames_)[next_frame_];
+    return step.time * units_.time;
+  }
+
+  void
+  Simulation::show(const Step &step,
+                   const std::span<const double> y,
+                   const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    if (observers.empty())
+      return;
+    Step physical = step;
+    physical.time = physical_time(step);
+    physical.size *= units_.time;
+    const double energy = units_.energy(), power = units_.power();
+    CellIntegrals sums = integrals_;
+    sums.displacement *= units_.length * units_.length;
+    sums.velocity *= units_.length * units_.velocity();
+    sums.elastic_energy *= energy;
+    for (double *rate : {&sums.stress_power, &sums.positive_power, &sums.absolute_power, &sums.dissipation})
+      *rate *= power;
+    sums.net_friction *= units_.force;
+    sums.abs_friction *= units_.force;
+    const StretchRange range{{stretch_.min.value, stretch_.min.s * units_.length},
+                             {stretch_.max.value, stretch_.max.s * units_.length}};
+    const Ledger ledger = result_.ledger ? result_.ledger->scaled(energy) : Ledger();
+    for (const auto &observer : observers)
+      observer->observe({physical,
+                         step.number == 0 || step.is_frame,
+                         *assembler_,
+                         mesh_number_,
+                         units_,
+                         step.time,
+                         y,
+                         v_,
+                         sums,
+                         range,
+                         ledger});
+  }
+
+  SimulationResult
+  Simulation::in_physical_units() const
+  {
+    SimulationResult result = result_;
+    result.time.time        = result.time.status == "finished" ? physical_scene_.end_time : result.time.time * units_.time;
+    result.time.step_size *= units_.time;
+    result.displacement *= units_.length;
+    result.largest_u *= units_.length;
+    result.strain *= units_.length;
+    result.largest_indicator *= units_.length;
+    if (result.ledger)
+      result.ledger = result.ledger->scaled(units_.energy());
+    const auto scale = [this](SimulationResult::Extreme &extreme)
+    {
+      extreme.s *= units_.length;
+      extreme.t *= units_.time;
+    };
+    scale(result.min_stretch);
+    scale(result.max_stretch);
+    if (result.inversion)
+      scale(*result.inversion);
+    if (result.log_stretch_since)
+      *result.log_stretch_since *= units_.time;
+    return result;
   }
 } // namespace crawler

@@ -2,32 +2,33 @@
 #include <crawler/model/crawler_equation.h>
 #include <crawler/observers/field_sampler.h>
 
-#include <deal.II/base/polynomial.h>
-
 namespace crawler
 {
-  FieldSampler::FieldSampler(const Scene &scene, const Discretization &discretization, std::vector<Point> points)
-    : scene_(scene)
-    , discretization_(discretization)
-    , points_(std::move(points))
+  namespace
   {
-    std::vector<dealii::Point<1>> nodes;
-    for (const double x : discretization.element().nodes)
-      nodes.emplace_back(x);
-    const auto shape = dealii::Polynomials::generate_complete_Lagrange_basis(nodes);
-    std::vector<double> value_and_derivative(2);
-    for (const Point &point : points_)
+    std::vector<double>
+    places(const std::vector<FieldSampler::Point> &points)
     {
-      const double h = discretization.cell_size()[point.cell];
-      coordinates_.push_back(discretization.cell_left()[point.cell] + point.x * h);
-      for (const auto &polynomial : shape)
-      {
-        polynomial.value(point.x, value_and_derivative);
-        values_.push_back(value_and_derivative[0]);
-        derivatives_.push_back(value_and_derivative[1] / h);
-      }
+      std::vector<double> x;
+      for (const auto &point : points)
+        x.push_back(point.x);
+      return x;
     }
-    stress_ = scene.active_stress->at(coordinates_);
+  } // namespace
+
+  FieldSampler::FieldSampler(const Assembler &assembler, const Units &units, std::vector<Point> points)
+    : assembler_(assembler)
+    , units_(units)
+    , points_(std::move(points))
+    , values_(interpolation_matrix(assembler.discretization().element().nodes, places(points_)))
+    , stretch_(assembler.discretization().element(), places(points_))
+  {
+    const Discretization &d = assembler.discretization();
+    for (const Point &point : points_)
+      coordinates_.push_back(d.cell_left()[point.cell] + point.x * d.cell_size()[point.cell]);
+    stress_ = assembler.scene().active_stress->at(coordinates_);
+    for (double &s : coordinates_)
+      s *= units.length;
     for (auto *field : {&fields_.position,
                         &fields_.displacement,
                         &fields_.stretch,
@@ -39,32 +40,41 @@ namespace crawler
   }
 
   const Fields &
-  FieldSampler::sample(const double t, const std::span<const double> u, const std::span<const double> v)
+  FieldSampler::sample(const double t, const std::span<const double> y, const std::span<const double> v)
   {
-    const auto u_local   = discretization_.to_local(u, u_local_);
-    const auto v_local   = discretization_.to_local(v, v_local_);
-    const unsigned int n = discretization_.element().n, q = discretization_.element().degree;
-    const double k = scene_.body.elastic_modulus;
+    const Discretization &d = assembler_.discretization();
+    const auto u_local      = d.to_local(assembler_.displacement(y), u_local_);
+    const auto v_local      = d.to_local(v, v_local_);
+    const auto log_w        = assembler_.log_stretch(y);
+    const unsigned int n = d.element().n, q = d.element().degree;
+    const double k = assembler_.scene().body.elastic_modulus;
     for (std::size_t p = 0; p < points_.size(); ++p)
     {
-      double u_p = 0., v_p = 0., e = 0.;
+      const unsigned int cell = points_[p].cell;
+      const auto place        = static_cast<unsigned int>(p);
+      double u_p = 0., v_p = 0.;
       for (unsigned int i = 0; i < n; ++i)
       {
-        const std::size_t node = static_cast<std::size_t>(points_[p].cell) * q + i;
+        const std::size_t node = static_cast<std::size_t>(cell) * q + i;
         u_p += values_[p * n + i] * u_local[node];
         v_p += values_[p * n + i] * v_local[node];
-        e += derivatives_[p * n + i] * u_local[node];
       }
-      fields_.displacement[p]   = u_p;
-      fields_.position[p]       = coordinates_[p] + u_p;
+      fields_.displacement[p]   = u_p * units_.length;
+      fields_.position[p]       = coordinates_[p] + fields_.displacement[p];
       fields_.velocity[p]       = v_p;
-      fields_.stretch[p]        = 1. + e;
-      fields_.elastic_stress[p] = equation::body_force(e, 0., k);
+      fields_.stretch[p]        = stretch_.stretch(u_local, log_w, cell, d.cell_size()[cell], place);
+      fields_.elastic_stress[p] = units_.force * equation::body_force(
+                                                   stretch_.strain(u_local, log_w, cell, d.cell_size()[cell], place), 0., k);
     }
     stress_->values(t, fields_.active_stress);
-    scene_.friction->values(fields_.stretch, fields_.friction_force);
+    assembler_.scene().friction->values(fields_.stretch, fields_.friction_force);
     for (std::size_t p = 0; p < points_.size(); ++p)
-      fields_.friction_force[p] = equation::friction_force(fields_.friction_force[p], fields_.velocity[p]);
+    {
+      fields_.friction_force[p] =
+        equation::friction_force(fields_.friction_force[p], fields_.velocity[p]) * units_.force / units_.length;
+      fields_.active_stress[p] *= units_.force;
+      fields_.velocity[p] *= units_.velocity();
+    }
     return fields_;
   }
 } // namespace crawler

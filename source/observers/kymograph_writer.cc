@@ -39,13 +39,9 @@ namespace crawler
     }
   } // namespace
 
-  KymographWriter::KymographWriter(const Scene &scene,
-                                   const Discretization &discretization,
-                                   const std::filesystem::path &folder)
-    : scene_(scene)
-    , discretization_(discretization)
+  KymographWriter::KymographWriter(const double end_time, const std::filesystem::path &folder)
+    : end_time_(end_time)
     , folder_(folder)
-    , sampler_(scene, discretization, own_points(discretization))
   {
   }
 
@@ -54,18 +50,22 @@ namespace crawler
   {
     if (!snapshot.is_frame)
       return;
-    const Fields &fields = sampler_.sample(snapshot.step.time, snapshot.u, snapshot.v);
+    const Discretization &d = snapshot.assembler.discretization();
+    if (!sampler_ || mesh_number_ != snapshot.mesh_number)
+      sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, own_points(d));
+    mesh_number_         = snapshot.mesh_number;
+    const Fields &fields = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
     const int own        = static_cast<int>(fields.stretch.size());
-    const auto n_ranks   = discretization_.n_ranks();
+    const auto n_ranks   = d.n_ranks();
     std::vector<int> counts(n_ranks), offsets(n_ranks, 0);
-    MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, discretization_.communicator());
+    MPI_Allgather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, d.communicator());
     for (unsigned int r = 1; r < n_ranks; ++r)
       offsets[r] = offsets[r - 1] + counts[r - 1];
     times_.push_back(snapshot.step.time);
     for (const auto *field :
          {&fields.stretch, &fields.velocity, &fields.active_stress, &fields.friction_force, &fields.displacement})
     {
-      std::vector<double> all(discretization_.rank() == 0 ? n_points : 0);
+      std::vector<double> all(d.rank() == 0 ? n_points : 0); // so rows_ stays empty on the others
       MPI_Gatherv(field->data(),
                   own,
                   MPI_DOUBLE,
@@ -74,7 +74,7 @@ namespace crawler
                   offsets.data(),
                   MPI_DOUBLE,
                   0,
-                  discretization_.communicator());
+                  d.communicator());
       rows_.insert(rows_.end(), all.begin(), all.end());
     }
   }
@@ -82,7 +82,7 @@ namespace crawler
   void
   KymographWriter::end()
   {
-    if (discretization_.rank() != 0 || times_.size() < 2)
+    if (rows_.empty() || times_.size() < 2)
       return;
     const std::size_t n_times = times_.size();
     std::string text          = fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"0.1\" "
@@ -108,7 +108,7 @@ namespace crawler
         fmt::format_to(std::back_inserter(text),
                        "{:.9g} {:.9g} 0 ",
                        static_cast<double>(i) / (n_points - 1),
-                       time / scene_.end_time);
+                       time / end_time_);
       text += '\n';
     }
     text += "</DataArray>\n</Points>\n</Piece>\n</StructuredGrid>\n</VTKFile>\n";

@@ -16,9 +16,21 @@ namespace crawler
   double
   Ledger::residual() const
   {
-    const double gap   = std::abs(stress_power - dissipation - elastic_energy);
+    const double gap   = std::abs(stress_power - dissipation - elastic_energy - transfer_loss);
     const double scale = std::max({exchanged, dissipation, elastic_energy});
     return gap == 0. ? 0. : gap / scale;
+  }
+
+  Ledger
+  Ledger::scaled(const double unit) const
+  {
+    return {stress_power * unit,
+            dissipation * unit,
+            positive_power * unit,
+            exchanged * unit,
+            end_work * unit,
+            elastic_energy * unit,
+            transfer_loss * unit};
   }
 
   RateQuadrature::Rates

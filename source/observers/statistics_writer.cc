@@ -6,12 +6,12 @@
 
 namespace crawler
 {
-  StatisticsWriter::StatisticsWriter(const Scene &scene,
-                                     const Discretization &discretization,
+  StatisticsWriter::StatisticsWriter(const double length,
+                                     const bool is_first_rank,
                                      const std::filesystem::path &folder,
                                      const bool with_ledger)
-    : scene_(scene)
-    , writes_(discretization.rank() == 0)
+    : length_(length)
+    , writes_(is_first_rank)
     , with_ledger_(with_ledger)
     , path_(folder / "statistics.csv")
   {
@@ -34,12 +34,11 @@ namespace crawler
   {
     if (!writes_)
       return;
-    const double length = scene_.body.length;
     out_ << fmt::format("{},{:.16g},{:.6g},{:.16g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}",
                         snapshot.step.number,
                         snapshot.step.time,
                         snapshot.step.size,
-                        snapshot.integrals.displacement / length,
+                        snapshot.integrals.displacement / length_,
                         snapshot.stretch.min.value,
                         snapshot.stretch.min.s,
                         snapshot.stretch.max.value,
@@ -48,7 +47,7 @@ namespace crawler
                         snapshot.step.newton_iterations);
     if (with_ledger_)
       out_ << fmt::format(",{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.3g},{:.3g}",
-                          snapshot.integrals.velocity / length,
+                          snapshot.integrals.velocity / length_,
                           snapshot.ledger.stress_power,
                           snapshot.ledger.dissipation,
                           snapshot.ledger.elastic_energy,

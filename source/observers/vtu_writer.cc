@@ -60,10 +60,8 @@ namespace crawler
     }
   } // namespace
 
-  VtuWriter::VtuWriter(const Scene &scene, const Discretization &discretization, const std::filesystem::path &folder)
-    : discretization_(discretization)
-    , folder_(folder)
-    , sampler_(scene, discretization, line_points(discretization))
+  VtuWriter::VtuWriter(const std::filesystem::path &folder)
+    : folder_(folder)
   {
   }
 
@@ -72,17 +70,22 @@ namespace crawler
   {
     if (!snapshot.is_frame)
       return;
-    const Fields &fields = sampler_.sample(snapshot.step.time, snapshot.u, snapshot.v);
-    const unsigned int n = discretization_.element().n, n_cells = discretization_.n_local_cells();
+    const Discretization &d = snapshot.assembler.discretization();
+    if (!sampler_ || mesh_number_ != snapshot.mesh_number)
+      sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, line_points(d));
+    mesh_number_         = snapshot.mesh_number;
+    const Fields &fields = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
+    const unsigned int n = d.element().n, n_cells = d.n_local_cells();
+    const double length  = snapshot.units.length;
 
     PatchOutput output;
     output.patches.resize(n_cells);
     for (unsigned int c = 0; c < n_cells; ++c)
     {
       auto &patch          = output.patches[c];
-      const double left    = discretization_.cell_left()[c];
+      const double left    = d.cell_left()[c] * length;
       patch.vertices[0]    = dealii::Point<1>(left);
-      patch.vertices[1]    = dealii::Point<1>(left + discretization_.cell_size()[c]);
+      patch.vertices[1]    = dealii::Point<1>(left + d.cell_size()[c] * length);
       patch.patch_index    = c;
       patch.n_subdivisions = n - 1;
       patch.reference_cell = dealii::ReferenceCells::Line;
@@ -107,16 +110,16 @@ namespace crawler
     output.set_flags(flags);
 
     const std::string name = fmt::format("solution/{:06}.vtu", record_.size());
-    if (discretization_.n_ranks() == 1)
+    if (d.n_ranks() == 1)
     {
       std::ostringstream text;
       output.write_vtu(text);
       write_file(folder_ / name, text.str());
     }
     else
-      output.write_vtu_in_parallel((folder_ / name).string(), discretization_.communicator());
+      output.write_vtu_in_parallel((folder_ / name).string(), d.communicator());
     record_.emplace_back(snapshot.step.time, name);
-    if (discretization_.rank() == 0)
+    if (d.rank() == 0)
     {
       std::ostringstream text;
       dealii::DataOutBase::write_pvd_record(text, record_);

@@ -41,12 +41,18 @@ namespace crawler
   }
 
   void
-  PowerFriction::values_and_derivatives(const std::span<const double> w,
-                                        const std::span<double> g,
-                                        const std::span<double> dg) const
+  PowerFriction::values_and_log_derivatives(const std::span<const double> w,
+                                            const std::span<double> g,
+                                            const std::span<double> w_dg) const
   {
     values(w, g);
     for (std::size_t i = 0; i < w.size(); ++i)
-      dg[i] = a_ == 0. ? 0. : a_ * g[i] / w[i];
+      w_dg[i] = a_ == 0. ? 0. : a_ * g[i];
+  }
+
+  std::unique_ptr<FrictionLaw>
+  PowerFriction::scaled(const double factor) const
+  {
+    return std::make_unique<PowerFriction>(gamma_ * factor, a_);
   }
 } // namespace crawler

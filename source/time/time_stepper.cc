@@ -4,8 +4,6 @@
 #include <crawler/time/integrators.h>
 #include <crawler/time/time_stepper.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -69,12 +67,18 @@ namespace crawler
 
   struct TimeStepper::Implementation
   {
-    Implementation(TimeStepper &owner, MPI_Comm communicator, std::size_t n_owned, const TimeParameters &parameters);
+    Implementation(TimeStepper &owner,
+                   MPI_Comm communicator,
+                   const std::vector<double> &weights,
+                   const TimeParameters &parameters);
 
     TimeStepper &owner;
     const TimeParameters parameters;
 
     PetscOwner<Vec> solution, residual;
+    PetscOwner<Vec> tolerances, weighted; ///< if the weights are not all 1
+    PetscOwner<Vec> interpolated;
+    std::vector<double> weights;
     PetscOwner<Mat> jacobian;
     PetscOwner<TS> ts;
 
@@ -146,12 +150,14 @@ namespace crawler
 
   TimeStepper::Implementation::Implementation(TimeStepper &owner,
                                               MPI_Comm communicator,
-                                              const std::size_t n_owned,
+                                              const std::vector<double> &weights,
                                               const TimeParameters &parameters)
     : owner(owner)
     , parameters(parameters)
+    , weights(weights)
   {
-    Vec vec = nullptr;
+    const std::size_t n_owned = weights.size();
+    Vec vec                   = nullptr;
     petsc(VecCreate(communicator, &vec));
     solution.reset(vec);
     petsc(VecSetSizes(vec, static_cast<PetscInt>(n_owned), PETSC_DECIDE));
@@ -161,6 +167,20 @@ namespace crawler
     n_unknowns = static_cast<std::size_t>(n);
     petsc(VecDuplicate(solution.get(), &vec));
     residual.reset(vec);
+    int all_one = std::all_of(weights.begin(),
+                              weights.end(),
+                              [](const double weight)
+                              {
+                                return weight == 1.;
+                              });
+    MPI_Allreduce(MPI_IN_PLACE, &all_one, 1, MPI_INT, MPI_MIN, communicator);
+    if (all_one == 0)
+    {
+      petsc(VecDuplicate(solution.get(), &vec));
+      tolerances.reset(vec);
+      petsc(VecDuplicate(solution.get(), &vec));
+      weighted.reset(vec);
+    }
 
     Mat mat          = nullptr;
     const auto local = static_cast<PetscInt>(n_owned);
@@ -387,15 +407,29 @@ namespace crawler
         *reason = SNES_CONVERGED_FNORM_ABS;
       return 0;
     }
-    const double rms      = 1. / std::sqrt(static_cast<double>(self.n_unknowns));
-    const double d        = dx_norm * rms / self.tolerance; // in units of the admissible error
-    const double rounding = 1e-15 * x_norm * rms / self.tolerance;
+    // In units of the admissible error.
+    double d = dx_norm / self.tolerance, x = x_norm / self.tolerance;
+    if (self.tolerances)
+    {
+      Vec correction = nullptr, state = nullptr;
+      PetscReal norm = 0.;
+      SNESGetSolutionUpdate(snes, &correction);
+      VecPointwiseDivide(self.weighted.get(), correction, self.tolerances.get());
+      VecNorm(self.weighted.get(), NORM_2, &norm);
+      d = norm;
+      SNESGetSolution(snes, &state);
+      VecPointwiseDivide(self.weighted.get(), state, self.tolerances.get());
+      VecNorm(self.weighted.get(), NORM_2, &norm);
+      x = norm;
+    }
+    const double rms = 1. / std::sqrt(static_cast<double>(self.n_unknowns));
+    d *= rms;
+    const double rounding = 1e-15 * x * rms;
     if (it >= 2 && self.last_correction > 0.)
       self.convergence_constant = d / (self.last_correction * self.last_correction);
     self.last_correction = d;
     if (d <= newton_fraction || self.convergence_constant * d * d <= newton_fraction || d <= rounding)
       *reason = SNES_CONVERGED_SNORM_RELATIVE;
-    (void)snes;
     return 0;
   }
 
@@ -564,14 +598,13 @@ namespace crawler
         result.reason  = "rejection_limit";
         result.message = "a step was rejected too many times, its error stays above the tolerance";
       }
-      result.message += fmt::format(", at t = {:.9g} with step size {:.3g}", time, size);
     }
     return result;
   }
 
 
-  TimeStepper::TimeStepper(MPI_Comm communicator, const std::size_t n_owned, const TimeParameters &parameters)
-    : implementation_(std::make_unique<Implementation>(*this, communicator, n_owned, parameters))
+  TimeStepper::TimeStepper(MPI_Comm communicator, const std::vector<double> &weights, const TimeParameters &parameters)
+    : implementation_(std::make_unique<Implementation>(*this, communicator, weights, parameters))
   {
   }
 
@@ -582,7 +615,8 @@ namespace crawler
                      const std::vector<double> &frames,
                      const double tolerance,
                      const double initial_step,
-                     const double largest_step)
+                     const double largest_step,
+                     const double start_time)
   {
     Implementation &self = *implementation_;
     TS ts                = self.ts.get();
@@ -605,15 +639,21 @@ namespace crawler
       const WriteAccess access(self.solution.get());
       std::copy(y.begin(), y.end(), access.span.begin());
     }
-    petsc(TSSetTolerances(ts, self.tolerance, nullptr, self.relative_tolerance, nullptr));
-    petsc(TSSetTime(ts, 0.));
+    if (self.tolerances)
+    {
+      const WriteAccess access(self.tolerances.get());
+      for (std::size_t i = 0; i < self.weights.size(); ++i)
+        access.span[i] = self.tolerance * self.weights[i];
+    }
+    petsc(TSSetTolerances(ts, self.tolerance, self.tolerances.get(), self.relative_tolerance, nullptr));
+    petsc(TSSetTime(ts, start_time));
     petsc(TSSetStepNumber(ts, 0));
     petsc(TSSetMaxTime(ts, self.parameters.end_time));
     petsc(TSSetTimeStep(ts, first_step));
     petsc(TSRestartStep(ts));
 
     PetscErrorCode code = 0;
-    bool go_on          = self.report(0., 0.);
+    bool go_on          = self.report(start_time, 0.);
     if (go_on)
     {
       petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
@@ -632,5 +672,19 @@ namespace crawler
     if (!go_on)
       result.status = "stopped";
     return result;
+  }
+
+  void
+  TimeStepper::interpolate(const double time, const Vector y)
+  {
+    if (!implementation_->interpolated)
+    {
+      Vec vec = nullptr;
+      petsc(VecDuplicate(implementation_->solution.get(), &vec));
+      implementation_->interpolated.reset(vec);
+    }
+    petsc(TSInterpolate(implementation_->ts.get(), time, implementation_->interpolated.get()));
+    const ReadAccess access(implementation_->interpolated.get());
+    std::copy(access.span.begin(), access.span.end(), y.begin());
   }
 } // namespace crawler

@@ -4,6 +4,7 @@
 #include <crawler/discretization/cell_kernels.h>
 #include <crawler/discretization/chain_matrix.h>
 #include <crawler/discretization/discretization.h>
+#include <crawler/discretization/stretch_sampler.h>
 #include <crawler/scene/scene.h>
 
 #include <memory>
@@ -33,47 +34,94 @@ namespace crawler
     double strain;       ///< int (w - 1)^2 ds
   };
 
+  /// In which unknowns the equation is solved.
+  enum class Formulation
+  {
+    position,   ///< the displacement u = zeta - s
+    log_stretch ///< u, and log w in each cell: for stretches that position cannot hold
+  };
+
   /**
-   * The semi-discrete crawler: M(u) v + K u + m = 0 with v = u_t (crawler_equation.h; doc/numerics.md). Vectors are
-   * the owned values of each rank; all functions are collective.
+   * The semi-discrete crawler F(t, y, y') = 0 in one of the formulations. The unknowns y of a rank are its nodes'
+   * displacements u [length], and after those in the log-stretch form log w at the stretch points of its cells [1].
+   * Vectors are the owned values of each rank; all functions are collective.
    */
   class Assembler
   {
   public:
-    Assembler(const Scene &scene, const Discretization &discretization);
+    using Vector      = std::span<double>;
+    using ConstVector = std::span<const double>;
 
-    /// F = M(u) v + K u + m(t). Returns false (on all ranks) if the stretch is not positive at a quadrature point;
-    /// bad_stretch() then tells where.
-    bool
-    residual(double t, std::span<const double> u, std::span<const double> v, std::span<double> F);
+    virtual ~Assembler();
+    Assembler(const Assembler &) = delete;
 
-    /// A = dF/du + sigma dF/dv.
-    void
-    jacobian(double t, std::span<const double> u, std::span<const double> v, double sigma, ChainMatrix &A);
+    virtual Formulation
+    formulation() const = 0;
 
-    /// v = -M(u)^-1 (K u + m(t)): the velocity of the state. Returns false if it cannot be computed.
-    bool
-    velocity(double t, std::span<const double> u, std::span<double> v);
+    /// Number of unknowns of this rank, and of all ranks.
+    virtual std::size_t
+    n_owned() const = 0;
+    virtual std::size_t
+    n_unknowns() const = 0;
 
-    /// The integrals over the whole body, the same on all ranks.
-    CellIntegrals
-    integrals(double t, std::span<const double> u, std::span<const double> v);
+    /// F(t, y, y'). Returns false (on all ranks) if the stretch is not positive at a quadrature point; bad_stretch()
+    /// then tells where.
+    virtual bool
+    residual(double t, ConstVector y, ConstVector y_dot, Vector F) = 0;
+
+    /// Prepares dF/dy + sigma dF/dy' for the two functions below. Returns false if it is singular.
+    virtual bool
+    setup_jacobian(double t, ConstVector y, ConstVector y_dot, double sigma) = 0;
+    virtual void
+    solve_with_jacobian(ConstVector b, Vector x) = 0;
+    virtual void
+    jacobian_vmult(ConstVector x, Vector y) = 0;
+
+    /// v = u' at the nodes [length/time], from the balance of forces. Returns false if it cannot be computed.
+    virtual bool
+    velocity(double t, ConstVector y, Vector v) = 0;
+
+    /// The integrals over the whole body, the same on all ranks. @p v is the velocity at the nodes.
+    virtual CellIntegrals
+    integrals(double t, ConstVector y, ConstVector v) = 0;
+
+    /// The displacements at the nodes among the unknowns.
+    ConstVector
+    displacement(const ConstVector y) const
+    {
+      return y.first(discretization_.n_owned());
+    }
+    /// [cell][q] log w at the stretch points among the unknowns; empty in the position form.
+    ConstVector
+    log_stretch(const ConstVector y) const
+    {
+      return y.subspan(discretization_.n_owned());
+    }
 
     /// The extreme stretches of the whole body, the same on all ranks. A stretch that is not a number counts as the
     /// smallest.
     StretchRange
-    stretch_range(std::span<const double> u);
+    stretch_range(ConstVector y);
 
     Resolution
-    resolution(std::span<const double> u);
+    resolution(ConstVector y);
 
-    /// Root mean square of the unknowns of all ranks [length].
+    /**
+     * The error indicator of each own cell: int_cell (d/(k max(w, floor)))^2 ds with d = N* - N, the difference between
+     * the force in the body N = m + k (w - 1) and the one that balances the friction, N* = int_0^s g v ds. N* is zero
+     * at both ends, as the stress-free ends ask, and d is orthogonal to all that the mesh can represent
+     * (doc/numerics.md, "Error indicator"). @p v is the velocity of the state @p y.
+     */
+    std::vector<double>
+    error_indicators(double t, ConstVector y, ConstVector v);
+
+    /// Root mean square of the displacement over the nodes of all ranks [length].
     double
-    root_mean_square(std::span<const double> u) const;
+    root_mean_square(ConstVector y) const;
 
     /// The power that leaves through the ends in the paper's energy: [m v] from s = 0 to L (theory.md section 6).
     double
-    end_power(double t, std::span<const double> v);
+    end_power(double t, ConstVector v);
 
     /// m at the ends of the body, s = 0 and s = L [force].
     std::pair<double, double>
@@ -85,7 +133,6 @@ namespace crawler
     {
       return bad_stretch_;
     }
-
     const Discretization &
     discretization() const
     {
@@ -97,21 +144,49 @@ namespace crawler
       return scene_;
     }
 
-  private:
+  protected:
+    /// @p stress_points [length]: where the equation needs the active stress.
+    Assembler(const Scene &scene, const Discretization &discretization, const std::vector<double> &stress_points);
+
+    /// Local arrays of the displacement @p u and the velocity @p v (may be empty), with m of the time @p t.
     CellInput
-    input(double t, std::span<const double> u, std::span<const double> v);
+    input(double t, ConstVector u, ConstVector v);
+
+    /// The same without unknowns and stress.
+    CellInput
+    geometry() const;
+
+    StretchAt
+    smallest_of_ranks(StretchAt own) const;
+
+    /// Adds up over all ranks.
+    void
+    sum_over_ranks(CellIntegrals &sum) const;
+
+    /// The friction g v at the points where this form integrates it [cell][point]; the weights of these points, and
+    /// the integrals from the left end of a cell to each quadrature point [quadrature point][point].
+    virtual void
+    friction(double t, ConstVector y, ConstVector v, std::vector<double> &g_v) = 0;
+    virtual const std::vector<double> &
+    friction_weights() const = 0;
+    virtual const std::vector<double> &
+    friction_integration() const = 0;
 
     const Scene &scene_;
     const Discretization &discretization_;
-    const CellKernels &kernels_;
-
-    std::unique_ptr<ActiveStressAtPoints> stress_, end_stress_;
-    std::vector<double> m_; ///< at the quadrature points, at the time m_time_
-    double m_time_;
-
-    std::vector<double> u_local_, v_local_, F_local_;
-    std::vector<double> highest_mode_;  ///< [point] weights that give the highest Legendre coefficient
-    std::unique_ptr<ChainMatrix> mass_; ///< built when a velocity is first asked for
     std::optional<StretchAt> bad_stretch_;
+    std::vector<double> F_local_;
+
+  private:
+    std::unique_ptr<ActiveStressAtPoints> stress_, end_stress_, quadrature_stress_;
+    std::vector<double> m_; ///< at the stress points, at the time m_time_
+    double m_time_;
+    std::vector<double> u_local_, v_local_;
+    const StretchSampler sampler_;       ///< at the left end, the quadrature points and the right end
+    std::vector<double> highest_mode_;   ///< [point] weights that give the highest Legendre coefficient
+    std::vector<double> friction_at_, m_at_quadrature_;
   };
+
+  std::unique_ptr<Assembler>
+  create_assembler(Formulation formulation, const Scene &scene, const Discretization &discretization);
 } // namespace crawler

@@ -20,6 +20,14 @@ namespace crawler
     const double *m; ///< active stress at the quadrature points
   };
 
+  /// What the log-stretch form needs besides.
+  struct LogCellInput
+  {
+    CellInput cells;          ///< its m is at the stretch points [cell][q]
+    const double *log_w;      ///< [cell][q] logarithm of the stretch at the stretch points
+    const double *log_w_dot;  ///< [cell][q] its time derivative
+  };
+
   /// Integrals over the body that the ledger is made of; see theory.md section 1 for their relations.
   struct CellIntegrals
   {
@@ -62,6 +70,39 @@ namespace crawler
     /// From the end nodes of all cells to the inner ones (in place).
     void (*backward)(unsigned int n_cells, const double *blocks, double *x);
   };
+
+  /**
+   * The log-stretch form (doc/numerics.md, "Log-stretch form"): at each stretch point of a cell the equation
+   *   L_p = d/dt log w - v_s/w,
+   * and the residual F_i = int g v phi_i + int N phi_i,s with the stretch w = exp(log w); the friction integral by the
+   * Gauss-Lobatto formula at the nodes, the other by the Gauss formula at the stretch points.
+   */
+  struct LogCellKernels
+  {
+    /// Adds F to @p F and writes L [cell][q]. Without log_w_dot: F only, without friction.
+    void (*residual)(const LogCellInput &, double *F, double *L);
+    /// The friction at the nodes, int g phi_i: the diagonal of the friction matrix; added to @p mass.
+    void (*mass)(const LogCellInput &, double *mass);
+    /// The blocks of the Jacobian after elimination of log w, and what `reduce` and `recover` need [cell][factors(q)].
+    bool (*jacobian)(const LogCellInput &, double sigma, double *blocks, double *factors);
+    /// From a right-hand side (f, l) to that of the chain of blocks: added to @p f.
+    void (*reduce)(const CellInput &, const double *factors, const double *l, double *f);
+    /// log w [cell][q] from the solution @p u at the nodes and the right-hand side @p l (in place).
+    void (*recover)(const CellInput &, const double *factors, const double *u, double *l);
+    /// (f, l) += J (u, log w) with the factors of jacobian(); the node part without the elimination is in `factors`.
+    void (*multiply)(const CellInput &, const double *factors, const double *u, const double *x, double *f, double *l);
+    void (*integrals)(const LogCellInput &, CellIntegrals &);
+  };
+
+  /// Numbers per cell that LogCellKernels::jacobian keeps.
+  constexpr unsigned int
+  log_factors(const unsigned int degree)
+  {
+    return 3 * degree + 2 * (degree + 1);
+  }
+
+  const LogCellKernels &
+  log_cell_kernels(unsigned int degree);
 
   /// The kernels for one degree, 1 to ReferenceElement::highest_degree.
   const CellKernels &

@@ -11,6 +11,21 @@
 
 namespace crawler
 {
+  /// A cell of the whole mesh.
+  struct Cell
+  {
+    double left, size;  ///< [length]
+    unsigned int level; ///< how often one of the cells of the first mesh was halved
+  };
+
+  /// What is to become of a cell; two halves of a former cell are joined if both are marked.
+  enum class CellChange : signed char
+  {
+    join   = -1,
+    keep   = 0,
+    divide = 1
+  };
+
   /**
    * Mesh, element and numbering of the unknowns. The mesh is a deal.II parallel::shared::Triangulation<1> in which each
    * rank owns a run of neighbouring cells (ranks beyond the number of cells own none). Unknowns are numbered along the
@@ -25,6 +40,11 @@ namespace crawler
   public:
     Discretization(MPI_Comm communicator, double length, unsigned int n_cells, unsigned int degree);
     ~Discretization();
+
+    /// This mesh with cells divided and joined as @p changes says for all cells (the same on all ranks); neighbours
+    /// differ by one level at most, so more cells may be divided and fewer joined (collective).
+    std::unique_ptr<Discretization>
+    adapted(std::vector<CellChange> changes) const;
 
     MPI_Comm
     communicator() const
@@ -41,15 +61,26 @@ namespace crawler
     {
       return length_;
     }
+    /// The whole mesh from left to right, the same on all ranks; this rank's cells start with number first_cell().
+    const std::vector<Cell> &
+    cells() const
+    {
+      return cells_;
+    }
     unsigned int
     n_cells() const
     {
-      return n_cells_;
+      return static_cast<unsigned int>(cells_.size());
+    }
+    unsigned int
+    first_cell() const
+    {
+      return first_cell_;
     }
     std::size_t
     n_unknowns() const
     {
-      return static_cast<std::size_t>(n_cells_) * element_.degree + 1;
+      return cells_.size() * element_.degree + 1;
     }
 
     /// The cells of this rank: left ends [length] and sizes [length].
@@ -108,9 +139,9 @@ namespace crawler
       return n_active_ranks_;
     }
 
-    /// Material coordinates of all quadrature points of the own cells, cell by cell [length].
+    /// Material coordinates of @p places (0 to 1) in the own cells, cell by cell [length].
     std::vector<double>
-    quadrature_points() const;
+    points(const std::vector<double> &places) const;
 
     /// A local array from the owned values of all ranks (collective). Returns @p owned itself where nothing is
     /// missing; else fills and returns @p buffer.
@@ -122,18 +153,21 @@ namespace crawler
     add_to_owned(std::span<const double> local, std::span<double> owned) const;
 
   private:
+    struct Mesh; ///< deal.II's triangulation, kept out of this header
+
+    Discretization(MPI_Comm communicator, double length, unsigned int degree, std::shared_ptr<Mesh> mesh);
+
+    /// Reads the cells of deal.II's mesh.
     void
-    make_mesh();
+    read_mesh();
 
     const MPI_Comm communicator_;
     const double length_;
-    const unsigned int n_cells_;
     const ReferenceElement element_;
-    unsigned int rank_, n_ranks_;
-    unsigned int n_active_ranks_;
+    const unsigned int rank_, n_ranks_;
+    unsigned int n_active_ranks_ = 0, first_cell_ = 0;
+    std::vector<Cell> cells_;
     std::vector<double> cell_left_, cell_size_;
-
-    struct Mesh; ///< deal.II's objects, kept out of this header
-    std::unique_ptr<Mesh> mesh_;
+    std::shared_ptr<Mesh> mesh_; ///< shared along a sequence of adapted meshes; in the state of the latest
   };
 } // namespace crawler

@@ -13,6 +13,8 @@ namespace crawler
   {
     std::string formulation = "automatic";
     std::string mesh        = "automatic";
+    std::optional<double> mesh_tolerance; ///< relative [1]
+    std::optional<double> smallest_cell;  ///< [length]
     std::optional<unsigned int> degree;
     std::optional<unsigned int> n_cells;
     std::string share_cells = "automatic";

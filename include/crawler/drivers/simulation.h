@@ -2,10 +2,12 @@
 #pragma once
 
 #include <crawler/discretization/assembler.h>
+#include <crawler/discretization/mesh_marking.h>
 #include <crawler/observers/observer.h>
 #include <crawler/time/time_stepper.h>
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -14,14 +16,24 @@
 
 namespace crawler
 {
+  /// Which formulation a simulation uses: one throughout, or the position form until the stretch becomes small.
+  enum class FormulationChoice
+  {
+    position,
+    log_stretch,
+    automatic
+  };
+
   /// The numerical settings of one simulation; numerics_choice.h chooses those that the user leaves open.
   struct Numerics
   {
-    unsigned int degree  = 0;
-    unsigned int n_cells = 0;
-    double tolerance     = 0.;                                      ///< [length]
-    double initial_step  = 0.;                                      ///< [time]
-    double largest_step  = std::numeric_limits<double>::infinity(); ///< [time]
+    unsigned int degree           = 0;
+    unsigned int n_cells          = 0;                                       ///< of the first mesh
+    double tolerance              = 0.;                                      ///< [length]
+    double initial_step           = 0.;                                      ///< [time]
+    double largest_step           = std::numeric_limits<double>::infinity(); ///< [time]
+    FormulationChoice formulation = FormulationChoice::automatic;
+    MeshLimits mesh               = {}; ///< of an adaptive mesh
   };
 
   /// What one simulation gives.
@@ -33,6 +45,7 @@ namespace crawler
     double displacement = std::numeric_limits<double>::quiet_NaN();
     double largest_u    = 0.; ///< root mean square of u over the body, largest over time [length]
     double unresolved   = 0.; ///< Resolution: largest highest_mode over largest strain, if looked at
+    double strain       = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]
     std::optional<Ledger> ledger;
     double net_friction = 0.; ///< largest |int g v ds|/int |g v| ds over time [1]
 
@@ -42,12 +55,17 @@ namespace crawler
     };
     Extreme min_stretch, max_stretch;
     std::optional<Extreme> inversion; ///< where and when the body inverted; value is the stretch there
+
+    std::optional<double> log_stretch_since;      ///< time from which on the log-stretch form was used [time]
+    unsigned int mesh_changes = 0, most_cells = 0; ///< of an adaptive mesh
+    double largest_indicator  = 0.;                ///< largest sum of the error indicators of an accepted state [length]
     double setup_seconds = 0., solve_seconds = 0., output_seconds = 0.;
   };
 
   /**
-   * One crawler: builds mesh, equation and time stepper in this order and connects them. It can run several times;
-   * that reuses everything.
+   * One crawler: builds mesh, equation and time stepper in this order, connects them, and changes mesh and formulation
+   * on the way where that is asked for. It computes in natural units (scene.h); what goes in and comes out is in the
+   * scene's. It can run several times; that reuses everything as long as mesh and formulation did not change.
    */
   class Simulation
   {
@@ -69,34 +87,77 @@ namespace crawler
         const std::vector<std::unique_ptr<Observer>> &observers = {},
         const std::function<bool()> &keep_going                 = {});
 
+    /// The present mesh, of length 1.
     const Discretization &
     discretization() const
     {
-      return discretization_;
+      return assembler_->discretization();
     }
-    Assembler &
-    assembler()
+    const Units &
+    units() const
     {
-      return assembler_;
+      return units_;
     }
 
   private:
-    bool
-    examine(const Step &step, std::span<const double> u, const Options &options, bool has_observers);
-    void
-    diagnose_domain_error();
-    void
-    lost_stretch(double value, double s, double t, double reach);
+    /// Why a run is interrupted.
+    enum class Request
+    {
+      none,
+      log_stretch, ///< change the formulation
+      mesh         ///< change the mesh by changes_
+    };
 
-    const Scene &scene_;
-    const Numerics numerics_;
-    const Discretization discretization_;
-    Assembler assembler_;
-    ChainMatrix jacobian_;
-    TimeStepper stepper_;
-    double setup_seconds_ = 0.;
+    void
+    build(std::unique_ptr<Discretization> discretization, Formulation formulation);
+    void
+    change();
+    bool
+    examine(const Step &step, std::span<const double> y);
+    bool
+    mesh_is_good(const Step &step, std::span<const double> y);
+    bool
+    compute_integrals(const Step &step, std::span<const double> y);
+    void
+    look_for_coarser_mesh(const Step &step, std::span<const double> y);
+    bool
+    end_inverts(double from, double to);
+    void
+    locate_inversion(const Step &step);
+    void
+    explain_failure();
+    void
+    inverted_inside(double value, double s, double t);
+    void
+    under_resolved(double value, double s, double t);
+    TimeOutcome
+    integrate(const std::vector<double> &frames,
+              const std::vector<std::unique_ptr<Observer>> &observers,
+              const std::function<bool()> &keep_going);
+    void
+    show(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
+    double
+    physical_time(const Step &step) const;
+    SimulationResult
+    in_physical_units() const;
+
+    const Scene &physical_scene_;
+    const Units units_;
+    const Scene scene_; ///< in natural units
+    const Numerics numerics_; ///< in natural units
+    TimeParameters time_; ///< in natural units
+    const MPI_Comm communicator_;
+
+    std::unique_ptr<Discretization> discretization_;
+    std::unique_ptr<Assembler> assembler_;
+    std::unique_ptr<TimeStepper> stepper_;
+    bool as_at_start_ = false; ///< mesh and formulation are those of the start
 
     // The state of one run().
+    struct Diagnosis
+    {
+      std::string status, reason, message;
+    };
     /// The last three extremes of one kind, newest last, to sharpen those between steps.
     using History = std::array<SimulationResult::Extreme, 3>;
     static void
@@ -106,18 +167,25 @@ namespace crawler
            History &history,
            SimulationResult::Extreme &extreme);
 
-    struct Diagnosis
-    {
-      std::string status, reason, message;
-    };
+    Options options_;
+    bool has_observers_ = false;
     SimulationResult result_;
     std::optional<Diagnosis> diagnosis_; ///< replaces what the time stepper says
+    Request request_ = Request::none;
+    std::vector<CellChange> changes_;
     RateQuadrature quadrature_;
     Resolution largest_{}; ///< over time, if looked at
     CellIntegrals integrals_;
     StretchRange stretch_;
     History min_history_, max_history_;
-    double previous_min_stretch_ = 1.;
-    std::vector<double> u_, v_;
+    std::vector<double> y_, v_;
+    // The last state that was accepted, to which a change of mesh or formulation may go back.
+    std::vector<double> accepted_;
+    double accepted_time_ = 0., next_step_ = 0.;
+    double accepted_min_stretch_ = 1.;
+    TimeOutcome before_; ///< counts of the parts of the run before the last change of mesh or formulation
+    const std::vector<double> *frames_ = nullptr; ///< in physical units
+    std::size_t next_frame_ = 0;
+    unsigned int mesh_number_ = 0;
   };
 } // namespace crawler

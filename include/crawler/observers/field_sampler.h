@@ -5,7 +5,7 @@
 
 namespace crawler
 {
-  /// The fields that are written, at a list of points.
+  /// The fields that are written, at a list of points, in the user's units.
   struct Fields
   {
     std::vector<double> position, displacement, stretch, velocity, active_stress, elastic_stress, friction_force;
@@ -21,11 +21,11 @@ namespace crawler
       double x;          ///< from 0 to 1 in the cell
     };
 
-    FieldSampler(const Scene &scene, const Discretization &discretization, std::vector<Point> points);
+    FieldSampler(const Assembler &assembler, const Units &units, std::vector<Point> points);
 
-    /// The fields for owned vectors @p u, @p v (collective).
+    /// The fields of the state @p y with the velocity @p v (collective).
     const Fields &
-    sample(double t, std::span<const double> u, std::span<const double> v);
+    sample(double t, std::span<const double> y, std::span<const double> v);
 
     /// Material coordinates of the points [length].
     const std::vector<double> &
@@ -35,11 +35,12 @@ namespace crawler
     }
 
   private:
-    const Scene &scene_;
-    const Discretization &discretization_;
+    const Assembler &assembler_;
+    const Units units_;
     const std::vector<Point> points_;
     std::vector<double> coordinates_;
-    std::vector<double> values_, derivatives_; ///< [point][node] shape functions
+    std::vector<double> values_;   ///< [point][node] shape functions
+    const StretchSampler stretch_; ///< at the x of the points
     std::unique_ptr<ActiveStressAtPoints> stress_;
     std::vector<double> u_local_, v_local_;
     Fields fields_;

@@ -14,7 +14,7 @@ namespace crawler
   class KymographWriter : public Observer
   {
   public:
-    KymographWriter(const Scene &scene, const Discretization &discretization, const std::filesystem::path &folder);
+    KymographWriter(double end_time, const std::filesystem::path &folder);
 
     void
     observe(const Snapshot &snapshot) override;
@@ -22,10 +22,10 @@ namespace crawler
     end() override;
 
   private:
-    const Scene &scene_;
-    const Discretization &discretization_;
+    const double end_time_;
     const std::filesystem::path folder_;
-    FieldSampler sampler_;
+    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
+    unsigned int mesh_number_ = 0;
     std::vector<double> times_;
     std::vector<double> rows_; ///< [time][field][point], on rank 0
   };

@@ -15,6 +15,11 @@ namespace crawler
     double exchanged      = 0.; ///< int int |m zeta_st| ds dt [energy]
     double end_work       = 0.; ///< int [m v] from s = 0 to L dt [energy]
     double elastic_energy = 0.; ///< of the present state [energy]
+    double transfer_loss  = 0.; ///< elastic energy lost by changes of mesh and formulation [energy]
+
+    /// All energies times @p unit.
+    Ledger
+    scaled(double unit) const;
 
     /// int int m_s zeta_t ds dt, the energy of the paper [energy].
     double
@@ -22,7 +27,7 @@ namespace crawler
     {
       return stress_power + end_work;
     }
-    /// |W - Q - (elastic energy)|/(exchanged work): 0 for the exact solution, which starts at rest [1].
+    /// |W - Q - (elastic energy) - (transfer loss)|/(exchanged work): 0 for the exact solution, which starts at rest [1].
     double
     residual() const;
   };

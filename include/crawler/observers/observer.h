@@ -7,13 +7,18 @@
 
 namespace crawler
 {
-  /// An accepted state of a run, read-only. Vectors are the owned values of this rank.
+  /// An accepted state of a run, read-only, in the user's units except for what the equation is computed in: assembler,
+  /// y, v and computed_time, whose units are given.
   struct Snapshot
   {
     const Step &step;
     bool is_frame;                  ///< one of the snapshots that were asked for, the initial state included
-    std::span<const double> u;      ///< displacement [length]
-    std::span<const double> v;      ///< velocity [length/time]; without a ledger of snapshots only
+    const Assembler &assembler;     ///< mesh and formulation; may be another one in the next snapshot ...
+    unsigned int mesh_number;       ///< ... and then this number is another one
+    const Units &units;
+    double computed_time;
+    std::span<const double> y;      ///< the unknowns (assembler.h), owned values of this rank
+    std::span<const double> v;      ///< velocity at the nodes; without a ledger of snapshots only
     const CellIntegrals &integrals; ///< those with v are as old as v
     const StretchRange &stretch;
     const Ledger &ledger;

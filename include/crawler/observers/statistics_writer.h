@@ -13,10 +13,7 @@ namespace crawler
   {
   public:
     /// Throws FileError.
-    StatisticsWriter(const Scene &scene,
-                     const Discretization &discretization,
-                     const std::filesystem::path &folder,
-                     bool with_ledger);
+    StatisticsWriter(double length, bool is_first_rank, const std::filesystem::path &folder, bool with_ledger);
 
     void
     observe(const Snapshot &snapshot) override;
@@ -24,7 +21,7 @@ namespace crawler
     end() override;
 
   private:
-    const Scene &scene_;
+    const double length_;
     const bool writes_, with_ledger_;
     const std::filesystem::path path_;
     std::ofstream out_;

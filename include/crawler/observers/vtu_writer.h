@@ -18,15 +18,15 @@ namespace crawler
   class VtuWriter : public Observer
   {
   public:
-    VtuWriter(const Scene &scene, const Discretization &discretization, const std::filesystem::path &folder);
+    explicit VtuWriter(const std::filesystem::path &folder);
 
     void
     observe(const Snapshot &snapshot) override;
 
   private:
-    const Discretization &discretization_;
     const std::filesystem::path folder_;
-    FieldSampler sampler_;
+    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
+    unsigned int mesh_number_ = 0;
     std::vector<std::pair<double, std::string>> record_;
   };
 } // namespace crawler

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <memory>
 #include <span>
 
 namespace crawler
@@ -18,9 +19,14 @@ namespace crawler
     virtual void
     values(std::span<const double> w, std::span<double> g) const = 0;
 
-    /// g and its derivative dg/dw at all stretches @p w (spans of one length).
+    /// g and its derivative with respect to the logarithm of the stretch, w dg/dw, at all stretches @p w (spans of one
+    /// length).
     virtual void
-    values_and_derivatives(std::span<const double> w, std::span<double> g, std::span<double> dg) const = 0;
+    values_and_log_derivatives(std::span<const double> w, std::span<double> g, std::span<double> w_dg) const = 0;
+
+    /// The same law with another coefficient: g times @p factor.
+    virtual std::unique_ptr<FrictionLaw>
+    scaled(double factor) const = 0;
   };
 
   /// The p-model of Santhosh and Serra, Phys. Rev. E 106, 024610 (2022): g(w) = gamma w^a, a = 1 - p.
@@ -33,7 +39,9 @@ namespace crawler
     void
     values(std::span<const double> w, std::span<double> g) const override;
     void
-    values_and_derivatives(std::span<const double> w, std::span<double> g, std::span<double> dg) const override;
+    values_and_log_derivatives(std::span<const double> w, std::span<double> g, std::span<double> w_dg) const override;
+    std::unique_ptr<FrictionLaw>
+    scaled(double factor) const override;
 
   private:
     const double gamma_;

@@ -4,6 +4,7 @@
 #include <crawler/scene/active_stress.h>
 #include <crawler/scene/body.h>
 #include <crawler/scene/friction_law.h>
+#include <crawler/scene/units.h>
 
 #include <memory>
 
@@ -17,4 +18,16 @@ namespace crawler
     std::unique_ptr<const ActiveStress> active_stress;
     double end_time; ///< T [time]
   };
+
+  /**
+   * The units in which L = T = gamma = 1: length L, time T, force gamma L^2/T. What is left of the body is one number,
+   * its stiffness k T/(gamma L^2) (doc/theory.md, "Five numbers"). Throws InputError if these are beyond what double
+   * precision can carry.
+   */
+  Units
+  natural_units(const Scene &scene);
+
+  /// The same problem in other units. It refers to @p scene, which must outlive it.
+  Scene
+  in_units(const Scene &scene, const Units &units);
 } // namespace crawler

@@ -34,7 +34,7 @@ namespace crawler
     std::string message;
     bool domain_error  = false; ///< failed because implicit_function refused every state tried
     double time        = 0.;    ///< of the last accepted state
-    double step_size   = 0.;    ///< that was tried last
+    double step_size   = 0.;    ///< that was tried last; if the monitor stopped: that would come next
     unsigned int steps = 0, rejected_steps = 0;
     unsigned long newton_iterations = 0, linear_iterations = 0;
   };
@@ -44,13 +44,15 @@ namespace crawler
    * no mesh. The callbacks have the names of dealii::PETScWrappers::TimeStepper of deal.II 9.6, which can replace this
    * class. Vectors are the owned values of each rank. An exception thrown by a callback ends solve() with it.
    *
-   * Errors are controlled absolutely, with the root mean square of the estimated error of a step over all unknowns, so
-   * y should be a displacement from rest. Newton's method stops when the estimated remaining error is below 1% of that.
+   * Errors are controlled absolutely, with the root mean square of the estimated error of a step over all unknowns,
+   * each divided by its weight, so y should be a displacement from rest. Newton's method stops when the estimated
+   * remaining error is below 1% of that.
    */
   class TimeStepper
   {
   public:
-    TimeStepper(MPI_Comm communicator, std::size_t n_owned, const TimeParameters &parameters);
+    /// @p weights: for each owned unknown the error that counts as much as an error of 1 in the displacement.
+    TimeStepper(MPI_Comm communicator, const std::vector<double> &weights, const TimeParameters &parameters);
     ~TimeStepper();
     TimeStepper(const TimeStepper &) = delete;
 
@@ -68,17 +70,23 @@ namespace crawler
     std::function<bool(const Step &step, ConstVector y)> monitor;
 
     /**
-     * Integrates from time 0 to parameters.end_time. @p y is the initial state on entry and the last accepted state on
-     * return. Steps end exactly on @p frames (ascending, within (0, end_time]) and on the end time. The same object can
-     * solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p initial_step [time] replace
-     * the parameters' automatic values. No adaptive step is longer than @p largest_step.
+     * Integrates from @p start_time to parameters.end_time. @p y is the first state on entry and the last accepted state
+     * on return. Steps end exactly on @p frames (ascending, within (start_time, end_time]) and on the end time. The same
+     * object can solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p initial_step [time]
+     * replace the parameters' automatic values. No adaptive step is longer than @p largest_step.
      */
     TimeOutcome
     solve(std::vector<double> &y,
           const std::vector<double> &frames,
           double tolerance,
           double initial_step,
-          double largest_step = std::numeric_limits<double>::infinity());
+          double largest_step = std::numeric_limits<double>::infinity(),
+          double start_time   = 0.);
+
+    /// Within the monitor: the state at a time of the step that has just been accepted, by the integrator's own
+    /// interpolation.
+    void
+    interpolate(double time, Vector y);
 
   private:
     struct Implementation;

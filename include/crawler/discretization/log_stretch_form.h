@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/discretization/assembler.h>
+
+namespace crawler
+{
+  /**
+   * The log-stretch form (doc/numerics.md, "Log-stretch form"): the displacement u at the nodes and log w at q Gauss
+   * points of each cell, with
+   *
+   *   (log w)' = v_s/w  at those points,   int g(w) v phi ds + int (k (w - 1) + m) phi_s ds = 0,   v = u',
+   *
+   * so the stretch is positive whatever happens, and keeps its digits however small it is. Friction is integrated at
+   * the nodes; for degree 1 and a <= -1 no cell can be emptied (doc/theory.md, "When a body can invert").
+   */
+  class LogStretchForm : public Assembler
+  {
+  public:
+    LogStretchForm(const Scene &scene, const Discretization &discretization);
+
+    Formulation
+    formulation() const override
+    {
+      return Formulation::log_stretch;
+    }
+    std::size_t
+    n_owned() const override
+    {
+      return discretization_.n_owned() + static_cast<std::size_t>(discretization_.n_local_cells()) * q_;
+    }
+    std::size_t
+    n_unknowns() const override
+    {
+      return discretization_.n_unknowns() + static_cast<std::size_t>(discretization_.n_cells()) * q_;
+    }
+    bool
+    residual(double t, ConstVector y, ConstVector y_dot, Vector F) override;
+    bool
+    setup_jacobian(double t, ConstVector y, ConstVector y_dot, double sigma) override;
+    void
+    solve_with_jacobian(ConstVector b, Vector x) override;
+    void
+    jacobian_vmult(ConstVector x, Vector y) override;
+    bool
+    velocity(double t, ConstVector y, Vector v) override;
+    CellIntegrals
+    integrals(double t, ConstVector y, ConstVector v) override;
+
+  protected:
+    const std::vector<double> &
+    friction_weights() const override;
+    const std::vector<double> &
+    friction_integration() const override;
+    void
+    friction(double t, ConstVector y, ConstVector v, std::vector<double> &g_v) override;
+
+  private:
+    LogCellInput
+    log_input(double t, ConstVector y, ConstVector y_dot);
+
+    const unsigned int q_;
+    const LogCellKernels &kernels_;
+    ChainMatrix jacobian_;
+    std::vector<double> factors_;              ///< [cell][log_factors(q)]
+    std::vector<double> node_local_, mass_;    ///< local and owned arrays over the nodes
+    std::vector<double> u_local_buffer_;
+  };
+} // namespace crawler

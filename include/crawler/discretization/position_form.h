@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/discretization/assembler.h>
+
+namespace crawler
+{
+  /// The position form: M(u) u' + K u + m = 0 (crawler_equation.h; doc/numerics.md, "The semi-discrete system").
+  class PositionForm : public Assembler
+  {
+  public:
+    PositionForm(const Scene &scene, const Discretization &discretization);
+
+    Formulation
+    formulation() const override
+    {
+      return Formulation::position;
+    }
+    std::size_t
+    n_owned() const override
+    {
+      return discretization_.n_owned();
+    }
+    std::size_t
+    n_unknowns() const override
+    {
+      return discretization_.n_unknowns();
+    }
+    bool
+    residual(double t, ConstVector u, ConstVector v, Vector F) override;
+    bool
+    setup_jacobian(double t, ConstVector u, ConstVector v, double sigma) override;
+    void
+    solve_with_jacobian(ConstVector b, Vector x) override;
+    void
+    jacobian_vmult(ConstVector x, Vector y) override;
+    bool
+    velocity(double t, ConstVector u, Vector v) override;
+    CellIntegrals
+    integrals(double t, ConstVector u, ConstVector v) override;
+
+    /// A = dF/du + sigma dF/dv.
+    void
+    jacobian(double t, ConstVector u, ConstVector v, double sigma, ChainMatrix &A);
+
+  protected:
+    const std::vector<double> &
+    friction_weights() const override;
+    const std::vector<double> &
+    friction_integration() const override;
+    void
+    friction(double t, ConstVector u, ConstVector v, std::vector<double> &g_v) override;
+
+  private:
+    const CellKernels &kernels_;
+    ChainMatrix jacobian_;
+    std::unique_ptr<ChainMatrix> mass_; ///< built when a velocity is first asked for
+  };
+} // namespace crawler

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/discretization/cell_kernels.h>
+#include <crawler/model/crawler_equation.h>
+#include <crawler/scene/friction_law.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace crawler
+{
+  namespace
+  {
+    template <int q>
+    struct Kernels
+    {
+      static constexpr int n = q + 1;
+      using Nodes            = std::array<double, n>;
+      using Points           = std::array<double, q>;
+
+      // What the Jacobian keeps of a cell. With x the change of (log w)_p and u that of the nodes:
+      //   L row:  diagonal_p x_p - row_p sum_j D_pj u_j
+      //   F row:  sum_p ( column_node_i E_ip + column_point_p D_pi ) x_p + mass_i u_i
+      struct Factors
+      {
+        double diagonal[q], row[q], column_point[q], column_node[n], mass[n];
+      };
+      static_assert(sizeof(Factors) == log_factors(q) * sizeof(double));
+
+      /// The stretch at the nodes: the polynomial through log w, continued to the ends of the cell.
+      static void
+      stretch_at_nodes(const double *table, const double *log_w, Nodes &w)
+      {
+        for (int i = 0; i < n; ++i)
+        {
+          double sum = 0.;
+          for (int p = 0; p < q; ++p)
+            sum += table[i * q + p] * log_w[p];
+          w[i] = std::exp(sum);
+        }
+      }
+
+      /// v_s at the stretch points.
+      static void
+      rates(const double *D, const double *v, const double inverse_h, Points &v_s)
+      {
+        for (int p = 0; p < q; ++p)
+        {
+          double sum = 0.;
+          for (int i = 0; i < n; ++i)
+            sum += D[p * n + i] * v[i];
+          v_s[p] = inverse_h * sum;
+        }
+      }
+
+      static void
+      residual(const LogCellInput &in, double *F, double *L)
+      {
+        const CellInput &cells       = in.cells;
+        const ReferenceElement &e    = *cells.element;
+        const double *D              = e.stretch_derivatives.data();
+        const bool with_friction     = in.log_w_dot != nullptr;
+        for (unsigned int c = 0; c < cells.n_cells; ++c)
+        {
+          const double h      = cells.cell_size[c];
+          const double *log_w = in.log_w + c * q, *m = cells.m + c * q;
+          double *f = F + c * q;
+          if (with_friction)
+          {
+            const double *v = cells.v + c * q;
+            Nodes w, g;
+            stretch_at_nodes(e.stretch_to_nodes.data(), log_w, w);
+            cells.friction->values(w, g);
+            for (int i = 0; i < n; ++i)
+              f[i] += h * e.node_weights[i] * equation::friction_force(g[i], v[i]);
+            Points v_s;
+            rates(D, v, 1. / h, v_s);
+            for (int p = 0; p < q; ++p)
+              L[c * q + p] = in.log_w_dot[c * q + p] - v_s[p] * std::exp(-log_w[p]);
+          }
+          for (int p = 0; p < q; ++p)
+          {
+            const double force = e.stretch_weights[p] * equation::body_force(std::expm1(log_w[p]), m[p], cells.k);
+            for (int i = 0; i < n; ++i)
+              f[i] += force * D[p * n + i];
+          }
+        }
+      }
+
+      static void
+      mass(const LogCellInput &in, double *M)
+      {
+        const ReferenceElement &e = *in.cells.element;
+        for (unsigned int c = 0; c < in.cells.n_cells; ++c)
+        {
+          Nodes w, g;
+          stretch_at_nodes(e.stretch_to_nodes.data(), in.log_w + c * q, w);
+          in.cells.friction->values(w, g);
+          for (int i = 0; i < n; ++i)
+            M[c * q + i] += in.cells.cell_size[c] * e.node_weights[i] * g[i];
+        }
+      }
+
+      static bool
+      jacobian(const LogCellInput &in, const double sigma, double *blocks, double *factors)
+      {
+        const CellInput &cells    = in.cells;
+        const ReferenceElement &e = *cells.element;
+        const double *D = e.stretch_derivatives.data(), *E = e.stretch_to_nodes.data();
+        bool ok = true;
+        for (unsigned int c = 0; c < cells.n_cells; ++c)
+        {
+          const double h      = cells.cell_size[c];
+          const double *log_w = in.log_w + c * q, *v = cells.v + c * q;
+          Nodes w, g, w_dg;
+          stretch_at_nodes(E, log_w, w);
+          cells.friction->values_and_log_derivatives(w, g, w_dg);
+          Points v_s;
+          rates(D, v, 1. / h, v_s);
+          Factors &f = reinterpret_cast<Factors *>(factors)[c];
+          for (int i = 0; i < n; ++i)
+          {
+            f.mass[i]        = sigma * h * e.node_weights[i] * g[i];
+            f.column_node[i] = h * e.node_weights[i] * w_dg[i] * v[i];
+          }
+          for (int p = 0; p < q; ++p)
+          {
+            const double stretch = std::exp(log_w[p]);
+            f.diagonal[p]        = sigma + v_s[p] / stretch;
+            f.row[p]             = sigma / (h * stretch);
+            f.column_point[p]    = e.stretch_weights[p] * cells.k * stretch;
+            ok                   = ok && f.diagonal[p] != 0. && std::isfinite(f.diagonal[p]);
+          }
+          double *J = blocks + c * n * n;
+          for (int i = 0; i < n; ++i)
+          {
+            double column[q];
+            for (int p = 0; p < q; ++p)
+              column[p] = (f.column_node[i] * E[i * q + p] + f.column_point[p] * D[p * n + i]) * f.row[p] / f.diagonal[p];
+            for (int j = 0; j < n; ++j)
+            {
+              double sum = i == j ? f.mass[i] : 0.;
+              for (int p = 0; p < q; ++p)
+                sum += column[p] * D[p * n + j];
+              J[i * n + j] = sum;
+            }
+          }
+        }
+        return ok;
+      }
+
+      static void
+      reduce(const CellInput &cells, const double *factors, const double *l, double *F)
+      {
+        const double *D = cells.element->stretch_derivatives.data(), *E = cells.element->stretch_to_nodes.data();
+        for (unsigned int c = 0; c < cells.n_cells; ++c)
+        {
+          const Factors &f = reinterpret_cast<const Factors *>(factors)[c];
+          for (int p = 0; p < q; ++p)
+          {
+            const double x = l[c * q + p] / f.diagonal[p];
+            for (int i = 0; i < n; ++i)
+              F[c * q + i] -= (f.column_node[i] * E[i * q + p] + f.column_point[p] * D[p * n + i]) * x;
+          }
+        }
+      }
+
+      static void
+      recover(const CellInput &cells, const double *factors, const double *u, double *l)
+      {
+        const double *D = cells.element->stretch_derivatives.data();
+        for (unsigned int c = 0; c < cells.n_cells; ++c)
+        {
+          const Factors &f = reinterpret_cast<const Factors *>(factors)[c];
+          Points u_s;
+          rates(D, u + c * q, 1., u_s);
+          for (int p = 0; p < q; ++p)
+            l[c * q + p] = (l[c * q + p] + f.row[p] * u_s[p]) / f.diagonal[p];
+        }
+      }
+
+      static void
+      multiply(const CellInput &cells, const double *factors, const double *u, const double *x, double *F, double *l)
+      {
+        const double *D = cells.element->stretch_derivatives.data(), *E = cells.element->stretch_to_nodes.data();
+        for (unsigned int c = 0; c < cells.n_cells; ++c)
+        {
+          const Factors &f = reinterpret_cast<const Factors *>(factors)[c];
+          Points u_s;
+          rates(D, u + c * q, 1., u_s);
+          for (int i = 0; i < n; ++i)
+            F[c * q + i] += f.mass[i] * u[c * q + i];
+          for (int p = 0; p < q; ++p)
+          {
+            l[c * q + p] += f.diagonal[p] * x[c * q + p] - f.row[p] * u_s[p];
+            for (int i = 0; i < n; ++i)
+              F[c * q + i] += (f.column_node[i] * E[i * q + p] + f.column_point[p] * D[p * n + i]) * x[c * q + p];
+          }
+        }
+      }
+
+      static void
+      integrals(const LogCellInput &in, CellIntegrals &sum)
+      {
+        const CellInput &cells    = in.cells;
+        const ReferenceElement &e = *cells.element;
+        for (unsigned int c = 0; c < cells.n_cells; ++c)
+        {
+          const double h  = cells.cell_size[c];
+          const double *u = cells.u + c * q, *v = cells.v + c * q;
+          Nodes w, g;
+          stretch_at_nodes(e.stretch_to_nodes.data(), in.log_w + c * q, w);
+          cells.friction->values(w, g);
+          for (int i = 0; i < n; ++i)
+          {
+            const double ds = h * e.node_weights[i], friction = equation::friction_force(g[i], v[i]);
+            sum.displacement += ds * u[i];
+            sum.velocity += ds * v[i];
+            sum.dissipation += ds * equation::dissipation(g[i], v[i]);
+            sum.net_friction += ds * friction;
+            sum.abs_friction += ds * std::abs(friction);
+          }
+          Points v_s;
+          rates(e.stretch_derivatives.data(), v, 1. / h, v_s);
+          for (int p = 0; p < q; ++p)
+          {
+            const double ds = h * e.stretch_weights[p], power = equation::stress_power(cells.m[c * q + p], v_s[p]);
+            sum.elastic_energy += ds * equation::elastic_energy(std::expm1(in.log_w[c * q + p]), cells.k);
+            sum.stress_power += ds * power;
+            sum.positive_power += ds * std::max(power, 0.);
+            sum.absolute_power += ds * std::abs(power);
+          }
+        }
+      }
+
+      static constexpr LogCellKernels table = {residual, mass, jacobian, reduce, recover, multiply, integrals};
+    };
+  } // namespace
+
+  const LogCellKernels &
+  log_cell_kernels(const unsigned int degree)
+  {
+    switch (degree)
+    {
+      case 1:
+        return Kernels<1>::table;
+      case 2:
+        return Kernels<2>::table;
+      case 3:
+        return Kernels<3>::table;
+      case 4:
+        return Kernels<4>::table;
+      case 5:
+        return Kernels<5>::table;
+      case 6:
+        return Kernels<6>::table;
+      case 7:
+        return Kernels<7>::table;
+      case 8:
+        return Kernels<8>::table;
+    }
+    throw std::logic_error("degrees 1 to 8 are compiled");
+  }
+} // namespace crawler
