@@ -19,9 +19,9 @@ namespace crawler
       using Nodes            = std::array<double, n>;
       using Points           = std::array<double, q>;
 
-      // What the Jacobian keeps of a cell. With x the change of (log w)_p and u that of the nodes:
-      //   L row:  diagonal_p x_p - row_p sum_j D_pj u_j
-      //   F row:  sum_p ( column_node_i E_ip + column_point_p D_pi ) x_p + mass_i u_i
+      // What the Jacobian keeps of a cell. With x the change of (log w)_p and v that of the nodes:
+      //   L row:  diagonal_p x_p - row_p sum_j D_pj v_j
+      //   F row:  sum_p ( column_node_i E_ip + column_point_p D_pi ) x_p + mass_i v_i
       struct Factors
       {
         double diagonal[q], row[q], column_point[q], column_node[n], mass[n];
@@ -121,14 +121,14 @@ namespace crawler
           Factors &f = reinterpret_cast<Factors *>(factors)[c];
           for (int i = 0; i < n; ++i)
           {
-            f.mass[i]        = sigma * h * e.node_weights[i] * g[i];
+            f.mass[i]        = h * e.node_weights[i] * g[i];
             f.column_node[i] = h * e.node_weights[i] * w_dg[i] * v[i];
           }
           for (int p = 0; p < q; ++p)
           {
             const double stretch = std::exp(log_w[p]);
             f.diagonal[p]        = sigma + v_s[p] / stretch;
-            f.row[p]             = sigma / (h * stretch);
+            f.row[p]             = 1. / (h * stretch);
             f.column_point[p]    = e.stretch_weights[p] * cells.k * stretch;
             ok                   = ok && f.diagonal[p] != 0. && std::isfinite(f.diagonal[p]);
           }
@@ -167,33 +167,33 @@ namespace crawler
       }
 
       static void
-      recover(const CellInput &cells, const double *factors, const double *u, double *l)
+      recover(const CellInput &cells, const double *factors, const double *v, double *l)
       {
         const double *D = cells.element->stretch_derivatives.data();
         for (unsigned int c = 0; c < cells.n_cells; ++c)
         {
           const Factors &f = reinterpret_cast<const Factors *>(factors)[c];
-          Points u_s;
-          rates(D, u + c * q, 1., u_s);
+          Points v_s;
+          rates(D, v + c * q, 1., v_s);
           for (int p = 0; p < q; ++p)
-            l[c * q + p] = (l[c * q + p] + f.row[p] * u_s[p]) / f.diagonal[p];
+            l[c * q + p] = (l[c * q + p] + f.row[p] * v_s[p]) / f.diagonal[p];
         }
       }
 
       static void
-      multiply(const CellInput &cells, const double *factors, const double *u, const double *x, double *F, double *l)
+      multiply(const CellInput &cells, const double *factors, const double *v, const double *x, double *F, double *l)
       {
         const double *D = cells.element->stretch_derivatives.data(), *E = cells.element->stretch_to_nodes.data();
         for (unsigned int c = 0; c < cells.n_cells; ++c)
         {
           const Factors &f = reinterpret_cast<const Factors *>(factors)[c];
-          Points u_s;
-          rates(D, u + c * q, 1., u_s);
+          Points v_s;
+          rates(D, v + c * q, 1., v_s);
           for (int i = 0; i < n; ++i)
-            F[c * q + i] += f.mass[i] * u[c * q + i];
+            F[c * q + i] += f.mass[i] * v[c * q + i];
           for (int p = 0; p < q; ++p)
           {
-            l[c * q + p] += f.diagonal[p] * x[c * q + p] - f.row[p] * u_s[p];
+            l[c * q + p] += f.diagonal[p] * x[c * q + p] - f.row[p] * v_s[p];
             for (int i = 0; i < n; ++i)
               F[c * q + i] += (f.column_node[i] * E[i * q + p] + f.column_point[p] * D[p * n + i]) * x[c * q + p];
           }

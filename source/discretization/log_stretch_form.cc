@@ -15,31 +15,51 @@ namespace crawler
   {
   }
 
-  LogCellInput
-  LogStretchForm::log_input(const double t, const ConstVector y, const ConstVector y_dot)
+  std::vector<double>
+  LogStretchForm::weights() const
   {
-    LogCellInput in;
-    in.cells     = input(t, displacement(y), y_dot.empty() ? y_dot : displacement(y_dot));
-    in.log_w     = log_stretch(y).data();
-    in.log_w_dot = y_dot.size() == n_owned() ? log_stretch(y_dot).data() : nullptr;
-    return in;
+    // The error of log w that counts as much as an error of 1 in the displacement; the velocity follows from the rest.
+    constexpr double log_weight = 10., velocity_weight = 1e10;
+    const std::size_t n = discretization_.n_owned();
+    std::vector<double> result(n_owned(), log_weight);
+    std::fill_n(result.begin(), n, 1.);
+    std::fill_n(result.rbegin(), n, velocity_weight);
+    return result;
+  }
+
+  void
+  LogStretchForm::make_consistent(const double t, const Vector y)
+  {
+    velocity(t, y, velocities(y));
+  }
+
+  LogCellInput
+  LogStretchForm::log_input(const double t, const ConstVector y, const ConstVector v)
+  {
+    return {input(t, displacement(y), v), log_stretch(y).data(), nullptr};
   }
 
   bool
   LogStretchForm::residual(const double t, const ConstVector y, const ConstVector y_dot, const Vector F)
   {
-    const LogCellInput in = log_input(t, y, y_dot);
+    const std::size_t n = discretization_.n_owned();
+    LogCellInput in     = log_input(t, y, velocities(y));
+    in.log_w_dot        = log_stretch(y_dot).data();
     node_local_.assign(discretization_.n_local(), 0.);
-    kernels_.residual(in, node_local_.data(), F.data() + discretization_.n_owned());
-    discretization_.add_to_owned(node_local_, F.first(discretization_.n_owned()));
+    kernels_.residual(in, node_local_.data(), F.data() + n);
+    discretization_.add_to_owned(node_local_, velocities(F));
+    const auto v = velocities(y);
+    for (std::size_t i = 0; i < n; ++i)
+      F[i] = y_dot[i] - v[i];
     return true;
   }
 
   bool
-  LogStretchForm::setup_jacobian(const double t, const ConstVector y, const ConstVector y_dot, const double sigma)
+  LogStretchForm::setup_jacobian(const double t, const ConstVector y, const ConstVector, const double sigma)
   {
-    const bool ok =
-      kernels_.jacobian(log_input(t, y, y_dot), sigma, jacobian_.blocks().data(), factors_.data());
+    sigma_        = sigma;
+    const bool ok = kernels_.jacobian(
+      log_input(t, y, velocities(y)), sigma, jacobian_.blocks().data(), factors_.data());
     int all_ok = jacobian_.factorize() && ok;
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE, &all_ok, 1, MPI_INT, MPI_MIN, discretization_.communicator());
@@ -51,32 +71,37 @@ namespace crawler
   {
     const CellInput cells = geometry();
     const std::size_t n   = discretization_.n_owned();
-    node_local_.assign(discretization_.n_local(), 0.);
-    kernels_.reduce(cells, factors_.data(), b.data() + n, node_local_.data());
-    const Vector u = x.first(n);
-    mass_.resize(n);
-    discretization_.add_to_owned(node_local_, mass_);
-    for (std::size_t i = 0; i < n; ++i)
-      u[i] = b[i] + mass_[i];
-    jacobian_.solve(u, u);
     if (x.data() != b.data())
-      std::copy(b.begin() + static_cast<std::ptrdiff_t>(n), b.end(), x.begin() + static_cast<std::ptrdiff_t>(n));
-    kernels_.recover(cells, factors_.data(), discretization_.to_local(u, u_local_buffer_).data(), x.data() + n);
+      std::copy(b.begin(), b.end(), x.begin());
+    const Vector v = velocities(x);
+    node_local_.assign(discretization_.n_local(), 0.);
+    kernels_.reduce(cells, factors_.data(), x.data() + n, node_local_.data());
+    nodes_.resize(n);
+    discretization_.add_to_owned(node_local_, nodes_);
+    for (std::size_t i = 0; i < n; ++i)
+      v[i] += nodes_[i];
+    jacobian_.solve(v, v);
+    kernels_.recover(cells, factors_.data(), discretization_.to_local(v, local_buffer_).data(), x.data() + n);
+    for (std::size_t i = 0; i < n; ++i)
+      x[i] = (x[i] + v[i]) / sigma_;
   }
 
   void
   LogStretchForm::jacobian_vmult(const ConstVector x, const Vector y)
   {
     const std::size_t n = discretization_.n_owned();
+    const auto v        = velocities(x);
     node_local_.assign(discretization_.n_local(), 0.);
     std::fill(y.begin(), y.end(), 0.);
     kernels_.multiply(geometry(),
                       factors_.data(),
-                      discretization_.to_local(x.first(n), u_local_buffer_).data(),
+                      discretization_.to_local(v, local_buffer_).data(),
                       x.data() + n,
                       node_local_.data(),
                       y.data() + n);
-    discretization_.add_to_owned(node_local_, y.first(n));
+    discretization_.add_to_owned(node_local_, velocities(y));
+    for (std::size_t i = 0; i < n; ++i)
+      y[i] = sigma_ * x[i] - v[i];
   }
 
   /// The friction matrix is diagonal here.
@@ -90,12 +115,12 @@ namespace crawler
     discretization_.add_to_owned(node_local_, v);
     node_local_.assign(discretization_.n_local(), 0.);
     kernels_.mass(in, node_local_.data());
-    mass_.resize(n);
-    discretization_.add_to_owned(node_local_, mass_);
+    nodes_.resize(n);
+    discretization_.add_to_owned(node_local_, nodes_);
     int ok = 1;
     for (std::size_t i = 0; i < n; ++i)
     {
-      v[i] /= -mass_[i];
+      v[i] /= -nodes_[i];
       ok = ok != 0 && std::isfinite(v[i]);
     }
     if (discretization_.n_ranks() > 1)

@@ -193,6 +193,7 @@ namespace crawler
       const auto first_log = log_w.begin() + first_cell * cell_q;
       result.insert(result.end(), first_log, first_log + static_cast<std::ptrdiff_t>(d.n_local_cells()) * cell_q);
     }
+    result.resize(to.n_owned(), 0.);
     return result;
   }
 } // namespace crawler

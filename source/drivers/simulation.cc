@@ -19,8 +19,6 @@ namespace crawler
     constexpr double lost_in_position = 1e-12;
     /// `automatic` changes to the log-stretch form when the stretch falls below this.
     constexpr double small_stretch = 0.1;
-    /// The error of log w that counts as much as an error of 1 in the displacement; see doc/numerics.md.
-    constexpr double log_weight = 10.;
 
     double
     now()
@@ -94,9 +92,7 @@ namespace crawler
     assembler_.reset();
     discretization_ = std::move(discretization);
     assembler_      = create_assembler(formulation, scene_, *discretization_);
-    std::vector<double> weights(assembler_->n_owned(), 1.);
-    std::fill(weights.begin() + static_cast<std::ptrdiff_t>(discretization_->n_owned()), weights.end(), log_weight);
-    stepper_ = std::make_unique<TimeStepper>(communicator_, weights, time_);
+    stepper_        = std::make_unique<TimeStepper>(communicator_, assembler_->weights(), time_);
     y_.resize(assembler_->n_owned());
     v_.resize(discretization_->n_owned());
     ++mesh_number_;
@@ -148,6 +144,7 @@ namespace crawler
     if (numerics_.formulation == FormulationChoice::log_stretch)
       result_.log_stretch_since = 0.;
     std::fill(y_.begin(), y_.end(), 0.);
+    assembler_->make_consistent(0., y_);
     accepted_             = y_;
     accepted_time_        = 0.;
     accepted_min_stretch_ = 1.;
@@ -250,6 +247,7 @@ namespace crawler
     build(std::move(mesh), formulation);
     const MeshTransfer transfer(discretization_->element());
     y_ = transfer.transfer(*old_assembler, accepted_, *assembler_);
+    assembler_->make_consistent(accepted_time_, y_);
     if (options_.ledger)
     {
       const std::vector<double> old_v(old_discretization->n_owned(), 0.), new_v(v_.size(), 0.);

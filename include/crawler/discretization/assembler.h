@@ -43,7 +43,8 @@ namespace crawler
 
   /**
    * The semi-discrete crawler F(t, y, y') = 0 in one of the formulations. The unknowns y of a rank are its nodes'
-   * displacements u [length], and after those in the log-stretch form log w at the stretch points of its cells [1].
+   * displacements u [length], and after those in the log-stretch form log w at the stretch points of its cells [1] and
+   * the velocities v of its nodes [length/time].
    * Vectors are the owned values of each rank; all functions are collective.
    */
   class Assembler
@@ -63,6 +64,19 @@ namespace crawler
     n_owned() const = 0;
     virtual std::size_t
     n_unknowns() const = 0;
+
+    /// For each owned unknown the error that counts as much as an error of 1 in the displacement.
+    virtual std::vector<double>
+    weights() const
+    {
+      return std::vector<double>(n_owned(), 1.);
+    }
+
+    /// Sets the unknowns that follow from the others at once.
+    virtual void
+    make_consistent(double, Vector)
+    {
+    }
 
     /// F(t, y, y'). Returns false (on all ranks) if the stretch is not positive at a quadrature point; bad_stretch()
     /// then tells where.
@@ -95,7 +109,10 @@ namespace crawler
     ConstVector
     log_stretch(const ConstVector y) const
     {
-      return y.subspan(discretization_.n_owned());
+      return formulation() == Formulation::position ?
+               ConstVector() :
+               y.subspan(discretization_.n_owned(),
+                         static_cast<std::size_t>(discretization_.n_local_cells()) * discretization_.element().degree);
     }
 
     /// The extreme stretches of the whole body, the same on all ranks. A stretch that is not a number counts as the

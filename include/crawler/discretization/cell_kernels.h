@@ -87,10 +87,10 @@ namespace crawler
     bool (*jacobian)(const LogCellInput &, double sigma, double *blocks, double *factors);
     /// From a right-hand side (f, l) to that of the chain of blocks: added to @p f.
     void (*reduce)(const CellInput &, const double *factors, const double *l, double *f);
-    /// log w [cell][q] from the solution @p u at the nodes and the right-hand side @p l (in place).
-    void (*recover)(const CellInput &, const double *factors, const double *u, double *l);
-    /// (f, l) += J (u, log w) with the factors of jacobian(); the node part without the elimination is in `factors`.
-    void (*multiply)(const CellInput &, const double *factors, const double *u, const double *x, double *f, double *l);
+    /// log w [cell][q] from the velocities @p v at the nodes and the right-hand side @p l (in place).
+    void (*recover)(const CellInput &, const double *factors, const double *v, double *l);
+    /// (f, l) += J (v, log w) with the factors of jacobian().
+    void (*multiply)(const CellInput &, const double *factors, const double *v, const double *x, double *f, double *l);
     void (*integrals)(const LogCellInput &, CellIntegrals &);
   };
 

@@ -6,13 +6,15 @@
 namespace crawler
 {
   /**
-   * The log-stretch form (doc/numerics.md, "Log-stretch form"): the displacement u at the nodes and log w at q Gauss
-   * points of each cell, with
+   * The log-stretch form (doc/numerics.md, "Log-stretch form"): the displacement u and the velocity v at the nodes and
+   * log w at q Gauss points of each cell, with
    *
-   *   (log w)' = v_s/w  at those points,   int g(w) v phi ds + int (k (w - 1) + m) phi_s ds = 0,   v = u',
+   *   (log w)' = v_s/w  at those points,   int g(w) v phi ds + int (k (w - 1) + m) phi_s ds = 0,   u' = v,
    *
-   * so the stretch is positive whatever happens, and keeps its digits however small it is. Friction is integrated at
-   * the nodes; for degree 1 and a <= -1 no cell can be emptied (doc/theory.md, "When a body can invert").
+   * so the stretch is positive whatever happens, and keeps its digits however small it is. The velocity is an unknown
+   * of its own because v_s/w of an emptied cell is a quotient of tiny numbers, and differences of u have no digits for
+   * it. Friction is integrated at the nodes; for degree 1 and a <= -1 no cell can be emptied (doc/theory.md, "When a body
+   * can invert").
    */
   class LogStretchForm : public Assembler
   {
@@ -27,13 +29,17 @@ namespace crawler
     std::size_t
     n_owned() const override
     {
-      return discretization_.n_owned() + static_cast<std::size_t>(discretization_.n_local_cells()) * q_;
+      return 2 * discretization_.n_owned() + static_cast<std::size_t>(discretization_.n_local_cells()) * q_;
     }
     std::size_t
     n_unknowns() const override
     {
-      return discretization_.n_unknowns() + static_cast<std::size_t>(discretization_.n_cells()) * q_;
+      return 2 * discretization_.n_unknowns() + static_cast<std::size_t>(discretization_.n_cells()) * q_;
     }
+    std::vector<double>
+    weights() const override;
+    void
+    make_consistent(double t, Vector y) override;
     bool
     residual(double t, ConstVector y, ConstVector y_dot, Vector F) override;
     bool
@@ -56,14 +62,23 @@ namespace crawler
     friction(double t, ConstVector y, ConstVector v, std::vector<double> &g_v) override;
 
   private:
+    /// The part of the velocities in a vector of all unknowns.
+    template <typename Span>
+    Span
+    velocities(const Span y) const
+    {
+      return y.last(discretization_.n_owned());
+    }
+
     LogCellInput
-    log_input(double t, ConstVector y, ConstVector y_dot);
+    log_input(double t, ConstVector y, ConstVector v);
 
     const unsigned int q_;
     const LogCellKernels &kernels_;
     ChainMatrix jacobian_;
     std::vector<double> factors_;              ///< [cell][log_factors(q)]
-    std::vector<double> node_local_, mass_;    ///< local and owned arrays over the nodes
-    std::vector<double> u_local_buffer_;
+    std::vector<double> node_local_, nodes_;   ///< local and owned arrays over the nodes
+    std::vector<double> local_buffer_;
+    double sigma_ = 0.;
   };
 } // namespace crawler

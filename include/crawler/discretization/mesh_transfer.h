@@ -19,7 +19,7 @@ namespace crawler
     explicit MeshTransfer(const ReferenceElement &element);
 
     /// The state @p y of @p from as one of @p to (collective). Meshes may differ by one level; the formulations may be
-    /// the same, or position and log stretch.
+    /// the same, or position and log stretch. Assembler::make_consistent() must follow.
     std::vector<double>
     transfer(const Assembler &from, std::span<const double> y, const Assembler &to) const;
 
