@@ -233,7 +233,11 @@ namespace crawler
           N += h * to_points[p * n + i] * g_v[i];
         const double e = sampler_.strain(local, log_w, c, h, p + 1);
         const double d = (N - equation::body_force(e, m_at_quadrature_[c * n + p], k)) / k;
-        const double relative = d / std::max(1. + e, smallest_scale);
+        const double w = std::max(1. + e, smallest_scale);
+        // An error of the stretch changes the friction by w g'/g times as much.
+        double g = 0., w_dg = 0.;
+        scene_.friction->values_and_log_derivatives({&w, 1}, {&g, 1}, {&w_dg, 1});
+        const double relative = d / w * std::max(1., std::abs(w_dg / g));
         indicators[c] += h * element.weights[p] * relative * relative;
       }
       for (unsigned int i = 0; i < n; ++i)

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace crawler
 {
@@ -15,6 +17,12 @@ namespace crawler
     // The constants of the rule; doc/numerics.md says how they were found.
     constexpr unsigned int automatic_degree = 6;
     constexpr unsigned int fewest_cells = 4, most_cells = 4096;
+    /// Meshes that would need more cells than this are adaptive, with this degree.
+    constexpr unsigned int most_uniform_cells = 64, adaptive_degree = 4;
+    /// The error of the displacement, relative, is below this times the sum of the error indicators over the strain.
+    constexpr double indicator_factor = 8.;
+    /// Meshes of the collapse (degree 1): from the coarsest, doubled until the displacement settles.
+    constexpr unsigned int first_collapse_cells = 64, last_collapse_cells = 1024;
     constexpr unsigned int most_pilot_steps = 100000;
     /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
     constexpr double resolved = 1e-3;
@@ -67,136 +75,303 @@ namespace crawler
     }
   } // namespace
 
+  namespace
+  {
+    /// The choice as it grows; each function below makes one decision.
+    class Chooser
+    {
+    public:
+      Chooser(MPI_Comm communicator, const Parameters &parameters, const Scene &scene)
+        : communicator_(communicator)
+        , parameters_(parameters)
+        , scene_(scene)
+        , scales_(stress_scales(scene))
+        , user_cells_(parameters.discretization.n_cells)
+        , user_tolerance_(parameters.time.tolerance)
+        , T_(scene.end_time)
+        , L_(scene.body.length)
+        , accuracy_(parameters.accuracy)
+        , scale_(scales_.displacement > 0. ? scales_.displacement : L_)
+      {
+        Numerics &n    = choice_.numerics;
+        n.degree       = parameters.discretization.degree.value_or(automatic_degree);
+        n.initial_step = parameters.time.initial_step.value_or(1e-5 * T_);
+        n.largest_step = scales_.time;
+        const std::string &form = parameters.discretization.formulation;
+        n.formulation           = form == "position"    ? FormulationChoice::position :
+                                  form == "log stretch" ? FormulationChoice::log_stretch :
+                                                          FormulationChoice::automatic;
+        pilot_time_              = parameters.time;
+        pilot_time_.step_control = "adaptive";
+        if (!integrator(pilot_time_.integrator).adaptive)
+        {
+          pilot_time_.integrator = "bdf";
+          pilot_time_.order      = 5;
+        }
+        pilot_time_.petsc_prefix = "pilot_"; // options after "--" are for the real run
+        pilot_time_.max_steps    = std::min(pilot_time_.max_steps, most_pilot_steps);
+        tolerance_               = std::max(1e-3 * scale_, smallest());
+      }
+
+      NumericsChoice
+      choose()
+      {
+        const std::string &mesh = parameters_.discretization.mesh;
+        const bool fixed        = parameters_.time.step_control == "fixed";
+        if (user_cells_ && (user_tolerance_ || fixed) && mesh != "adaptive")
+        {
+          choice_.numerics.n_cells   = *user_cells_;
+          choice_.numerics.tolerance = user_tolerance_.value_or(1e-10 * L_); // of Newton's method only
+          choice_.explanation        = "cells and time steps as set by the user";
+          return choice_;
+        }
+        bool enough = false;
+        if (mesh != "adaptive")
+          enough = uniform(mesh == "uniform" || user_cells_ ? most_cells : most_uniform_cells);
+        if (mesh == "adaptive" || (mesh == "automatic" && !enough && !user_cells_))
+          adaptive();
+        if (collapses() && choice_.numerics.formulation != FormulationChoice::position && !user_cells_ &&
+            !parameters_.discretization.degree)
+          collapse();
+        finish(fixed);
+        return choice_;
+      }
+
+    private:
+      /// Motions below this are nothing, and their squares underflow.
+      double
+      smallest() const
+      {
+        return 1e-25 * L_;
+      }
+
+      SimulationResult
+      pilot(const Numerics &numerics)
+      {
+        Simulation simulation(communicator_, scene_, pilot_time_, numerics);
+        ++n_pilots_;
+        return simulation.run({}, {.ledger = false, .resolution = true});
+      }
+
+      Numerics
+      pilot_numerics(const unsigned int degree, const unsigned int n_cells, const double tolerance) const
+      {
+        Numerics numerics     = choice_.numerics;
+        numerics.degree       = degree;
+        numerics.n_cells      = n_cells;
+        numerics.tolerance    = tolerance;
+        numerics.initial_step = 1e-5 * T_;
+        return numerics;
+      }
+
+      /// Has the last pilot lost a stretch inside that it should not, or that only the safe scheme can be trusted with?
+      bool
+      collapses() const
+      {
+        return pilot_.time.status != "finished" && pilot_.time.reason != "inverted_at_end" &&
+               scene_.body.friction_exponent() < 0.;
+      }
+
+      void
+      measure_size()
+      {
+        const bool finished = pilot_.time.status == "finished";
+        size_ = std::max(finished ? std::abs(pilot_.displacement) : 0., displacement_floor * pilot_.largest_u);
+      }
+
+      /// A uniform mesh with up to @p most cells; returns whether that is enough.
+      bool
+      uniform(const unsigned int most)
+      {
+        // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
+        const unsigned int pilot_degree = std::max(choice_.numerics.degree, 2u);
+        // A cell of this degree resolves a stress whose scale is a quarter of its size.
+        const double seen    = std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 0.25 * most_cells);
+        unsigned int n_cells = user_cells_.value_or(static_cast<unsigned int>(seen));
+        if (n_cells > most)
+          return false;
+        bool good = false;
+        while (!good && n_pilots_ < 20)
+        {
+          pilot_ = pilot(pilot_numerics(pilot_degree, n_cells, tolerance_));
+          measure_size();
+          const bool finished = pilot_.time.status == "finished";
+          const bool resolves = user_cells_ || pilot_.unresolved <= std::max(resolved, accuracy_) || n_cells >= most;
+          // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
+          if (!finished && !user_cells_ && n_cells < std::min(most, 64u))
+          {
+            n_cells *= 2;
+            tolerance_ *= 0.1;
+          }
+          else if (finished && !resolves)
+            n_cells = std::min(most, 2 * n_cells);
+          else if (finished && size_ > 0. && tolerance_ > 0.03 * size_)
+            tolerance_ = std::max(0.01 * size_, 1e-3 * tolerance_);
+          else
+            good = true;
+        }
+        const bool predicts        = pilot_.time.status == "finished";
+        choice_.numerics.n_cells   = n_cells;
+        if (!predicts || pilot_.unresolved > std::max(resolved, accuracy_))
+          return most == most_cells; // whatever it is, there is no more
+        if (user_cells_)
+          return true;
+
+        // On smooth solutions `unresolved` goes down as (cell size)^(2q-2), q the pilot's degree, and the error of the
+        // displacement at least as fast. Thin layers look resolved before they are: so the rate is measured, with
+        // smaller steps whose errors do not hide it, on meshes twice as fine each time until it is at least half of that.
+        const double enough_cells = n_cells; // fewer failed or left too much unresolved
+        const double full_rate = 2. * pilot_degree - 2., wanted_part = accuracy_ / space_factor;
+        double unresolved = pilot_.unresolved, indicator = pilot_.largest_indicator, rate = 0.;
+        while (rate < 0.5 * full_rate && 2 * n_cells <= most_cells / 4)
+        {
+          if (2 * n_cells > most)
+            return false;
+          const SimulationResult finer = pilot(pilot_numerics(pilot_degree, 2 * n_cells, 0.01 * tolerance_));
+          if (finer.time.status != "finished" || finer.unresolved == 0.)
+            break;
+          rate       = std::clamp(std::log2(unresolved / finer.unresolved), 0.5, full_rate);
+          unresolved = finer.unresolved;
+          indicator  = finer.largest_indicator;
+          n_cells *= 2;
+          if (unresolved <= 0.01 * wanted_part)
+            break;
+        }
+        const double cells = rate > 0. ? n_cells * std::pow(unresolved / wanted_part, 1. / rate) : n_cells;
+        // Layers that are thinner than the cells are not seen in the stretch, but the balance of forces tells.
+        const double gain = std::pow(std::max(1., cells / n_cells), full_rate);
+        if (most < most_cells && indicator_factor * indicator > accuracy_ * gain * pilot_.strain)
+          return false;
+        choice_.numerics.n_cells =
+          static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(most_cells)));
+        return choice_.numerics.n_cells <= most;
+      }
+
+      /// An adaptive mesh: pilots measure the strain, to which its tolerance is relative, and the number of steps.
+      void
+      adaptive()
+      {
+        Numerics &n = choice_.numerics;
+        n.degree    = parameters_.discretization.degree.value_or(adaptive_degree);
+        n.n_cells   = user_cells_.value_or(8);
+        n.mesh      = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
+        double strain = pilot_.strain > 0. ? pilot_.strain : scale_ * scale_ / L_;
+        for (int i = 0; i < 4; ++i)
+        {
+          Numerics settings       = pilot_numerics(n.degree, n.n_cells, tolerance_);
+          settings.mesh.tolerance = resolved * strain;
+          pilot_                  = pilot(settings);
+          measure_size();
+          const bool finished = pilot_.time.status == "finished";
+          const double before = strain;
+          if (pilot_.strain > 0.)
+            strain = pilot_.strain;
+          const bool strain_known = strain < 4. * before && strain > 0.25 * before;
+          const bool coarse_steps = finished && size_ > 0. && tolerance_ > 0.03 * size_;
+          if (coarse_steps || (!finished && i < 2))
+            tolerance_ = finished ? std::max(0.01 * size_, 1e-3 * tolerance_) : 0.03 * tolerance_;
+          else if (strain_known)
+            break;
+        }
+        const double part = parameters_.discretization.mesh_tolerance.value_or(accuracy_ / indicator_factor);
+        n.mesh.tolerance  = part * strain;
+      }
+
+      /**
+       * Elements of higher degree are not safe when the stretch collapses; degree 1 in the log-stretch form is
+       * (doc/theory.md, "When a body can invert"). The mesh is doubled until the displacement settles; what is left
+       * is the error that is reported.
+       */
+      void
+      collapse()
+      {
+        Numerics &n   = choice_.numerics;
+        n.degree      = 1;
+        n.formulation = FormulationChoice::log_stretch;
+        n.mesh        = {};
+        double before = std::numeric_limits<double>::quiet_NaN();
+        for (n.n_cells = first_collapse_cells;; n.n_cells *= 2)
+        {
+          tolerance_ = size_ > 0. ? std::max(0.1 * accuracy_ * size_, 1e-10 * scale_) : 1e-3 * tolerance_;
+          pilot_     = pilot(pilot_numerics(1, n.n_cells, tolerance_));
+          measure_size();
+          // If it inverts, the time of that is what has to settle.
+          const bool finished = pilot_.time.status == "finished";
+          const double now    = finished ? pilot_.displacement : pilot_.inversion ? pilot_.inversion->t : 0.;
+          const double change = std::abs(now - before);
+          const double wanted = finished ? accuracy_ * size_ : std::max(accuracy_, 1e-4) * T_;
+          before              = now;
+          if (finished)
+            choice_.promised_error = std::max(wanted, change);
+          if (change <= wanted || 2 * n.n_cells > last_collapse_cells)
+            break;
+        }
+        is_collapse_ = true;
+      }
+
+      /// The time tolerance, and the explanation.
+      void
+      finish(const bool fixed)
+      {
+        Numerics &n         = choice_.numerics;
+        const bool predicts = pilot_.time.status == "finished";
+        if (size_ == 0.)
+          size_ = scale_;
+        // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
+        // size.
+        const unsigned int nominal = integrator(parameters_.time.integrator).order;
+        const double r             = 1. / (1. + (nominal > 0 ? nominal : parameters_.time.order));
+        const double wanted =
+          accuracy_ * size_ / (time_factor * std::max(pilot_.time.steps, 1u) * std::pow(tolerance_, r));
+        const double by_rule = std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
+                                        std::max(1e-15 * scale_, smallest()));
+        n.tolerance          = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
+        if (!is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed && !parameters_.discretization.mesh_tolerance)
+          choice_.promised_error = accuracy_ * size_;
+        const double seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const std::string kind = is_collapse_ ? "the stretch collapses: log stretch with degree 1, " :
+                                 n.mesh.tolerance > 0. ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance) :
+                                                         "";
+        choice_.explanation =
+          predicts ?
+            fmt::format("for Accuracy {:g}: {}from {} pilot runs in {:.2g} s: displacement about {:.3g}",
+                        accuracy_,
+                        kind,
+                        n_pilots_,
+                        seconds,
+                        pilot_.displacement) :
+            fmt::format("for Accuracy {:g}: {}the last of {} pilot runs, with {} cells, ended early: {}",
+                        accuracy_,
+                        kind,
+                        n_pilots_,
+                        n.n_cells,
+                        pilot_.time.message);
+        if (choice_.promised_error > 1.5 * accuracy_ * size_)
+          choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
+                                             choice_.promised_error / size_);
+      }
+
+      const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+      const MPI_Comm communicator_;
+      const Parameters &parameters_;
+      const Scene &scene_;
+      const StressScales scales_;
+      const std::optional<unsigned int> &user_cells_;
+      const std::optional<double> &user_tolerance_;
+      const double T_, L_, accuracy_, scale_;
+      TimeParameters pilot_time_;
+      NumericsChoice choice_;
+      SimulationResult pilot_; ///< the last one that counts
+      double tolerance_ = 0., size_ = 0.;
+      unsigned int n_pilots_ = 0;
+      bool is_collapse_      = false;
+    };
+  } // namespace
+
   NumericsChoice
   choose_numerics(MPI_Comm communicator, const Parameters &parameters, const Scene &scene)
   {
-    const auto start = std::chrono::steady_clock::now();
-    const double T = scene.end_time, L = scene.body.length, accuracy = parameters.accuracy;
-    const auto &user_cells     = parameters.discretization.n_cells;
-    const auto &user_tolerance = parameters.time.tolerance;
-    NumericsChoice choice;
-    Numerics &numerics    = choice.numerics;
-    numerics.degree       = parameters.discretization.degree.value_or(automatic_degree);
-    numerics.initial_step = parameters.time.initial_step.value_or(1e-5 * T);
-    // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
-    const unsigned int pilot_degree = std::max(numerics.degree, 2u);
-
-    const StressScales scales = stress_scales(scene);
-    numerics.largest_step     = scales.time;
-    const std::string &formulation = parameters.discretization.formulation;
-    numerics.formulation           = formulation == "position"    ? FormulationChoice::position :
-                                     formulation == "log stretch" ? FormulationChoice::log_stretch :
-                                                                    FormulationChoice::automatic;
-    if (parameters.discretization.mesh == "adaptive")
-      numerics.mesh = {parameters.discretization.mesh_tolerance.value_or(1e-6) * L,
-                       parameters.discretization.smallest_cell.value_or(1e-6 * L)};
-
-    const bool fixed = parameters.time.step_control == "fixed";
-    if (user_cells && (user_tolerance || fixed))
-    {
-      numerics.n_cells   = *user_cells;
-      numerics.tolerance = user_tolerance.value_or(1e-10 * L); // of Newton's method only
-      choice.explanation = "cells and time steps as set by the user";
-      return choice;
-    }
-
-    TimeParameters pilot_time = parameters.time;
-    pilot_time.step_control   = "adaptive";
-    if (!integrator(pilot_time.integrator).adaptive)
-    {
-      pilot_time.integrator = "bdf";
-      pilot_time.order      = 5;
-    }
-    pilot_time.petsc_prefix = "pilot_"; // options after "--" are for the real run
-    const double scale      = scales.displacement > 0. ? scales.displacement : L;
-    pilot_time.max_steps    = std::min(pilot_time.max_steps, most_pilot_steps);
-
-    // Motions far below this are nothing, and their squares underflow.
-    const double smallest = 1e-25 * L;
-    double tolerance = std::max(1e-3 * scale, smallest), size = 0.;
-    unsigned int n_pilots = 0;
-    // A cell of this degree resolves a stress whose scale is a quarter of its size.
-    const double seen    = std::clamp(std::ceil(0.25 * L / scales.length), 1. * fewest_cells, 0.25 * most_cells);
-    unsigned int n_cells = user_cells.value_or(static_cast<unsigned int>(seen));
-    SimulationResult pilot;
-    bool good = false;
-    while (!good && n_pilots < 20)
-    {
-      Simulation simulation(communicator, scene, pilot_time, {pilot_degree, n_cells, tolerance, 1e-5 * T, scales.time});
-      pilot = simulation.run({}, {.ledger = false, .resolution = true});
-      ++n_pilots;
-      const bool finished = pilot.time.status == "finished";
-      size = std::max(finished ? std::abs(pilot.displacement) : 0., displacement_floor * pilot.largest_u);
-      const bool resolves = user_cells || pilot.unresolved <= std::max(resolved, accuracy) || n_cells >= most_cells;
-      // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
-      if (!finished && !user_cells && n_cells < 64)
-      {
-        n_cells *= 2;
-        tolerance *= 0.1;
-      }
-      else if (finished && !resolves)
-        n_cells = std::min(most_cells, 2 * n_cells);
-      else if (finished && size > 0. && tolerance > 0.03 * size)
-        tolerance = std::max(0.01 * size, 1e-3 * tolerance);
-      else
-        good = true;
-    }
-    const bool predicts       = pilot.time.status == "finished";
-    const double enough_cells = n_cells; // fewer failed or left too much unresolved
-    if (size == 0.)
-      size = scale;
-
-    // On smooth solutions `unresolved` goes down as (cell size)^(2q-2), q the pilot's degree, and the error of the
-    // displacement at least as fast. Thin layers look resolved before they are: so the rate is measured, with smaller
-    // steps whose errors do not hide it, on meshes twice as fine each time until it is at least half of that.
-    numerics.n_cells = n_cells;
-    if (!user_cells && predicts)
-    {
-      const double full_rate = 2. * pilot_degree - 2., wanted_part = accuracy / space_factor;
-      double unresolved = pilot.unresolved, rate = 0.;
-      while (rate < 0.5 * full_rate && 2 * n_cells <= most_cells / 4)
-      {
-        Simulation simulation(
-          communicator, scene, pilot_time, {pilot_degree, 2 * n_cells, 0.01 * tolerance, 1e-5 * T, scales.time});
-        const SimulationResult finer = simulation.run({}, {.ledger = false, .resolution = true});
-        ++n_pilots;
-        if (finer.time.status != "finished" || finer.unresolved == 0.)
-          break;
-        rate       = std::clamp(std::log2(unresolved / finer.unresolved), 0.5, full_rate);
-        unresolved = finer.unresolved;
-        n_cells *= 2;
-        if (unresolved <= 0.01 * wanted_part)
-          break;
-      }
-      const double cells = rate > 0. ? n_cells * std::pow(unresolved / wanted_part, 1. / rate) : n_cells;
-      numerics.n_cells =
-        static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(most_cells)));
-    }
-    // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
-    // size.
-    const unsigned int nominal = integrator(parameters.time.integrator).order;
-    const double r             = 1. / (1. + (nominal > 0 ? nominal : parameters.time.order));
-    const double wanted = accuracy * size / (time_factor * std::max(pilot.time.steps, 1u) * std::pow(tolerance, r));
-    numerics.tolerance  = user_tolerance.value_or(
-      std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance), std::max(1e-15 * scale, smallest)));
-    if (!user_cells && !user_tolerance && !fixed)
-      choice.promised_error = accuracy * size;
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    choice.explanation =
-      predicts ? fmt::format(
-                   "for Accuracy {:g}; from {} pilot runs with up to {} cells in {:.2g} s: displacement about {:.3g}, "
-                   "unresolved part of the strain {:.1e}",
-                   accuracy,
-                   n_pilots,
-                   n_cells,
-                   seconds,
-                   pilot.displacement,
-                   std::sqrt(pilot.unresolved))
-               : fmt::format("for Accuracy {:g}; the last of {} pilot runs, with {} cells, ended early: {}",
-                             accuracy,
-                             n_pilots,
-                             n_cells,
-                             pilot.time.message);
-    return choice;
+    return Chooser(communicator, parameters, scene).choose();
   }
 } // namespace crawler

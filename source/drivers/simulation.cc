@@ -27,14 +27,13 @@ namespace crawler
     }
 
     /**
-     * In the log-stretch form the stretch can be followed much further. Near an inversion w^(1+a) goes linearly to 0 for
-     * -1 < a < 0 (w itself for a >= 0), so this is where 1e-10 of it is left; for a <= -1 there is none, and what limits
-     * w is the range of doubles.
+     * In the log-stretch form the stretch can be followed much further. Near an inversion w^(1+a) goes linearly to 0, so
+     * this is where 2e-9 of it is left; for a <= -1 there is none, and what limits w is the range of doubles.
      */
     double
     lost_in_log_form(const double a)
     {
-      return a <= -1. ? std::exp(-700.) : std::exp(std::max(-690., -23. / (1. + std::min(a, 0.))));
+      return a <= -1. ? std::exp(-700.) : std::exp(std::clamp(-20. / (1. + a), -690., std::log(1e-2)));
     }
 
     Numerics
@@ -153,6 +152,14 @@ namespace crawler
     result_.time = integrate(frames, observers, keep_going);
     if (!diagnosis_ && result_.time.status == "failed")
       explain_failure();
+    if (result_.time.status == "finished" && numerics_.mesh.tolerance > 0. &&
+        result_.largest_indicator > 4. * numerics_.mesh.tolerance)
+      diagnosis_ = {"failed",
+                    "under_resolved",
+                    fmt::format("the sum of the error indicators reached {:.2g}, above the mesh tolerance of {:.2g}, and "
+                                "no cell may be divided further; a smaller Discretization/Smallest cell is needed",
+                                result_.largest_indicator * units_.length,
+                                numerics_.mesh.tolerance * units_.length)};
     if (diagnosis_)
     {
       result_.time.status  = diagnosis_->status;
@@ -318,6 +325,12 @@ namespace crawler
       return false;
     if (options_.resolution)
     {
+      if (!adaptive && assembler_->velocity(step.time, y, v_))
+      {
+        const auto indicators     = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
+        result_.largest_indicator = std::max(result_.largest_indicator,
+                                             std::accumulate(indicators.begin(), indicators.end(), 0.));
+      }
       const Resolution resolution = assembler_->resolution(y);
       largest_.highest_mode       = std::max(largest_.highest_mode, resolution.highest_mode);
       largest_.strain             = std::max(largest_.strain, resolution.strain);
@@ -496,8 +509,7 @@ namespace crawler
     const double t       = accepted_time_;
     // Very small steps may be the end of the model.
     const double reach = std::max(1e-9, 2. * outcome.step_size);
-    if (outcome.domain_error || outcome.reason == "step_underflow" || outcome.reason == "rejection_limit" ||
-        outcome.reason == "newton_diverged")
+    if (outcome.reason != "petsc_error")
     {
       if (end_inverts(t, std::min(t + reach, 1.)))
         return;

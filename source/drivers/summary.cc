@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace crawler
@@ -72,6 +73,9 @@ namespace crawler
     json["net_friction"]       = result.ledger ? Json(result.net_friction) : Json(nullptr);
     json["min_stretch"]        = extreme(result.min_stretch);
     json["max_stretch"]        = extreme(result.max_stretch);
+    json["log_stretch_since"]  = result.log_stretch_since ? Json(*result.log_stretch_since) : Json(nullptr);
+    json["mesh_changes"]       = result.mesh_changes;
+    json["most_cells"]         = std::max(result.most_cells, discretization.n_cells());
     json["inversion"]          = result.inversion ? extreme(*result.inversion) : Json(nullptr);
     json["cells"]              = discretization.n_cells();
     json["degree"]             = discretization.element().degree;

@@ -124,8 +124,8 @@ namespace crawler
     resolution(ConstVector y);
 
     /**
-     * The error indicator of each own cell: int_cell (d/(k max(w, floor)))^2 ds with d = N* - N, the difference between
-     * the force in the body N = m + k (w - 1) and the one that balances the friction, N* = int_0^s g v ds. N* is zero
+     * The error indicator of each own cell: int_cell (max(1, |w g'/g|) d/(k max(w, floor)))^2 ds with d = N* - N, the
+     * difference between the force in the body N = m + k (w - 1) and the one that balances the friction, N* = int_0^s g v ds. N* is zero
      * at both ends, as the stress-free ends ask, and d is orthogonal to all that the mesh can represent
      * (doc/numerics.md, "Error indicator"). @p v is the velocity of the state @p y.
      */
