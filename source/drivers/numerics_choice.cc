@@ -23,7 +23,7 @@ namespace crawler
     constexpr double indicator_factor = 8.;
     /// Meshes of the collapse (degree 1): from the coarsest, doubled until the displacement settles.
     constexpr unsigned int first_collapse_cells = 64, last_collapse_cells = 1024;
-    constexpr unsigned int most_pilot_steps = 100000;
+    constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000, most_adaptive_pilot_cells = 500;
     /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
     constexpr double resolved = 1e-3;
     /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
@@ -256,10 +256,14 @@ namespace crawler
         n.n_cells   = user_cells_.value_or(8);
         n.mesh      = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
         double strain = pilot_.strain > 0. ? pilot_.strain : scale_ * scale_ / L_;
+        // What needs more than this collapses, and the scheme that is safe then costs less.
+        const TimeParameters usual = pilot_time_;
+        pilot_time_.max_steps      = std::min(pilot_time_.max_steps, most_adaptive_pilot_steps);
         for (int i = 0; i < 4; ++i)
         {
           Numerics settings       = pilot_numerics(n.degree, n.n_cells, tolerance_);
-          settings.mesh.tolerance = resolved * strain;
+          settings.mesh.tolerance  = resolved * strain;
+          settings.mesh.most_cells = most_adaptive_pilot_cells;
           pilot_                  = pilot(settings);
           measure_size();
           const bool finished = pilot_.time.status == "finished";
@@ -273,6 +277,7 @@ namespace crawler
           else if (strain_known)
             break;
         }
+        pilot_time_       = usual;
         const double part = parameters_.discretization.mesh_tolerance.value_or(accuracy_ / indicator_factor);
         n.mesh.tolerance  = part * strain;
       }

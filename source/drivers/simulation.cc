@@ -518,7 +518,10 @@ namespace crawler
       const double before      = min_history_[1].value, before_t = min_history_[1].t;
       const double rate        = t > before_t ? (before - smallest.value) / (t - before_t) : 0.;
       const double left        = rate > 0. ? smallest.value / rate : 1.;
-      if (outcome.domain_error || left < 1e-6)
+      // Near the end of the model w^(1+a) goes to 0 linearly: for large a that is hardly seen in w before it happens.
+      const double a         = scene_.body.friction_exponent();
+      const bool about_to_be = a > 0. && rate > 0. && smallest.value < 2. * std::exp(-20. / (1. + a));
+      if (outcome.domain_error || left < 1e-6 || about_to_be)
       {
         inverted_inside(smallest.value, smallest.s, std::min(t + (left < 1e-6 ? left : 0.), 1.));
         return;
