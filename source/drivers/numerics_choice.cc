@@ -22,7 +22,7 @@ namespace crawler
     /// The error of the displacement, relative, is below this times the sum of the error indicators over the strain.
     constexpr double indicator_factor = 8.;
     /// Meshes of the collapse (degree 1): from the coarsest, doubled until the displacement settles.
-    constexpr unsigned int first_collapse_cells = 64, last_collapse_cells = 1024;
+    constexpr unsigned int first_collapse_cells = 64, last_collapse_cells = 512, last_accurate_collapse_cells = 2048;
     constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000, most_adaptive_pilot_cells = 500;
     /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
     constexpr double resolved = 1e-3;
@@ -259,10 +259,11 @@ namespace crawler
         // What needs more than this collapses, and the scheme that is safe then costs less.
         const TimeParameters usual = pilot_time_;
         pilot_time_.max_steps      = std::min(pilot_time_.max_steps, most_adaptive_pilot_steps);
+        double tighter = 1.;
         for (int i = 0; i < 4; ++i)
         {
           Numerics settings       = pilot_numerics(n.degree, n.n_cells, tolerance_);
-          settings.mesh.tolerance  = resolved * strain;
+          settings.mesh.tolerance  = tighter * resolved * strain;
           settings.mesh.most_cells = most_adaptive_pilot_cells;
           pilot_                  = pilot(settings);
           measure_size();
@@ -271,6 +272,8 @@ namespace crawler
           if (pilot_.strain > 0.)
             strain = pilot_.strain;
           const bool strain_known = strain < 4. * before && strain > 0.25 * before;
+          if (!finished)
+            tighter *= 0.01; // the stretch may have been lost because of the mesh
           const bool coarse_steps = finished && size_ > 0. && tolerance_ > 0.03 * size_;
           if (coarse_steps || (!finished && i < 2))
             tolerance_ = finished ? std::max(0.01 * size_, 1e-3 * tolerance_) : 0.03 * tolerance_;
@@ -278,7 +281,7 @@ namespace crawler
             break;
         }
         pilot_time_       = usual;
-        const double part = parameters_.discretization.mesh_tolerance.value_or(accuracy_ / indicator_factor);
+        const double part = parameters_.discretization.mesh_tolerance.value_or(std::min(accuracy_ / indicator_factor, tighter * resolved));
         n.mesh.tolerance  = part * strain;
       }
 
@@ -295,9 +298,11 @@ namespace crawler
         n.formulation = FormulationChoice::log_stretch;
         n.mesh        = {};
         double before = std::numeric_limits<double>::quiet_NaN();
+        const unsigned int last = accuracy_ >= 1e-4 ? last_collapse_cells : last_accurate_collapse_cells;
+        size_                   = 0.; // that of a failed pilot says nothing
         for (n.n_cells = first_collapse_cells;; n.n_cells *= 2)
         {
-          tolerance_ = size_ > 0. ? std::max(0.1 * accuracy_ * size_, 1e-10 * scale_) : 1e-3 * tolerance_;
+          tolerance_ = size_ > 0. ? std::max(0.03 * accuracy_ * size_, 1e-10 * scale_) : 1e-5 * scale_;
           pilot_     = pilot(pilot_numerics(1, n.n_cells, tolerance_));
           measure_size();
           // If it inverts, the time of that is what has to settle.
@@ -308,7 +313,7 @@ namespace crawler
           before              = now;
           if (finished)
             choice_.promised_error = std::max(wanted, change);
-          if (change <= wanted || 2 * n.n_cells > last_collapse_cells)
+          if (change <= wanted || 2 * n.n_cells > last)
             break;
         }
         is_collapse_ = true;

@@ -19,6 +19,9 @@ namespace crawler
     constexpr double lost_in_position = 1e-12;
     /// `automatic` changes to the log-stretch form when the stretch falls below this.
     constexpr double small_stretch = 0.1;
+    /// So many steps in succession smaller than this part of the duration are a failure.
+    constexpr double tiny_step             = 1e-9;
+    constexpr unsigned int most_tiny_steps = 2000;
 
     double
     now()
@@ -137,6 +140,7 @@ namespace crawler
     before_        = {};
     frames_        = &frames;
     next_frame_    = 0;
+    tiny_steps_    = 0;
     integrals_     = {};
     if (options.ledger)
       result_.ledger.emplace();
@@ -337,6 +341,21 @@ namespace crawler
       result_.unresolved          = largest_.strain > 0. ? largest_.highest_mode / largest_.strain : 0.;
       result_.strain              = largest_.strain;
       result_.largest_u           = std::max(result_.largest_u, assembler_->root_mean_square(y));
+    }
+    // Many steps that lead nowhere.
+    tiny_steps_ = step.size > 0. && step.size < tiny_step ? tiny_steps_ + 1 : 0;
+    if (tiny_steps_ > most_tiny_steps)
+    {
+      diagnosis_ = {"failed",
+                    "step_underflow",
+                    fmt::format("{} steps in succession were smaller than {:g} of the duration, at t = {:.9g}; the "
+                                "smallest stretch is {:.3g} at s = {:.6g}",
+                                most_tiny_steps,
+                                tiny_step,
+                                step.time * units_.time,
+                                stretch_.min.value,
+                                stretch_.min.s * units_.length)};
+      return false;
     }
     accepted_.assign(y.begin(), y.end());
     accepted_time_        = step.time;

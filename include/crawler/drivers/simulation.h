@@ -186,6 +186,6 @@ namespace crawler
     TimeOutcome before_; ///< counts of the parts of the run before the last change of mesh or formulation
     const std::vector<double> *frames_ = nullptr; ///< in physical units
     std::size_t next_frame_ = 0;
-    unsigned int mesh_number_ = 0;
+    unsigned int mesh_number_ = 0, tiny_steps_ = 0;
   };
 } // namespace crawler
