@@ -12,6 +12,8 @@
 //   scale/...            One Newton step (residual, Jacobian, elimination, solution) against the number of unknowns.
 #include "../support/run_text.h"
 
+#include <crawler/discretization/position_form.h>
+
 #include <deal.II/base/mpi.h>
 
 #include <benchmark/benchmark.h>
@@ -136,7 +138,7 @@ namespace
     }
     Scene scene;
     Discretization discretization;
-    Assembler assembler;
+    PositionForm assembler;
     ChainMatrix matrix;
     std::vector<double> u, v, F;
   };

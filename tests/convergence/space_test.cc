@@ -18,25 +18,26 @@ namespace
   class L2Error : public Observer
   {
   public:
-    L2Error(const Scene &scene, const Discretization &discretization, double &error)
-      : discretization_(discretization)
-      , sampler_(scene, discretization, points(discretization))
-      , error_(error)
+    explicit L2Error(double &error)
+      : error_(error)
     {
     }
 
     void
     observe(const Snapshot &snapshot) override
     {
-      const Fields &fields = sampler_.sample(snapshot.step.time, snapshot.u, snapshot.v);
+      const Discretization &d = snapshot.assembler.discretization();
+      if (!sampler_)
+        sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, points(d));
+      const Fields &fields = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
       double sum           = 0.;
       const auto &exact    = test::ExactSolution();
-      for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+      for (unsigned int c = 0; c < d.n_local_cells(); ++c)
         for (unsigned int p = 0; p < fine_.n; ++p)
         {
           const std::size_t i = static_cast<std::size_t>(c) * fine_.n + p;
-          const double error  = fields.displacement[i] - exact.u(sampler_.coordinates()[i], snapshot.step.time);
-          sum += discretization_.cell_size()[c] * fine_.weights[p] * error * error;
+          const double error  = fields.displacement[i] - exact.u(sampler_->coordinates()[i], snapshot.step.time);
+          sum += snapshot.units.length * d.cell_size()[c] * fine_.weights[p] * error * error;
         }
       error_ = std::sqrt(sum);
     }
@@ -53,8 +54,7 @@ namespace
     }
 
     const ReferenceElement fine_{8};
-    const Discretization &discretization_;
-    FieldSampler sampler_;
+    std::unique_ptr<FieldSampler> sampler_;
     double &error_;
   };
 
@@ -84,7 +84,7 @@ TEST_P(Space, OrderOnAnExactSolution)
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, {q, n, 1e-13, 1e-6});
     double l2 = 0.;
     std::vector<std::unique_ptr<Observer>> observers;
-    observers.push_back(std::make_unique<L2Error>(scene, simulation.discretization(), l2));
+    observers.push_back(std::make_unique<L2Error>(l2));
     const SimulationResult result = simulation.run({}, {}, observers);
     ASSERT_EQ(result.time.status, "finished");
     cells.push_back(n);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/run_text.h"
 
+#include <crawler/discretization/position_form.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +33,7 @@ namespace
   };
 } // namespace
 
-TEST(Assembler, JacobianMatchesDifferences)
+TEST(PositionForm, JacobianMatchesDifferences)
 {
   const double t = 0.3, sigma = 37.;
   for (const double a : exponents)
@@ -39,7 +41,7 @@ TEST(Assembler, JacobianMatchesDifferences)
     {
       const Scene scene = test::parameters_with(test::wave(a, 0.3)).create_scene();
       const Discretization d(MPI_COMM_SELF, 1., 3, q);
-      Assembler assembler(scene, d);
+      PositionForm assembler(scene, d);
       ChainMatrix J(d);
       const State state(d);
       assembler.jacobian(t, state.u, state.v, sigma, J);
@@ -80,14 +82,14 @@ TEST(Assembler, JacobianMatchesDifferences)
 }
 
 /// The velocity of a state balances the friction and satisfies the equation; both to round-off, for every a.
-TEST(Assembler, IdentitiesOfAState)
+TEST(PositionForm, IdentitiesOfAState)
 {
   const double t = 0.3;
   for (const double a : exponents)
   {
     const Scene scene = test::parameters_with(test::wave(a, 0.3)).create_scene();
     const Discretization d(MPI_COMM_SELF, 1., 5, 4);
-    Assembler assembler(scene, d);
+    PositionForm assembler(scene, d);
     const State state(d);
     std::vector<double> v(d.n_unknowns()), F(d.n_unknowns());
     ASSERT_TRUE(assembler.velocity(t, state.u, v));
@@ -114,11 +116,11 @@ TEST(Assembler, IdentitiesOfAState)
   }
 }
 
-TEST(Assembler, ReportsAStretchThatIsNotPositive)
+TEST(PositionForm, ReportsAStretchThatIsNotPositive)
 {
   const Scene scene = test::parameters_with(test::wave(-1., 0.3)).create_scene();
   const Discretization d(MPI_COMM_SELF, 1., 10, 2);
-  Assembler assembler(scene, d);
+  PositionForm assembler(scene, d);
   std::vector<double> u(d.n_unknowns(), 0.), v(u), F(u);
   EXPECT_TRUE(assembler.residual(0., u, v, F));
   // Cell 6 (0.6 to 0.7) is folded over.
@@ -136,11 +138,11 @@ TEST(Assembler, ReportsAStretchThatIsNotPositive)
 }
 
 /// The mesh indicator vanishes for a strain that the elements hold exactly, and follows the highest mode.
-TEST(Assembler, ResolutionSeesTheHighestMode)
+TEST(PositionForm, ResolutionSeesTheHighestMode)
 {
   const Scene scene = test::parameters_with(test::wave(-1., 0.3)).create_scene();
   const Discretization d(MPI_COMM_SELF, 1., 2, 3);
-  Assembler assembler(scene, d);
+  PositionForm assembler(scene, d);
   std::vector<double> u(d.n_unknowns());
   const auto set = [&](auto function)
   {

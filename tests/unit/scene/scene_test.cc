@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/run_text.h"
+
+#include <crawler/base/exceptions.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace crawler;
+
+namespace
+{
+  constexpr double stiffness = 0.8;
+
+  /// One crawler in units of @p length, @p time and @p friction: its end time is 0.7, its stiffness 0.8.
+  test::Settings
+  in_user_units(const double length, const double time, const double friction)
+  {
+    const double end_time = 0.7 * time, force = friction * length * length / end_time;
+    return {{"Body/Length", test::text(length)},
+            {"Body/Elastic modulus", test::text(stiffness * force)},
+            {"Body/Friction coefficient", test::text(friction)},
+            {"Active stress/Generator", "expression"},
+            {"Active stress/Expression/Constants", "F=" + test::text(force)},
+            {"Active stress/Expression/Active stress", "0.2*F*sin(pi*s/L)*sin(2*pi*(s/L+t/T))"},
+            {"Time/End time", test::text(end_time)}};
+  }
+
+  struct UserUnits
+  {
+    double length, time, friction;
+  };
+  const std::vector<UserUnits> all_units = {
+    {1., 1., 1.}, {1e-6, 1., 1.}, {1e6, 1., 1.}, {1e-6, 1e-3, 1e12}, {1e6, 3600., 1e-9}, {0.3, 7e5, 2e-4}};
+} // namespace
+
+/// In natural units L = T = gamma = 1, and only the stiffness is left.
+TEST(Scene, NaturalUnits)
+{
+  for (const auto &[length, time, friction] : all_units)
+  {
+    const Scene scene = test::parameters_with(in_user_units(length, time, friction)).create_scene();
+    const Units units = natural_units(scene);
+    EXPECT_EQ(units.length, length);
+    EXPECT_NEAR(units.time / (0.7 * time), 1., 1e-15);
+    EXPECT_NEAR(units.energy() / (units.force * length), 1., 1e-15);
+    EXPECT_NEAR(units.power() * units.time / units.energy(), 1., 1e-15);
+    EXPECT_NEAR(units.velocity() * units.time / units.length, 1., 1e-15);
+    const Scene natural = in_units(scene, units);
+    EXPECT_NEAR(natural.body.length, 1., 1e-15);
+    EXPECT_NEAR(natural.end_time, 1., 1e-15);
+    EXPECT_NEAR(natural.body.friction_coefficient, 1., 1e-14);
+    EXPECT_NEAR(natural.body.elastic_modulus, stiffness, 1e-14);
+    EXPECT_EQ(natural.body.anchoring_exponent, scene.body.anchoring_exponent);
+    const std::vector<double> w = {0.5, 1., 2.};
+    std::vector<double> g(3);
+    natural.friction->values(w, g);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(g[i], std::pow(w[i], natural.body.friction_exponent()), 1e-13);
+    std::vector<double> m(1);
+    natural.active_stress->at({0.3})->values(0.4, m);
+    EXPECT_NEAR(m[0], 0.2 * std::sin(0.3 * M_PI) * std::sin(1.4 * M_PI), 1e-13);
+  }
+}
+
+/// There and back: any units, and those of the user again.
+TEST(Scene, InUnitsAndBack)
+{
+  const Scene scene = test::parameters_with(in_user_units(0.3, 7e5, 2e-4)).create_scene();
+  const Units units{3e4, 17., 1e-9};
+  const Scene other = in_units(scene, units);
+  const Scene back  = in_units(other, {1. / units.length, 1. / units.time, 1. / units.force});
+  EXPECT_NEAR(back.body.length / scene.body.length, 1., 1e-14);
+  EXPECT_NEAR(back.body.elastic_modulus / scene.body.elastic_modulus, 1., 1e-14);
+  EXPECT_NEAR(back.body.friction_coefficient / scene.body.friction_coefficient, 1., 1e-14);
+  EXPECT_NEAR(back.end_time / scene.end_time, 1., 1e-14);
+  const std::vector<double> w = {0.5, 1., 2.};
+  std::vector<double> g(3), g_back(3), m(1), m_back(1);
+  scene.friction->values(w, g);
+  back.friction->values(w, g_back);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(g_back[i] / g[i], 1., 1e-13);
+  scene.active_stress->at({0.1})->values(2e5, m);
+  back.active_stress->at({0.1})->values(2e5, m_back);
+  EXPECT_NEAR(m_back[0] / m[0], 1., 1e-12);
+}
+
+/// The whole program: the same crawler moves the same part of its length in any units.
+TEST(Scene, TheSameMotionInAllUnits)
+{
+  double reference = 0.;
+  for (const auto &[length, time, friction] : all_units)
+  {
+    const auto result = test::run_with(in_user_units(length, time, friction)).result;
+    ASSERT_EQ(result.time.status, "finished") << result.time.message;
+    const double relative = result.displacement / length;
+    if (reference == 0.)
+      reference = relative;
+    EXPECT_GT(std::abs(relative), 1e-5);
+    EXPECT_NEAR(relative, reference, 1e-12) << "length " << length;
+    EXPECT_NEAR(result.time.time / (0.7 * time), 1., 1e-14);
+  }
+}
+
+TEST(Scene, RefusesExtremeUnits)
+{
+  const auto refused = [](const auto &change)
+  {
+    Scene scene = test::parameters_with(in_user_units(1., 1., 1.)).create_scene();
+    EXPECT_NO_THROW(natural_units(scene));
+    change(scene);
+    EXPECT_THROW(natural_units(scene), InputError);
+  };
+  for (const double extreme : {1e-120, 1e120, 0., -1., std::numeric_limits<double>::quiet_NaN()})
+  {
+    refused(
+      [&](Scene &scene)
+      {
+        scene.body.length = extreme;
+      });
+    refused(
+      [&](Scene &scene)
+      {
+        scene.end_time = extreme;
+      });
+    refused(
+      [&](Scene &scene)
+      {
+        scene.body.friction_coefficient = extreme;
+      });
+    refused(
+      [&](Scene &scene)
+      {
+        scene.body.elastic_modulus = extreme;
+      });
+  }
+  for (const double extreme : {1e-21, 1e21})
+    refused(
+      [&](Scene &scene)
+      {
+        scene.body.elastic_modulus = extreme / scene.end_time;
+      });
+}
