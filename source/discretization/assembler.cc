@@ -98,8 +98,12 @@ namespace crawler
   {
     static_assert(sizeof(CellIntegrals) % sizeof(double) == 0);
     if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(
-        MPI_IN_PLACE, &sum, sizeof(CellIntegrals) / sizeof(double), MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+      MPI_Allreduce(MPI_IN_PLACE,
+                    &sum,
+                    sizeof(CellIntegrals) / sizeof(double),
+                    MPI_DOUBLE,
+                    MPI_SUM,
+                    discretization_.communicator());
   }
 
   StretchAt
@@ -111,12 +115,12 @@ namespace crawler
   StretchRange
   Assembler::stretch_range(const ConstVector y)
   {
-    const auto local  = discretization_.to_local(displacement(y), u_local_);
-    const unsigned n  = discretization_.element().n;
+    const auto local          = discretization_.to_local(displacement(y), u_local_);
+    const unsigned n          = discretization_.element().n;
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    const auto log_w      = log_stretch(y);
-    const auto place      = [&](const unsigned int i)
+    const auto log_w = log_stretch(y);
+    const auto place = [&](const unsigned int i)
     {
       return sampler_.places()[i];
     };
@@ -196,10 +200,10 @@ namespace crawler
   std::vector<double>
   Assembler::error_indicators(const double t, const ConstVector y, const ConstVector v)
   {
-    const auto &element       = discretization_.element();
-    const auto &to_points     = friction_integration(); // [quadrature point][friction point]
-    const unsigned int n      = element.n, n_cells = discretization_.n_local_cells();
-    const double k            = scene_.body.elastic_modulus;
+    const auto &element   = discretization_.element();
+    const auto &to_points = friction_integration(); // [quadrature point][friction point]
+    const unsigned int n = element.n, n_cells = discretization_.n_local_cells();
+    const double k = scene_.body.elastic_modulus;
     if (!quadrature_stress_)
       quadrature_stress_ = scene_.active_stress->at(discretization_.points(element.points));
     m_at_quadrature_.resize(static_cast<std::size_t>(n_cells) * n);

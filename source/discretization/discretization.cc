@@ -121,7 +121,7 @@ namespace crawler
       {
         const auto place     = static_cast<std::uint64_t>(std::llround(cells_[c].left / cells_[c].size));
         const bool left_half = place % 2 == 0;
-        const bool is_pair   = cells_[c].level > 0 && left_half && c + 1 < n && cells_[c + 1].level == cells_[c].level &&
+        const bool is_pair = cells_[c].level > 0 && left_half && c + 1 < n && cells_[c + 1].level == cells_[c].level &&
                              changes[c + 1] == CellChange::join;
         if (is_pair)
           ++c;

@@ -9,23 +9,25 @@ namespace crawler
   DiscretizationParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Discretization");
-    declarations.choice("Formulation",
-                        formulation,
-                        {"position", "log stretch", "automatic"},
-                        "The unknowns: position; log stretch, for stretches near 0, which position cannot hold; automatic "
-                        "starts with position and changes to log stretch when the stretch falls below 0.1.");
+    declarations.choice(
+      "Formulation",
+      formulation,
+      {"position", "log stretch", "automatic"},
+      "The unknowns: position; log stretch, for stretches near 0, which position cannot hold; automatic "
+      "starts with position and changes to log stretch when the stretch falls below 0.1.");
     declarations.choice(
       "Mesh",
       mesh,
       {"uniform", "adaptive", "automatic"},
       "Whether the cells have one size, or are divided and joined during the run where an error indicator asks for it. "
       "Automatic: adaptive if a uniform mesh would need more than 64 cells.");
-    declarations.number("Mesh tolerance",
-                        mesh_tolerance,
-                        positive(),
-                        "Admissible sum of the error indicators of an adaptive mesh, relative to the square of the strain. "
-                        "Automatic: chosen from Accuracy.",
-                        "1");
+    declarations.number(
+      "Mesh tolerance",
+      mesh_tolerance,
+      positive(),
+      "Admissible sum of the error indicators of an adaptive mesh, relative to the square of the strain. "
+      "Automatic: chosen from Accuracy.",
+      "1");
     declarations.number("Smallest cell",
                         smallest_cell,
                         positive(),
@@ -41,7 +43,8 @@ namespace crawler
                               n_cells,
                               1,
                               10000000,
-                              "Number of cells of one size along the body; of an adaptive mesh: of the first and coarsest mesh. Automatic: chosen "
+                              "Number of cells of one size along the body; of an adaptive mesh: of the first and "
+                              "coarsest mesh. Automatic: chosen "
                               "from Accuracy.");
     declarations.choice(
       "Share cells",

@@ -57,10 +57,10 @@ namespace crawler
       static void
       residual(const LogCellInput &in, double *F, double *L)
       {
-        const CellInput &cells       = in.cells;
-        const ReferenceElement &e    = *cells.element;
-        const double *D              = e.stretch_derivatives.data();
-        const bool with_friction     = in.log_w_dot != nullptr;
+        const CellInput &cells    = in.cells;
+        const ReferenceElement &e = *cells.element;
+        const double *D           = e.stretch_derivatives.data();
+        const bool with_friction  = in.log_w_dot != nullptr;
         for (unsigned int c = 0; c < cells.n_cells; ++c)
         {
           const double h      = cells.cell_size[c];
@@ -137,7 +137,8 @@ namespace crawler
           {
             double column[q];
             for (int p = 0; p < q; ++p)
-              column[p] = (f.column_node[i] * E[i * q + p] + f.column_point[p] * D[p * n + i]) * f.row[p] / f.diagonal[p];
+              column[p] =
+                (f.column_node[i] * E[i * q + p] + f.column_point[p] * D[p * n + i]) * f.row[p] / f.diagonal[p];
             for (int j = 0; j < n; ++j)
             {
               double sum = i == j ? f.mass[i] : 0.;

@@ -57,9 +57,9 @@ namespace crawler
   bool
   LogStretchForm::setup_jacobian(const double t, const ConstVector y, const ConstVector, const double sigma)
   {
-    sigma_        = sigma;
-    const bool ok = kernels_.jacobian(
-      log_input(t, y, velocities(y)), sigma, jacobian_.blocks().data(), factors_.data());
+    sigma_ = sigma;
+    const bool ok =
+      kernels_.jacobian(log_input(t, y, velocities(y)), sigma, jacobian_.blocks().data(), factors_.data());
     int all_ok = jacobian_.factorize() && ok;
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE, &all_ok, 1, MPI_INT, MPI_MIN, discretization_.communicator());

@@ -64,7 +64,7 @@ namespace crawler
   mark_for_joining(const std::vector<double> &indicators, const Discretization &mesh, const MeshLimits &limits)
   {
     constexpr double share = 0.01, worth = 0.25;
-    const unsigned int n   = mesh.n_cells();
+    const unsigned int n = mesh.n_cells();
     // The indicator of a smooth stretch goes with the size of the cell to the power 2q + 1.
     const double growth = std::ldexp(1., 2 * static_cast<int>(mesh.element().degree));
     std::vector<CellChange> changes(n, CellChange::keep);
@@ -72,8 +72,8 @@ namespace crawler
     for (unsigned int c = 0; c + 1 < n; ++c)
     {
       const auto &cell = mesh.cells()[c];
-      const bool pair  = cell.level > 0 && cell.level == mesh.cells()[c + 1].level &&
-                        std::llround(cell.left / cell.size) % 2 == 0;
+      const bool pair =
+        cell.level > 0 && cell.level == mesh.cells()[c + 1].level && std::llround(cell.left / cell.size) % 2 == 0;
       if (!pair || (indicators[c] + indicators[c + 1]) * growth > share * limits.tolerance / n)
         continue;
       changes[c] = changes[c + 1] = CellChange::join;

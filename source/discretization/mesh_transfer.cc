@@ -35,14 +35,24 @@ namespace crawler
       for (unsigned int r = 1; r < counts.size(); ++r)
         offsets[r] = offsets[r - 1] + counts[r - 1];
       std::vector<double> all(static_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()));
-      MPI_Allgatherv(
-        own.data(), n, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, discretization.communicator());
+      MPI_Allgatherv(own.data(),
+                     n,
+                     MPI_DOUBLE,
+                     all.data(),
+                     counts.data(),
+                     offsets.data(),
+                     MPI_DOUBLE,
+                     discretization.communicator());
       return all;
     }
 
     /// y = matrix x, both of one cell.
     void
-    apply(const std::vector<double> &matrix, const double *x, const unsigned int columns, double *y, const unsigned int rows)
+    apply(const std::vector<double> &matrix,
+          const double *x,
+          const unsigned int columns,
+          double *y,
+          const unsigned int rows)
     {
       for (unsigned int i = 0; i < rows; ++i)
       {
@@ -89,12 +99,12 @@ namespace crawler
           const double coefficient = (2. * k + 1.) * 0.5 * element.weights[p] * std::legendre(k, 2. * x - 1.);
           for (unsigned int i = 0; i < n; ++i)
             for (unsigned int j = 0; j < n; ++j)
-              u_join_[i * (2 * q + 1) + which * q + j] += integrated_legendre(k, element.nodes[i]) * coefficient * 2. *
-                                                          element.derivatives[p * n + j];
+              u_join_[i * (2 * q + 1) + which * q + j] +=
+                integrated_legendre(k, element.nodes[i]) * coefficient * 2. * element.derivatives[p * n + j];
           for (unsigned int i = 0; i < q; ++i)
             for (unsigned int j = 0; j < q; ++j)
-              log_join_[i * 2 * q + which * q + j] += std::legendre(k, 2. * element.stretch_points[i] - 1.) *
-                                                      coefficient * log_at_points[p * q + j];
+              log_join_[i * 2 * q + which * q + j] +=
+                std::legendre(k, 2. * element.stretch_points[i] - 1.) * coefficient * log_at_points[p * q + j];
         }
   }
 
@@ -102,8 +112,8 @@ namespace crawler
   MeshTransfer::transfer(const Assembler &from, const std::span<const double> y, const Assembler &to) const
   {
     const unsigned int n = element_.n, q = element_.degree;
-    const bool to_log  = to.formulation() == Formulation::log_stretch,
-               was_log = from.formulation() == Formulation::log_stretch;
+    const bool to_log     = to.formulation() == Formulation::log_stretch,
+               was_log    = from.formulation() == Formulation::log_stretch;
     const auto &old_cells = from.discretization().cells(), &new_cells = to.discretization().cells();
     const std::vector<double> u_old = gather(from.displacement(y), from.discretization());
     std::vector<double> log_old     = gather(from.log_stretch(y), from.discretization());
@@ -176,8 +186,8 @@ namespace crawler
         old += 2;
       }
     }
-    const double missing = (integral(u_old, old_cells, element_) - integral(u, new_cells, element_)) /
-                           to.discretization().length();
+    const double missing =
+      (integral(u_old, old_cells, element_) - integral(u, new_cells, element_)) / to.discretization().length();
     for (double &value : u)
       value += missing;
 

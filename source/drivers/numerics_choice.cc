@@ -23,7 +23,8 @@ namespace crawler
     constexpr double indicator_factor = 8.;
     /// Meshes of the collapse (degree 1): from the coarsest, doubled until the displacement settles.
     constexpr unsigned int first_collapse_cells = 64, last_collapse_cells = 512, last_accurate_collapse_cells = 2048;
-    constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000, most_adaptive_pilot_cells = 500;
+    constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000,
+                           most_adaptive_pilot_cells = 500;
     /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
     constexpr double resolved = 1e-3;
     /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
@@ -93,14 +94,14 @@ namespace crawler
         , accuracy_(parameters.accuracy)
         , scale_(scales_.displacement > 0. ? scales_.displacement : L_)
       {
-        Numerics &n    = choice_.numerics;
-        n.degree       = parameters.discretization.degree.value_or(automatic_degree);
-        n.initial_step = parameters.time.initial_step.value_or(1e-5 * T_);
-        n.largest_step = scales_.time;
-        const std::string &form = parameters.discretization.formulation;
-        n.formulation           = form == "position"    ? FormulationChoice::position :
-                                  form == "log stretch" ? FormulationChoice::log_stretch :
-                                                          FormulationChoice::automatic;
+        Numerics &n              = choice_.numerics;
+        n.degree                 = parameters.discretization.degree.value_or(automatic_degree);
+        n.initial_step           = parameters.time.initial_step.value_or(1e-5 * T_);
+        n.largest_step           = scales_.time;
+        const std::string &form  = parameters.discretization.formulation;
+        n.formulation            = form == "position"      ? FormulationChoice::position
+                                   : form == "log stretch" ? FormulationChoice::log_stretch
+                                                           : FormulationChoice::automatic;
         pilot_time_              = parameters.time;
         pilot_time_.step_control = "adaptive";
         if (!integrator(pilot_time_.integrator).adaptive)
@@ -210,8 +211,8 @@ namespace crawler
           else
             good = true;
         }
-        const bool predicts        = pilot_.time.status == "finished";
-        choice_.numerics.n_cells   = n_cells;
+        const bool predicts      = pilot_.time.status == "finished";
+        choice_.numerics.n_cells = n_cells;
         if (!predicts || pilot_.unresolved > std::max(resolved, accuracy_))
           return most == most_cells; // whatever it is, there is no more
         if (user_cells_)
@@ -219,7 +220,8 @@ namespace crawler
 
         // On smooth solutions `unresolved` goes down as (cell size)^(2q-2), q the pilot's degree, and the error of the
         // displacement at least as fast. Thin layers look resolved before they are: so the rate is measured, with
-        // smaller steps whose errors do not hide it, on meshes twice as fine each time until it is at least half of that.
+        // smaller steps whose errors do not hide it, on meshes twice as fine each time until it is at least half of
+        // that.
         const double enough_cells = n_cells; // fewer failed or left too much unresolved
         const double full_rate = 2. * pilot_degree - 2., wanted_part = accuracy_ / space_factor;
         double unresolved = pilot_.unresolved, indicator = pilot_.largest_indicator, rate = 0.;
@@ -251,21 +253,21 @@ namespace crawler
       void
       adaptive()
       {
-        Numerics &n = choice_.numerics;
-        n.degree    = parameters_.discretization.degree.value_or(adaptive_degree);
-        n.n_cells   = user_cells_.value_or(8);
-        n.mesh      = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
+        Numerics &n   = choice_.numerics;
+        n.degree      = parameters_.discretization.degree.value_or(adaptive_degree);
+        n.n_cells     = user_cells_.value_or(8);
+        n.mesh        = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
         double strain = pilot_.strain > 0. ? pilot_.strain : scale_ * scale_ / L_;
         // What needs more than this collapses, and the scheme that is safe then costs less.
         const TimeParameters usual = pilot_time_;
         pilot_time_.max_steps      = std::min(pilot_time_.max_steps, most_adaptive_pilot_steps);
-        double tighter = 1.;
+        double tighter             = 1.;
         for (int i = 0; i < 4; ++i)
         {
-          Numerics settings       = pilot_numerics(n.degree, n.n_cells, tolerance_);
+          Numerics settings        = pilot_numerics(n.degree, n.n_cells, tolerance_);
           settings.mesh.tolerance  = tighter * resolved * strain;
           settings.mesh.most_cells = most_adaptive_pilot_cells;
-          pilot_                  = pilot(settings);
+          pilot_                   = pilot(settings);
           measure_size();
           const bool finished = pilot_.time.status == "finished";
           const double before = strain;
@@ -281,8 +283,9 @@ namespace crawler
             break;
         }
         pilot_time_       = usual;
-        const double part = parameters_.discretization.mesh_tolerance.value_or(std::min(accuracy_ / indicator_factor, tighter * resolved));
-        n.mesh.tolerance  = part * strain;
+        const double part = parameters_.discretization.mesh_tolerance.value_or(
+          std::min(accuracy_ / indicator_factor, tighter * resolved));
+        n.mesh.tolerance = part * strain;
       }
 
       /**
@@ -293,11 +296,11 @@ namespace crawler
       void
       collapse()
       {
-        Numerics &n   = choice_.numerics;
-        n.degree      = 1;
-        n.formulation = FormulationChoice::log_stretch;
-        n.mesh        = {};
-        double before = std::numeric_limits<double>::quiet_NaN();
+        Numerics &n             = choice_.numerics;
+        n.degree                = 1;
+        n.formulation           = FormulationChoice::log_stretch;
+        n.mesh                  = {};
+        double before           = std::numeric_limits<double>::quiet_NaN();
         const unsigned int last = accuracy_ >= 1e-4 ? last_collapse_cells : last_accurate_collapse_cells;
         size_                   = 0.; // that of a failed pilot says nothing
         for (n.n_cells = first_collapse_cells;; n.n_cells *= 2)
@@ -333,30 +336,29 @@ namespace crawler
         const double r             = 1. / (1. + (nominal > 0 ? nominal : parameters_.time.order));
         const double wanted =
           accuracy_ * size_ / (time_factor * std::max(pilot_.time.steps, 1u) * std::pow(tolerance_, r));
-        const double by_rule = std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
-                                        std::max(1e-15 * scale_, smallest()));
-        n.tolerance          = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
+        const double by_rule =
+          std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance_), std::max(1e-15 * scale_, smallest()));
+        n.tolerance = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
         if (!is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed && !parameters_.discretization.mesh_tolerance)
           choice_.promised_error = accuracy_ * size_;
-        const double seconds =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        const std::string kind = is_collapse_ ? "the stretch collapses: log stretch with degree 1, " :
-                                 n.mesh.tolerance > 0. ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance) :
-                                                         "";
+        const double seconds   = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const std::string kind = is_collapse_ ? "the stretch collapses: log stretch with degree 1, "
+                                 : n.mesh.tolerance > 0.
+                                   ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
+                                   : "";
         choice_.explanation =
-          predicts ?
-            fmt::format("for Accuracy {:g}: {}from {} pilot runs in {:.2g} s: displacement about {:.3g}",
-                        accuracy_,
-                        kind,
-                        n_pilots_,
-                        seconds,
-                        pilot_.displacement) :
-            fmt::format("for Accuracy {:g}: {}the last of {} pilot runs, with {} cells, ended early: {}",
-                        accuracy_,
-                        kind,
-                        n_pilots_,
-                        n.n_cells,
-                        pilot_.time.message);
+          predicts ? fmt::format("for Accuracy {:g}: {}from {} pilot runs in {:.2g} s: displacement about {:.3g}",
+                                 accuracy_,
+                                 kind,
+                                 n_pilots_,
+                                 seconds,
+                                 pilot_.displacement)
+                   : fmt::format("for Accuracy {:g}: {}the last of {} pilot runs, with {} cells, ended early: {}",
+                                 accuracy_,
+                                 kind,
+                                 n_pilots_,
+                                 n.n_cells,
+                                 pilot_.time.message);
         if (choice_.promised_error > 1.5 * accuracy_ * size_)
           choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
                                              choice_.promised_error / size_);

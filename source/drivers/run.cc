@@ -161,8 +161,7 @@ namespace crawler
         observers.push_back(std::make_unique<KymographWriter>(input.scene.end_time, folder));
     }
     if (writes && output.statistics)
-      observers.push_back(
-        std::make_unique<StatisticsWriter>(input.scene.body.length, first, folder, output.ledger));
+      observers.push_back(std::make_unique<StatisticsWriter>(input.scene.body.length, first, folder, output.ledger));
     if (writes && !options.quiet)
       observers.push_back(std::make_unique<Progress>(log, input.scene));
 

@@ -14,8 +14,8 @@ namespace crawler
       return;
     const bool own_numerics = parameters.time.tolerance || parameters.time.integrator != "bdf" ||
                               parameters.time.order < 4 || parameters.time.step_control == "fixed";
-    const double tolerance =
-      parameters.output.ledger_tolerance.value_or(own_numerics ? 0.1 : std::max(1e-8, (result.log_stretch_since ? 300. : 10.) * parameters.accuracy));
+    const double tolerance = parameters.output.ledger_tolerance.value_or(
+      own_numerics ? 0.1 : std::max(1e-8, (result.log_stretch_since ? 300. : 10.) * parameters.accuracy));
     constexpr double friction_tolerance = 1e-6;
     std::string problem;
     if (!(result.ledger->residual() <= tolerance))

@@ -30,8 +30,8 @@ namespace crawler
     }
 
     /**
-     * In the log-stretch form the stretch can be followed much further. Near an inversion w^(1+a) goes linearly to 0, so
-     * this is where 2e-9 of it is left; for a <= -1 there is none, and what limits w is the range of doubles.
+     * In the log-stretch form the stretch can be followed much further. Near an inversion w^(1+a) goes linearly to 0,
+     * so this is where 2e-9 of it is left; for a <= -1 there is none, and what limits w is the range of doubles.
      */
     double
     lost_in_log_form(const double a)
@@ -158,12 +158,13 @@ namespace crawler
       explain_failure();
     if (result_.time.status == "finished" && numerics_.mesh.tolerance > 0. &&
         result_.largest_indicator > 4. * numerics_.mesh.tolerance)
-      diagnosis_ = {"failed",
-                    "under_resolved",
-                    fmt::format("the sum of the error indicators reached {:.2g}, above the mesh tolerance of {:.2g}, and "
-                                "no cell may be divided further; a smaller Discretization/Smallest cell is needed",
-                                result_.largest_indicator * units_.length,
-                                numerics_.mesh.tolerance * units_.length)};
+      diagnosis_ = {
+        "failed",
+        "under_resolved",
+        fmt::format("the sum of the error indicators reached {:.2g}, above the mesh tolerance of {:.2g}, and "
+                    "no cell may be divided further; a smaller Discretization/Smallest cell is needed",
+                    result_.largest_indicator * units_.length,
+                    numerics_.mesh.tolerance * units_.length)};
     if (diagnosis_)
     {
       result_.time.status  = diagnosis_->status;
@@ -187,8 +188,8 @@ namespace crawler
   {
     for (;;)
     {
-      request_         = Request::none;
-      bool resumed     = accepted_time_ > 0.;
+      request_          = Request::none;
+      bool resumed      = accepted_time_ > 0.;
       stepper_->monitor = [&](const Step &part, const std::span<const double> y)
       {
         if (resumed) // the state from which this part starts has been seen already
@@ -196,7 +197,7 @@ namespace crawler
           resumed = false;
           return true;
         }
-        Step step   = part;
+        Step step = part;
         step.number += before_.steps;
         step.rejected += before_.rejected_steps;
         step.newton_iterations += before_.newton_iterations;
@@ -225,8 +226,8 @@ namespace crawler
       result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
       // A form that cannot go on because the stretch becomes small is changed, too.
       if (request_ == Request::none && !diagnosis_ && outcome.status == "failed" && outcome.domain_error &&
-          numerics_.formulation == FormulationChoice::automatic &&
-          assembler_->formulation() == Formulation::position && !end_inverts(accepted_time_, accepted_time_ + 1e-9))
+          numerics_.formulation == FormulationChoice::automatic && assembler_->formulation() == Formulation::position &&
+          !end_inverts(accepted_time_, accepted_time_ + 1e-9))
         request_ = Request::log_stretch;
       if (request_ == Request::none || diagnosis_ || outcome.status == "finished")
         return outcome;
@@ -252,9 +253,8 @@ namespace crawler
     const auto old_discretization = std::move(discretization_);
     const bool to_log             = request_ == Request::log_stretch;
     const Formulation formulation = to_log ? Formulation::log_stretch : old_assembler->formulation();
-    auto mesh = old_discretization->adapted(to_log ? std::vector<CellChange>(old_discretization->n_cells(),
-                                                                             CellChange::keep) :
-                                                     changes_);
+    auto mesh                     = old_discretization->adapted(
+      to_log ? std::vector<CellChange>(old_discretization->n_cells(), CellChange::keep) : changes_);
     build(std::move(mesh), formulation);
     const MeshTransfer transfer(discretization_->element());
     y_ = transfer.transfer(*old_assembler, accepted_, *assembler_);
@@ -302,8 +302,7 @@ namespace crawler
       }
       request_ = Request::log_stretch;
     }
-    else if (stretch_.min.value <=
-             (in_position ? lost_in_position : lost_in_log_form(scene_.body.friction_exponent())))
+    else if (stretch_.min.value <= (in_position ? lost_in_position : lost_in_log_form(scene_.body.friction_exponent())))
     {
       locate_inversion(step);
       return false;
@@ -331,9 +330,9 @@ namespace crawler
     {
       if (!adaptive && assembler_->velocity(step.time, y, v_))
       {
-        const auto indicators     = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
-        result_.largest_indicator = std::max(result_.largest_indicator,
-                                             std::accumulate(indicators.begin(), indicators.end(), 0.));
+        const auto indicators = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
+        result_.largest_indicator =
+          std::max(result_.largest_indicator, std::accumulate(indicators.begin(), indicators.end(), 0.));
       }
       const Resolution resolution = assembler_->resolution(y);
       largest_.highest_mode       = std::max(largest_.highest_mode, resolution.highest_mode);
@@ -469,8 +468,8 @@ namespace crawler
   bool
   Simulation::end_inverts(const double from, const double to)
   {
-    constexpr int parts      = 4;
-    const auto smallest      = [this](const double t)
+    constexpr int parts = 4;
+    const auto smallest = [this](const double t)
     {
       const auto [left, right] = assembler_->end_stress(t);
       return 1. - std::max(left, right) / scene_.body.elastic_modulus;
@@ -488,10 +487,10 @@ namespace crawler
       const auto [left, right] = assembler_->end_stress(t);
       const double s           = left >= right ? 0. : 1.;
       result_.inversion        = SimulationResult::Extreme{0., s, t};
-      diagnosis_ = {"inverted",
-                    "inverted_at_end",
-                    fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, where "
-                                "1 - m/k is not positive; the model ends there",
+      diagnosis_               = {"inverted",
+                                  "inverted_at_end",
+                                  fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, where "
+                                              "1 - m/k is not positive; the model ends there",
                                 s * units_.length,
                                 t * units_.time)};
       return true;
@@ -503,12 +502,12 @@ namespace crawler
   void
   Simulation::locate_inversion(const Step &step)
   {
-    const double threshold = assembler_->formulation() == Formulation::position ?
-                               lost_in_position :
-                               lost_in_log_form(scene_.body.friction_exponent());
+    const double threshold = assembler_->formulation() == Formulation::position
+                               ? lost_in_position
+                               : lost_in_log_form(scene_.body.friction_exponent());
     std::vector<double> y(assembler_->n_owned());
-    StretchAt smallest       = stretch_.min;
-    const auto above         = [&](const double t)
+    StretchAt smallest = stretch_.min;
+    const auto above   = [&](const double t)
     {
       stepper_->interpolate(t, y);
       smallest = assembler_->stretch_range(y).min;
@@ -534,9 +533,9 @@ namespace crawler
         return;
       // How long is left at the present rate?
       const StretchAt smallest = assembler_->stretch_range(accepted_).min;
-      const double before      = min_history_[1].value, before_t = min_history_[1].t;
-      const double rate        = t > before_t ? (before - smallest.value) / (t - before_t) : 0.;
-      const double left        = rate > 0. ? smallest.value / rate : 1.;
+      const double before = min_history_[1].value, before_t = min_history_[1].t;
+      const double rate = t > before_t ? (before - smallest.value) / (t - before_t) : 0.;
+      const double left = rate > 0. ? smallest.value / rate : 1.;
       // Near the end of the model w^(1+a) goes to 0 linearly: for large a that is hardly seen in w before it happens.
       const double a         = scene_.body.friction_exponent();
       const bool about_to_be = a > 0. && rate > 0. && smallest.value < 2. * std::exp(-20. / (1. + a));
@@ -546,8 +545,8 @@ namespace crawler
         return;
       }
     }
-    outcome.message += fmt::format(
-      ", at t = {:.9g} with step size {:.3g}", outcome.time * units_.time, outcome.step_size * units_.time);
+    outcome.message +=
+      fmt::format(", at t = {:.9g} with step size {:.3g}", outcome.time * units_.time, outcome.step_size * units_.time);
   }
 
   /**
@@ -583,9 +582,9 @@ namespace crawler
                               t * units_.time,
                               discretization_->n_cells(),
                               discretization_->element().degree,
-                              assembler_->formulation() == Formulation::position ?
-                                "Discretization/Formulation = automatic or a larger Number of cells is needed" :
-                                "a larger Discretization/Number of cells is needed")};
+                              assembler_->formulation() == Formulation::position
+                                ? "Discretization/Formulation = automatic or a larger Number of cells is needed"
+                                : "a larger Discretization/Number of cells is needed")};
   }
 
   /// Frames have the times that were asked for, exactly.
@@ -637,7 +636,7 @@ namespace crawler
   Simulation::in_physical_units() const
   {
     SimulationResult result = result_;
-    result.time.time        = result.time.status == "finished" ? physical_scene_.end_time : result.time.time * units_.time;
+    result.time.time = result.time.status == "finished" ? physical_scene_.end_time : result.time.time * units_.time;
     result.time.step_size *= units_.time;
     result.displacement *= units_.length;
     result.largest_u *= units_.length;

@@ -59,12 +59,12 @@ namespace crawler
         u_p += values_[p * n + i] * u_local[node];
         v_p += values_[p * n + i] * v_local[node];
       }
-      fields_.displacement[p]   = u_p * units_.length;
-      fields_.position[p]       = coordinates_[p] + fields_.displacement[p];
-      fields_.velocity[p]       = v_p;
-      fields_.stretch[p]        = stretch_.stretch(u_local, log_w, cell, d.cell_size()[cell], place);
-      fields_.elastic_stress[p] = units_.force * equation::body_force(
-                                                   stretch_.strain(u_local, log_w, cell, d.cell_size()[cell], place), 0., k);
+      fields_.displacement[p] = u_p * units_.length;
+      fields_.position[p]     = coordinates_[p] + fields_.displacement[p];
+      fields_.velocity[p]     = v_p;
+      fields_.stretch[p]      = stretch_.stretch(u_local, log_w, cell, d.cell_size()[cell], place);
+      fields_.elastic_stress[p] =
+        units_.force * equation::body_force(stretch_.strain(u_local, log_w, cell, d.cell_size()[cell], place), 0., k);
     }
     stress_->values(t, fields_.active_stress);
     assembler_.scene().friction->values(fields_.stretch, fields_.friction_force);

@@ -66,15 +66,8 @@ namespace crawler
          {&fields.stretch, &fields.velocity, &fields.active_stress, &fields.friction_force, &fields.displacement})
     {
       std::vector<double> all(d.rank() == 0 ? n_points : 0); // so rows_ stays empty on the others
-      MPI_Gatherv(field->data(),
-                  own,
-                  MPI_DOUBLE,
-                  all.data(),
-                  counts.data(),
-                  offsets.data(),
-                  MPI_DOUBLE,
-                  0,
-                  d.communicator());
+      MPI_Gatherv(
+        field->data(), own, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, 0, d.communicator());
       rows_.insert(rows_.end(), all.begin(), all.end());
     }
   }
@@ -105,10 +98,8 @@ namespace crawler
     for (const double time : times_)
     {
       for (unsigned int i = 0; i < n_points; ++i)
-        fmt::format_to(std::back_inserter(text),
-                       "{:.9g} {:.9g} 0 ",
-                       static_cast<double>(i) / (n_points - 1),
-                       time / end_time_);
+        fmt::format_to(
+          std::back_inserter(text), "{:.9g} {:.9g} 0 ", static_cast<double>(i) / (n_points - 1), time / end_time_);
       text += '\n';
     }
     text += "</DataArray>\n</Points>\n</Piece>\n</StructuredGrid>\n</VTKFile>\n";

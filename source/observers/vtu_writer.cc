@@ -76,7 +76,7 @@ namespace crawler
     mesh_number_         = snapshot.mesh_number;
     const Fields &fields = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
     const unsigned int n = d.element().n, n_cells = d.n_local_cells();
-    const double length  = snapshot.units.length;
+    const double length = snapshot.units.length;
 
     PatchOutput output;
     output.patches.resize(n_cells);

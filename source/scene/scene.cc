@@ -76,13 +76,12 @@ namespace crawler
     const auto require = [](const char *name, const double value, const double least, const double most)
     {
       if (!(value >= least && value <= most))
-        throw InputError(
-          fmt::format("{} is {:.3g}, but a number from {:g} to {:g} is expected; check the units of the "
-                      "body and of the end time",
-                      name,
-                      value,
-                      least,
-                      most));
+        throw InputError(fmt::format("{} is {:.3g}, but a number from {:g} to {:g} is expected; check the units of the "
+                                     "body and of the end time",
+                                     name,
+                                     value,
+                                     least,
+                                     most));
     };
     require("Body/Length", units.length, smallest, largest);
     require("Time/End time", units.time, smallest, largest);

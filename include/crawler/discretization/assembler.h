@@ -109,10 +109,11 @@ namespace crawler
     ConstVector
     log_stretch(const ConstVector y) const
     {
-      return formulation() == Formulation::position ?
-               ConstVector() :
-               y.subspan(discretization_.n_owned(),
-                         static_cast<std::size_t>(discretization_.n_local_cells()) * discretization_.element().degree);
+      return formulation() == Formulation::position
+               ? ConstVector()
+               : y.subspan(discretization_.n_owned(),
+                           static_cast<std::size_t>(discretization_.n_local_cells()) *
+                             discretization_.element().degree);
     }
 
     /// The extreme stretches of the whole body, the same on all ranks. A stretch that is not a number counts as the
@@ -125,9 +126,9 @@ namespace crawler
 
     /**
      * The error indicator of each own cell: int_cell (max(1, |w g'/g|) d/(k max(w, floor)))^2 ds with d = N* - N, the
-     * difference between the force in the body N = m + k (w - 1) and the one that balances the friction, N* = int_0^s g v ds. N* is zero
-     * at both ends, as the stress-free ends ask, and d is orthogonal to all that the mesh can represent
-     * (doc/numerics.md, "Error indicator"). @p v is the velocity of the state @p y.
+     * difference between the force in the body N = m + k (w - 1) and the one that balances the friction, N* = int_0^s g
+     * v ds. N* is zero at both ends, as the stress-free ends ask, and d is orthogonal to all that the mesh can
+     * represent (doc/numerics.md, "Error indicator"). @p v is the velocity of the state @p y.
      */
     std::vector<double>
     error_indicators(double t, ConstVector y, ConstVector v);
@@ -199,8 +200,8 @@ namespace crawler
     std::vector<double> m_; ///< at the stress points, at the time m_time_
     double m_time_;
     std::vector<double> u_local_, v_local_;
-    const StretchSampler sampler_;       ///< at the left end, the quadrature points and the right end
-    std::vector<double> highest_mode_;   ///< [point] weights that give the highest Legendre coefficient
+    const StretchSampler sampler_;     ///< at the left end, the quadrature points and the right end
+    std::vector<double> highest_mode_; ///< [point] weights that give the highest Legendre coefficient
     std::vector<double> friction_at_, m_at_quadrature_;
   };
 

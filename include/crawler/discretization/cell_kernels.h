@@ -23,9 +23,9 @@ namespace crawler
   /// What the log-stretch form needs besides.
   struct LogCellInput
   {
-    CellInput cells;          ///< its m is at the stretch points [cell][q]
-    const double *log_w;      ///< [cell][q] logarithm of the stretch at the stretch points
-    const double *log_w_dot;  ///< [cell][q] its time derivative
+    CellInput cells;         ///< its m is at the stretch points [cell][q]
+    const double *log_w;     ///< [cell][q] logarithm of the stretch at the stretch points
+    const double *log_w_dot; ///< [cell][q] its time derivative
   };
 
   /// Integrals over the body that the ledger is made of; see theory.md section 1 for their relations.

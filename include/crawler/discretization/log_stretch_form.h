@@ -13,8 +13,8 @@ namespace crawler
    *
    * so the stretch is positive whatever happens, and keeps its digits however small it is. The velocity is an unknown
    * of its own because v_s/w of an emptied cell is a quotient of tiny numbers, and differences of u have no digits for
-   * it. Friction is integrated at the nodes; for degree 1 and a <= -1 no cell can be emptied (doc/theory.md, "When a body
-   * can invert").
+   * it. Friction is integrated at the nodes; for degree 1 and a <= -1 no cell can be emptied (doc/theory.md, "When a
+   * body can invert").
    */
   class LogStretchForm : public Assembler
   {
@@ -76,8 +76,8 @@ namespace crawler
     const unsigned int q_;
     const LogCellKernels &kernels_;
     ChainMatrix jacobian_;
-    std::vector<double> factors_;              ///< [cell][log_factors(q)]
-    std::vector<double> node_local_, nodes_;   ///< local and owned arrays over the nodes
+    std::vector<double> factors_;            ///< [cell][log_factors(q)]
+    std::vector<double> node_local_, nodes_; ///< local and owned arrays over the nodes
     std::vector<double> local_buffer_;
     double sigma_ = 0.;
   };

@@ -8,8 +8,8 @@ namespace crawler
   /// What an adaptive mesh may become.
   struct MeshLimits
   {
-    double tolerance     = 0.; ///< admissible sum of all error indicators [length]; 0: the mesh does not change
-    double smallest_cell = 0.; ///< [length]
+    double tolerance        = 0.; ///< admissible sum of all error indicators [length]; 0: the mesh does not change
+    double smallest_cell    = 0.; ///< [length]
     unsigned int most_cells = 100000;
   };
 

@@ -43,5 +43,7 @@ namespace crawler
 
   /// The Lagrange polynomials through @p nodes, or their derivatives, at @p points: [points][nodes].
   std::vector<double>
-  interpolation_matrix(const std::vector<double> &nodes, const std::vector<double> &points, unsigned int derivative = 0);
+  interpolation_matrix(const std::vector<double> &nodes,
+                       const std::vector<double> &points,
+                       unsigned int derivative = 0);
 } // namespace crawler

@@ -28,8 +28,8 @@ namespace crawler
       return places_;
     }
 
-    /// The strain at place @p i of the local cell @p c of size @p h. @p u are the local displacements, @p log_w [cell][q]
-    /// the logarithms of the stretch, empty in the position form.
+    /// The strain at place @p i of the local cell @p c of size @p h. @p u are the local displacements, @p log_w
+    /// [cell][q] the logarithms of the stretch, empty in the position form.
     double
     strain(const std::span<const double> u,
            const std::span<const double> log_w,

@@ -56,9 +56,9 @@ namespace crawler
     Extreme min_stretch, max_stretch;
     std::optional<Extreme> inversion; ///< where and when the body inverted; value is the stretch there
 
-    std::optional<double> log_stretch_since;      ///< time from which on the log-stretch form was used [time]
+    std::optional<double> log_stretch_since;       ///< time from which on the log-stretch form was used [time]
     unsigned int mesh_changes = 0, most_cells = 0; ///< of an adaptive mesh
-    double largest_indicator  = 0.;                ///< largest sum of the error indicators of an accepted state [length]
+    double largest_indicator = 0.; ///< largest sum of the error indicators of an accepted state [length]
     double setup_seconds = 0., solve_seconds = 0., output_seconds = 0.;
   };
 
@@ -143,9 +143,9 @@ namespace crawler
 
     const Scene &physical_scene_;
     const Units units_;
-    const Scene scene_; ///< in natural units
+    const Scene scene_;       ///< in natural units
     const Numerics numerics_; ///< in natural units
-    TimeParameters time_; ///< in natural units
+    TimeParameters time_;     ///< in natural units
     const MPI_Comm communicator_;
 
     std::unique_ptr<Discretization> discretization_;
@@ -185,7 +185,7 @@ namespace crawler
     double accepted_min_stretch_ = 1.;
     TimeOutcome before_; ///< counts of the parts of the run before the last change of mesh or formulation
     const std::vector<double> *frames_ = nullptr; ///< in physical units
-    std::size_t next_frame_ = 0;
+    std::size_t next_frame_            = 0;
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
   };
 } // namespace crawler

@@ -27,7 +27,8 @@ namespace crawler
     {
       return stress_power + end_work;
     }
-    /// |W - Q - (elastic energy) - (transfer loss)|/(exchanged work): 0 for the exact solution, which starts at rest [1].
+    /// |W - Q - (elastic energy) - (transfer loss)|/(exchanged work): 0 for the exact solution, which starts at rest
+    /// [1].
     double
     residual() const;
   };

@@ -70,10 +70,10 @@ namespace crawler
     std::function<bool(const Step &step, ConstVector y)> monitor;
 
     /**
-     * Integrates from @p start_time to parameters.end_time. @p y is the first state on entry and the last accepted state
-     * on return. Steps end exactly on @p frames (ascending, within (start_time, end_time]) and on the end time. The same
-     * object can solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p initial_step [time]
-     * replace the parameters' automatic values. No adaptive step is longer than @p largest_step.
+     * Integrates from @p start_time to parameters.end_time. @p y is the first state on entry and the last accepted
+     * state on return. Steps end exactly on @p frames (ascending, within (start_time, end_time]) and on the end time.
+     * The same object can solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p
+     * initial_step [time] replace the parameters' automatic values. No adaptive step is longer than @p largest_step.
      */
     TimeOutcome
     solve(std::vector<double> &y,
