@@ -189,7 +189,9 @@ namespace crawler
     if (parameters.discretization.formulation == "automatic")
     {
       add(AtlasPoint::position, with_formulation(parameters, "position"));
-      add(AtlasPoint::log_stretch, with_formulation(parameters, "log stretch"));
+      // The log-stretch form is for a < 0 (doc/numerics.md).
+      if (parameters.body.friction_exponent() < 0.)
+        add(AtlasPoint::log_stretch, with_formulation(parameters, "log stretch"));
     }
     add(AtlasPoint::refined, refined_parameters(parameters));
     if (interrupted())

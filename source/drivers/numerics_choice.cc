@@ -169,7 +169,7 @@ namespace crawler
       bool
       collapses() const
       {
-        return pilot_.time.status != "finished" && pilot_.time.reason != "inverted_at_end" &&
+        return pilot_.time.status != "finished" && pilot_.time.reason != "inverted_at_end" && n_pilots_ > 0 &&
                scene_.body.friction_exponent() < 0.;
       }
 
@@ -189,7 +189,7 @@ namespace crawler
         // A cell of this degree resolves a stress whose scale is a quarter of its size.
         const double seen    = std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 0.25 * most_cells);
         unsigned int n_cells = user_cells_.value_or(static_cast<unsigned int>(seen));
-        if (n_cells > most)
+        if (n_cells > most && !user_cells_)
           return false;
         bool good = false;
         while (!good && n_pilots_ < 20)
@@ -253,9 +253,10 @@ namespace crawler
       void
       adaptive()
       {
-        Numerics &n   = choice_.numerics;
-        n.degree      = parameters_.discretization.degree.value_or(adaptive_degree);
-        n.n_cells     = user_cells_.value_or(8);
+        Numerics &n = choice_.numerics;
+        n.degree    = parameters_.discretization.degree.value_or(adaptive_degree);
+        n.n_cells   = user_cells_.value_or(
+          static_cast<unsigned int>(std::clamp(std::ceil(L_ / scales_.length), 8., 1. * most_cells)));
         n.mesh        = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
         double strain = pilot_.strain > 0. ? pilot_.strain : scale_ * scale_ / L_;
         // What needs more than this collapses, and the scheme that is safe then costs less.

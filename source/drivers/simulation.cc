@@ -36,7 +36,7 @@ namespace crawler
     double
     lost_in_log_form(const double a)
     {
-      return a <= -1. ? std::exp(-700.) : std::exp(std::clamp(-20. / (1. + a), -690., std::log(1e-2)));
+      return a <= -1. ? std::exp(-700.) : std::exp(std::clamp(-20. / (1. + a), -690., std::log(1e-3)));
     }
 
     Numerics
@@ -141,6 +141,7 @@ namespace crawler
     frames_        = &frames;
     next_frame_    = 0;
     tiny_steps_    = 0;
+    started_       = false;
     integrals_     = {};
     if (options.ledger)
       result_.ledger.emplace();
@@ -189,7 +190,7 @@ namespace crawler
     for (;;)
     {
       request_          = Request::none;
-      bool resumed      = accepted_time_ > 0.;
+      bool resumed      = started_;
       stepper_->monitor = [&](const Step &part, const std::span<const double> y)
       {
         if (resumed) // the state from which this part starts has been seen already
@@ -210,6 +211,11 @@ namespace crawler
           ++next_frame_;
         if (keep_going && !keep_going())
           return false;
+        if (step.number >= time_.max_steps && step.time < 1.)
+        {
+          diagnosis_ = {"stopped", "step_limit", "the maximum number of steps is reached"};
+          return false;
+        }
         look_for_coarser_mesh(step, y);
         return request_ == Request::none;
       };
@@ -292,7 +298,7 @@ namespace crawler
     if (end_inverts(before, step.time))
       return false;
     const bool in_position = assembler_->formulation() == Formulation::position;
-    if (in_position && numerics_.formulation == FormulationChoice::automatic && stretch_.min.value < small_stretch)
+    if (in_position && may_change_form() && stretch_.min.value < small_stretch)
     {
       // From this state if it is good, else from the one before.
       if (stretch_.min.value < 0.5 * small_stretch && step.size > 0.)
@@ -358,8 +364,17 @@ namespace crawler
     }
     accepted_.assign(y.begin(), y.end());
     accepted_time_        = step.time;
+    started_              = true;
     accepted_min_stretch_ = stretch_.min.value;
     return true;
+  }
+
+  /// The log-stretch form is for what is emptied and sticks. For a >= 0 friction vanishes there, and its nodal
+  /// friction, at the continued stretch, is less robust than position, whose inversions are real.
+  bool
+  Simulation::may_change_form() const
+  {
+    return numerics_.formulation == FormulationChoice::automatic && scene_.body.friction_exponent() < 0.;
   }
 
   /// Is the sum of the error indicators admissible? If not, and if cells can be divided, asks for that.
@@ -536,10 +551,7 @@ namespace crawler
       const double before = min_history_[1].value, before_t = min_history_[1].t;
       const double rate = t > before_t ? (before - smallest.value) / (t - before_t) : 0.;
       const double left = rate > 0. ? smallest.value / rate : 1.;
-      // Near the end of the model w^(1+a) goes to 0 linearly: for large a that is hardly seen in w before it happens.
-      const double a         = scene_.body.friction_exponent();
-      const bool about_to_be = a > 0. && rate > 0. && smallest.value < 2. * std::exp(-20. / (1. + a));
-      if (outcome.domain_error || left < 1e-6 || about_to_be)
+      if (outcome.domain_error || left < 1e-6)
       {
         inverted_inside(smallest.value, smallest.s, std::min(t + (left < 1e-6 ? left : 0.), 1.));
         return;

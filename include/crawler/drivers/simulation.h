@@ -115,6 +115,8 @@ namespace crawler
     bool
     examine(const Step &step, std::span<const double> y);
     bool
+    may_change_form() const;
+    bool
     mesh_is_good(const Step &step, std::span<const double> y);
     bool
     compute_integrals(const Step &step, std::span<const double> y);
@@ -187,5 +189,6 @@ namespace crawler
     const std::vector<double> *frames_ = nullptr; ///< in physical units
     std::size_t next_frame_            = 0;
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
+    bool started_ = false; ///< a state has been accepted
   };
 } // namespace crawler
