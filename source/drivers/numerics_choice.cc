@@ -17,6 +17,8 @@ namespace crawler
     // The constants of the rule; doc/numerics.md says how they were found.
     constexpr unsigned int automatic_degree = 6;
     constexpr unsigned int fewest_cells = 4, most_cells = 4096;
+    /// A pilot that breaks off with a smaller stretch than this has lost it.
+    constexpr double emptied = 0.1;
     /// Meshes that would need more cells than this are adaptive, with this degree.
     constexpr unsigned int most_uniform_cells = 64, adaptive_degree = 4;
     /// The error of the displacement, relative, is below this times the sum of the error indicators over the strain.
@@ -169,8 +171,8 @@ namespace crawler
       bool
       collapses() const
       {
-        return pilot_.time.status != "finished" && pilot_.time.reason != "inverted_at_end" && n_pilots_ > 0 &&
-               scene_.body.friction_exponent() < 0.;
+        return pilot_.time.status != "finished" && pilot_.time.reason != "inverted_at_end" &&
+               pilot_.min_stretch.value < emptied && scene_.body.friction_exponent() < 0.;
       }
 
       void
