@@ -26,7 +26,7 @@ namespace crawler
     /// Meshes of the collapse (degree 1): from the coarsest, doubled until the displacement settles.
     constexpr unsigned int first_collapse_cells = 64, last_collapse_cells = 512, last_accurate_collapse_cells = 2048;
     constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000,
-                           most_adaptive_pilot_cells = 500;
+                           most_adaptive_pilot_cells = 1200;
     /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
     constexpr double resolved = 1e-3;
     /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.

@@ -19,6 +19,8 @@ namespace crawler
     constexpr double lost_in_position = 1e-12;
     /// `automatic` changes to the log-stretch form when the stretch falls below this.
     constexpr double small_stretch = 0.1;
+    /// An end that inverts within this part of the duration after the inside was lost is the cause.
+    constexpr double end_reach = 1e-6;
     /// So many steps in succession smaller than this part of the duration are a failure.
     constexpr double tiny_step             = 1e-9;
     constexpr unsigned int most_tiny_steps = 2000;
@@ -531,7 +533,8 @@ namespace crawler
     double t = step.time;
     if (step.size > 0.)
       t = first_zero(above, step.time - step.size, step.time);
-    inverted_inside(stretch_.min.value, smallest.s, t);
+    if (!end_inverts(t, std::min(t + end_reach, 1.)))
+      inverted_inside(stretch_.min.value, smallest.s, t);
   }
 
   /// What a failure of the time stepper means.
@@ -541,7 +544,7 @@ namespace crawler
     TimeOutcome &outcome = result_.time;
     const double t       = accepted_time_;
     // Very small steps may be the end of the model.
-    const double reach = std::max(1e-9, 2. * outcome.step_size);
+    const double reach = std::max(end_reach, 2. * outcome.step_size);
     if (outcome.reason != "petsc_error")
     {
       if (end_inverts(t, std::min(t + reach, 1.)))
