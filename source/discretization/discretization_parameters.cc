@@ -14,7 +14,7 @@ namespace crawler
       formulation,
       {"position", "log stretch", "automatic"},
       "The unknowns: position; log stretch, for stretches near 0, which position cannot hold; automatic "
-      "starts with position and changes to log stretch when the stretch falls below 0.1.");
+      "starts with position and, for a < 0, changes to log stretch when the stretch falls below 0.1.");
     declarations.choice(
       "Mesh",
       mesh,
