@@ -151,10 +151,9 @@ namespace crawler
       result_.log_stretch_since = 0.;
     std::fill(y_.begin(), y_.end(), 0.);
     assembler_->make_consistent(0., y_);
-    accepted_             = y_;
-    accepted_time_        = 0.;
-    accepted_min_stretch_ = 1.;
-    next_step_            = numerics_.initial_step;
+    accepted_      = y_;
+    accepted_time_ = 0.;
+    next_step_     = numerics_.initial_step;
 
     result_.time = integrate(frames, observers, keep_going);
     if (!diagnosis_ && result_.time.status == "failed")
@@ -218,7 +217,7 @@ namespace crawler
           diagnosis_ = {"stopped", "step_limit", "the maximum number of steps is reached"};
           return false;
         }
-        look_for_coarser_mesh(step, y);
+        look_for_coarser_mesh(step);
         return request_ == Request::none;
       };
       std::vector<double> rest;
@@ -365,9 +364,8 @@ namespace crawler
       return false;
     }
     accepted_.assign(y.begin(), y.end());
-    accepted_time_        = step.time;
-    started_              = true;
-    accepted_min_stretch_ = stretch_.min.value;
+    accepted_time_ = step.time;
+    started_       = true;
     return true;
   }
 
@@ -383,14 +381,11 @@ namespace crawler
   bool
   Simulation::mesh_is_good(const Step &step, const std::span<const double> y)
   {
-    const auto indicators = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
-    const double sum      = std::accumulate(indicators.begin(), indicators.end(), 0.);
-    if (!(sum > numerics_.mesh.tolerance))
-    {
-      result_.largest_indicator = std::max(result_.largest_indicator, sum);
-      return true;
-    }
-    changes_ = mark_for_division(indicators, *discretization_, numerics_.mesh);
+    indicators_      = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
+    const double sum = std::accumulate(indicators_.begin(), indicators_.end(), 0.);
+    changes_.clear();
+    if (sum > numerics_.mesh.tolerance)
+      changes_ = mark_for_division(indicators_, *discretization_, numerics_.mesh);
     if (changes_.empty())
     {
       result_.largest_indicator = std::max(result_.largest_indicator, sum);
@@ -401,14 +396,13 @@ namespace crawler
   }
 
   void
-  Simulation::look_for_coarser_mesh(const Step &step, const std::span<const double> y)
+  Simulation::look_for_coarser_mesh(const Step &step)
   {
     constexpr unsigned int most_joins_every = 10;
     if (numerics_.mesh.tolerance <= 0. || request_ != Request::none || step.number == 0 ||
         step.number % most_joins_every != 0 || step.time >= 1.)
       return;
-    const auto indicators = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
-    changes_              = mark_for_joining(indicators, *discretization_, numerics_.mesh);
+    changes_ = mark_for_joining(indicators_, *discretization_, numerics_.mesh);
     if (!changes_.empty())
       request_ = Request::mesh;
   }

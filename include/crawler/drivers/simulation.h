@@ -121,7 +121,7 @@ namespace crawler
     bool
     compute_integrals(const Step &step, std::span<const double> y);
     void
-    look_for_coarser_mesh(const Step &step, std::span<const double> y);
+    look_for_coarser_mesh(const Step &step);
     bool
     end_inverts(double from, double to);
     void
@@ -175,6 +175,7 @@ namespace crawler
     std::optional<Diagnosis> diagnosis_; ///< replaces what the time stepper says
     Request request_ = Request::none;
     std::vector<CellChange> changes_;
+    std::vector<double> indicators_; ///< of all cells, for the present state of an adaptive mesh
     RateQuadrature quadrature_;
     Resolution largest_{}; ///< over time, if looked at
     CellIntegrals integrals_;
@@ -184,7 +185,6 @@ namespace crawler
     // The last state that was accepted, to which a change of mesh or formulation may go back.
     std::vector<double> accepted_;
     double accepted_time_ = 0., next_step_ = 0.;
-    double accepted_min_stretch_ = 1.;
     TimeOutcome before_; ///< counts of the parts of the run before the last change of mesh or formulation
     const std::vector<double> *frames_ = nullptr; ///< in physical units
     std::size_t next_frame_            = 0;
