@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <numeric>
 #include <sstream>
 
@@ -161,10 +162,44 @@ namespace crawler
       return stride;
     }
 
+    /**
+     * The rows of one rank as they come, in a file of their own (OUTPUT/rows/RANK.csv), so that a job that is killed
+     * loses none. The tables at the end replace it.
+     */
+    class RowWriter
+    {
+    public:
+      RowWriter(const std::filesystem::path &folder, const unsigned int rank, const AtlasAxes &axes)
+        : path_(folder / fmt::format("{}.csv", rank))
+        , axes_(axes)
+        , out_(path_)
+      {
+        out_ << csv(atlas_table({}, axes));
+      }
+
+      void
+      write(const AtlasPoint &point)
+      {
+        const std::string with_names = csv(atlas_table({point}, axes_));
+        out_ << with_names.substr(with_names.find('\n') + 1) << std::flush;
+        if (!out_)
+          throw FileError("cannot write \"" + path_.string() + "\" (is the disk full?)");
+      }
+
+    private:
+      const std::filesystem::path path_;
+      const AtlasAxes &axes_;
+      std::ofstream out_;
+    };
+
     /// This rank's share of the points. A signal ends the work of all ranks; each drops the point it is at.
     std::vector<AtlasPoint>
-    compute_points(
-      MPI_Comm communicator, const ParameterFile &file, const AtlasAxes &axes, const StopSignal &stop_signal, Log &log)
+    compute_points(MPI_Comm communicator,
+                   const ParameterFile &file,
+                   const AtlasAxes &axes,
+                   const StopSignal &stop_signal,
+                   RowWriter &rows,
+                   Log &log)
     {
       Form form(file);
       const std::vector<double> first = numbers_of(axes.first, ""), second = numbers_of(axes.second, "");
@@ -188,6 +223,7 @@ namespace crawler
         point->index  = index;
         point->first  = first[index / second.size()];
         point->second = second[index % second.size()];
+        rows.write(*point);
         points.push_back(*point);
         progress.report(queue.done());
       }
@@ -272,6 +308,8 @@ namespace crawler
                   {
                     require_usable(folder, options.overwrite);
                     prepare(folder);
+                    std::filesystem::remove_all(folder / "rows"); // of an atlas that was killed
+                    std::filesystem::create_directories(folder / "rows");
                     write_file(folder / "original.prm", file.text());
                     write_file(folder / "parameters.prm", effective);
                     log.open(folder / "log.txt");
@@ -286,7 +324,8 @@ namespace crawler
                          n_ranks,
                          n_ranks == 1 ? "" : "s"));
 
-    const auto points    = collect(communicator, compute_points(communicator, file, axes, stop_signal, log));
+    RowWriter rows(folder / "rows", rank_of(communicator), axes);
+    const auto points    = collect(communicator, compute_points(communicator, file, axes, stop_signal, rows, log));
     const auto summary   = summarize(points, axes);
     const double seconds = now() - start;
     on_first_rank(
@@ -296,9 +335,9 @@ namespace crawler
         const Table table = atlas_table(points, axes);
         write_file(folder / "atlas.csv", csv(table));
         write_hdf5(folder / "atlas.h5", "atlas", table, provenance(effective, options));
+        std::filesystem::remove_all(folder / "rows");
         const std::string status = summary.computed() == summary.points ? "finished" : "stopped";
         write_file(folder / "summary.json", atlas_json(summary, axes, status, seconds, n_ranks, options.command_line));
-        draw(folder, log);
         report_wrong_answers(points, axes, log);
         log.line(in_words(summary, axes, seconds, n_ranks));
         if (status == "stopped")

@@ -8,7 +8,13 @@ namespace crawler
   compute(const Parameters &parameters, const Scene &scene, const std::function<bool()> &keep_going)
   {
     Computed computed;
-    computed.choice = choose_numerics(MPI_COMM_SELF, parameters, scene);
+    const auto choice = choose_numerics(MPI_COMM_SELF, parameters, scene, keep_going);
+    if (!choice)
+    {
+      computed.result.time.status = "stopped";
+      return computed;
+    }
+    computed.choice = *choice;
     Simulation simulation(MPI_COMM_SELF, scene, parameters.time, computed.choice.numerics);
     computed.result = simulation.run({}, {.ledger = parameters.output.ledger, .resolution = false}, {}, keep_going);
     check_identities(computed.result, parameters);

@@ -80,12 +80,21 @@ namespace crawler
 
   namespace
   {
+    /// Somebody does not want the pilots to go on.
+    struct Interrupted
+    {
+    };
+
     /// The choice as it grows; each function below makes one decision.
     class Chooser
     {
     public:
-      Chooser(MPI_Comm communicator, const Parameters &parameters, const Scene &scene)
+      Chooser(MPI_Comm communicator,
+              const Parameters &parameters,
+              const Scene &scene,
+              const std::function<bool()> &keep_going)
         : communicator_(communicator)
+        , keep_going_(keep_going)
         , parameters_(parameters)
         , scene_(scene)
         , scales_(stress_scales(scene))
@@ -153,7 +162,10 @@ namespace crawler
       {
         Simulation simulation(communicator_, scene_, pilot_time_, numerics);
         ++n_pilots_;
-        return simulation.run({}, {.ledger = false, .resolution = true});
+        SimulationResult result = simulation.run({}, {.ledger = false, .resolution = true}, {}, keep_going_);
+        if (result.time.status == "stopped" && result.time.reason.empty())
+          throw Interrupted();
+        return result;
       }
 
       Numerics
@@ -369,6 +381,7 @@ namespace crawler
 
       const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
       const MPI_Comm communicator_;
+      const std::function<bool()> &keep_going_;
       const Parameters &parameters_;
       const Scene &scene_;
       const StressScales scales_;
@@ -384,9 +397,19 @@ namespace crawler
     };
   } // namespace
 
-  NumericsChoice
-  choose_numerics(MPI_Comm communicator, const Parameters &parameters, const Scene &scene)
+  std::optional<NumericsChoice>
+  choose_numerics(MPI_Comm communicator,
+                  const Parameters &parameters,
+                  const Scene &scene,
+                  const std::function<bool()> &keep_going)
   {
-    return Chooser(communicator, parameters, scene).choose();
+    try
+    {
+      return Chooser(communicator, parameters, scene, keep_going).choose();
+    }
+    catch (const Interrupted &)
+    {
+      return std::nullopt;
+    }
   }
 } // namespace crawler

@@ -101,7 +101,7 @@ namespace crawler
   {
     Log log(rank_of(communicator) == 0, /*quiet=*/false);
     const Input input           = read_input(communicator, options.file, options.overrides);
-    const NumericsChoice choice = choose_numerics(MPI_COMM_SELF, input.parameters, input.scene);
+    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, input.parameters, input.scene);
     const Simulation simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);
     report_plan(log, input, choice);
     log.line(
@@ -133,7 +133,19 @@ namespace crawler
                     return "";
                   });
 
-    const NumericsChoice choice = choose_numerics(MPI_COMM_SELF, parameters, input.scene);
+    const auto chosen = choose_numerics(MPI_COMM_SELF,
+                                        parameters,
+                                        input.scene,
+                                        [&]()
+                                        {
+                                          return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
+                                        });
+    if (stop_signal.arrived_anywhere(communicator))
+    {
+      log.warn("stopped by a signal during the pilot runs; nothing was written");
+      return ExitCode::stopped;
+    }
+    const NumericsChoice &choice = *chosen;
     // Either all ranks share the cells, or each computes the whole body and the first one writes.
     const bool shared = parameters.discretization.shares(choice.numerics.n_cells);
     Simulation simulation(shared ? communicator : MPI_COMM_SELF, input.scene, parameters.time, choice.numerics);

@@ -107,7 +107,7 @@ namespace
   {
     const auto parameters = test::parameters_with(fig_s1(accuracy));
     const Scene scene     = parameters.create_scene();
-    repeat_run(state, accuracy, choose_numerics(MPI_COMM_WORLD, parameters, scene).numerics, {.ledger = true});
+    repeat_run(state, accuracy, choose_numerics(MPI_COMM_WORLD, parameters, scene)->numerics, {.ledger = true});
   }
 
   void
@@ -116,7 +116,7 @@ namespace
     const auto parameters = test::parameters_with(fig_s1(accuracy));
     const Scene scene     = parameters.create_scene();
     for (auto _ : state)
-      benchmark::DoNotOptimize(choose_numerics(MPI_COMM_WORLD, parameters, scene).numerics.n_cells);
+      benchmark::DoNotOptimize(choose_numerics(MPI_COMM_WORLD, parameters, scene)->numerics.n_cells);
     state.SetItemsProcessed(state.iterations());
   }
 

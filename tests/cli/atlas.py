@@ -158,6 +158,26 @@ def check_stop(program, folder, first, command=()):
           and 0 < len(rows) == summary["computed"] < 800, f"stopped after {len(rows)} points: {errors.strip()}")
 
 
+def check_kill(program, folder):
+    """What a killed atlas has computed is in rows/, and a new one clears it away."""
+    arguments = ["atlas", "scene.prm", "--output", "killed", "--set", f"Atlas/First axis={CHI} : linspace(0.1, 0.3, 400)"]
+    call(program, folder, "parameters")  # writes the scene
+    rows = pathlib.Path(folder, "killed", "rows", "0.csv")
+    with subprocess.Popen([program, *arguments], cwd=folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.DEVNULL) as process:
+        end = time.time() + 60
+        while (not rows.exists() or rows.read_bytes().count(b"\n") < 5) and time.time() < end:
+            time.sleep(0.01)
+        process.kill()
+    with open(rows, newline="", encoding="utf-8") as file:
+        kept = list(csv.DictReader(file))
+    check(len(kept) >= 4 and all(row["outcome"] == "finished" and number(row["run displacement"]) for row in kept[:4]),
+          f"{len(kept)} rows outlive kill -9")
+    result = call(program, folder, "atlas", "scene.prm", "--output", "killed", "--overwrite")
+    check(result.returncode == 0 and not rows.parent.exists() and len(table(rows.parents[1])) == 6,
+          "the next atlas replaces them")
+
+
 def main():
     """1 if any check failed."""
     if len(sys.argv) != 3:
@@ -190,6 +210,7 @@ def main():
         check_refused(program, folder)
         check_inverted(program, folder)
         check_stop(program, folder, 0.1)
+        check_kill(program, folder)
     print(f"{failures} checks failed")
     return 1 if failures else 0
 

@@ -4,8 +4,10 @@
 #include <boost/property_tree/xml_parser.hpp>
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <cmath>
 #include <regex>
+#include <thread>
 #include <utility>
 
 using namespace crawler::test;
@@ -463,5 +465,21 @@ TEST_F(Commands, SignalsStopARunInOrder)
     EXPECT_LE(frames.back(), summary.at("end_time").get<double>() + 1e-11);
     xml(results / "kymograph.vts");
     EXPECT_TRUE(contains(read_text(results / "log.txt"), "Stopped at t = "));
+  }
+}
+
+TEST_F(Commands, ASignalDuringThePilotRunsLeavesNoFiles)
+{
+  write_text(folder.path / "scene.prm",
+             "subsection Active stress\nsubsection Optimal wave\nset Choose wave by = wave speed\nend\nend\n" +
+               in_section("Time", "set End time = 1e4"));
+  for (const int number : {SIGTERM, SIGINT})
+  {
+    Program program(folder.path, {"run", "scene.prm", "--output", "results"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500)); // the pilots take longer
+    program.signal(number);
+    EXPECT_EQ(program.exit_code(), 5) << program.err();
+    EXPECT_EQ(program.err(), "crawler: stopped by a signal during the pilot runs; nothing was written\n");
+    EXPECT_FALSE(fs::exists(results));
   }
 }

@@ -49,7 +49,7 @@ namespace crawler::test
   {
     const Scene scene = parameters.create_scene();
     Outcome outcome;
-    outcome.choice = choose_numerics(MPI_COMM_WORLD, parameters, scene);
+    outcome.choice = *choose_numerics(MPI_COMM_WORLD, parameters, scene);
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, outcome.choice.numerics);
     outcome.result = simulation.run({}, options);
     return outcome;

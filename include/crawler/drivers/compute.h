@@ -18,8 +18,9 @@ namespace crawler
 
   /**
    * What `crawler run` computes for @p scene (made from @p parameters), on this rank alone and without files: choice of
-   * the numerics, simulation, self-check. @p keep_going is asked after every step. The place where studies of many runs
-   * make a Simulation.
+   * the numerics, simulation, self-check. @p keep_going is asked after every step, those of
+   * pilot runs too; if it stops one of these, the status is "stopped" and nothing else is known. The place where
+   * studies of many runs make a Simulation.
    */
   Computed
   compute(const Parameters &parameters, const Scene &scene, const std::function<bool()> &keep_going);

@@ -4,7 +4,9 @@
 #include <crawler/drivers/parameters.h>
 #include <crawler/drivers/simulation.h>
 
+#include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace crawler
@@ -23,8 +25,12 @@ namespace crawler
    * (collective). The rule, with its constants, is explained in doc/numerics.md ("Accuracy"): pilot runs on a coarse
    * mesh with a loose tolerance measure the size of the displacement and how fast the Legendre modes of the stretch
    * decay; the mesh is refined until the predicted error of the displacement in space, and the tolerance chosen such
-   * that the one in time, are below Accuracy.
+   * that the one in time, are below Accuracy. Nothing is returned if @p keep_going, which is asked after every step of
+   * a pilot run, said no.
    */
-  NumericsChoice
-  choose_numerics(MPI_Comm communicator, const Parameters &parameters, const Scene &scene);
+  std::optional<NumericsChoice>
+  choose_numerics(MPI_Comm communicator,
+                  const Parameters &parameters,
+                  const Scene &scene,
+                  const std::function<bool()> &keep_going = {});
 } // namespace crawler
