@@ -74,8 +74,8 @@ namespace crawler
       m_time_ = t;
     }
     CellInput in = geometry();
-    in.u         = discretization_.to_local(u, u_local_).data();
-    in.v         = v.data() == nullptr ? nullptr : discretization_.to_local(v, v_local_).data();
+    in.u         = discretization_.to_local<double>(u, u_local_).data();
+    in.v         = v.data() == nullptr ? nullptr : discretization_.to_local<double>(v, v_local_).data();
     in.m         = m_.data();
     return in;
   }
@@ -115,7 +115,7 @@ namespace crawler
   StretchRange
   Assembler::stretch_range(const ConstVector y)
   {
-    const auto local          = discretization_.to_local(displacement(y), u_local_);
+    const auto local          = discretization_.to_local<double>(displacement(y), u_local_);
     const unsigned n          = discretization_.element().n;
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -174,7 +174,7 @@ namespace crawler
   Resolution
   Assembler::resolution(const ConstVector y)
   {
-    const auto local    = discretization_.to_local(displacement(y), u_local_);
+    const auto local    = discretization_.to_local<double>(displacement(y), u_local_);
     const auto log_w    = log_stretch(y);
     const auto &element = discretization_.element();
     double sums[2]      = {0., 0.};
@@ -223,7 +223,7 @@ namespace crawler
         balance = 0.;
     }
 
-    const auto local = discretization_.to_local(displacement(y), u_local_);
+    const auto local = discretization_.to_local<double>(displacement(y), u_local_);
     const auto log_w = log_stretch(y);
     std::vector<double> indicators(n_cells, 0.);
     for (unsigned int c = 0; c < n_cells; ++c)

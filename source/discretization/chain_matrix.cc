@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/discretization/cell_kernels.h>
+#include <crawler/discretization/chain_kernels.h>
 #include <crawler/discretization/chain_matrix.h>
 
 #include <algorithm>
@@ -7,7 +7,15 @@
 
 namespace crawler
 {
-  ChainMatrix::ChainMatrix(const Discretization &discretization)
+  namespace
+  {
+    /// How many doubles a number has.
+    template <typename Number>
+    constexpr int doubles_in = sizeof(Number) / sizeof(double);
+  } // namespace
+
+  template <typename Number>
+  ChainMatrix<Number>::ChainMatrix(const Discretization &discretization)
     : discretization_(&discretization)
   {
     const std::size_t n_cells = discretization.n_local_cells(), n = discretization.element().n;
@@ -19,36 +27,39 @@ namespace crawler
     reduced_rhs_.resize(discretization.n_active_ranks() + 1);
   }
 
+  template <typename Number>
   void
-  ChainMatrix::multiply(const std::span<const double> x, const std::span<double> y) const
+  ChainMatrix<Number>::multiply(const std::span<const Number> x,
+                                const std::span<Number> y) const requires std::is_same_v<Number, double>
   {
     const auto &d    = *discretization_;
-    const auto local = d.to_local(x, x_local_);
+    const auto local = d.template to_local<Number>(x, x_local_);
     local_.assign(d.n_local(), 0.);
-    cell_kernels(d.element().degree).multiply(d.n_local_cells(), blocks_.data(), local.data(), local_.data());
-    d.add_to_owned(local_, y);
+    chain_kernels<Number>(d.element().degree).multiply(d.n_local_cells(), blocks_.data(), local.data(), local_.data());
+    d.template add_to_owned<Number>(local_, y);
   }
 
+  template <typename Number>
   bool
-  ChainMatrix::factorize()
+  ChainMatrix<Number>::factorize()
   {
     const auto &d        = *discretization_;
     const unsigned int n = d.n_local_cells();
     factors_             = blocks_;
-    bool ok              = cell_kernels(d.element().degree).condense(n, factors_.data(), schur_.data());
+    bool ok              = chain_kernels<Number>(d.element().degree).condense(n, factors_.data(), schur_.data());
 
-    double own[4] = {1., 0., 0., 1.};
+    Number own[4] = {1., 0., 0., 1.};
     if (n > 0)
     {
       // Node i couples to node 0 (row_zero, column_zero), and to node i+1 (next above, below under the diagonal).
-      double corner = schur_[0], diagonal = schur_[3];
-      double row = schur_[1], column = schur_[2]; // A[0][i], A[i][0] for i = 1
+      Number corner = schur_[0], diagonal = schur_[3];
+      Number row = schur_[1], column = schur_[2]; // A[0][i], A[i][0] for i = 1
       for (unsigned int i = 1; i < n; ++i)
       {
-        const double *S = &schur_[4 * i];
+        const Number *S = &schur_[4 * i];
         diagonal += S[0];
-        ok                   = ok && diagonal != 0. && std::isfinite(diagonal);
-        const double inverse = 1. / diagonal;
+        ok                   = ok && diagonal != 0. && is_finite(diagonal);
+        const Number inverse = 1. / diagonal;
         inverse_[i]          = inverse;
         row_zero_[i]         = row * inverse;
         column_zero_[i]      = column * inverse;
@@ -56,7 +67,7 @@ namespace crawler
         below_[i]            = S[2] * inverse;
         corner -= row_zero_[i] * column;
         diagonal              = S[3] - below_[i] * S[1];
-        const double next_row = -row_zero_[i] * S[1];
+        const Number next_row = -row_zero_[i] * S[1];
         column                = -below_[i] * column;
         row                   = next_row;
       }
@@ -69,25 +80,27 @@ namespace crawler
     if (d.n_ranks() == 1)
     {
       std::copy(own, own + 4, reduced_.begin());
-      return ok && std::isfinite(own[0]) && std::isfinite(own[3]);
+      return ok && is_finite(own[0]) && is_finite(own[3]);
     }
     // Ranks without cells send numbers that nobody reads.
-    double sent[5] = {own[0], own[1], own[2], own[3], ok ? 1. : 0.};
-    std::vector<double> all(5 * d.n_ranks());
-    MPI_Allgather(sent, 5, MPI_DOUBLE, all.data(), 5, MPI_DOUBLE, d.communicator());
+    Number sent[5] = {own[0], own[1], own[2], own[3], ok ? Number(1.) : Number(0.)};
+    std::vector<Number> all(5 * d.n_ranks());
+    MPI_Allgather(
+      sent, 5 * doubles_in<Number>, MPI_DOUBLE, all.data(), 5 * doubles_in<Number>, MPI_DOUBLE, d.communicator());
     for (unsigned int r = 0; r < ranks; ++r)
     {
       std::copy(&all[5 * r], &all[5 * r] + 4, reduced_.begin() + 4 * r);
-      ok = ok && all[5 * r + 4] == 1. && std::isfinite(all[5 * r]) && std::isfinite(all[5 * r + 3]);
+      ok = ok && all[5 * r + 4] == 1. && is_finite(all[5 * r]) && is_finite(all[5 * r + 3]);
     }
     return ok;
   }
 
+  template <typename Number>
   void
-  ChainMatrix::solve(const std::span<const double> b, const std::span<double> x) const
+  ChainMatrix<Number>::solve(const std::span<const Number> b, const std::span<Number> x) const
   {
     const auto &d        = *discretization_;
-    const auto &kernels  = cell_kernels(d.element().degree);
+    const auto &kernels  = chain_kernels<Number>(d.element().degree);
     const unsigned int n = d.n_local_cells(), q = d.element().degree, ranks = d.n_active_ranks();
     const bool shared_first = d.has_left_neighbour();
 
@@ -107,33 +120,34 @@ namespace crawler
         std::copy(b.begin(), b.end(), local_.begin() + (shared_first ? 1 : 0));
       }
     }
-    double *y = direct ? x.data() : local_.data();
+    Number *y = direct ? x.data() : local_.data();
 
     kernels.forward(n, factors_.data(), y);
-    double first = n > 0 ? y[0] : 0.;
+    Number first = n > 0 ? y[0] : 0.;
     for (unsigned int i = 1; i < n; ++i)
     {
-      const double r = y[i * q];
+      const Number r = y[i * q];
       first -= row_zero_[i] * r;
       y[(i + 1) * q] -= below_[i] * r;
     }
-    const double last = n > 0 ? y[static_cast<std::size_t>(n) * q] : 0.;
+    const Number last = n > 0 ? y[static_cast<std::size_t>(n) * q] : 0.;
 
     // The system of the shared nodes 0 ... ranks, the same on every rank.
-    double x_first = 0., x_last = 0.;
+    Number x_first = 0., x_last = 0.;
     if (direct)
     {
-      const double *S = reduced_.data();
+      const Number *S = reduced_.data();
       // Eliminate the first node; the sum of both rows keeps the digits when the friction term is small.
-      const double factor = S[2] / S[0];
+      const Number factor = S[2] / S[0];
       x_last              = (last - factor * first) / (S[3] - factor * S[1]);
       x_first             = (first - S[1] * x_last) / S[0];
     }
     else
     {
-      const double sent[2] = {first, last};
-      std::vector<double> all(2 * d.n_ranks()), diagonal(ranks + 1, 0.);
-      MPI_Allgather(sent, 2, MPI_DOUBLE, all.data(), 2, MPI_DOUBLE, d.communicator());
+      const Number sent[2] = {first, last};
+      std::vector<Number> all(2 * d.n_ranks()), diagonal(ranks + 1, 0.);
+      MPI_Allgather(
+        sent, 2 * doubles_in<Number>, MPI_DOUBLE, all.data(), 2 * doubles_in<Number>, MPI_DOUBLE, d.communicator());
       std::fill(reduced_rhs_.begin(), reduced_rhs_.end(), 0.);
       for (unsigned int r = 0; r < ranks; ++r)
       {
@@ -144,7 +158,7 @@ namespace crawler
       }
       for (unsigned int r = 0; r < ranks; ++r)
       {
-        const double factor = reduced_[4 * r + 2] / diagonal[r];
+        const Number factor = reduced_[4 * r + 2] / diagonal[r];
         diagonal[r + 1] -= factor * reduced_[4 * r + 1];
         reduced_rhs_[r + 1] -= factor * reduced_rhs_[r];
       }
@@ -168,4 +182,7 @@ namespace crawler
     if (!direct)
       std::copy(local_.begin() + (shared_first ? 1 : 0), local_.end(), x.begin());
   }
+
+  template class ChainMatrix<double>;
+  template class ChainMatrix<std::complex<double>>;
 } // namespace crawler

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/discretization/cell_kernels.h>
+#include <crawler/discretization/chain_kernels.h>
 #include <crawler/model/crawler_equation.h>
 #include <crawler/scene/friction_law.h>
 
@@ -22,11 +23,14 @@ namespace crawler
       // What the Jacobian keeps of a cell. With x the change of (log w)_p and v that of the nodes:
       //   L row:  diagonal_p x_p - row_p sum_j D_pj v_j
       //   F row:  sum_p ( column_node_i E_ip + column_point_p D_pi ) x_p + mass_i v_i
+      template <typename Number>
       struct Factors
       {
-        double diagonal[q], row[q], column_point[q], column_node[n], mass[n];
+        Number diagonal[q];
+        double row[q], column_point[q], column_node[n], mass[n];
       };
-      static_assert(sizeof(Factors) == log_factors(q) * sizeof(double));
+      static_assert(sizeof(Factors<double>) == log_factors<double>(q) * sizeof(double));
+      static_assert(sizeof(Factors<std::complex<double>>) == log_factors<std::complex<double>>(q) * sizeof(double));
 
       /// The stretch at the nodes: the polynomial through log w, continued to the ends of the cell.
       static void
@@ -42,12 +46,13 @@ namespace crawler
       }
 
       /// v_s at the stretch points.
+      template <typename Number>
       static void
-      rates(const double *D, const double *v, const double inverse_h, Points &v_s)
+      rates(const double *D, const Number *v, const double inverse_h, std::array<Number, q> &v_s)
       {
         for (int p = 0; p < q; ++p)
         {
-          double sum = 0.;
+          Number sum = 0.;
           for (int i = 0; i < n; ++i)
             sum += D[p * n + i] * v[i];
           v_s[p] = inverse_h * sum;
@@ -102,8 +107,9 @@ namespace crawler
         }
       }
 
+      template <typename Number>
       static bool
-      jacobian(const LogCellInput &in, const double sigma, double *blocks, double *factors)
+      jacobian(const LogCellInput &in, const Number sigma, Number *blocks, double *factors)
       {
         const CellInput &cells    = in.cells;
         const ReferenceElement &e = *cells.element;
@@ -118,7 +124,7 @@ namespace crawler
           cells.friction->values_and_log_derivatives(w, g, w_dg);
           Points v_s;
           rates(D, v, 1. / h, v_s);
-          Factors &f = reinterpret_cast<Factors *>(factors)[c];
+          auto &f = reinterpret_cast<Factors<Number> *>(factors)[c];
           for (int i = 0; i < n; ++i)
           {
             f.mass[i]        = h * e.node_weights[i] * g[i];
@@ -130,18 +136,18 @@ namespace crawler
             f.diagonal[p]        = sigma + v_s[p] / stretch;
             f.row[p]             = 1. / (h * stretch);
             f.column_point[p]    = e.stretch_weights[p] * cells.k * stretch;
-            ok                   = ok && f.diagonal[p] != 0. && std::isfinite(f.diagonal[p]);
+            ok                   = ok && f.diagonal[p] != 0. && is_finite(f.diagonal[p]);
           }
-          double *J = blocks + c * n * n;
+          Number *J = blocks + c * n * n;
           for (int i = 0; i < n; ++i)
           {
-            double column[q];
+            Number column[q];
             for (int p = 0; p < q; ++p)
               column[p] =
                 (f.column_node[i] * E[i * q + p] + f.column_point[p] * D[p * n + i]) * f.row[p] / f.diagonal[p];
             for (int j = 0; j < n; ++j)
             {
-              double sum = i == j ? f.mass[i] : 0.;
+              Number sum = i == j ? f.mass[i] : 0.;
               for (int p = 0; p < q; ++p)
                 sum += column[p] * D[p * n + j];
               J[i * n + j] = sum;
@@ -151,30 +157,32 @@ namespace crawler
         return ok;
       }
 
+      template <typename Number>
       static void
-      reduce(const CellInput &cells, const double *factors, const double *l, double *F)
+      reduce(const CellInput &cells, const double *factors, const Number *l, Number *F)
       {
         const double *D = cells.element->stretch_derivatives.data(), *E = cells.element->stretch_to_nodes.data();
         for (unsigned int c = 0; c < cells.n_cells; ++c)
         {
-          const Factors &f = reinterpret_cast<const Factors *>(factors)[c];
+          const auto &f = reinterpret_cast<const Factors<Number> *>(factors)[c];
           for (int p = 0; p < q; ++p)
           {
-            const double x = l[c * q + p] / f.diagonal[p];
+            const Number x = l[c * q + p] / f.diagonal[p];
             for (int i = 0; i < n; ++i)
               F[c * q + i] -= (f.column_node[i] * E[i * q + p] + f.column_point[p] * D[p * n + i]) * x;
           }
         }
       }
 
+      template <typename Number>
       static void
-      recover(const CellInput &cells, const double *factors, const double *v, double *l)
+      recover(const CellInput &cells, const double *factors, const Number *v, Number *l)
       {
         const double *D = cells.element->stretch_derivatives.data();
         for (unsigned int c = 0; c < cells.n_cells; ++c)
         {
-          const Factors &f = reinterpret_cast<const Factors *>(factors)[c];
-          Points v_s;
+          const auto &f = reinterpret_cast<const Factors<Number> *>(factors)[c];
+          std::array<Number, q> v_s;
           rates(D, v + c * q, 1., v_s);
           for (int p = 0; p < q; ++p)
             l[c * q + p] = (l[c * q + p] + f.row[p] * v_s[p]) / f.diagonal[p];
@@ -187,7 +195,7 @@ namespace crawler
         const double *D = cells.element->stretch_derivatives.data(), *E = cells.element->stretch_to_nodes.data();
         for (unsigned int c = 0; c < cells.n_cells; ++c)
         {
-          const Factors &f = reinterpret_cast<const Factors *>(factors)[c];
+          const auto &f = reinterpret_cast<const Factors<double> *>(factors)[c];
           Points v_s;
           rates(D, v + c * q, 1., v_s);
           for (int i = 0; i < n; ++i)
@@ -235,7 +243,9 @@ namespace crawler
         }
       }
 
-      static constexpr LogCellKernels table = {residual, mass, jacobian, reduce, recover, multiply, integrals};
+      static constexpr LogCellKernels table = {residual, mass, multiply, integrals};
+      template <typename Number>
+      static constexpr LogElimination<Number> elimination = {jacobian<Number>, reduce<Number>, recover<Number>};
     };
   } // namespace
 
@@ -263,4 +273,35 @@ namespace crawler
     }
     throw std::logic_error("degrees 1 to 8 are compiled");
   }
+
+  template <typename Number>
+  const LogElimination<Number> &
+  log_elimination(const unsigned int degree)
+  {
+    switch (degree)
+    {
+      case 1:
+        return Kernels<1>::template elimination<Number>;
+      case 2:
+        return Kernels<2>::template elimination<Number>;
+      case 3:
+        return Kernels<3>::template elimination<Number>;
+      case 4:
+        return Kernels<4>::template elimination<Number>;
+      case 5:
+        return Kernels<5>::template elimination<Number>;
+      case 6:
+        return Kernels<6>::template elimination<Number>;
+      case 7:
+        return Kernels<7>::template elimination<Number>;
+      case 8:
+        return Kernels<8>::template elimination<Number>;
+    }
+    throw std::logic_error("degrees 1 to 8 are compiled");
+  }
+
+  template const LogElimination<double> &
+  log_elimination(unsigned int);
+  template const LogElimination<std::complex<double>> &
+  log_elimination(unsigned int);
 } // namespace crawler

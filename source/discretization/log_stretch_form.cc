@@ -11,7 +11,14 @@ namespace crawler
     , q_(discretization.element().degree)
     , kernels_(log_cell_kernels(q_))
     , jacobian_(discretization)
-    , factors_(static_cast<std::size_t>(discretization.n_local_cells()) * log_factors(q_))
+  {
+  }
+
+  template <typename Number>
+  LogStretchForm::Eliminated<Number>::Eliminated(const Discretization &discretization)
+    : matrix(discretization)
+    , factors(static_cast<std::size_t>(discretization.n_local_cells()) *
+              log_factors<Number>(discretization.element().degree))
   {
   }
 
@@ -47,61 +54,132 @@ namespace crawler
     in.log_w_dot        = log_stretch(y_dot).data();
     node_local_.assign(discretization_.n_local(), 0.);
     kernels_.residual(in, node_local_.data(), F.data() + n);
-    discretization_.add_to_owned(node_local_, velocities(F));
+    discretization_.add_to_owned<double>(node_local_, velocities(F));
     const auto v = velocities(y);
     for (std::size_t i = 0; i < n; ++i)
       F[i] = y_dot[i] - v[i];
     return true;
   }
 
+  template <typename Number>
   bool
-  LogStretchForm::setup_jacobian(const double t, const ConstVector y, const ConstVector, const double sigma)
+  LogStretchForm::setup(Eliminated<Number> &jacobian, const LogCellInput &in, const Number sigma) const
   {
-    sigma_ = sigma;
+    jacobian.sigma = sigma;
     const bool ok =
-      kernels_.jacobian(log_input(t, y, velocities(y)), sigma, jacobian_.blocks().data(), factors_.data());
-    int all_ok = jacobian_.factorize() && ok;
+      log_elimination<Number>(q_).jacobian(in, sigma, jacobian.matrix.blocks().data(), jacobian.factors.data());
+    int all_ok = jacobian.matrix.factorize() && ok;
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE, &all_ok, 1, MPI_INT, MPI_MIN, discretization_.communicator());
     return all_ok != 0;
   }
 
+  template <typename Number>
+  void
+  LogStretchForm::solve(Eliminated<Number> &jacobian, const std::span<const Number> b, const std::span<Number> x) const
+  {
+    const auto &elimination = log_elimination<Number>(q_);
+    const CellInput cells   = geometry();
+    const std::size_t n     = discretization_.n_owned();
+    if (x.data() != b.data())
+      std::copy(b.begin(), b.end(), x.begin());
+    const std::span<Number> v = velocities(x);
+    jacobian.node_local.assign(discretization_.n_local(), 0.);
+    elimination.reduce(cells, jacobian.factors.data(), x.data() + n, jacobian.node_local.data());
+    jacobian.nodes.resize(n);
+    discretization_.add_to_owned<Number>(jacobian.node_local, jacobian.nodes);
+    for (std::size_t i = 0; i < n; ++i)
+      v[i] += jacobian.nodes[i];
+    jacobian.matrix.solve(v, v);
+    elimination.recover(
+      cells, jacobian.factors.data(), discretization_.to_local<Number>(v, jacobian.local_buffer).data(), x.data() + n);
+    for (std::size_t i = 0; i < n; ++i)
+      x[i] = (x[i] + v[i]) / jacobian.sigma;
+  }
+
+  bool
+  LogStretchForm::setup_jacobian(const double t, const ConstVector y, const ConstVector, const double sigma)
+  {
+    return setup(jacobian_, log_input(t, y, velocities(y)), sigma);
+  }
+
   void
   LogStretchForm::solve_with_jacobian(const ConstVector b, const Vector x)
   {
-    const CellInput cells = geometry();
-    const std::size_t n   = discretization_.n_owned();
-    if (x.data() != b.data())
-      std::copy(b.begin(), b.end(), x.begin());
-    const Vector v = velocities(x);
+    solve(jacobian_, b, x);
+  }
+
+  void
+  LogStretchForm::multiply(const std::vector<double> &factors, const ConstVector x, const Vector y)
+  {
+    const std::size_t n = discretization_.n_owned();
     node_local_.assign(discretization_.n_local(), 0.);
-    kernels_.reduce(cells, factors_.data(), x.data() + n, node_local_.data());
-    nodes_.resize(n);
-    discretization_.add_to_owned(node_local_, nodes_);
-    for (std::size_t i = 0; i < n; ++i)
-      v[i] += nodes_[i];
-    jacobian_.solve(v, v);
-    kernels_.recover(cells, factors_.data(), discretization_.to_local(v, local_buffer_).data(), x.data() + n);
-    for (std::size_t i = 0; i < n; ++i)
-      x[i] = (x[i] + v[i]) / sigma_;
+    std::fill(y.begin(), y.end(), 0.);
+    kernels_.multiply(geometry(),
+                      factors.data(),
+                      discretization_.to_local<double>(velocities(x), local_buffer_).data(),
+                      x.data() + n,
+                      node_local_.data(),
+                      y.data() + n);
+    discretization_.add_to_owned<double>(node_local_, velocities(y));
   }
 
   void
   LogStretchForm::jacobian_vmult(const ConstVector x, const Vector y)
   {
-    const std::size_t n = discretization_.n_owned();
-    const auto v        = velocities(x);
-    node_local_.assign(discretization_.n_local(), 0.);
-    std::fill(y.begin(), y.end(), 0.);
-    kernels_.multiply(geometry(),
-                      factors_.data(),
-                      discretization_.to_local(v, local_buffer_).data(),
-                      x.data() + n,
-                      node_local_.data(),
-                      y.data() + n);
-    discretization_.add_to_owned(node_local_, velocities(y));
-    for (std::size_t i = 0; i < n; ++i)
-      y[i] = sigma_ * x[i] - v[i];
+    multiply(jacobian_.factors, x, y);
+    const auto v = velocities(x);
+    for (std::size_t i = 0; i < v.size(); ++i)
+      y[i] = jacobian_.sigma * x[i] - v[i];
+  }
+
+  bool
+  LogStretchForm::setup_complex_jacobians(const double t,
+                                          const ConstVector y,
+                                          const ConstVector,
+                                          const std::span<const Complex> sigma)
+  {
+    const LogCellInput in = log_input(t, y, velocities(y));
+    bool ok               = true;
+    for (std::size_t i = 0; i < sigma.size(); ++i)
+    {
+      if (complex_jacobians_.size() <= i)
+        complex_jacobians_.emplace_back(discretization_);
+      ok = setup(complex_jacobians_[i], in, sigma[i]) && ok;
+    }
+    return ok;
+  }
+
+  void
+  LogStretchForm::solve_with_complex_jacobian(const unsigned int i,
+                                              const std::span<const Complex> b,
+                                              const std::span<Complex> x)
+  {
+    solve(complex_jacobians_[i], b, x);
+  }
+
+  void
+  LogStretchForm::setup_stage(const unsigned int stage, const double t, const ConstVector y, const ConstVector)
+  {
+    while (stages_.size() <= stage)
+      stages_.emplace_back(discretization_);
+    log_elimination<double>(q_).jacobian(
+      log_input(t, y, velocities(y)), 0., stages_[stage].matrix.blocks().data(), stages_[stage].factors.data());
+  }
+
+  /// dF/dy' is the identity for u and log w, and 0 for the balance of forces.
+  void
+  LogStretchForm::stage_vmult(const unsigned int stage,
+                              const ConstVector x,
+                              const ConstVector x_dot,
+                              const Vector result)
+  {
+    multiply(stages_[stage].factors, x, result);
+    const auto v = velocities(x);
+    for (std::size_t i = 0; i < v.size(); ++i)
+      result[i] = x_dot[i] - v[i];
+    for (std::size_t i = v.size(); i + v.size() < result.size(); ++i)
+      result[i] += x_dot[i];
   }
 
   /// The friction matrix is diagonal here.
@@ -112,11 +190,11 @@ namespace crawler
     const std::size_t n   = discretization_.n_owned();
     node_local_.assign(discretization_.n_local(), 0.);
     kernels_.residual(in, node_local_.data(), nullptr);
-    discretization_.add_to_owned(node_local_, v);
+    discretization_.add_to_owned<double>(node_local_, v);
     node_local_.assign(discretization_.n_local(), 0.);
     kernels_.mass(in, node_local_.data());
     nodes_.resize(n);
-    discretization_.add_to_owned(node_local_, nodes_);
+    discretization_.add_to_owned<double>(node_local_, nodes_);
     int ok = 1;
     for (std::size_t i = 0; i < n; ++i)
     {

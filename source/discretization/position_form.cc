@@ -27,7 +27,7 @@ namespace crawler
     }
     const long bad = kernels_.residual(in, data);
     if (!one)
-      discretization_.add_to_owned(F_local_, F);
+      discretization_.add_to_owned<double>(F_local_, F);
 
     StretchAt found{std::numeric_limits<double>::infinity(), 0.};
     if (bad >= 0)
@@ -51,7 +51,8 @@ namespace crawler
   }
 
   void
-  PositionForm::jacobian(const double t, const ConstVector u, const ConstVector v, const double sigma, ChainMatrix &A)
+  PositionForm::jacobian(
+    const double t, const ConstVector u, const ConstVector v, const double sigma, ChainMatrix<double> &A)
   {
     kernels_.jacobian(input(t, u, v), sigma, A.blocks().data());
   }
@@ -76,10 +77,59 @@ namespace crawler
   }
 
   bool
+  PositionForm::setup_complex_jacobians(const double t,
+                                        const ConstVector u,
+                                        const ConstVector v,
+                                        const std::span<const Complex> sigma)
+  {
+    setup_stage(0, t, u, v);
+    bool ok = true;
+    for (std::size_t i = 0; i < sigma.size(); ++i)
+    {
+      if (complex_jacobians_.size() <= i)
+        complex_jacobians_.emplace_back(discretization_);
+      const auto &by_u = stages_[0].by_u.blocks(), &by_v = stages_[0].by_v.blocks();
+      auto &blocks = complex_jacobians_[i].blocks();
+      for (std::size_t j = 0; j < blocks.size(); ++j)
+        blocks[j] = by_u[j] + sigma[i] * by_v[j];
+      ok = complex_jacobians_[i].factorize() && ok;
+    }
+    return ok;
+  }
+
+  void
+  PositionForm::solve_with_complex_jacobian(const unsigned int i,
+                                            const std::span<const Complex> b,
+                                            const std::span<Complex> x)
+  {
+    complex_jacobians_[i].solve(b, x);
+  }
+
+  void
+  PositionForm::setup_stage(const unsigned int stage, const double t, const ConstVector u, const ConstVector v)
+  {
+    while (stages_.size() <= stage)
+      stages_.push_back({ChainMatrix<double>(discretization_), ChainMatrix<double>(discretization_)});
+    const CellInput in = input(t, u, v);
+    kernels_.jacobian(in, 0., stages_[stage].by_u.blocks().data());
+    kernels_.mass(in, stages_[stage].by_v.blocks().data());
+  }
+
+  void
+  PositionForm::stage_vmult(const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector result)
+  {
+    stages_[stage].by_u.multiply(x, result);
+    product_.resize(result.size());
+    stages_[stage].by_v.multiply(x_dot, product_);
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i] += product_[i];
+  }
+
+  bool
   PositionForm::velocity(const double t, const ConstVector u, const Vector v)
   {
     if (!mass_)
-      mass_ = std::make_unique<ChainMatrix>(discretization_);
+      mass_ = std::make_unique<ChainMatrix<double>>(discretization_);
     if (!residual(t, u, {}, v))
       return false;
     for (double &value : v)

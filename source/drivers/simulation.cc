@@ -92,6 +92,7 @@ namespace crawler
   {
     using Vector      = TimeStepper::Vector;
     using ConstVector = TimeStepper::ConstVector;
+    using Complex     = TimeStepper::Complex;
     stepper_.reset();
     assembler_.reset();
     discretization_ = std::move(discretization);
@@ -113,6 +114,26 @@ namespace crawler
     stepper_->solve_with_jacobian = [this](const ConstVector b, const Vector x)
     {
       assembler_->solve_with_jacobian(b, x);
+    };
+    stepper_->setup_complex_jacobians =
+      [this](const double t, const ConstVector y, const ConstVector y_dot, const std::span<const Complex> sigma)
+    {
+      return assembler_->setup_complex_jacobians(t, y, y_dot, sigma);
+    };
+    stepper_->solve_with_complex_jacobian =
+      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x)
+    {
+      assembler_->solve_with_complex_jacobian(i, b, x);
+    };
+    stepper_->setup_stage =
+      [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot)
+    {
+      assembler_->setup_stage(stage, t, y, y_dot);
+    };
+    stepper_->stage_vmult =
+      [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector y)
+    {
+      assembler_->stage_vmult(stage, x, x_dot, y);
     };
     stepper_->jacobian_vmult = [this](const ConstVector x, const Vector y)
     {

@@ -43,8 +43,8 @@ namespace crawler
   FieldSampler::sample(const double t, const std::span<const double> y, const std::span<const double> v)
   {
     const Discretization &d = assembler_.discretization();
-    const auto u_local      = d.to_local(assembler_.displacement(y), u_local_);
-    const auto v_local      = d.to_local(v, v_local_);
+    const auto u_local      = d.to_local<double>(assembler_.displacement(y), u_local_);
+    const auto v_local      = d.to_local<double>(v, v_local_);
     const auto log_w        = assembler_.log_stretch(y);
     const unsigned int n = d.element().n, q = d.element().degree;
     const double k = assembler_.scene().body.elastic_modulus;

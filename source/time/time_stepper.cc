@@ -2,7 +2,9 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/petsc_object.h>
 #include <crawler/time/integrators.h>
+#include <crawler/time/radau.h>
 #include <crawler/time/time_stepper.h>
+#include <crawler/time/vec_access.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,52 +18,6 @@ namespace crawler
   {
     /// Remaining error of Newton's method, relative to the admissible error of a step.
     constexpr double newton_fraction = 0.01;
-
-    /// Read access to the own part of a Vec as long as this lives.
-    class ReadAccess
-    {
-    public:
-      explicit ReadAccess(Vec vec)
-        : vec_(vec)
-      {
-        PetscInt n = 0;
-        VecGetLocalSize(vec, &n);
-        VecGetArrayRead(vec, &data_);
-        span = {data_, static_cast<std::size_t>(n)};
-      }
-      ~ReadAccess()
-      {
-        VecRestoreArrayRead(vec_, &data_);
-      }
-      std::span<const double> span;
-
-    private:
-      Vec vec_;
-      const double *data_ = nullptr;
-    };
-
-    /// The same for writing.
-    class WriteAccess
-    {
-    public:
-      explicit WriteAccess(Vec vec)
-        : vec_(vec)
-      {
-        PetscInt n = 0;
-        VecGetLocalSize(vec, &n);
-        VecGetArray(vec, &data_);
-        span = {data_, static_cast<std::size_t>(n)};
-      }
-      ~WriteAccess()
-      {
-        VecRestoreArray(vec_, &data_);
-      }
-      std::span<double> span;
-
-    private:
-      Vec vec_;
-      double *data_ = nullptr;
-    };
   } // namespace
 
 
@@ -80,6 +36,7 @@ namespace crawler
     PetscOwner<Vec> interpolated;
     std::vector<double> weights;
     PetscOwner<Mat> jacobian;
+    RadauSystems radau_systems;
     PetscOwner<TS> ts;
 
     // The state of one solve().
@@ -102,6 +59,8 @@ namespace crawler
 
     void
     set_options();
+    void
+    connect_radau();
     bool
     report(double time, double size);
     TimeOutcome
@@ -188,6 +147,7 @@ namespace crawler
     jacobian.reset(mat);
     petsc(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
 
+    petsc(register_radau());
     TS stepper = nullptr;
     petsc(TSCreate(communicator, &stepper));
     ts.reset(stepper);
@@ -216,6 +176,8 @@ namespace crawler
       petsc(TSARKIMEXSetType(stepper, method.subtype.c_str()));
       petsc(TSARKIMEXSetFullyImplicit(stepper, PETSC_TRUE));
     }
+    if (method.petsc_type == radau_type)
+      petsc(radau_set_stages(stepper, (method.order + 1) / 2));
     if (method.name == "midpoint")
     {
       petsc(TSThetaSetTheta(stepper, 0.5));
@@ -283,6 +245,13 @@ namespace crawler
       petsc(TSARKIMEXGetType(stepper, &subtype));
       name += std::string(" ") + subtype;
     }
+    if (name == radau_type)
+    {
+      unsigned int n_stages = 0;
+      radau_get_stages(stepper, &n_stages);
+      name += " " + std::to_string(2 * n_stages - 1);
+      connect_radau();
+    }
     if (name == "theta")
     {
       PetscBool endpoint = PETSC_FALSE;
@@ -296,6 +265,62 @@ namespace crawler
     throw InputError(
       "the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " +
       (reason.empty() ? "it has not been verified for a mass matrix that depends on the state" : reason));
+  }
+
+  /// Gives the Radau methods the callbacks of the owner.
+  void
+  TimeStepper::Implementation::connect_radau()
+  {
+    using Complex       = std::complex<double>;
+    radau_systems.setup = [this](const double t,
+                                 const ConstVector y,
+                                 const ConstVector y_dot,
+                                 const double real_sigma,
+                                 const std::span<const Complex> sigma,
+                                 bool &ok)
+    {
+      return guarded(
+        [&]()
+        {
+          ok = owner.setup_jacobian(t, y, y_dot, real_sigma) && owner.setup_complex_jacobians(t, y, y_dot, sigma);
+        });
+    };
+    radau_systems.solve_real = [this](const ConstVector b, const Vector x)
+    {
+      return guarded(
+        [&]()
+        {
+          owner.solve_with_jacobian(b, x);
+        });
+    };
+    radau_systems.solve_complex =
+      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x)
+    {
+      return guarded(
+        [&]()
+        {
+          owner.solve_with_complex_jacobian(i, b, x);
+        });
+    };
+    radau_systems.setup_stage =
+      [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot)
+    {
+      return guarded(
+        [&]()
+        {
+          owner.setup_stage(stage, t, y, y_dot);
+        });
+    };
+    radau_systems.multiply_stage =
+      [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector result)
+    {
+      return guarded(
+        [&]()
+        {
+          owner.stage_vmult(stage, x, x_dot, result);
+        });
+    };
+    petsc(radau_set_systems(ts.get(), &radau_systems));
   }
 
   PetscErrorCode

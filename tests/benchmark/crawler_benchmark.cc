@@ -139,7 +139,7 @@ namespace
     Scene scene;
     Discretization discretization;
     PositionForm assembler;
-    ChainMatrix matrix;
+    ChainMatrix<double> matrix;
     std::vector<double> u, v, F;
   };
 

@@ -7,6 +7,7 @@
 #include <crawler/discretization/stretch_sampler.h>
 #include <crawler/scene/scene.h>
 
+#include <complex>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -52,6 +53,7 @@ namespace crawler
   public:
     using Vector      = std::span<double>;
     using ConstVector = std::span<const double>;
+    using Complex     = std::complex<double>;
 
     virtual ~Assembler();
     Assembler(const Assembler &) = delete;
@@ -90,6 +92,18 @@ namespace crawler
     solve_with_jacobian(ConstVector b, Vector x) = 0;
     virtual void
     jacobian_vmult(ConstVector x, Vector y) = 0;
+
+    /// The same for complex sigma_0, sigma_1, ..., as implicit Runge-Kutta methods need.
+    virtual bool
+    setup_complex_jacobians(double t, ConstVector y, ConstVector y_dot, std::span<const Complex> sigma) = 0;
+    virtual void
+    solve_with_complex_jacobian(unsigned int i, std::span<const Complex> b, std::span<Complex> x) = 0;
+
+    /// Keeps dF/dy and dF/dy' at the state of a stage, for stage_vmult: result = dF/dy x + dF/dy' x_dot.
+    virtual void
+    setup_stage(unsigned int stage, double t, ConstVector y, ConstVector y_dot) = 0;
+    virtual void
+    stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result) = 0;
 
     /// v = u' at the nodes [length/time], from the balance of forces. Returns false if it cannot be computed.
     virtual bool

@@ -57,18 +57,6 @@ namespace crawler
     void (*jacobian)(const CellInput &, double sigma, double *blocks);
     void (*mass)(const CellInput &, double *blocks);
     void (*integrals)(const CellInput &, CellIntegrals &);
-
-    /// y += A x for the chain of blocks.
-    void (*multiply)(unsigned int n_cells, const double *blocks, const double *x, double *y);
-    /**
-     * Static condensation of every cell's inner nodes. In: the blocks. Out: `blocks` overwritten by the factors and
-     * the 2x2 Schur complements [cell][4] of the end nodes. Returns false if a pivot is zero or not finite.
-     */
-    bool (*condense)(unsigned int n_cells, double *blocks, double *schur);
-    /// Eliminates the inner nodes from the right-hand side @p x (in place).
-    void (*forward)(unsigned int n_cells, const double *blocks, double *x);
-    /// From the end nodes of all cells to the inner ones (in place).
-    void (*backward)(unsigned int n_cells, const double *blocks, double *x);
   };
 
   /**
@@ -83,26 +71,36 @@ namespace crawler
     void (*residual)(const LogCellInput &, double *F, double *L);
     /// The friction at the nodes, int g phi_i: the diagonal of the friction matrix; added to @p mass.
     void (*mass)(const LogCellInput &, double *mass);
-    /// The blocks of the Jacobian after elimination of log w, and what `reduce` and `recover` need [cell][factors(q)].
-    bool (*jacobian)(const LogCellInput &, double sigma, double *blocks, double *factors);
-    /// From a right-hand side (f, l) to that of the chain of blocks: added to @p f.
-    void (*reduce)(const CellInput &, const double *factors, const double *l, double *f);
-    /// log w [cell][q] from the velocities @p v at the nodes and the right-hand side @p l (in place).
-    void (*recover)(const CellInput &, const double *factors, const double *v, double *l);
-    /// (f, l) += J (v, log w) with the factors of jacobian().
+    /// (f, l) += J (v, log w) with the real factors of LogElimination.
     void (*multiply)(const CellInput &, const double *factors, const double *v, const double *x, double *f, double *l);
     void (*integrals)(const LogCellInput &, CellIntegrals &);
   };
 
-  /// Numbers per cell that LogCellKernels::jacobian keeps.
+  /// The elimination of log w from the Jacobian of the log-stretch form, cell by cell; real or complex shifts.
+  template <typename Number>
+  struct LogElimination
+  {
+    /// The blocks of the Jacobian after elimination of log w, and what the others need [cell][log_factors].
+    bool (*jacobian)(const LogCellInput &, Number sigma, Number *blocks, double *factors);
+    /// From a right-hand side (f, l) to that of the chain of blocks: added to @p f.
+    void (*reduce)(const CellInput &, const double *factors, const Number *l, Number *f);
+    /// log w [cell][q] from the velocities @p v at the nodes and the right-hand side @p l (in place).
+    void (*recover)(const CellInput &, const double *factors, const Number *v, Number *l);
+  };
+
+  /// Doubles per cell that LogElimination::jacobian keeps.
+  template <typename Number>
   constexpr unsigned int
   log_factors(const unsigned int degree)
   {
-    return 3 * degree + 2 * (degree + 1);
+    return degree * sizeof(Number) / sizeof(double) + 2 * degree + 2 * (degree + 1);
   }
 
   const LogCellKernels &
   log_cell_kernels(unsigned int degree);
+  template <typename Number>
+  const LogElimination<Number> &
+  log_elimination(unsigned int degree);
 
   /// The kernels for one degree, 1 to ReferenceElement::highest_degree.
   const CellKernels &

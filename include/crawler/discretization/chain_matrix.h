@@ -3,20 +3,25 @@
 
 #include <crawler/discretization/discretization.h>
 
+#include <complex>
+#include <type_traits>
+
 namespace crawler
 {
   /**
    * A matrix that is a chain of dense blocks, one per cell, neighbours overlapping in one node; and its direct
    * solution in O(N) operations without fill and without pivoting: inner nodes cell by cell, then the end nodes of the
    * cells one after the other down to a 2x2 system per rank, then the small tridiagonal system of those on every rank.
+   * Number is double or std::complex<double>.
    */
+  template <typename Number>
   class ChainMatrix
   {
   public:
     explicit ChainMatrix(const Discretization &discretization);
 
     /// The blocks [local cell][degree+1][degree+1], row by row, to be filled. Filling them voids the factors.
-    std::vector<double> &
+    std::vector<Number> &
     blocks()
     {
       return blocks_;
@@ -24,7 +29,7 @@ namespace crawler
 
     /// y = A x for owned vectors (collective).
     void
-    multiply(std::span<const double> x, std::span<double> y) const;
+    multiply(std::span<const Number> x, std::span<Number> y) const requires std::is_same_v<Number, double>;
 
     /// Computes the factors (collective). Returns false on all ranks if a pivot vanishes or is not finite.
     bool
@@ -32,17 +37,17 @@ namespace crawler
 
     /// x = A^-1 b for owned vectors (collective) with the factors; @p b and @p x may be one vector.
     void
-    solve(std::span<const double> b, std::span<double> x) const;
+    solve(std::span<const Number> b, std::span<Number> x) const;
 
   private:
     const Discretization *discretization_;
-    std::vector<double> blocks_, factors_, schur_;
+    std::vector<Number> blocks_, factors_, schur_;
 
     // Elimination of the end nodes 1 ... n-1 of the own cells, node 0 and n kept. For node i: its inverse pivot and
     // the couplings row/column 0, and to the next node.
-    std::vector<double> inverse_, row_zero_, column_zero_, next_, below_;
-    std::vector<double> reduced_; ///< [rank][4] the 2x2 systems of all ranks
-    mutable std::vector<double> local_, reduced_rhs_;
-    mutable std::vector<double> x_local_;
+    std::vector<Number> inverse_, row_zero_, column_zero_, next_, below_;
+    std::vector<Number> reduced_; ///< [rank][4] the 2x2 systems of all ranks
+    mutable std::vector<Number> local_, reduced_rhs_;
+    mutable std::vector<Number> x_local_;
   };
 } // namespace crawler

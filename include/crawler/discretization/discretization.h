@@ -145,12 +145,14 @@ namespace crawler
 
     /// A local array from the owned values of all ranks (collective). Returns @p owned itself where nothing is
     /// missing; else fills and returns @p buffer.
-    std::span<const double>
-    to_local(std::span<const double> owned, std::vector<double> &buffer) const;
+    template <typename Number>
+    std::span<const Number>
+    to_local(std::span<const Number> owned, std::vector<Number> &buffer) const;
 
     /// Owned sums from local contributions (collective): @p local is added up where two ranks share a node.
+    template <typename Number>
     void
-    add_to_owned(std::span<const double> local, std::span<double> owned) const;
+    add_to_owned(std::span<const Number> local, std::span<Number> owned) const;
 
   private:
     struct Mesh; ///< deal.II's triangulation, kept out of this header

@@ -49,6 +49,14 @@ namespace crawler
     void
     jacobian_vmult(ConstVector x, Vector y) override;
     bool
+    setup_complex_jacobians(double t, ConstVector y, ConstVector y_dot, std::span<const Complex> sigma) override;
+    void
+    solve_with_complex_jacobian(unsigned int i, std::span<const Complex> b, std::span<Complex> x) override;
+    void
+    setup_stage(unsigned int stage, double t, ConstVector y, ConstVector y_dot) override;
+    void
+    stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result) override;
+    bool
     velocity(double t, ConstVector y, Vector v) override;
     CellIntegrals
     integrals(double t, ConstVector y, ConstVector v) override;
@@ -75,10 +83,32 @@ namespace crawler
 
     const unsigned int q_;
     const LogCellKernels &kernels_;
-    ChainMatrix jacobian_;
-    std::vector<double> factors_;            ///< [cell][log_factors(q)]
     std::vector<double> node_local_, nodes_; ///< local and owned arrays over the nodes
     std::vector<double> local_buffer_;
-    double sigma_ = 0.;
+
+    /// The Jacobian for one shift, log w eliminated.
+    template <typename Number>
+    struct Eliminated
+    {
+      explicit Eliminated(const Discretization &discretization);
+
+      Number sigma = 0.;
+      ChainMatrix<Number> matrix;
+      std::vector<double> factors; ///< [cell][log_factors]
+      std::vector<Number> node_local, nodes, local_buffer;
+    };
+    template <typename Number>
+    bool
+    setup(Eliminated<Number> &jacobian, const LogCellInput &in, Number sigma) const;
+    template <typename Number>
+    void
+    solve(Eliminated<Number> &jacobian, std::span<const Number> b, std::span<Number> x) const;
+    /// (L, F) parts of a product with the Jacobian, from its factors.
+    void
+    multiply(const std::vector<double> &factors, ConstVector x, Vector y);
+
+    Eliminated<double> jacobian_;
+    std::vector<Eliminated<Complex>> complex_jacobians_;
+    std::vector<Eliminated<double>> stages_; ///< with the shift 0
   };
 } // namespace crawler

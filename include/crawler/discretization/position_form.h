@@ -35,13 +35,21 @@ namespace crawler
     void
     jacobian_vmult(ConstVector x, Vector y) override;
     bool
+    setup_complex_jacobians(double t, ConstVector y, ConstVector y_dot, std::span<const Complex> sigma) override;
+    void
+    solve_with_complex_jacobian(unsigned int i, std::span<const Complex> b, std::span<Complex> x) override;
+    void
+    setup_stage(unsigned int stage, double t, ConstVector y, ConstVector y_dot) override;
+    void
+    stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result) override;
+    bool
     velocity(double t, ConstVector u, Vector v) override;
     CellIntegrals
     integrals(double t, ConstVector u, ConstVector v) override;
 
     /// A = dF/du + sigma dF/dv.
     void
-    jacobian(double t, ConstVector u, ConstVector v, double sigma, ChainMatrix &A);
+    jacobian(double t, ConstVector u, ConstVector v, double sigma, ChainMatrix<double> &A);
 
   protected:
     const std::vector<double> &
@@ -53,7 +61,14 @@ namespace crawler
 
   private:
     const CellKernels &kernels_;
-    ChainMatrix jacobian_;
-    std::unique_ptr<ChainMatrix> mass_; ///< built when a velocity is first asked for
+    ChainMatrix<double> jacobian_;
+    std::unique_ptr<ChainMatrix<double>> mass_; ///< built when a velocity is first asked for
+    std::vector<ChainMatrix<Complex>> complex_jacobians_;
+    struct Stage
+    {
+      ChainMatrix<double> by_u, by_v; ///< dF/du, dF/dv
+    };
+    std::vector<Stage> stages_;
+    std::vector<double> product_;
   };
 } // namespace crawler

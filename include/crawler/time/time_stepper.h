@@ -5,6 +5,7 @@
 
 #include <mpi.h>
 
+#include <complex>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -58,6 +59,7 @@ namespace crawler
 
     using Vector      = std::span<double>;
     using ConstVector = std::span<const double>;
+    using Complex     = std::complex<double>;
 
     /// residual = F(t, y, y_dot); false refuses the state (outside of the domain of F): the step is tried again
     /// smaller.
@@ -66,6 +68,15 @@ namespace crawler
     std::function<bool(double t, ConstVector y, ConstVector y_dot, double alpha)> setup_jacobian;
     std::function<void(ConstVector source, Vector destination)> solve_with_jacobian;
     std::function<void(ConstVector source, Vector destination)> jacobian_vmult;
+    /// For the Radau methods: the same for complex alpha_0, alpha_1, ...
+    std::function<bool(double t, ConstVector y, ConstVector y_dot, std::span<const Complex> alpha)>
+      setup_complex_jacobians;
+    std::function<void(unsigned int i, std::span<const Complex> source, std::span<Complex> destination)>
+      solve_with_complex_jacobian;
+    /// And, if the linear solver is a Krylov method: keeps dF/dy and dF/dy_dot at the state of a stage; then
+    /// destination = dF/dy x + dF/dy_dot x_dot.
+    std::function<void(unsigned int stage, double t, ConstVector y, ConstVector y_dot)> setup_stage;
+    std::function<void(unsigned int stage, ConstVector x, ConstVector x_dot, Vector destination)> stage_vmult;
     /// Sees the initial state and each accepted one; false stops the integration.
     std::function<bool(const Step &step, ConstVector y)> monitor;
 

@@ -42,7 +42,7 @@ TEST(PositionForm, JacobianMatchesDifferences)
       const Scene scene = test::parameters_with(test::wave(a, 0.3)).create_scene();
       const Discretization d(MPI_COMM_SELF, 1., 3, q);
       PositionForm assembler(scene, d);
-      ChainMatrix J(d);
+      ChainMatrix<double> J(d);
       const State state(d);
       assembler.jacobian(t, state.u, state.v, sigma, J);
 

@@ -31,7 +31,7 @@ namespace
   }
 
   void
-  fill(ChainMatrix &matrix, const Discretization &d, const std::size_t first_cell)
+  fill(ChainMatrix<double> &matrix, const Discretization &d, const std::size_t first_cell)
   {
     const unsigned int n = d.element().n;
     for (std::size_t c = 0; c < d.n_local_cells(); ++c)
@@ -47,7 +47,7 @@ TEST(ChainMatrix, AgreesWithADenseMatrix)
     for (const unsigned int n_cells : {1u, 2u, 3u, 7u, 20u})
     {
       const Discretization d(MPI_COMM_WORLD, 1., n_cells, q);
-      ChainMatrix matrix(d);
+      ChainMatrix<double> matrix(d);
       const auto first_cell =
         static_cast<std::size_t>(d.n_local_cells() == 0 ? 0 : std::lround(d.cell_left()[0] * n_cells));
       fill(matrix, d, first_cell);
@@ -81,7 +81,7 @@ TEST(ChainMatrix, AgreesWithADenseMatrix)
 TEST(ChainMatrix, ReportsASingularMatrix)
 {
   const Discretization d(MPI_COMM_WORLD, 1., 6, 3);
-  ChainMatrix matrix(d);
+  ChainMatrix<double> matrix(d);
   EXPECT_FALSE(matrix.factorize()); // all zeros
   fill(matrix, d, 0);
   if (d.rank() == 0)

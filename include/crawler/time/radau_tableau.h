@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <complex>
+#include <vector>
+
+namespace crawler
+{
+  /**
+   * The Radau IIA method with s = 3 or 5 stages, collocation at the Radau points 0 < c_1 < ... < c_s = 1, of order
+   * 2s-1 (Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.5 and IV.8). Matrices row by row.
+   */
+  struct RadauTableau
+  {
+    explicit RadauTableau(unsigned int n_stages);
+
+    const unsigned int n;                          ///< s
+    std::vector<double> c;                         ///< [s] the nodes
+    std::vector<double> inverse;                   ///< [s][s] A^-1 of the Runge-Kutta matrix A
+    double real_eigenvalue = 0.;                   ///< of A^-1
+    std::vector<std::complex<double>> eigenvalues; ///< [(s-1)/2] of A^-1, with positive imaginary part
+    /// The eigenvectors of A^-1, the real one first, and the inverse of the matrix of all of them, as far as it is
+    /// needed: the rest is complex conjugate.
+    std::vector<std::complex<double>> vectors; ///< [s][1 + (s-1)/2]
+    std::vector<std::complex<double>> rows;    ///< [1 + (s-1)/2][s]
+    /// [s] with the increments z_j: h (b^ - b) f = sum_j error_weights_j z_j for the embedded formula of order s, which
+    /// has the weight 1/real_eigenvalue at the start of the step (section IV.8, formula 8.18).
+    std::vector<double> error_weights;
+
+    unsigned int
+    n_pairs() const
+    {
+      return (n - 1) / 2;
+    }
+
+    /// The collocation polynomial through (0, 0) and (c_j, z_j): its value at @p x is sum_j weights_j z_j.
+    void
+    collocation_weights(double x, std::vector<double> &weights) const;
+  };
+
+  /// Throws std::logic_error unless @p n_stages is 3 or 5.
+  const RadauTableau &
+  radau_tableau(unsigned int n_stages);
+} // namespace crawler

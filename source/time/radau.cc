@@ -1,0 +1,604 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/petsc_object.h>
+#include <crawler/time/radau.h>
+#include <crawler/time/radau_tableau.h>
+#include <crawler/time/vec_access.h>
+
+#include <petsc/private/tsimpl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Error of Newton's method that is left, relative to the admissible error of a step.
+    constexpr double newton_fraction = 0.01;
+    /// Slower convergence than this factor per iteration asks for new factors.
+    constexpr double slow = 0.1;
+    /// The polynomial of the last step is a good guess up to this multiple of the step.
+    constexpr double longest_extrapolation = 3.;
+
+    struct Radau
+    {
+      const RadauTableau *tableau = &radau_tableau(3);
+      const RadauSystems *systems = nullptr;
+
+      // Vectors of the size of y, and of all stages: on each rank its part of stage 1, then that of stage 2, ...
+      PetscOwner<Vec> y, y_dot, f, start;
+      PetscOwner<Vec> z, residual;
+      PetscOwner<Mat> jacobian;
+      std::size_t n_owned = 0;
+      double n_all        = 0.; ///< unknowns of all ranks
+      std::vector<double> work, x_dot;
+      std::vector<std::complex<double>> complex_work;
+
+      double h = 0., t = 0.; ///< of the step that is tried
+      double error = 0.;     ///< its error in units of the tolerance
+      // The last accepted step, for interpolation and the next guess.
+      std::vector<double> old_start, old_z, weights;
+      double old_h = 0., old_t = 0.;
+
+      // Newton's method.
+      double last_correction = 0., rate = 0., known_rate = 1.;
+      bool factors_ok = true, exact_products = false;
+      double factors_h = 0.;
+
+      std::span<const double>
+      stage(const std::span<const double> all, const unsigned int i) const
+      {
+        return all.subspan(i * n_owned, n_owned);
+      }
+
+      /// y and y' of a stage from the increments @p z.
+      void
+      state_of_stage(const std::span<const double> z, const unsigned int i)
+      {
+        const ReadAccess start_access(start.get());
+        const WriteAccess y_access(y.get()), y_dot_access(y_dot.get());
+        const double *zi = z.data() + i * n_owned;
+        for (std::size_t k = 0; k < n_owned; ++k)
+          y_access.span[k] = start_access.span[k] + zi[k];
+        derivative_of_stage(z, i, y_dot_access.span);
+      }
+
+      /// (1/h) sum_j (A^-1)_ij z_j
+      void
+      derivative_of_stage(const std::span<const double> z, const unsigned int i, const std::span<double> result) const
+      {
+        std::fill(result.begin(), result.end(), 0.);
+        for (unsigned int j = 0; j < tableau->n; ++j)
+        {
+          const double factor = tableau->inverse[i * tableau->n + j] / h;
+          const double *zj    = z.data() + j * n_owned;
+          for (std::size_t k = 0; k < n_owned; ++k)
+            result[k] += factor * zj[k];
+        }
+      }
+    };
+
+    Radau &
+    data(TS ts)
+    {
+      return *static_cast<Radau *>(ts->data);
+    }
+
+    /// The value of the collocation polynomial of the last step at x (0: its start, 1: its end), relative to its start.
+    void
+    old_polynomial(Radau &radau, const double x, const std::span<double> result)
+    {
+      radau.tableau->collocation_weights(x, radau.weights);
+      std::fill(result.begin(), result.end(), 0.);
+      for (unsigned int j = 0; j < radau.tableau->n; ++j)
+        for (std::size_t k = 0; k < radau.n_owned; ++k)
+          result[k] += radau.weights[j] * radau.old_z[j * radau.n_owned + k];
+    }
+
+    void
+    first_guess(TS ts)
+    {
+      Radau &radau = data(ts);
+      const WriteAccess z(radau.z.get());
+      std::fill(z.span.begin(), z.span.end(), 0.);
+      if (ts->steprestart || radau.old_h == 0.)
+        return;
+      const unsigned int n = radau.tableau->n;
+      const double ratio   = radau.h / radau.old_h;
+      const double *end    = &radau.old_z[(n - 1) * radau.n_owned];
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        const auto zi = z.span.subspan(i * radau.n_owned, radau.n_owned);
+        if (ratio <= longest_extrapolation)
+        {
+          old_polynomial(radau, 1. + radau.tableau->c[i] * ratio, zi);
+          for (std::size_t k = 0; k < radau.n_owned; ++k)
+            zi[k] -= end[k];
+        }
+        else // along the tangent
+          for (unsigned int j = 0; j < n; ++j)
+            for (std::size_t k = 0; k < radau.n_owned; ++k)
+              zi[k] += radau.tableau->c[i] * ratio * radau.tableau->inverse[(n - 1) * n + j] *
+                       radau.old_z[j * radau.n_owned + k];
+      }
+    }
+
+    PetscErrorCode
+    stage_function(SNES, Vec Z, Vec R, TS ts)
+    {
+      Radau &radau = data(ts);
+      const ReadAccess z(Z);
+      const WriteAccess r(R);
+      for (unsigned int i = 0; i < radau.tableau->n; ++i)
+      {
+        radau.state_of_stage(z.span, i);
+        PetscErrorCode code = TSComputeIFunction(
+          ts, radau.t + radau.tableau->c[i] * radau.h, radau.y.get(), radau.y_dot.get(), radau.f.get(), PETSC_FALSE);
+        if (code != 0)
+          return code;
+        const ReadAccess f(radau.f.get());
+        std::copy(f.span.begin(), f.span.end(), r.span.begin() + i * radau.n_owned);
+      }
+      return 0;
+    }
+
+    /// Factors at the stage in the middle of the step.
+    PetscErrorCode
+    factorize(TS ts, const std::span<const double> z)
+    {
+      Radau &radau              = data(ts);
+      const unsigned int middle = radau.tableau->n / 2;
+      radau.state_of_stage(z, middle);
+      std::vector<std::complex<double>> sigma = radau.tableau->eigenvalues;
+      for (auto &value : sigma)
+        value /= radau.h;
+      const ReadAccess y(radau.y.get()), y_dot(radau.y_dot.get());
+      radau.factors_h = radau.h;
+      return radau.systems->setup(radau.t + radau.tableau->c[middle] * radau.h,
+                                  y.span,
+                                  y_dot.span,
+                                  radau.tableau->real_eigenvalue / radau.h,
+                                  sigma,
+                                  radau.factors_ok);
+    }
+
+    PetscErrorCode
+    stage_jacobian(SNES snes, Vec Z, Mat A, Mat, TS ts)
+    {
+      Radau &radau       = data(ts);
+      PetscInt iteration = 0;
+      SNESGetIterationNumber(snes, &iteration);
+      const ReadAccess z(Z);
+      PetscErrorCode code = 0;
+      if (iteration == 0 || radau.rate > slow)
+        code = factorize(ts, z.span);
+      if (radau.exact_products)
+        for (unsigned int i = 0; code == 0 && i < radau.tableau->n; ++i)
+        {
+          radau.state_of_stage(z.span, i);
+          const ReadAccess y(radau.y.get()), y_dot(radau.y_dot.get());
+          code = radau.systems->setup_stage(i, radau.t + radau.tableau->c[i] * radau.h, y.span, y_dot.span);
+        }
+      if (code != 0)
+        return code;
+      MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
+      return MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY);
+    }
+
+    PetscErrorCode
+    multiply(Mat A, Vec X, Vec Y)
+    {
+      void *context = nullptr;
+      MatShellGetContext(A, &context);
+      Radau &radau = data(static_cast<TS>(context));
+      const ReadAccess x(X);
+      const WriteAccess y(Y);
+      radau.x_dot.resize(radau.n_owned);
+      PetscErrorCode code = 0;
+      for (unsigned int i = 0; code == 0 && i < radau.tableau->n; ++i)
+      {
+        radau.derivative_of_stage(x.span, i, radau.x_dot);
+        code = radau.systems->multiply_stage(
+          i, radau.stage(x.span, i), radau.x_dot, y.span.subspan(i * radau.n_owned, radau.n_owned));
+      }
+      return code;
+    }
+
+    PetscErrorCode
+    set_up_preconditioner(PC pc)
+    {
+      void *context = nullptr;
+      PCShellGetContext(pc, &context);
+      return PCSetFailedReason(pc,
+                               data(static_cast<TS>(context)).factors_ok ? PC_NOERROR : PC_FACTOR_NUMERIC_ZEROPIVOT);
+    }
+
+    /// In the basis of the eigenvectors of A^-1 the stages do not depend on each other.
+    PetscErrorCode
+    precondition(PC pc, Vec B, Vec X)
+    {
+      void *context = nullptr;
+      PCShellGetContext(pc, &context);
+      Radau &radau                = data(static_cast<TS>(context));
+      const RadauTableau &tableau = *radau.tableau;
+      const unsigned int n = tableau.n, columns = 1 + tableau.n_pairs();
+      const std::size_t size = radau.n_owned;
+      const ReadAccess b(B);
+      const WriteAccess x(X);
+
+      radau.work.assign(size, 0.);
+      for (unsigned int j = 0; j < n; ++j)
+        for (std::size_t k = 0; k < size; ++k)
+          radau.work[k] += tableau.rows[j].real() * b.span[j * size + k];
+      PetscErrorCode code = radau.systems->solve_real(radau.work, radau.work);
+      for (unsigned int i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < size; ++k)
+          x.span[i * size + k] = tableau.vectors[i * columns].real() * radau.work[k];
+
+      for (unsigned int p = 1; code == 0 && p < columns; ++p)
+      {
+        radau.complex_work.assign(size, 0.);
+        for (unsigned int j = 0; j < n; ++j)
+          for (std::size_t k = 0; k < size; ++k)
+            radau.complex_work[k] += tableau.rows[p * n + j] * b.span[j * size + k];
+        code = radau.systems->solve_complex(p - 1, radau.complex_work, radau.complex_work);
+        for (unsigned int i = 0; i < n; ++i)
+        {
+          const std::complex<double> vector = 2. * tableau.vectors[i * columns + p];
+          for (std::size_t k = 0; k < size; ++k)
+            x.span[i * size + k] +=
+              vector.real() * radau.complex_work[k].real() - vector.imag() * radau.complex_work[k].imag();
+        }
+      }
+      return code;
+    }
+
+    /// Root mean square over all stages and ranks, in units of the tolerance.
+    double
+    scaled_norm(TS ts, Vec all, Vec absolute, const double tolerance)
+    {
+      const Radau &radau = data(ts);
+      const ReadAccess a(all);
+      double sum = 0.;
+      if (absolute != nullptr)
+      {
+        const ReadAccess tolerances(absolute);
+        for (std::size_t i = 0; i < a.span.size(); ++i)
+        {
+          const double x = a.span[i] / tolerances.span[i % radau.n_owned];
+          sum += x * x;
+        }
+      }
+      else
+        for (const double value : a.span)
+          sum += value * value / (tolerance * tolerance);
+      const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(all));
+      int size                    = 1;
+      MPI_Comm_size(communicator, &size);
+      if (size > 1)
+        MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, communicator);
+      return std::sqrt(sum / (radau.n_all * radau.tableau->n));
+    }
+
+    /// The iteration converges linearly; with the rate so far the error that remains is rate/(1-rate) corrections.
+    PetscErrorCode
+    newton_converged(SNES snes,
+                     const PetscInt it,
+                     const PetscReal,
+                     const PetscReal dx_norm,
+                     const PetscReal F_norm,
+                     SNESConvergedReason *reason,
+                     void *context)
+    {
+      TS ts        = static_cast<TS>(context);
+      Radau &radau = data(ts);
+      *reason      = SNES_CONVERGED_ITERATING;
+      if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
+      {
+        *reason = SNES_DIVERGED_FNORM_NAN;
+        return 0;
+      }
+      if (it == 0)
+      {
+        radau.rate = 0.;
+        if (F_norm == 0.)
+          *reason = SNES_CONVERGED_FNORM_ABS;
+        return 0;
+      }
+      Vec correction = nullptr, state = nullptr;
+      SNESGetSolutionUpdate(snes, &correction);
+      SNESGetSolution(snes, &state);
+      const double d = scaled_norm(ts, correction, ts->vatol, ts->atol);
+      if (it >= 2)
+      {
+        radau.rate       = d / radau.last_correction;
+        radau.known_rate = std::clamp(radau.rate, 1e-6, 0.9);
+      }
+      else
+        radau.known_rate = std::pow(radau.known_rate, 0.8);
+      radau.last_correction = d;
+      const double left     = radau.known_rate / (1. - std::min(radau.known_rate, 0.9)) * d;
+      if (left <= newton_fraction || d <= 1e-15 * scaled_norm(ts, state, ts->vatol, ts->atol))
+        *reason = SNES_CONVERGED_SNORM_RELATIVE;
+      else if (it >= 3 && radau.rate >= 1.)
+        *reason = SNES_DIVERGED_DTOL;
+      return 0;
+    }
+
+    /// (K + sigma M)^-1 ( -F(t, y, -sigma e.z) ), the error of the embedded formula; again if it is large, where the
+    /// filter has to damp stiff components.
+    PetscErrorCode
+    estimate_error(TS ts)
+    {
+      Radau &radau        = data(ts);
+      const double sigma  = radau.tableau->real_eigenvalue / radau.h;
+      PetscErrorCode code = 0;
+      {
+        const ReadAccess z(radau.z.get());
+        const WriteAccess y_dot(radau.y_dot.get());
+        std::fill(y_dot.span.begin(), y_dot.span.end(), 0.);
+        for (unsigned int j = 0; j < radau.tableau->n; ++j)
+          for (std::size_t k = 0; k < radau.n_owned; ++k)
+            y_dot.span[k] -= sigma * radau.tableau->error_weights[j] * z.span[j * radau.n_owned + k];
+      }
+      VecCopy(radau.start.get(), radau.y.get());
+      for (int round = 0; round < 2; ++round)
+      {
+        code = TSComputeIFunction(ts, radau.t, radau.y.get(), radau.y_dot.get(), radau.f.get(), PETSC_FALSE);
+        if (code != 0)
+          return code;
+        {
+          const WriteAccess f(radau.f.get());
+          for (double &value : f.span)
+            value = -value;
+          code = radau.systems->solve_real(f.span, f.span);
+        }
+        if (code != 0)
+          return code;
+        VecWAXPY(radau.y.get(), 1., radau.start.get(), radau.f.get());
+        PetscReal absolute = 0., relative = 0.;
+        TSErrorWeightedNorm(
+          ts, radau.start.get(), radau.y.get(), ts->adapt->wnormtype, &radau.error, &absolute, &relative);
+        if (radau.error < 1. || !ts->steprestart)
+          break;
+      }
+      return 0;
+    }
+
+    PetscErrorCode
+    step(TS ts)
+    {
+      Radau &radau     = data(ts);
+      PetscInt rejects = 0;
+      VecCopy(ts->vec_sol, radau.start.get());
+      while (ts->reason == TS_CONVERGED_ITERATING)
+      {
+        radau.h = ts->time_step;
+        radau.t = ts->ptime;
+        first_guess(ts);
+        PetscErrorCode code = SNESSolve(ts->snes, nullptr, radau.z.get());
+        if (code != 0)
+          return code;
+        PetscInt newton = 0, linear = 0;
+        SNESGetIterationNumber(ts->snes, &newton);
+        SNESGetLinearSolveIterations(ts->snes, &linear);
+        ts->snes_its += newton;
+        ts->ksp_its += linear;
+
+        PetscBool accept = PETSC_TRUE;
+        code             = TSAdaptCheckStage(ts->adapt, ts, radau.t + radau.h, ts->vec_sol, &accept);
+        if (code != 0)
+          return code;
+        if (accept)
+        {
+          if (radau.factors_h != radau.h) // nothing had to be solved
+          {
+            const ReadAccess z(radau.z.get());
+            code = factorize(ts, z.span);
+          }
+          code = code == 0 ? estimate_error(ts) : code;
+          if (code != 0)
+            return code;
+          {
+            const ReadAccess z(radau.z.get()), start(radau.start.get());
+            const WriteAccess solution(ts->vec_sol);
+            const auto last = radau.stage(z.span, radau.tableau->n - 1);
+            for (std::size_t k = 0; k < radau.n_owned; ++k)
+              solution.span[k] = start.span[k] + last[k];
+          }
+          PetscReal next = ts->time_step;
+          TSAdaptCandidatesClear(ts->adapt);
+          TSAdaptCandidateAdd(ts->adapt,
+                              nullptr,
+                              static_cast<PetscInt>(2 * radau.tableau->n - 1),
+                              static_cast<PetscInt>(radau.tableau->n),
+                              1.,
+                              1.,
+                              PETSC_TRUE);
+          code = TSAdaptChoose(ts->adapt, ts, ts->time_step, nullptr, &next, &accept);
+          if (code != 0)
+            return code;
+          if (accept)
+          {
+            const ReadAccess z(radau.z.get()), start(radau.start.get());
+            radau.old_z.assign(z.span.begin(), z.span.end());
+            radau.old_start.assign(start.span.begin(), start.span.end());
+            radau.old_h = radau.h;
+            radau.old_t = radau.t;
+            ts->ptime += ts->time_step;
+            ts->time_step = next;
+            return 0;
+          }
+          VecCopy(radau.start.get(), ts->vec_sol);
+          ts->time_step = next;
+        }
+        ++ts->reject;
+        if (ts->reason == TS_CONVERGED_ITERATING && ++rejects > ts->max_reject && ts->max_reject >= 0)
+          ts->reason = TS_DIVERGED_STEP_REJECTED;
+      }
+      return 0;
+    }
+
+    PetscErrorCode
+    weighted_error(TS ts, NormType, PetscInt *order, PetscReal *error)
+    {
+      *order = static_cast<PetscInt>(data(ts).tableau->n + 1); // the step size goes as error^(1/order)
+      *error = data(ts).error;
+      return 0;
+    }
+
+    PetscErrorCode
+    interpolate(TS ts, const PetscReal t, Vec X)
+    {
+      Radau &radau = data(ts);
+      const WriteAccess x(X);
+      old_polynomial(radau, (t - radau.old_t) / radau.old_h, x.span);
+      for (std::size_t k = 0; k < radau.n_owned; ++k)
+        x.span[k] += radau.old_start[k];
+      return 0;
+    }
+
+    PetscErrorCode
+    roll_back(TS ts)
+    {
+      return VecCopy(data(ts).start.get(), ts->vec_sol);
+    }
+
+    PetscErrorCode
+    set_up(TS ts)
+    {
+      Radau &radau        = data(ts);
+      const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(ts));
+      Vec vec             = nullptr;
+      for (PetscOwner<Vec> *owner : {&radau.y, &radau.y_dot, &radau.f, &radau.start})
+      {
+        PetscCall(VecDuplicate(ts->vec_sol, &vec));
+        owner->reset(vec);
+      }
+      PetscInt local = 0, global = 0;
+      PetscCall(VecGetLocalSize(ts->vec_sol, &local));
+      PetscCall(VecGetSize(ts->vec_sol, &global));
+      radau.n_owned = static_cast<std::size_t>(local);
+      radau.n_all   = static_cast<double>(global);
+      const auto n  = static_cast<PetscInt>(radau.tableau->n);
+      PetscCall(VecCreate(comm, &vec));
+      radau.z.reset(vec);
+      PetscCall(VecSetSizes(vec, n * local, PETSC_DECIDE));
+      PetscCall(VecSetType(vec, VECSTANDARD));
+      PetscCall(VecDuplicate(radau.z.get(), &vec));
+      radau.residual.reset(vec);
+      Mat mat = nullptr;
+      PetscCall(MatCreateShell(comm, n * local, n * local, PETSC_DECIDE, PETSC_DECIDE, ts, &mat));
+      radau.jacobian.reset(mat);
+      PetscCall(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
+
+      SNES snes = nullptr;
+      KSP ksp   = nullptr;
+      PC pc     = nullptr;
+      PetscCall(TSGetSNES(ts, &snes));
+      PetscCall(SNESSetFunction(snes, radau.residual.get(), SNESTSFormFunction, ts));
+      PetscCall(SNESSetJacobian(snes, mat, mat, SNESTSFormJacobian, ts));
+      PetscCall(SNESSetConvergenceTest(snes, newton_converged, ts, nullptr));
+      PetscCall(SNESGetKSP(snes, &ksp));
+      PetscBool is_preonly = PETSC_FALSE;
+      PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &is_preonly));
+      radau.exact_products = !is_preonly;
+      PetscCall(KSPGetPC(ksp, &pc));
+      PetscCall(PCSetType(pc, PCSHELL));
+      PetscCall(PCShellSetContext(pc, ts));
+      PetscCall(PCShellSetName(pc, "chain eliminations of the stages"));
+      PetscCall(PCShellSetSetUp(pc, set_up_preconditioner));
+      PetscCall(PCShellSetApply(pc, precondition));
+      return 0;
+    }
+
+    PetscErrorCode
+    set_from_options(TS ts, PetscOptionItems *)
+    {
+      PetscInt n       = static_cast<PetscInt>(data(ts).tableau->n);
+      PetscBool found  = PETSC_FALSE;
+      const char *name = nullptr;
+      TSGetOptionsPrefix(ts, &name);
+      PetscOptionsGetInt(nullptr, name, "-ts_radau_stages", &n, &found);
+      if (found && n != 3 && n != 5)
+        SETERRQ(
+          PetscObjectComm(reinterpret_cast<PetscObject>(ts)), PETSC_ERR_ARG_OUTOFRANGE, "-ts_radau_stages is 3 or 5");
+      if (found)
+        data(ts).tableau = &radau_tableau(static_cast<unsigned int>(n));
+      return 0;
+    }
+
+    PetscErrorCode
+    reset(TS ts)
+    {
+      Radau &radau = data(ts);
+      for (PetscOwner<Vec> *owner : {&radau.y, &radau.y_dot, &radau.f, &radau.start, &radau.z, &radau.residual})
+        owner->reset();
+      radau.jacobian.reset();
+      return 0;
+    }
+
+    PetscErrorCode
+    destroy(TS ts)
+    {
+      delete static_cast<Radau *>(ts->data);
+      ts->data = nullptr;
+      return 0;
+    }
+
+    PetscErrorCode
+    view(TS ts, PetscViewer viewer)
+    {
+      return PetscViewerASCIIPrintf(viewer, "  Radau IIA with %u stages\n", data(ts).tableau->n);
+    }
+
+    PetscErrorCode
+    create(TS ts)
+    {
+      ts->data                = new Radau;
+      ts->ops->setup          = set_up;
+      ts->ops->step           = step;
+      ts->ops->interpolate    = interpolate;
+      ts->ops->evaluatewlte   = weighted_error;
+      ts->ops->rollback       = roll_back;
+      ts->ops->snesfunction   = stage_function;
+      ts->ops->snesjacobian   = stage_jacobian;
+      ts->ops->setfromoptions = set_from_options;
+      ts->ops->reset          = reset;
+      ts->ops->destroy        = destroy;
+      ts->ops->view           = view;
+      ts->default_adapt_type  = TSADAPTBASIC;
+      ts->usessnes            = PETSC_TRUE;
+      ts->stifflyaccurate     = PETSC_TRUE;
+      return 0;
+    }
+  } // namespace
+
+  PetscErrorCode
+  register_radau()
+  {
+    return TSRegister(radau_type, create);
+  }
+
+  PetscErrorCode
+  radau_set_systems(TS ts, const RadauSystems *systems)
+  {
+    data(ts).systems = systems;
+    return 0;
+  }
+
+  PetscErrorCode
+  radau_set_stages(TS ts, const unsigned int n_stages)
+  {
+    data(ts).tableau = &radau_tableau(n_stages);
+    return 0;
+  }
+
+  PetscErrorCode
+  radau_get_stages(TS ts, unsigned int *n_stages)
+  {
+    *n_stages = data(ts).tableau->n;
+    return 0;
+  }
+} // namespace crawler
