@@ -52,8 +52,8 @@ namespace crawler
     , discretization_(discretization)
     , stress_(scene.active_stress->at(stress_points))
     , end_stress_(scene.active_stress->at({0., scene.body.length}))
-    , m_(stress_points.size())
-    , m_time_(std::numeric_limits<double>::quiet_NaN())
+    , n_stress_points_(stress_points.size())
+    , stresses_(1)
     , sampler_(discretization.element(), sampled_places(discretization.element()))
   {
     // The stretch is a polynomial of degree q - 1 in a cell.
@@ -68,16 +68,32 @@ namespace crawler
   CellInput
   Assembler::input(const double t, const ConstVector u, const ConstVector v)
   {
-    if (t != m_time_)
+    auto found = std::find_if(stresses_.begin(),
+                              stresses_.end(),
+                              [t](const StressAtTime &stress)
+                              {
+                                return stress.time == t;
+                              });
+    if (found == stresses_.end())
     {
-      stress_->values(t, m_);
-      m_time_ = t;
+      found          = stresses_.begin() + oldest_stress_;
+      oldest_stress_ = (oldest_stress_ + 1) % stresses_.size();
+      found->m.resize(n_stress_points_);
+      stress_->values(t, found->m);
+      found->time = t;
     }
     CellInput in = geometry();
     in.u         = discretization_.to_local<double>(u, u_local_).data();
     in.v         = v.data() == nullptr ? nullptr : discretization_.to_local<double>(v, v_local_).data();
-    in.m         = m_.data();
+    in.m         = found->m.data();
     return in;
+  }
+
+  void
+  Assembler::keep_stresses(const unsigned int n_times)
+  {
+    stresses_.resize(n_times);
+    oldest_stress_ = 0;
   }
 
   CellInput

@@ -2,6 +2,7 @@
 #include <crawler/base/parabola.h>
 #include <crawler/discretization/mesh_transfer.h>
 #include <crawler/drivers/simulation.h>
+#include <crawler/time/integrators.h>
 
 #include <boost/math/tools/toms748_solve.hpp>
 #include <fmt/format.h>
@@ -97,7 +98,8 @@ namespace crawler
     assembler_.reset();
     discretization_ = std::move(discretization);
     assembler_      = create_assembler(formulation, scene_, *discretization_);
-    stepper_        = std::make_unique<TimeStepper>(communicator_, assembler_->weights(), time_);
+    assembler_->keep_stresses(integrator(time_.integrator).n_stages);
+    stepper_ = std::make_unique<TimeStepper>(communicator_, assembler_->weights(), time_);
     y_.resize(assembler_->n_owned());
     v_.resize(discretization_->n_owned());
     ++mesh_number_;
@@ -348,12 +350,9 @@ namespace crawler
       }
     if (adaptive && !mesh_is_good(step, y))
       return false;
-    const bool is_first  = step.number == 0;
-    const StretchAt &low = stretch_.min, &high = stretch_.max;
-    record({low.value, low.s, step.time}, 1., is_first, min_history_, result_.min_stretch);
-    record({high.value, high.s, step.time}, -1., is_first, max_history_, result_.max_stretch);
     if (!compute_integrals(step, y))
       return false;
+    look_at_extremes(step.time, stretch_, step.number == 0);
     if (options_.resolution)
     {
       if (!adaptive && assembler_->velocity(step.time, y, v_))
@@ -428,6 +427,47 @@ namespace crawler
       request_ = Request::mesh;
   }
 
+  RateQuadrature::Rates
+  Simulation::rates(const double t, const CellIntegrals &sums, const std::span<const double> v)
+  {
+    return {
+      {sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, assembler_->end_power(t, v)}};
+  }
+
+  /// The rates integrated over the step by the formula of the integrator itself. The states within the step are looked
+  /// at for extremes of the stretch, too.
+  RateQuadrature::Rates
+  Simulation::integrate_step(const Step &step, const RateQuadrature::Rates &at_end)
+  {
+    RateQuadrature::Rates sum{};
+    if (step.size == 0.)
+      return sum;
+    y_inside_.resize(y_.size());
+    v_inside_.resize(v_.size());
+    for (const auto &point : stepper_->quadrature())
+    {
+      RateQuadrature::Rates inside = at_end;
+      if (point.place < 1.)
+      {
+        const double t = step.time - (1. - point.place) * step.size;
+        stepper_->interpolate(t, y_inside_);
+        assembler_->velocity(t, y_inside_, v_inside_);
+        inside = rates(t, assembler_->integrals(t, y_inside_, v_inside_), v_inside_);
+        look_at_extremes(t, assembler_->stretch_range(y_inside_), /*is_first=*/false);
+      }
+      for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] += step.size * point.weight * inside[i];
+    }
+    return sum;
+  }
+
+  void
+  Simulation::look_at_extremes(const double t, const StretchRange &range, const bool is_first)
+  {
+    record({range.min.value, range.min.s, t}, 1., is_first, min_history_, result_.min_stretch);
+    record({range.max.value, range.max.s, t}, -1., is_first, max_history_, result_.max_stretch);
+  }
+
   /// Displacement, and if wanted the ledger, at an accepted state.
   bool
   Simulation::compute_integrals(const Step &step, const std::span<const double> y)
@@ -451,13 +491,10 @@ namespace crawler
     }
     if (!options_.ledger)
       return true;
-    Ledger &ledger                        = *result_.ledger;
-    const RateQuadrature::Rates rates     = {{integrals_.stress_power,
-                                              integrals_.dissipation,
-                                              integrals_.positive_power,
-                                              integrals_.absolute_power,
-                                              assembler_->end_power(step.time, v_)}};
-    const RateQuadrature::Rates increment = quadrature_.advance(step.time, rates);
+    Ledger &ledger                  = *result_.ledger;
+    const RateQuadrature::Rates now = rates(step.time, integrals_, v_);
+    const RateQuadrature::Rates increment =
+      stepper_->quadrature().empty() ? quadrature_.advance(step.time, now) : integrate_step(step, now);
     ledger.stress_power += increment[0];
     ledger.dissipation += increment[1];
     ledger.positive_power += increment[2];

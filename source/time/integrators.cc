@@ -18,8 +18,8 @@ namespace crawler
       {"arkimex ars443", "arkimex", "ars443", 3, false},
       {"arkimex 4", "arkimex", "4", 4, true},
       {"arkimex 5", "arkimex", "5", 5, true},
-      {"radau 5", "radau", "5", 5, true},
-      {"radau 9", "radau", "9", 9, true},
+      {"radau 5", "radau", "5", 5, true, 3},
+      {"radau 9", "radau", "9", 9, true, 5},
     };
     return list;
   }

@@ -43,7 +43,7 @@ namespace crawler
 
       // Newton's method.
       double last_correction = 0., rate = 0., known_rate = 1.;
-      bool factors_ok = true, exact_products = false;
+      bool factors_ok = true, products_ready = false;
       double factors_h = 0.;
 
       std::span<const double>
@@ -96,14 +96,15 @@ namespace crawler
           result[k] += radau.weights[j] * radau.old_z[j * radau.n_owned + k];
     }
 
-    void
+    /// From the last step if there is one, or from rest; returns false for the latter.
+    bool
     first_guess(TS ts)
     {
       Radau &radau = data(ts);
       const WriteAccess z(radau.z.get());
       std::fill(z.span.begin(), z.span.end(), 0.);
       if (ts->steprestart || radau.old_h == 0.)
-        return;
+        return false;
       const unsigned int n = radau.tableau->n;
       const double ratio   = radau.h / radau.old_h;
       const double *end    = &radau.old_z[(n - 1) * radau.n_owned];
@@ -121,6 +122,30 @@ namespace crawler
             for (std::size_t k = 0; k < radau.n_owned; ++k)
               zi[k] += radau.tableau->c[i] * ratio * radau.tableau->inverse[(n - 1) * n + j] *
                        radau.old_z[j * radau.n_owned + k];
+      }
+      return true;
+    }
+
+    /// Solves for the stages. A guess that leads out of the domain of F is replaced by rest, where it holds.
+    PetscErrorCode
+    solve_stages(TS ts)
+    {
+      Radau &radau      = data(ts);
+      bool extrapolated = first_guess(ts);
+      for (;;)
+      {
+        PetscCall(SNESSolve(ts->snes, nullptr, radau.z.get()));
+        PetscInt newton = 0, linear = 0;
+        SNESConvergedReason reason;
+        SNESGetIterationNumber(ts->snes, &newton);
+        SNESGetLinearSolveIterations(ts->snes, &linear);
+        SNESGetConvergedReason(ts->snes, &reason);
+        ts->snes_its += newton;
+        ts->ksp_its += linear;
+        if (!extrapolated || reason >= 0)
+          return 0;
+        extrapolated = false;
+        VecSet(radau.z.get(), 0.);
       }
     }
 
@@ -163,6 +188,25 @@ namespace crawler
                                   radau.factors_ok);
     }
 
+    /// Products with the exact Jacobian of all stages, at the present state of Newton's method.
+    PetscErrorCode
+    setup_products(TS ts)
+    {
+      Radau &radau = data(ts);
+      Vec Z        = nullptr;
+      SNESGetSolution(ts->snes, &Z);
+      const ReadAccess z(Z);
+      PetscErrorCode code = 0;
+      for (unsigned int i = 0; code == 0 && i < radau.tableau->n; ++i)
+      {
+        radau.state_of_stage(z.span, i);
+        const ReadAccess y(radau.y.get()), y_dot(radau.y_dot.get());
+        code = radau.systems->setup_stage(i, radau.t + radau.tableau->c[i] * radau.h, y.span, y_dot.span);
+      }
+      radau.products_ready = true;
+      return code;
+    }
+
     PetscErrorCode
     stage_jacobian(SNES snes, Vec Z, Mat A, Mat, TS ts)
     {
@@ -173,13 +217,7 @@ namespace crawler
       PetscErrorCode code = 0;
       if (iteration == 0 || radau.rate > slow)
         code = factorize(ts, z.span);
-      if (radau.exact_products)
-        for (unsigned int i = 0; code == 0 && i < radau.tableau->n; ++i)
-        {
-          radau.state_of_stage(z.span, i);
-          const ReadAccess y(radau.y.get()), y_dot(radau.y_dot.get());
-          code = radau.systems->setup_stage(i, radau.t + radau.tableau->c[i] * radau.h, y.span, y_dot.span);
-        }
+      radau.products_ready = false;
       if (code != 0)
         return code;
       MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
@@ -191,11 +229,12 @@ namespace crawler
     {
       void *context = nullptr;
       MatShellGetContext(A, &context);
-      Radau &radau = data(static_cast<TS>(context));
+      TS ts               = static_cast<TS>(context);
+      Radau &radau        = data(ts);
+      PetscErrorCode code = radau.products_ready ? 0 : setup_products(ts);
       const ReadAccess x(X);
       const WriteAccess y(Y);
       radau.x_dot.resize(radau.n_owned);
-      PetscErrorCode code = 0;
       for (unsigned int i = 0; code == 0 && i < radau.tableau->n; ++i)
       {
         radau.derivative_of_stage(x.span, i, radau.x_dot);
@@ -374,18 +413,11 @@ namespace crawler
       VecCopy(ts->vec_sol, radau.start.get());
       while (ts->reason == TS_CONVERGED_ITERATING)
       {
-        radau.h = ts->time_step;
-        radau.t = ts->ptime;
-        first_guess(ts);
-        PetscErrorCode code = SNESSolve(ts->snes, nullptr, radau.z.get());
+        radau.h             = ts->time_step;
+        radau.t             = ts->ptime;
+        PetscErrorCode code = solve_stages(ts);
         if (code != 0)
           return code;
-        PetscInt newton = 0, linear = 0;
-        SNESGetIterationNumber(ts->snes, &newton);
-        SNESGetLinearSolveIterations(ts->snes, &linear);
-        ts->snes_its += newton;
-        ts->ksp_its += linear;
-
         PetscBool accept = PETSC_TRUE;
         code             = TSAdaptCheckStage(ts->adapt, ts, radau.t + radau.h, ts->vec_sol, &accept);
         if (code != 0)
@@ -501,9 +533,6 @@ namespace crawler
       PetscCall(SNESSetJacobian(snes, mat, mat, SNESTSFormJacobian, ts));
       PetscCall(SNESSetConvergenceTest(snes, newton_converged, ts, nullptr));
       PetscCall(SNESGetKSP(snes, &ksp));
-      PetscBool is_preonly = PETSC_FALSE;
-      PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &is_preonly));
-      radau.exact_products = !is_preonly;
       PetscCall(KSPGetPC(ksp, &pc));
       PetscCall(PCSetType(pc, PCSHELL));
       PetscCall(PCShellSetContext(pc, ts));

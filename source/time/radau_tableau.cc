@@ -104,6 +104,8 @@ namespace crawler
         A(i, j) = integral(polynomial, c[i]);
     }
     W.invert(A);
+    for (unsigned int j = 0; j < n; ++j)
+      b.push_back(A(n - 1, j));
     dealii::LAPACKFullMatrix<double> lapack(n);
     lapack = W;
     lapack.compute_eigenvalues();

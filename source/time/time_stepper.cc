@@ -3,6 +3,7 @@
 #include <crawler/base/petsc_object.h>
 #include <crawler/time/integrators.h>
 #include <crawler/time/radau.h>
+#include <crawler/time/radau_tableau.h>
 #include <crawler/time/time_stepper.h>
 #include <crawler/time/vec_access.h>
 
@@ -37,6 +38,7 @@ namespace crawler
     std::vector<double> weights;
     PetscOwner<Mat> jacobian;
     RadauSystems radau_systems;
+    std::vector<QuadraturePoint> quadrature;
     PetscOwner<TS> ts;
 
     // The state of one solve().
@@ -177,7 +179,7 @@ namespace crawler
       petsc(TSARKIMEXSetFullyImplicit(stepper, PETSC_TRUE));
     }
     if (method.petsc_type == radau_type)
-      petsc(radau_set_stages(stepper, (method.order + 1) / 2));
+      petsc(radau_set_stages(stepper, method.n_stages));
     if (method.name == "midpoint")
     {
       petsc(TSThetaSetTheta(stepper, 0.5));
@@ -251,6 +253,9 @@ namespace crawler
       radau_get_stages(stepper, &n_stages);
       name += " " + std::to_string(2 * n_stages - 1);
       connect_radau();
+      const RadauTableau &tableau = radau_tableau(n_stages);
+      for (unsigned int i = 0; i < n_stages; ++i)
+        quadrature.push_back({tableau.c[i], tableau.b[i]});
     }
     if (name == "theta")
     {
@@ -711,5 +716,11 @@ namespace crawler
     petsc(TSInterpolate(implementation_->ts.get(), time, implementation_->interpolated.get()));
     const ReadAccess access(implementation_->interpolated.get());
     std::copy(access.span.begin(), access.span.end(), y.begin());
+  }
+
+  const std::vector<TimeStepper::QuadraturePoint> &
+  TimeStepper::quadrature() const
+  {
+    return implementation_->quadrature;
   }
 } // namespace crawler

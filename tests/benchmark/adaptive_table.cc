@@ -38,6 +38,7 @@ namespace
     std::string mesh;
     double seconds     = 0.;
     unsigned int cells = 0, degree = 0, steps = 0, mesh_changes = 0;
+    std::string integrator;
     double error = 0.;
   };
 
@@ -62,10 +63,15 @@ namespace
   }
 
   SimulationResult
-  run(const Parameters &parameters, const Numerics &numerics, const double limit = longest_run)
+  run(const Parameters &parameters,
+      const Numerics &numerics,
+      const double limit            = longest_run,
+      const std::string &integrator = "bdf")
   {
-    const Scene scene = parameters.create_scene();
-    Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, numerics);
+    const Scene scene   = parameters.create_scene();
+    TimeParameters time = parameters.time;
+    time.integrator     = integrator;
+    Simulation simulation(MPI_COMM_WORLD, scene, time, numerics);
     const double start = cpu_seconds();
     return simulation.run({},
                           {},
@@ -95,14 +101,15 @@ namespace
 
   /// The median cost of three runs, if the error is reached.
   std::optional<Trial>
-  attempt(const Case &scene, const Numerics &numerics, const double wanted, const double limit)
+  attempt(
+    const Case &scene, const Numerics &numerics, const std::string &integrator, const double wanted, const double limit)
   {
     std::vector<double> seconds;
     SimulationResult result;
     for (int i = 0; i < 3; ++i)
     {
       const double start = cpu_seconds();
-      result             = run(scene.parameters, numerics, limit);
+      result             = run(scene.parameters, numerics, limit, integrator);
       seconds.push_back(cpu_seconds() - start);
       if (result.time.status != "finished" || seconds[0] > 1.)
         break;
@@ -117,6 +124,7 @@ namespace
                  numerics.degree,
                  result.time.steps,
                  result.mesh_changes,
+                 integrator,
                  error};
   }
 
@@ -129,31 +137,34 @@ namespace
            const std::function<void(Numerics &, double level)> &set_mesh)
   {
     std::optional<Trial> best;
-    for (const unsigned int degree : degrees)
-      for (const double part : {0.1, 0.02, 0.004})
-        for (const double level : levels)
-        {
-          Numerics numerics;
-          numerics.degree       = degree;
-          numerics.tolerance    = part * wanted * std::abs(scene.displacement);
-          numerics.initial_step = 1e-5;
-          if (degree == 1)
-            numerics.formulation = FormulationChoice::log_stretch;
-          set_mesh(numerics, level);
-          const auto trial = attempt(scene, numerics, wanted, best ? 1.5 * best->seconds : longest_run);
-          if (!trial)
-            continue;
-          if (!best || trial->seconds < best->seconds)
-            best = trial;
-          break;
-        }
+    for (const std::string integrator : {"bdf", "radau 5", "radau 9"})
+      for (const unsigned int degree : degrees)
+        for (const double part :
+             integrator == "bdf" ? std::vector<double>{0.1, 0.02, 0.004} : std::vector<double>{10., 1., 0.1})
+          for (const double level : levels)
+          {
+            Numerics numerics;
+            numerics.degree       = degree;
+            numerics.tolerance    = part * wanted * std::abs(scene.displacement);
+            numerics.initial_step = integrator == "bdf" ? 1e-5 : 1e-3;
+            if (degree == 1)
+              numerics.formulation = FormulationChoice::log_stretch;
+            set_mesh(numerics, level);
+            const auto trial = attempt(scene, numerics, integrator, wanted, best ? 1.5 * best->seconds : longest_run);
+            if (!trial)
+              continue;
+            if (!best || trial->seconds < best->seconds)
+              best = trial;
+            break;
+          }
     return best;
   }
 
   std::string
   in_words(const std::optional<Trial> &trial)
   {
-    return trial ? fmt::format("{} cells of degree {}, {} steps{}: {:.3g} s",
+    return trial ? fmt::format("{}, {} cells of degree {}, {} steps{}: {:.3g} s",
+                               trial->integrator,
                                trial->cells,
                                trial->degree,
                                trial->steps,

@@ -8,6 +8,7 @@
 #include <crawler/scene/scene.h>
 
 #include <complex>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -104,6 +105,10 @@ namespace crawler
     setup_stage(unsigned int stage, double t, ConstVector y, ConstVector y_dot) = 0;
     virtual void
     stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result) = 0;
+
+    /// Keeps the active stress of so many times, for methods that come back to the stages of a step (default: 1).
+    void
+    keep_stresses(unsigned int n_times);
 
     /// v = u' at the nodes [length/time], from the balance of forces. Returns false if it cannot be computed.
     virtual bool
@@ -211,8 +216,15 @@ namespace crawler
 
   private:
     std::unique_ptr<ActiveStressAtPoints> stress_, end_stress_, quadrature_stress_;
-    std::vector<double> m_; ///< at the stress points, at the time m_time_
-    double m_time_;
+    /// m at the stress points.
+    struct StressAtTime
+    {
+      double time = std::numeric_limits<double>::quiet_NaN();
+      std::vector<double> m;
+    };
+    const std::size_t n_stress_points_;
+    std::vector<StressAtTime> stresses_; ///< the latest
+    std::size_t oldest_stress_ = 0;
     std::vector<double> u_local_, v_local_;
     const StretchSampler sampler_;     ///< at the left end, the quadrature points and the right end
     std::vector<double> highest_mode_; ///< [point] weights that give the highest Legendre coefficient

@@ -120,6 +120,12 @@ namespace crawler
     mesh_is_good(const Step &step, std::span<const double> y);
     bool
     compute_integrals(const Step &step, std::span<const double> y);
+    RateQuadrature::Rates
+    rates(double t, const CellIntegrals &sums, std::span<const double> v);
+    RateQuadrature::Rates
+    integrate_step(const Step &step, const RateQuadrature::Rates &at_end);
+    void
+    look_at_extremes(double t, const StretchRange &range, bool is_first);
     void
     look_for_coarser_mesh(const Step &step);
     bool
@@ -182,6 +188,7 @@ namespace crawler
     StretchRange stretch_;
     History min_history_, max_history_;
     std::vector<double> y_, v_;
+    std::vector<double> y_inside_, v_inside_; ///< of a state within a step
     // The last state that was accepted, to which a change of mesh or formulation may go back.
     std::vector<double> accepted_;
     double accepted_time_ = 0., next_step_ = 0.;

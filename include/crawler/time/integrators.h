@@ -9,11 +9,12 @@ namespace crawler
   /// A time integrator that users can name.
   struct Integrator
   {
-    std::string name;       ///< the word in the parameter file
-    std::string petsc_type; ///< TSType
-    std::string subtype;    ///< of arkimex
-    unsigned int order;     ///< nominal order; 0: the entry "Order" decides (bdf)
-    bool adaptive;          ///< has an error estimate
+    std::string name;          ///< the word in the parameter file
+    std::string petsc_type;    ///< TSType
+    std::string subtype;       ///< of arkimex
+    unsigned int order;        ///< nominal order; 0: the entry "Order" decides (bdf)
+    bool adaptive;             ///< has an error estimate
+    unsigned int n_stages = 1; ///< implicit stages that are solved together
   };
 
   /// All integrators that are offered: each reaches its nominal order on M(u) u' = f (tests/convergence).

@@ -16,6 +16,7 @@ namespace crawler
 
     const unsigned int n;                          ///< s
     std::vector<double> c;                         ///< [s] the nodes
+    std::vector<double> b;                         ///< [s] the weights, exact for polynomials up to degree 2s-2
     std::vector<double> inverse;                   ///< [s][s] A^-1 of the Runge-Kutta matrix A
     double real_eigenvalue = 0.;                   ///< of A^-1
     std::vector<std::complex<double>> eigenvalues; ///< [(s-1)/2] of A^-1, with positive imaginary part

@@ -99,6 +99,15 @@ namespace crawler
     void
     interpolate(double time, Vector y);
 
+    /// The formula by which the integrator itself integrates over a step: states interpolated at these parts of the
+    /// step, in (0, 1], have the accuracy of the method. Empty if it is not known.
+    struct QuadraturePoint
+    {
+      double place, weight;
+    };
+    const std::vector<QuadraturePoint> &
+    quadrature() const;
+
   private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
