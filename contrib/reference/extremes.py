@@ -111,11 +111,11 @@ def end_lost(p):
 def rows():
     """(name, scene, method, options), in order of importance."""
     for chi, n in ((0.6, (2000, 4000, 8000)), (0.7, (250, 500, 1000)), (0.8, (250, 500, 1000)), (0.9, (250, 500, 1000)),
-                   (0.95, (250, 500, 1000))):
+                   (0.95, (250, 500, 1000)), (0.999, (250, 500, 1000))):
         yield f"collapse a=-1 chi={chi}", scene(-1, chi), cells, dict(numbers=n)
     for T in (2, 3):
         yield f"collapse a=-1 chi=0.6 T={T}", scene(-1, 0.6, end_time=T), cells, dict(numbers=(1000, 2000, 4000))
-    for a, chi in ((-1.5, 0.8), (-3, 0.8), (-3, 0.95), (-2, 0.9)):
+    for a, chi in ((-1.5, 0.8), (-3, 0.8), (-3, 0.95), (-3, 0.999), (-2, 0.9)):
         yield f"contraction a={a} chi={chi}", scene(a, chi), cells, dict(numbers=(500, 1000, 2000), mesh=toward_ends)
     for a, speed, chi, w in ((1, -1, 0.6, 1e-10), (0, 1, 0.6, 1e-10), (2, -1, 0.7, 1e-6), (-0.5, 1, 0.7, 1e-16),
                              (-0.9, 1, 0.8, 1e-80)):

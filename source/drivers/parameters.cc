@@ -1,9 +1,32 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/drivers/parameters.h>
 #include <crawler/parameters/declarations.h>
 
+#include <fmt/format.h>
+
+#include <optional>
+
 namespace crawler
 {
+  namespace
+  {
+    /// Squares of entries in natural units must not leave the range of doubles.
+    void
+    require_computable(const std::optional<double> &value, const double unit, const char *name, const char *unit_name)
+    {
+      constexpr double smallest = 1e-100, largest = 1e100;
+      if (value && !(*value / unit >= smallest && *value / unit <= largest))
+        throw InputError(fmt::format("{0} is {1:g}, but a number from {2:g} to {3:g} times the {4} is expected",
+                                     name,
+                                     *value,
+                                     smallest,
+                                     largest,
+                                     unit_name),
+                         std::string("Time/") + name);
+    }
+  } // namespace
+
   void
   Parameters::add_parameters(Declarations &declarations)
   {
@@ -27,9 +50,15 @@ namespace crawler
   Parameters::create_scene() const
   {
     time.validate();
-    return {body,
-            std::make_unique<PowerFriction>(body.friction_coefficient, body.friction_exponent()),
-            create_active_stress(active_stress, body, time.end_time),
-            time.end_time};
+    require_computable(time.tolerance, body.length, "Tolerance", "Length");
+    require_computable(time.initial_step, time.end_time, "Initial step", "End time");
+    Scene scene{body,
+                std::make_unique<PowerFriction>(body.friction_coefficient, body.friction_exponent()),
+                nullptr,
+                time.end_time};
+    natural_units(scene); // first, since nothing else is prepared for numbers that it refuses
+    scene.active_stress = create_active_stress(active_stress, body, time.end_time);
+    require_computable_stress(scene);
+    return scene;
   }
 } // namespace crawler

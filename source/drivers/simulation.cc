@@ -22,6 +22,8 @@ namespace crawler
     constexpr double small_stretch = 0.1;
     /// An end that inverts within this part of the duration after the inside was lost is the cause.
     constexpr double end_reach = 1e-6;
+    /// The same if the stretch was lost at the very end: the body's own is 1 - m/k there, and nothing else.
+    constexpr double end_reach_at_end = 1e-3;
     /// So many steps in succession smaller than this part of the duration are a failure.
     constexpr double tiny_step             = 1e-9;
     constexpr unsigned int most_tiny_steps = 2000;
@@ -585,7 +587,9 @@ namespace crawler
     double t = step.time;
     if (step.size > 0.)
       t = first_zero(above, step.time - step.size, step.time);
-    if (!end_inverts(t, std::min(t + end_reach, 1.)))
+    const bool at_end  = smallest.s == 0. || smallest.s == 1.;
+    const double reach = at_end ? end_reach_at_end : end_reach;
+    if (!end_inverts(t, std::min(t + reach, 1.)))
       inverted_inside(stretch_.min.value, smallest.s, t);
   }
 
@@ -640,18 +644,20 @@ namespace crawler
   void
   Simulation::under_resolved(const double value, const double s, const double t)
   {
-    diagnosis_ = {"failed",
-                  "under_resolved",
-                  fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, where the body itself "
-                              "stays uninverted (a <= -1): {} cells of degree {} are too coarse; {}",
-                              value,
-                              s * units_.length,
-                              t * units_.time,
-                              discretization_->n_cells(),
-                              discretization_->element().degree,
-                              assembler_->formulation() == Formulation::position
-                                ? "Discretization/Formulation = automatic or a larger Number of cells is needed"
-                                : "a larger Discretization/Number of cells is needed")};
+    diagnosis_ = {
+      "failed",
+      "under_resolved",
+      fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, where the body itself "
+                  "stays uninverted (a <= -1): {} cells of degree {} are too coarse, or the steps too long; {}, or a "
+                  "smaller Time/Tolerance",
+                  value,
+                  s * units_.length,
+                  t * units_.time,
+                  discretization_->n_cells(),
+                  discretization_->element().degree,
+                  assembler_->formulation() == Formulation::position
+                    ? "Discretization/Formulation = automatic or a larger Number of cells is needed"
+                    : "a larger Discretization/Number of cells is needed")};
   }
 
   /// Frames have the times that were asked for, exactly.

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace crawler
 {
@@ -63,6 +65,40 @@ namespace crawler
     };
   } // namespace
 
+  namespace
+  {
+    void
+    require(const char *name, const double value, const double least, const double most)
+    {
+      if (!(value >= least && value <= most))
+        throw InputError(fmt::format("{} is {:.3g}, but a number from {:g} to {:g} is expected; check the units of the "
+                                     "body and of the end time",
+                                     name,
+                                     value,
+                                     least,
+                                     most));
+    }
+
+    /// Looked for at some points and times; infinite if it is not a finite number at one of them.
+    double
+    largest_active_stress(const Scene &scene)
+    {
+      constexpr unsigned int n = 37; // not a number of waves that somebody would choose
+      std::vector<double> points(n + 1), m(n + 1);
+      for (unsigned int i = 0; i <= n; ++i)
+        points[i] = scene.body.length * i / n;
+      const auto stress = scene.active_stress->at(points);
+      double largest    = 0.;
+      for (unsigned int j = 0; j <= n; ++j)
+      {
+        stress->values(scene.end_time * j / n, m);
+        for (const double value : m)
+          largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : std::numeric_limits<double>::infinity();
+      }
+      return largest;
+    }
+  } // namespace
+
   Units
   natural_units(const Scene &scene)
   {
@@ -73,21 +109,25 @@ namespace crawler
     const Body &body = scene.body;
     const Units units{
       body.length, scene.end_time, body.friction_coefficient * body.length / scene.end_time * body.length};
-    const auto require = [](const char *name, const double value, const double least, const double most)
-    {
-      if (!(value >= least && value <= most))
-        throw InputError(fmt::format("{} is {:.3g}, but a number from {:g} to {:g} is expected; check the units of the "
-                                     "body and of the end time",
-                                     name,
-                                     value,
-                                     least,
-                                     most));
-    };
     require("Body/Length", units.length, smallest, largest);
     require("Time/End time", units.time, smallest, largest);
     require("the force gamma L^2/T", units.force, smallest, largest);
     require("the stiffness k T/(gamma L^2)", body.elastic_modulus / units.force, softest, stiffest);
     return units;
+  }
+
+  void
+  require_computable_stress(const Scene &scene)
+  {
+    constexpr double weakest = 1e-20, strongest = 1e20;
+    const Units units   = natural_units(scene);
+    const double strain = largest_active_stress(scene) / std::max(scene.body.elastic_modulus, units.force);
+    if (strain != 0. && !(strain >= weakest && strain <= strongest))
+      throw InputError(fmt::format("the largest active stress, relative to the larger of k and gamma L^2/T, is {:.3g}, "
+                                   "but 0 or a number from {:g} to {:g} is expected",
+                                   strain,
+                                   weakest,
+                                   strongest));
   }
 
   Scene

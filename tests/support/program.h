@@ -132,6 +132,21 @@ namespace crawler::test
       return !ended_;
     }
 
+    /// Has it a handler for this signal by now?
+    bool
+    handles(const int number) const
+    {
+      std::ifstream status("/proc/" + std::to_string(id_) + "/status");
+      for (std::string word; status >> word;)
+        if (word == "SigCgt:")
+        {
+          unsigned long signals = 0;
+          status >> std::hex >> signals;
+          return ((signals >> (number - 1)) & 1) != 0;
+        }
+      return false;
+    }
+
     void
     signal(const int number) const
     {

@@ -27,6 +27,11 @@ namespace crawler
   Units
   natural_units(const Scene &scene);
 
+  /// Throws InputError if the active stress is not finite, or would strain the body by more than 1e20 or, if it is not
+  /// 0, less than 1e-20.
+  void
+  require_computable_stress(const Scene &scene);
+
   /// The same problem in other units. It refers to @p scene, which must outlive it.
   Scene
   in_units(const Scene &scene, const Units &units);

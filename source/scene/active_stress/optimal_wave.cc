@@ -149,6 +149,28 @@ namespace crawler
       throw InputError("the wave speed is 0, but a number that is not 0 is expected", section + "Wave speed");
     else
       wave_ = describe_wave(body_, shape_, chi_, end_time_, parameters.wave_speed);
+    require_computable();
+  }
+
+  void
+  OptimalWave::require_computable() const
+  {
+    constexpr double most   = 1e8; // a stride takes ten steps at least, and a run cannot have more than 1e9
+    const std::string entry = section + (roots_ ? "Energy" : "Wave speed");
+    const double strides    = std::abs(wave_.speed) / body_.length * end_time_;
+    if (!(strides <= most))
+      throw InputError(fmt::format("the wave with speed {:g} makes {:.3g} strides until the end time, but at most {:g} "
+                                   "are expected",
+                                   wave_.speed,
+                                   strides,
+                                   most),
+                       entry);
+    for (const double value : {wave_.multiplier, wave_.displacement, wave_.min_stretch, wave_.max_stretch})
+      if (!std::isfinite(value))
+        throw InputError(fmt::format("the wave with speed {:g} would deform the body beyond all numbers; one that is "
+                                     "faster, or a smaller Perturbation parameter, is expected",
+                                     wave_.speed),
+                         entry);
   }
 
   void

@@ -63,6 +63,8 @@ namespace crawler
   private:
     void
     choose_by_energy(const OptimalWaveParameters &parameters);
+    void
+    require_computable() const;
 
     const Body body_;
     const double chi_;

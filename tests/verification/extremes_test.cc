@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The extremes of what can be asked for: each ends in the right outcome, under its name, with the right number. The
+// exponents, moduli and collapses of an independent solver are in extremes.cc.
+#include "../support/run_text.h"
+
+#include <crawler/base/exceptions.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+
+using namespace crawler;
+
+namespace
+{
+  test::Settings
+  with(test::Settings settings, const test::Settings &more)
+  {
+    settings.insert(settings.end(), more.begin(), more.end());
+    return settings;
+  }
+
+  const std::vector<std::string> formulations = {"position", "log stretch"};
+
+  /// The displacement of Fig. S1 with chi = 0.4 (doc/theory.md, section 5).
+  constexpr double fig_s1 = 9.0072529800e-2;
+  /// That of a = +1, c = -1, whose mirror image is c = 1.
+  constexpr double prograde = -8.1377661410e-2;
+} // namespace
+
+TEST(Extremes, ThousandStrides)
+{
+  const auto result = test::run_with(with(test::wave(-1., 0.4, 1., 1000.), {{"Accuracy", "1e-6"}})).result;
+  ASSERT_EQ(result.time.status, "finished");
+  EXPECT_NEAR(result.displacement / 90.0997471196, 1., 1e-6);
+}
+
+/// One cell of degree 1 has one stretch, so net friction = 0 means that its middle stays where it is. One of degree 8
+/// resolves a wave as long as the body.
+TEST(Extremes, OneCell)
+{
+  for (const std::string &formulation : formulations)
+    for (unsigned int degree = 1; degree <= 8; ++degree)
+    {
+      const auto result = test::run_with(with(test::wave(-1., 0.1),
+                                              {{"Discretization/Degree", std::to_string(degree)},
+                                               {"Discretization/Number of cells", "1"},
+                                               {"Discretization/Formulation", formulation},
+                                               {"Time/Tolerance", "1e-10"}}))
+                            .result;
+      ASSERT_EQ(result.time.status, "finished") << formulation << degree;
+      EXPECT_LT(result.net_friction, 1e-11) << formulation << degree;
+      EXPECT_LT(result.ledger->residual(), 1e-6) << formulation << degree;
+      const double expected = degree == 1 ? 0. : 5.020242991e-3, error = degree == 1 ? 1e-15 : 5e-7;
+      if (degree == 1 || degree == 8)
+      {
+        EXPECT_NEAR(result.displacement, expected, error) << formulation << degree;
+      }
+    }
+}
+
+/// With the same time steps a million cells and a few of high degree give the same up to the error in space, which is
+/// that of a thousand cells divided by 1000^2 (degree 1), and to rounding.
+TEST(Extremes, AMillionCells)
+{
+  for (const std::string &formulation : formulations)
+  {
+    const auto displacement = [&](const char *degree, const char *cells)
+    {
+      const auto result = test::run_with(with(test::wave(-1., 0.4, 1., 0.05),
+                                              {{"Discretization/Degree", degree},
+                                               {"Discretization/Number of cells", cells},
+                                               {"Discretization/Formulation", formulation},
+                                               {"Time/Step control", "fixed"},
+                                               {"Time/Initial step", "0.025"}}),
+                                         {.ledger = false})
+                            .result;
+      EXPECT_EQ(result.time.status, "finished");
+      EXPECT_EQ(result.time.steps, 2u);
+      return result.displacement;
+    };
+    const double exact = displacement("8", "10");
+    EXPECT_NEAR(displacement("1", "1000000") / exact, 1., 1e-9) << formulation;
+  }
+}
+
+/// Time steps and tolerances of the user's own. What finishes has the right number, or its ledger would tell.
+TEST(Extremes, StepsAndTolerances)
+{
+  struct Case
+  {
+    test::Settings settings;
+    std::string outcome; ///< status and reason
+    double error = 0.;   ///< of the displacement, relative
+  };
+  const std::vector<Case> cases = {
+    {{{"Time/Tolerance", "1e-99"}}, "failed step_underflow"},
+    {{{"Time/Tolerance", "1e-30"}}, "failed step_underflow"},
+    {{{"Time/Tolerance", "1e-16"}}, "finished ", 1e-6},
+    {{{"Time/Tolerance", "1e10"}}, "failed under_resolved"},
+    {{{"Time/Tolerance", "1e99"}}, "failed under_resolved"},
+    {{{"Time/Initial step", "1e-99"}}, "failed nonfinite"},
+    {{{"Time/Initial step", "1e-30"}}, "finished ", 1e-6},
+    {{{"Time/Initial step", "1"}}, "finished ", 1e-6},
+    {{{"Time/Initial step", "1e-30"}, {"Time/Step control", "fixed"}}, "failed step_underflow"},
+    {{{"Time/Initial step", "1"}, {"Time/Step control", "fixed"}}, "finished ", 2e-2},
+    {{{"Time/Maximum number of steps", "1"}}, "stopped step_limit"},
+  };
+  for (const Case &c : cases)
+  {
+    const auto [result, choice] = test::run_with(with(test::wave(-1., 0.4), c.settings));
+    const std::string name      = c.settings[0].first + " = " + c.settings[0].second;
+    EXPECT_EQ(result.time.status + " " + result.time.reason, c.outcome) << name;
+    EXPECT_TRUE(std::isfinite(result.displacement)) << name;
+    if (result.time.status == "finished")
+      EXPECT_NEAR(result.displacement / fig_s1, 1., c.error) << name;
+    else
+      EXPECT_NE(result.time.message, "") << name;
+  }
+}
+
+/// A crawler of any size, from a micrometre to a thousand kilometres, in metres, seconds and newtons.
+TEST(Extremes, Lengths)
+{
+  const auto displacement = [](const double L, const double T)
+  {
+    const double c = L / T, gamma = 7.3, k = gamma * c * L;
+    const auto result = test::run_with(with(test::wave(-1., 0.4, c, T, k),
+                                            {{"Body/Length", test::text(L)},
+                                             {"Body/Friction coefficient", test::text(gamma)},
+                                             {"Active stress/Optimal wave/Sine coefficients", test::text(c)}}))
+                          .result;
+    EXPECT_EQ(result.time.status, "finished");
+    return result.displacement / L;
+  };
+  const double reference = displacement(1., 1.);
+  EXPECT_NEAR(reference / fig_s1, 1., 1e-6);
+  for (const double L : {1e-6, 3e-3, 0.7, 1e6})
+    for (const double T : {2e-4, 5e3})
+      EXPECT_NEAR(displacement(L, T) / reference, 1., 1e-12) << "L = " << L << ", T = " << T;
+}
+
+/// Numbers that double precision cannot carry are refused before anything is computed; what is harmless is not.
+TEST(Extremes, TinyAndHugeInput)
+{
+  const std::string wave                 = "Active stress/Optimal wave/";
+  const std::vector<std::string> entries = {"Body/Length",
+                                            "Body/Elastic modulus",
+                                            "Body/Friction coefficient",
+                                            "Body/Anchoring exponent",
+                                            "Time/End time",
+                                            "Time/Tolerance",
+                                            "Time/Initial step",
+                                            wave + "Perturbation parameter",
+                                            wave + "Sine coefficients",
+                                            wave + "Wave speed"};
+  // Exponents that are 0 or nearly so are not extreme, and a wave without strength leaves the body where it is.
+  const std::set<std::pair<std::string, std::string>> harmless = {{"Body/Anchoring exponent", "-0.0"},
+                                                                  {"Body/Anchoring exponent", "4e-320"},
+                                                                  {"Body/Anchoring exponent", "1e-200"},
+                                                                  {wave + "Perturbation parameter", "-0.0"}};
+  for (const std::string &entry : entries)
+    for (const std::string value : {"-0.0", "4e-320", "1e-200", "1e200", "1e308", "-1e308"})
+    {
+      const auto settings = with(test::wave(-1., 0.4), {{entry, value}});
+      if (!harmless.contains({entry, value}))
+      {
+        EXPECT_THROW(test::parameters_with(settings).create_scene(), InputError) << entry << " = " << value;
+        continue;
+      }
+      const auto result     = test::run_with(settings).result;
+      const double expected = entry == "Body/Anchoring exponent" ? prograde : 0.;
+      EXPECT_EQ(result.time.status, "finished") << entry << " = " << value;
+      EXPECT_NEAR(result.displacement, expected, 1e-6 * std::abs(expected)) << entry << " = " << value;
+    }
+}
+
+/// The stretch of an end is 1 - m/k: that tells when it is 0.
+TEST(Extremes, InversionAtAnEnd)
+{
+  const auto expect_inversion = [](const test::Settings &settings, const double t, const double s)
+  {
+    const auto result = test::run_with(settings).result;
+    EXPECT_EQ(result.time.status, "inverted");
+    EXPECT_EQ(result.time.reason, "inverted_at_end");
+    ASSERT_TRUE(result.inversion);
+    EXPECT_NEAR(result.inversion->t, t, 1e-9);
+    EXPECT_TRUE(result.inversion->s == s || result.inversion->s == 1. - s);
+  };
+  for (const char *p : {"-3", "0.5", "1", "1.5", "2", "21"})
+    expect_inversion({{"Body/Anchoring exponent", p},
+                      {"Active stress/Generator", "expression"},
+                      {"Active stress/Expression/Active stress", "2*t"}},
+                     0.5,
+                     0.);
+  const double chi = 1.2;
+  expect_inversion(test::wave(-1., chi), (std::numbers::pi + std::asin(1. / chi)) / (2. * std::numbers::pi), 0.);
+}
