@@ -24,6 +24,8 @@ namespace crawler
     /// So many steps in succession smaller than this part of the duration are a failure.
     constexpr double tiny_step             = 1e-9;
     constexpr unsigned int most_tiny_steps = 2000;
+    /// The step after a change of mesh that settle() makes is this times the root of the tolerance.
+    constexpr double settling_factor = 0.01;
 
     double
     now()
@@ -266,10 +268,13 @@ namespace crawler
     const MeshTransfer transfer(discretization_->element());
     y_ = transfer.transfer(*old_assembler, accepted_, *assembler_);
     assembler_->make_consistent(accepted_time_, y_);
+    const double old_time = accepted_time_;
+    if (!to_log && formulation == Formulation::position)
+      settle();
     if (options_.ledger)
     {
       const std::vector<double> old_v(old_discretization->n_owned(), 0.), new_v(v_.size(), 0.);
-      result_.ledger->transfer_loss += old_assembler->integrals(accepted_time_, accepted_, old_v).elastic_energy -
+      result_.ledger->transfer_loss += old_assembler->integrals(old_time, accepted_, old_v).elastic_energy -
                                        assembler_->integrals(accepted_time_, y_, new_v).elastic_energy;
     }
     accepted_ = y_;
@@ -278,6 +283,47 @@ namespace crawler
     else
       ++result_.mesh_changes;
     result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
+  }
+
+  /**
+   * A state that was carried to another mesh is out of balance by the error of the mesh. Where friction is small it
+   * returns to balance at once, at the rate k/(gamma w^a h^2), and a time stepper that watched this would need steps as
+   * short. A backward Euler step is stable for any rate; this one is so short that its own error, size^2 u''/2, is a
+   * small part of the tolerance. If it cannot be made the state is left as it is.
+   */
+  void
+  Simulation::settle()
+  {
+    constexpr unsigned int most_corrections = 10;
+    const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
+    const double t                          = accepted_time_ + size;
+    const double next_frame =
+      next_frame_ < frames_->size() ? std::min((*frames_)[next_frame_] / units_.time, 1.) : 1.;
+    if (t > next_frame - size)
+      return;
+    std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
+    for (unsigned int i = 0; i < most_corrections; ++i)
+    {
+      if (!assembler_->residual(t, y, rate, F) || !assembler_->setup_jacobian(t, y, rate, 1. / size))
+        return;
+      assembler_->solve_with_jacobian(F, change);
+      double largest = 0.;
+      for (std::size_t j = 0; j < y.size(); ++j)
+      {
+        y[j] -= change[j];
+        rate[j] = (y[j] - y_[j]) / size;
+        largest = std::isfinite(change[j]) ? std::max(largest, std::abs(change[j])) : HUGE_VAL;
+      }
+      MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator_);
+      if (!std::isfinite(largest))
+        return;
+      if (largest <= 0.01 * numerics_.tolerance + 1e-15)
+      {
+        y_             = y;
+        accepted_time_ = t;
+        return;
+      }
+    }
   }
 
   /// Looks at a state that the time stepper has accepted; returns false if it must not be used.

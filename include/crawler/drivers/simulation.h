@@ -112,6 +112,8 @@ namespace crawler
     build(std::unique_ptr<Discretization> discretization, Formulation formulation);
     void
     change();
+    void
+    settle();
     bool
     examine(const Step &step, std::span<const double> y);
     bool
