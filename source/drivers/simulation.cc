@@ -21,6 +21,8 @@ namespace crawler
     constexpr double small_stretch = 0.1;
     /// An end that inverts within this part of the duration after the inside was lost is the cause.
     constexpr double end_reach = 1e-6;
+    /// If states are refused, a stretch that is gone within this part of the duration at its present rate is lost.
+    constexpr double nearly_lost = 1e-4;
     /// So many steps in succession smaller than this part of the duration are a failure.
     constexpr double tiny_step             = 1e-9;
     constexpr unsigned int most_tiny_steps = 2000;
@@ -235,8 +237,7 @@ namespace crawler
       result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
       // A form that cannot go on because the stretch becomes small is changed, too.
       if (request_ == Request::none && !diagnosis_ && outcome.status == "failed" && outcome.domain_error &&
-          numerics_.formulation == FormulationChoice::automatic && assembler_->formulation() == Formulation::position &&
-          !end_inverts(accepted_time_, accepted_time_ + 1e-9))
+          may_change_form() && assembler_->formulation() == Formulation::position && !end_inverts(accepted_time_, accepted_time_ + 1e-9))
         request_ = Request::log_stretch;
       if (request_ == Request::none || diagnosis_ || outcome.status == "finished")
         return outcome;
@@ -594,9 +595,11 @@ namespace crawler
       const double before = min_history_[1].value, before_t = min_history_[1].t;
       const double rate = t > before_t ? (before - smallest.value) / (t - before_t) : 0.;
       const double left = rate > 0. ? smallest.value / rate : 1.;
-      if (outcome.domain_error || left < 1e-6)
+      // For a >= 0 the stretch reaches 0 at a bounded rate, so one that is not near 0 was not lost by the body.
+      const bool near = left < (outcome.domain_error ? nearly_lost : end_reach);
+      if (near || (outcome.domain_error && scene_.body.friction_exponent() < 0.))
       {
-        inverted_inside(smallest.value, smallest.s, std::min(t + (left < 1e-6 ? left : 0.), 1.));
+        inverted_inside(smallest.value, smallest.s, std::min(t + (near ? left : 0.), 1.));
         return;
       }
     }
