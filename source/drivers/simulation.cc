@@ -237,7 +237,8 @@ namespace crawler
       result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
       // A form that cannot go on because the stretch becomes small is changed, too.
       if (request_ == Request::none && !diagnosis_ && outcome.status == "failed" && outcome.domain_error &&
-          may_change_form() && assembler_->formulation() == Formulation::position && !end_inverts(accepted_time_, accepted_time_ + 1e-9))
+          may_change_form() && assembler_->formulation() == Formulation::position &&
+          !end_inverts(accepted_time_, accepted_time_ + 1e-9))
         request_ = Request::log_stretch;
       if (request_ == Request::none || diagnosis_ || outcome.status == "finished")
         return outcome;
@@ -298,8 +299,7 @@ namespace crawler
     constexpr unsigned int most_corrections = 10;
     const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
     const double t                          = accepted_time_ + size;
-    const double next_frame =
-      next_frame_ < frames_->size() ? std::min((*frames_)[next_frame_] / units_.time, 1.) : 1.;
+    const double next_frame = next_frame_ < frames_->size() ? std::min((*frames_)[next_frame_] / units_.time, 1.) : 1.;
     if (t > next_frame - size)
       return;
     std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
