@@ -108,6 +108,12 @@ namespace crawler
 
     stepper_->implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F)
     {
+      if (keeps_rate())
+      {
+        rate_time_ = t;
+        rate_state_.assign(y.begin(), y.end());
+        rate_.assign(y_dot.begin(), y_dot.end());
+      }
       return assembler_->residual(t, y, y_dot, F);
     };
     stepper_->setup_jacobian = [this](const double t, const ConstVector y, const ConstVector y_dot, const double shift)
@@ -364,7 +370,7 @@ namespace crawler
     const bool adaptive = numerics_.mesh.tolerance > 0.;
     // Pictures need the velocity at frames only, the ledger and adaptive meshes always.
     if (options_.ledger || adaptive || (has_observers_ && (step.is_frame || step.number == 0)))
-      if (!assembler_->velocity(step.time, y, v_))
+      if (!velocity(step, y))
       {
         diagnosis_ = {"failed",
                       "linear_failed",
@@ -382,7 +388,7 @@ namespace crawler
       return false;
     if (options_.resolution)
     {
-      if (!adaptive && assembler_->velocity(step.time, y, v_))
+      if (!adaptive && velocity(step, y))
       {
         const auto indicators = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
         result_.largest_indicator =
@@ -413,6 +419,39 @@ namespace crawler
     accepted_.assign(y.begin(), y.end());
     accepted_time_ = step.time;
     started_       = true;
+    return true;
+  }
+
+  /// Where friction vanishes (w -> 0 for a > 0) a state alone does not tell the velocity: the error of Newton's method
+  /// would be divided by the friction. The rate of the time stepper has no such error, so it is kept.
+  bool
+  Simulation::keeps_rate() const
+  {
+    return scene_.body.friction_exponent() > 0. && assembler_->formulation() == Formulation::position;
+  }
+
+  /**
+   * The velocity v_ of an accepted state. From the rate r with which the time stepper reached it, if that is kept: v is
+   * the solution of M v + f + h K (v - r) = 0, h the step. Friction balances exactly, since K does not act on rigid
+   * motions, and where M vanishes v is r.
+   */
+  bool
+  Simulation::velocity(const Step &step, const std::span<const double> y)
+  {
+    int known = keeps_rate() && step.size > 0. && rate_time_ == step.time &&
+                std::equal(y.begin(), y.end(), rate_state_.begin(), rate_state_.end());
+    if (keeps_rate())
+      MPI_Allreduce(MPI_IN_PLACE, &known, 1, MPI_INT, MPI_MIN, communicator_);
+    if (known == 0)
+      return assembler_->velocity(step.time, y, v_);
+    std::vector<double> F(y.size()), correction(y.size());
+    const std::vector<double> at_rest(y.size(), 0.); // without a velocity the Jacobian is M/h + K
+    if (!assembler_->residual(step.time, y, rate_, F) ||
+        !assembler_->setup_jacobian(step.time, y, at_rest, 1. / step.size))
+      return false;
+    assembler_->solve_with_jacobian(F, correction);
+    for (std::size_t i = 0; i < v_.size(); ++i)
+      v_[i] = rate_[i] - correction[i] / step.size;
     return true;
   }
 

@@ -119,6 +119,10 @@ namespace crawler
     bool
     may_change_form() const;
     bool
+    keeps_rate() const;
+    bool
+    velocity(const Step &step, std::span<const double> y);
+    bool
     mesh_is_good(const Step &step, std::span<const double> y);
     bool
     compute_integrals(const Step &step, std::span<const double> y);
@@ -184,6 +188,9 @@ namespace crawler
     StretchRange stretch_;
     History min_history_, max_history_;
     std::vector<double> y_, v_;
+    // The last rate for which the time stepper asked for the residual, where it is kept.
+    std::vector<double> rate_state_, rate_;
+    double rate_time_ = -1.;
     // The last state that was accepted, to which a change of mesh or formulation may go back.
     std::vector<double> accepted_;
     double accepted_time_ = 0., next_step_ = 0.;
