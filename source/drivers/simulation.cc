@@ -277,7 +277,7 @@ namespace crawler
     y_ = transfer.transfer(*old_assembler, accepted_, *assembler_);
     assembler_->make_consistent(accepted_time_, y_);
     const double old_time = accepted_time_;
-    if (!to_log && formulation == Formulation::position)
+    if (!to_log && keeps_rate())
       settle();
     if (options_.ledger)
     {
