@@ -142,7 +142,7 @@ def rows():
     for a, speed, chi, w in ((1, -1, 0.6, 1e-10), (0, 1, 0.6, 1e-10), (2, -1, 0.7, 1e-6), (-0.5, 1, 0.7, 1e-16),
                              (-0.9, 1, 0.8, 1e-80)):
         yield f"inversion a={a} chi={chi}", scene(a, chi, speed), lost, dict(smallest=w)
-    for a, chi, w in ((11, 0.7, 0.012), (8, 0.73, 0.01), (6, 0.71, 0.01)):
+    for a, chi, w in ((11, 0.7, 0.02), (8, 0.73, 0.01), (6, 0.71, 0.01)):
         yield f"inversion a={a} chi={chi}", scene(a, chi), lost_smoothly, dict(stop_at=w)
     yield "inversion a=0.5 chi=0.87", scene(0.5, 0.87), lost, dict(smallest=1e-9)
     yield "inversion ends chi=1.2", scene(-1, 1.2), end_lost, {}
