@@ -30,10 +30,11 @@ POINTS = (24, 36, 54, 80, 120, 180, 270, 400, 600)  # degrees N tried in turn
 class StretchLost(RuntimeError):
     """The stretch reached zero, or the time step did while following it, at this time and place."""
 
-    def __init__(self, t, s, smallest):
+    def __init__(self, t, s, smallest, history=()):
         super().__init__(f"stretch too small to follow at t = {t:.6g}, s = {s:.6g}: {smallest:.3e}. Inside the body "
                          "this is a loss of stretch only if the exponent exceeds -1, otherwise a lack of points.")
         self.time = t
+        self.history = history  # (t, s, smallest stretch) of every step
 
 
 class Chebyshev:
@@ -119,8 +120,9 @@ def extreme(polynomial, to_fine_s, t_nodes, values, sign):
 
 
 def solve(stress, exponent, end_time, elastic_modulus=1.0, friction=1.0, length=1.0, points=48, stages=6,
-          time_tolerance=1e-10):
-    """One run at fixed resolution; returns a dict of numbers, see reference()."""
+          time_tolerance=1e-10, stop_at=0.0):
+    """One run at fixed resolution; returns a dict of numbers, see reference(). A smallest stretch (on a fine grid) below
+    stop_at raises StretchLost with the history of t, s and smallest stretch."""
     k, gamma, space, radau = elastic_modulus, friction, Chebyshev(points, length), Radau(stages)
     s, derivative, weights = space.s, space.derivative, space.weights
     inside, identity = slice(1, -1), np.eye(points - 1)
@@ -166,7 +168,8 @@ def solve(stress, exponent, end_time, elastic_modulus=1.0, friction=1.0, length=
 
     polynomial.set_yi(np.eye(points + 1))
     to_fine_s = polynomial(np.linspace(0, length, 4 * points + 1)).T
-    w, t, h, steps = np.ones(points + 1), 0.0, 1e-3 * end_time, 0
+    w, t, h, steps, smallest = np.ones(points + 1), 0.0, 1e-3 * end_time, 0, []
+    fine_s = np.linspace(0, length, 4 * points + 1)
     total, end_work = np.zeros(3), 0.0  # length * displacement, dissipation, paper's energy; its end term
     extremes = {-1: -np.inf, 1: -np.inf}  # largest sign*w so far, for either sign
     while t < end_time:
@@ -190,6 +193,12 @@ def solve(stress, exponent, end_time, elastic_modulus=1.0, friction=1.0, length=
                 extremes[sign] = max(extremes[sign], extreme(polynomial, to_fine_s, times, history, sign))
         w, t, steps = W[-1], end_time if end_time - t <= h else t + h, steps + 1
         h *= min(3.0, 0.8 * (time_tolerance / max(error, 1e-30)) ** (1 / stages))
+        i = np.clip(fine[-1].argmin(), 1, 4 * points - 1)
+        left, middle, right = fine[-1][i - 1:i + 2]
+        x = 0.5 * (left - right) / (left - 2 * middle + right)  # vertex of the parabola
+        smallest.append((t, fine_s[i] + x * fine_s[1], middle + 0.25 * x * (right - left)))
+        if smallest[-1][2] < stop_at:
+            raise StretchLost(*smallest[-1], smallest)
     return {"displacement": total[0] / length, "stress_power": total[2] - end_work, "dissipation": total[1],
             "elastic_energy": 0.5 * k * (w - 1) ** 2 @ weights, "paper_energy": total[2],
             "min_stretch": -extremes[-1], "max_stretch": extremes[1], "points": points, "steps": steps}

@@ -101,6 +101,28 @@ def lost(p, numbers=(250, 500, 1000), smallest=1e-9):
     return result
 
 
+def lost_smoothly(p, stop_at, points=(48, 72)):
+    """The same for large a > 0: where friction vanishes the force in the body is constant, and the stretch goes to 0 as
+    smoothly as the active stress. Chebyshev until `stop_at`; a parabola of time over the smallest stretch, through the
+    states at 1, 2 and 3 times the last stretch, is followed to 0. Error: with the line through two of them, and with
+    other points."""
+    found = []
+    for degree in points:
+        try:
+            solve(stress_of(p), p["exponent"], p["end_time"], p["elastic_modulus"], points=degree, stages=5, time_tolerance=1e-6,
+                  stop_at=stop_at)
+        except StretchLost as lost_at:
+            history = np.array(lost_at.history)
+            last = history[-1, 2]
+            at = [abs(history[:, 2] - factor * last).argmin() for factor in (1, 2, 3)]
+            t, s, w = history[at].T
+            found.append([degree, *(float(np.polyval(np.polyfit(w, x, 2), 0)) for x in (s, t)),
+                          float(np.polyval(np.polyfit(w[:2], t[:2], 1), 0)), float(last)])
+    (_, s_other, t_other, *_), (_, s, t, line, _) = found
+    return dict(inversion=dict(s=s, t=t, s_error=abs(s - s_other) + 1e-3, t_error=abs(t - t_other) + abs(t - line)),
+                raw=found, method="Chebyshev, extrapolated")
+
+
 def end_lost(p):
     """The end stretch 1 + (chi/c) sin(2 pi c t) reaches zero at this time (one harmonic, any exponent, any k)."""
     t = (math.pi + math.asin(p["speed"] / p["chi"])) / (2 * math.pi * p["speed"])
@@ -120,6 +142,9 @@ def rows():
     for a, speed, chi, w in ((1, -1, 0.6, 1e-10), (0, 1, 0.6, 1e-10), (2, -1, 0.7, 1e-6), (-0.5, 1, 0.7, 1e-16),
                              (-0.9, 1, 0.8, 1e-80)):
         yield f"inversion a={a} chi={chi}", scene(a, chi, speed), lost, dict(smallest=w)
+    for a, chi, w in ((11, 0.7, 0.02), (8, 0.73, 0.01), (6, 0.71, 0.01)):
+        yield f"inversion a={a} chi={chi}", scene(a, chi), lost_smoothly, dict(stop_at=w)
+    yield "inversion a=0.5 chi=0.87", scene(0.5, 0.87), lost, dict(smallest=1e-9)
     yield "inversion ends chi=1.2", scene(-1, 1.2), end_lost, {}
     for a, speed, chi in ((10, -1, 0.2), (3, -1, 0.4), (-10, 1, 0.3), (21, -1, 0.1), (-19, 1, 0.2), (-20, 1, 0.2)):
         yield f"exponent a={a} chi={chi}", scene(a, chi, speed), spectral, {}

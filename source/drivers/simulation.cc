@@ -24,9 +24,13 @@ namespace crawler
     constexpr double end_reach = 1e-6;
     /// The same if the stretch was lost at the very end: the body's own is 1 - m/k there, and nothing else.
     constexpr double end_reach_at_end = 1e-3;
+    /// If states are refused, a stretch that is gone within this part of the duration at its present rate is lost.
+    constexpr double nearly_lost = 1e-4;
     /// So many steps in succession smaller than this part of the duration are a failure.
     constexpr double tiny_step             = 1e-9;
     constexpr unsigned int most_tiny_steps = 2000;
+    /// The step after a change of mesh that settle() makes is this times the root of the tolerance.
+    constexpr double settling_factor = 0.01;
 
     double
     now()
@@ -102,6 +106,7 @@ namespace crawler
     assembler_      = create_assembler(formulation, scene_, *discretization_);
     assembler_->keep_stresses(integrator(time_.integrator).n_stages);
     stepper_ = std::make_unique<TimeStepper>(communicator_, assembler_->weights(), time_);
+    rates_.assign(integrator(time_.integrator).n_stages + 1, {});
     y_.resize(assembler_->n_owned());
     v_.resize(discretization_->n_owned());
     ++mesh_number_;
@@ -109,6 +114,8 @@ namespace crawler
 
     stepper_->implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F)
     {
+      if (keeps_rate())
+        keep_rate(t, y_dot);
       return assembler_->residual(t, y, y_dot, F);
     };
     stepper_->setup_jacobian = [this](const double t, const ConstVector y, const ConstVector y_dot, const double shift)
@@ -258,7 +265,7 @@ namespace crawler
       result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
       // A form that cannot go on because the stretch becomes small is changed, too.
       if (request_ == Request::none && !diagnosis_ && outcome.status == "failed" && outcome.domain_error &&
-          numerics_.formulation == FormulationChoice::automatic && assembler_->formulation() == Formulation::position &&
+          may_change_form() && assembler_->formulation() == Formulation::position &&
           !end_inverts(accepted_time_, accepted_time_ + 1e-9))
         request_ = Request::log_stretch;
       if (request_ == Request::none || diagnosis_ || outcome.status == "finished")
@@ -291,10 +298,13 @@ namespace crawler
     const MeshTransfer transfer(discretization_->element());
     y_ = transfer.transfer(*old_assembler, accepted_, *assembler_);
     assembler_->make_consistent(accepted_time_, y_);
+    const double old_time = accepted_time_;
+    if (!to_log && keeps_rate())
+      settle();
     if (options_.ledger)
     {
       const std::vector<double> old_v(old_discretization->n_owned(), 0.), new_v(v_.size(), 0.);
-      result_.ledger->transfer_loss += old_assembler->integrals(accepted_time_, accepted_, old_v).elastic_energy -
+      result_.ledger->transfer_loss += old_assembler->integrals(old_time, accepted_, old_v).elastic_energy -
                                        assembler_->integrals(accepted_time_, y_, new_v).elastic_energy;
     }
     accepted_ = y_;
@@ -303,6 +313,46 @@ namespace crawler
     else
       ++result_.mesh_changes;
     result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
+  }
+
+  /**
+   * A state that was carried to another mesh is out of balance by the error of the mesh. Where friction is small it
+   * returns to balance at once, at the rate k/(gamma w^a h^2), and a time stepper that watched this would need steps as
+   * short. A backward Euler step is stable for any rate; this one is so short that its own error, size^2 u''/2, is a
+   * small part of the tolerance. If it cannot be made the state is left as it is.
+   */
+  void
+  Simulation::settle()
+  {
+    constexpr unsigned int most_corrections = 10;
+    const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
+    const double t                          = accepted_time_ + size;
+    const double next_frame = next_frame_ < frames_->size() ? std::min((*frames_)[next_frame_] / units_.time, 1.) : 1.;
+    if (t > next_frame - size)
+      return;
+    std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
+    for (unsigned int i = 0; i < most_corrections; ++i)
+    {
+      if (!assembler_->residual(t, y, rate, F) || !assembler_->setup_jacobian(t, y, rate, 1. / size))
+        return;
+      assembler_->solve_with_jacobian(F, change);
+      double largest = 0.;
+      for (std::size_t j = 0; j < y.size(); ++j)
+      {
+        y[j] -= change[j];
+        rate[j] = (y[j] - y_[j]) / size;
+        largest = std::isfinite(change[j]) ? std::max(largest, std::abs(change[j])) : HUGE_VAL;
+      }
+      MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator_);
+      if (!std::isfinite(largest))
+        return;
+      if (largest <= 0.01 * numerics_.tolerance + 1e-15)
+      {
+        y_             = y;
+        accepted_time_ = t;
+        return;
+      }
+    }
   }
 
   /// Looks at a state that the time stepper has accepted; returns false if it must not be used.
@@ -342,7 +392,7 @@ namespace crawler
     const bool adaptive = numerics_.mesh.tolerance > 0.;
     // Pictures need the velocity at frames only, the ledger and adaptive meshes always.
     if (options_.ledger || adaptive || (has_observers_ && (step.is_frame || step.number == 0)))
-      if (!assembler_->velocity(step.time, y, v_))
+      if (!velocity(step.time, step.size, y, v_))
       {
         diagnosis_ = {"failed",
                       "linear_failed",
@@ -357,7 +407,7 @@ namespace crawler
     look_at_extremes(step.time, stretch_, step.number == 0);
     if (options_.resolution)
     {
-      if (!adaptive && assembler_->velocity(step.time, y, v_))
+      if (!adaptive && velocity(step.time, step.size, y, v_))
       {
         const auto indicators = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
         result_.largest_indicator =
@@ -388,6 +438,59 @@ namespace crawler
     accepted_.assign(y.begin(), y.end());
     accepted_time_ = step.time;
     started_       = true;
+    return true;
+  }
+
+  /// Where friction vanishes (w -> 0 for a > 0) a state alone does not tell the velocity: the error of Newton's method
+  /// would be divided by the friction. The rate of the time stepper has no such error, so it is kept.
+  bool
+  Simulation::keeps_rate() const
+  {
+    return scene_.body.friction_exponent() > 0. && assembler_->formulation() == Formulation::position;
+  }
+
+  /// Keeps the rate of the latest residual at each of the latest times: those of the stages of a step, and its start.
+  void
+  Simulation::keep_rate(const double t, const std::span<const double> y_dot)
+  {
+    auto found = std::find_if(rates_.begin(),
+                              rates_.end(),
+                              [t](const Rate &rate)
+                              {
+                                return rate.time == t;
+                              });
+    if (found == rates_.end())
+    {
+      std::rotate(rates_.begin(), rates_.begin() + 1, rates_.end());
+      found = rates_.end() - 1;
+    }
+    found->time = t;
+    found->y_dot.assign(y_dot.begin(), y_dot.end());
+  }
+
+  /**
+   * The velocity @p v of a state @p y that the time stepper has reached with a step of this size. From the rate r with
+   * which it did so, if that is kept: v is the solution of M v + f + h K (v - r) = 0, h the step. Friction balances
+   * exactly, since K does not act on rigid motions, and where M vanishes v is r.
+   */
+  bool
+  Simulation::velocity(const double t, const double size, const std::span<const double> y, std::vector<double> &v)
+  {
+    const auto known = std::find_if(rates_.begin(),
+                                    rates_.end(),
+                                    [&](const Rate &rate)
+                                    {
+                                      return size > 0. && std::abs(rate.time - t) <= 1e-9 * size;
+                                    });
+    if (!keeps_rate() || known == rates_.end())
+      return assembler_->velocity(t, y, v);
+    std::vector<double> F(y.size()), correction(y.size());
+    const std::vector<double> at_rest(y.size(), 0.); // without a velocity the Jacobian is M/h + K
+    if (!assembler_->residual(t, y, known->y_dot, F) || !assembler_->setup_jacobian(t, y, at_rest, 1. / size))
+      return false;
+    assembler_->solve_with_jacobian(F, correction);
+    for (std::size_t i = 0; i < v.size(); ++i)
+      v[i] = known->y_dot[i] - correction[i] / size;
     return true;
   }
 
@@ -453,7 +556,7 @@ namespace crawler
       {
         const double t = step.time - (1. - point.place) * step.size;
         stepper_->interpolate(t, y_inside_);
-        assembler_->velocity(t, y_inside_, v_inside_);
+        velocity(t, step.size, y_inside_, v_inside_);
         inside = rates(t, assembler_->integrals(t, y_inside_, v_inside_), v_inside_);
         look_at_extremes(t, assembler_->stretch_range(y_inside_), /*is_first=*/false);
       }
@@ -610,9 +713,11 @@ namespace crawler
       const double before = min_history_[1].value, before_t = min_history_[1].t;
       const double rate = t > before_t ? (before - smallest.value) / (t - before_t) : 0.;
       const double left = rate > 0. ? smallest.value / rate : 1.;
-      if (outcome.domain_error || left < 1e-6)
+      // For a >= 0 the stretch reaches 0 at a bounded rate, so one that is not near 0 was not lost by the body.
+      const bool near = left < (outcome.domain_error ? nearly_lost : end_reach);
+      if (near || (outcome.domain_error && scene_.body.friction_exponent() < 0.))
       {
-        inverted_inside(smallest.value, smallest.s, std::min(t + (left < 1e-6 ? left : 0.), 1.));
+        inverted_inside(smallest.value, smallest.s, std::min(t + (near ? left : 0.), 1.));
         return;
       }
     }

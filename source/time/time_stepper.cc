@@ -19,6 +19,8 @@ namespace crawler
   {
     /// Remaining error of Newton's method, relative to the admissible error of a step.
     constexpr double newton_fraction = 0.01;
+    /// The same if it is only predicted, with the constant of an earlier step.
+    constexpr double predicted_fraction = 0.1 * newton_fraction;
   } // namespace
 
 
@@ -458,7 +460,7 @@ namespace crawler
     if (it >= 2 && self.last_correction > 0.)
       self.convergence_constant = d / (self.last_correction * self.last_correction);
     self.last_correction = d;
-    if (d <= newton_fraction || self.convergence_constant * d * d <= newton_fraction || d <= rounding)
+    if (d <= newton_fraction || self.convergence_constant * d * d <= predicted_fraction || d <= rounding)
       *reason = SNES_CONVERGED_SNORM_RELATIVE;
     return 0;
   }

@@ -53,6 +53,23 @@ TEST(Identities, NewtonianFrictionNeverMoves)
   }
 }
 
+/// a = 11, stretch down to 0.02: friction falls to 1e-19, but work and dissipation must not show the error of Newton's
+/// method divided by it, and changes of mesh must not leave the state out of balance.
+TEST(Identities, LedgerWhereFrictionVanishes)
+{
+  for (const char *mesh : {"uniform", "adaptive"})
+  {
+    const auto settings = with(test::wave(11., 0.53), {{"Accuracy", "1e-3"}, {"Discretization/Mesh", mesh}});
+    const auto outcome  = test::run_with(settings);
+    const auto &result  = outcome.result;
+    ASSERT_EQ(result.time.status, "finished") << mesh;
+    EXPECT_LT(result.net_friction, 1e-10) << mesh;
+    EXPECT_LT(result.ledger->residual(), 1e-2) << mesh;
+    EXPECT_NEAR(result.ledger->stress_power, 0.129086, 1e-3) << mesh;
+    EXPECT_NEAR(result.displacement, -0.185838, outcome.choice.promised_error) << mesh;
+  }
+}
+
 /// m(L-s,t) gives the opposite displacement.
 TEST(Identities, MirroredStressMirrorsTheDisplacement)
 {

@@ -112,10 +112,18 @@ namespace crawler
     build(std::unique_ptr<Discretization> discretization, Formulation formulation);
     void
     change();
+    void
+    settle();
     bool
     examine(const Step &step, std::span<const double> y);
     bool
     may_change_form() const;
+    bool
+    keeps_rate() const;
+    bool
+    velocity(double t, double size, std::span<const double> y, std::vector<double> &v);
+    void
+    keep_rate(double t, std::span<const double> y_dot);
     bool
     mesh_is_good(const Step &step, std::span<const double> y);
     bool
@@ -189,6 +197,12 @@ namespace crawler
     History min_history_, max_history_;
     std::vector<double> y_, v_;
     std::vector<double> y_inside_, v_inside_; ///< of a state within a step
+    struct Rate
+    {
+      double time = -1.;
+      std::vector<double> y_dot;
+    };
+    std::vector<Rate> rates_; ///< of the latest residuals, where they are kept
     // The last state that was accepted, to which a change of mesh or formulation may go back.
     std::vector<double> accepted_;
     double accepted_time_ = 0., next_step_ = 0.;
