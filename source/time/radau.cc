@@ -18,6 +18,10 @@ namespace crawler
     constexpr double newton_fraction = 0.01;
     /// Slower convergence than this factor per iteration asks for new factors.
     constexpr double slow = 0.1;
+    /// So many steps are done with the Krylov method after the simplified Newton method failed.
+    constexpr unsigned int krylov_steps = 10;
+    /// Relative tolerance of the Krylov method then.
+    constexpr double krylov_tolerance = 0.01;
     /// The polynomial of the last step is a good guess up to this multiple of the step.
     constexpr double longest_extrapolation = 3.;
 
@@ -30,8 +34,10 @@ namespace crawler
       PetscOwner<Vec> y, y_dot, f, start;
       PetscOwner<Vec> z, residual;
       PetscOwner<Mat> jacobian;
-      std::size_t n_owned = 0;
-      double n_all        = 0.; ///< unknowns of all ranks
+      PetscOwner<KSP> linear, krylov; ///< if the solver's own, linear, is preonly
+      unsigned int hard_steps = 0;
+      std::size_t n_owned     = 0;
+      double n_all            = 0.; ///< unknowns of all ranks
       std::vector<double> work, x_dot;
       std::vector<std::complex<double>> complex_work;
 
@@ -126,27 +132,54 @@ namespace crawler
       return true;
     }
 
-    /// Solves for the stages. A guess that leads out of the domain of F is replaced by rest, where it holds.
+    /// One attempt with the solver's own linear method or with the Krylov method.
+    PetscErrorCode
+    attempt(TS ts, const bool krylov, bool &ok)
+    {
+      Radau &radau = data(ts);
+      if (krylov)
+        PetscCall(SNESSetKSP(ts->snes, radau.krylov.get()));
+      PetscCall(SNESSolve(ts->snes, nullptr, radau.z.get()));
+      if (krylov)
+        PetscCall(SNESSetKSP(ts->snes, radau.linear.get()));
+      PetscInt newton = 0, linear = 0;
+      SNESConvergedReason reason;
+      SNESGetIterationNumber(ts->snes, &newton);
+      SNESGetLinearSolveIterations(ts->snes, &linear);
+      SNESGetConvergedReason(ts->snes, &reason);
+      ts->snes_its += newton;
+      ts->ksp_its += linear;
+      ok = reason >= 0;
+      return 0;
+    }
+
+    /**
+     * Solves for the stages: by the simplified Newton method if that is what the user left in place, and where it fails
+     * with exact products, for some steps at once. A guess that leads nowhere is replaced by rest, which is in the
+     * domain of F.
+     */
     PetscErrorCode
     solve_stages(TS ts)
     {
-      Radau &radau      = data(ts);
-      bool extrapolated = first_guess(ts);
-      for (;;)
+      Radau &radau            = data(ts);
+      const bool extrapolated = first_guess(ts);
+      bool ok                 = false;
+      bool krylov             = radau.linear && radau.hard_steps > 0;
+      if (krylov)
+        --radau.hard_steps;
+      PetscCall(attempt(ts, krylov, ok));
+      if (!ok && extrapolated)
       {
-        PetscCall(SNESSolve(ts->snes, nullptr, radau.z.get()));
-        PetscInt newton = 0, linear = 0;
-        SNESConvergedReason reason;
-        SNESGetIterationNumber(ts->snes, &newton);
-        SNESGetLinearSolveIterations(ts->snes, &linear);
-        SNESGetConvergedReason(ts->snes, &reason);
-        ts->snes_its += newton;
-        ts->ksp_its += linear;
-        if (!extrapolated || reason >= 0)
-          return 0;
-        extrapolated = false;
         VecSet(radau.z.get(), 0.);
+        PetscCall(attempt(ts, krylov, ok));
       }
+      if (!ok && radau.linear && !krylov)
+      {
+        radau.hard_steps = krylov_steps;
+        VecSet(radau.z.get(), 0.);
+        PetscCall(attempt(ts, true, ok));
+      }
+      return 0;
     }
 
     PetscErrorCode
@@ -539,6 +572,19 @@ namespace crawler
       PetscCall(PCShellSetName(pc, "chain eliminations of the stages"));
       PetscCall(PCShellSetSetUp(pc, set_up_preconditioner));
       PetscCall(PCShellSetApply(pc, precondition));
+      PetscBool is_preonly = PETSC_FALSE;
+      PetscCall(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &is_preonly));
+      if (is_preonly)
+      {
+        PetscCall(PetscObjectReference(reinterpret_cast<PetscObject>(ksp)));
+        radau.linear.reset(ksp);
+        PetscCall(KSPCreate(comm, &ksp));
+        radau.krylov.reset(ksp);
+        PetscCall(KSPSetType(ksp, KSPGMRES));
+        PetscCall(KSPSetPC(ksp, pc));
+        PetscCall(KSPSetPCSide(ksp, PC_RIGHT));
+        PetscCall(KSPSetTolerances(ksp, krylov_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+      }
       return 0;
     }
 
@@ -565,6 +611,8 @@ namespace crawler
       for (PetscOwner<Vec> *owner : {&radau.y, &radau.y_dot, &radau.f, &radau.start, &radau.z, &radau.residual})
         owner->reset();
       radau.jacobian.reset();
+      radau.linear.reset();
+      radau.krylov.reset();
       return 0;
     }
 
