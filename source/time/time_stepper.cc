@@ -428,7 +428,10 @@ namespace crawler
     if (it >= 2 && self.last_correction > 0.)
       self.convergence_constant = d / (self.last_correction * self.last_correction);
     self.last_correction = d;
-    if (d <= newton_fraction || self.convergence_constant * d * d <= newton_fraction || d <= rounding)
+    // Where the equations have kinks the first correction, and a rate, say nothing about the next one.
+    const bool small = self.owner.smooth ? d <= newton_fraction || self.convergence_constant * d * d <= newton_fraction
+                                         : d <= newton_fraction && it >= 2;
+    if (small || d <= rounding)
       *reason = SNES_CONVERGED_SNORM_RELATIVE;
     return 0;
   }

@@ -66,6 +66,8 @@ namespace crawler
     std::function<bool(double t, ConstVector y, ConstVector y_dot, double alpha)> setup_jacobian;
     std::function<void(ConstVector source, Vector destination)> solve_with_jacobian;
     std::function<void(ConstVector source, Vector destination)> jacobian_vmult;
+    /// Has F derivatives everywhere? If not, Newton's method goes on until a second correction is small.
+    bool smooth = true;
     /// Sees the initial state and each accepted one; false stops the integration.
     std::function<bool(const Step &step, ConstVector y)> monitor;
 
