@@ -195,7 +195,7 @@ def solve(stress, exponent, end_time, elastic_modulus=1.0, friction=1.0, length=
         h *= min(3.0, 0.8 * (time_tolerance / max(error, 1e-30)) ** (1 / stages))
         i = np.clip(fine[-1].argmin(), 1, 4 * points - 1)
         left, middle, right = fine[-1][i - 1:i + 2]
-        x = 0.5 * (left - right) / (left - 2 * middle + right)  # vertex of the parabola
+        x = np.clip(0.5 * (left - right) / max(left - 2 * middle + right, 1e-300), -1, 1)  # vertex of the parabola
         smallest.append((t, fine_s[i] + x * fine_s[1], middle + 0.25 * x * (right - left)))
         if smallest[-1][2] < stop_at:
             raise StretchLost(*smallest[-1], smallest)

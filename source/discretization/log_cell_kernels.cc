@@ -32,16 +32,57 @@ namespace crawler
       static_assert(sizeof(Factors<double>) == log_factors<double>(q) * sizeof(double));
       static_assert(sizeof(Factors<std::complex<double>>) == log_factors<std::complex<double>>(q) * sizeof(double));
 
-      /// The stretch at the nodes: the polynomial through log w, continued to the ends of the cell.
+      /// The friction at the nodes of cell c.
       static void
-      stretch_at_nodes(const double *table, const double *log_w, Nodes &w)
+      friction_at_nodes(const LogCellInput &in, const unsigned int c, Nodes &g)
       {
-        for (int i = 0; i < n; ++i)
+        Nodes w_dg;
+        friction_at_nodes(in, c, g, w_dg);
+      }
+
+      /// The same, and h times the node's weight times w_dg is the derivative of the node's friction (that of both of
+      /// its cells) with respect to log w of this cell, continued to the node.
+      static void
+      friction_at_nodes(const LogCellInput &in, const unsigned int c, Nodes &g, Nodes &w_dg)
+      {
+        const CellInput &cells = in.cells;
+        if constexpr (q == 1)
         {
-          double sum = 0.;
-          for (int p = 0; p < q; ++p)
-            sum += table[i * q + p] * log_w[p];
-          w[i] = std::exp(sum);
+          const double log_w = in.log_w[c], w = std::exp(log_w), h = cells.cell_size[c];
+          double own = 0., own_dg = 0.;
+          cells.friction->values_and_log_derivatives({&w, 1}, {&own, 1}, {&own_dg, 1});
+          g.fill(own);
+          w_dg.fill(own_dg);
+          for (unsigned int i = 0; i < 2; ++i)
+          {
+            const bool last      = i == 0 ? c == 0 : c + 1 == cells.n_cells;
+            const unsigned int b = i == 0 ? c - 1 : c + 1;
+            const LogCellInput::Beside other =
+              last ? in.beside[i] : LogCellInput::Beside{cells.cell_size[b], in.log_w[b]};
+            // A node that moves to the right takes length from the cell on its right.
+            const double slope = (i == 0 ? -1. : 1.) * (other.log_w - log_w);
+            if (other.size == 0. || slope * cells.v[c + i] <= 0.)
+              continue;
+            const double other_w = std::exp(other.log_w);
+            double other_g       = 0.;
+            cells.friction->values({&other_w, 1}, {&other_g, 1});
+            const double part = 2. / (1. + own / other_g);
+            g[i]              = part * own;
+            w_dg[i]           = 0.5 * (1. + other.size / h) * part * part * own_dg;
+          }
+        }
+        else
+        {
+          // The polynomial through log w, continued to the ends of the cell.
+          Nodes w;
+          for (int i = 0; i < n; ++i)
+          {
+            double sum = 0.;
+            for (int p = 0; p < q; ++p)
+              sum += cells.element->stretch_to_nodes[i * q + p] * in.log_w[c * q + p];
+            w[i] = std::exp(sum);
+          }
+          cells.friction->values_and_log_derivatives(w, g, w_dg);
         }
       }
 
@@ -74,9 +115,8 @@ namespace crawler
           if (with_friction)
           {
             const double *v = cells.v + c * q;
-            Nodes w, g;
-            stretch_at_nodes(e.stretch_to_nodes.data(), log_w, w);
-            cells.friction->values(w, g);
+            Nodes g;
+            friction_at_nodes(in, c, g);
             for (int i = 0; i < n; ++i)
               f[i] += h * e.node_weights[i] * equation::friction_force(g[i], v[i]);
             Points v_s;
@@ -99,11 +139,21 @@ namespace crawler
         const ReferenceElement &e = *in.cells.element;
         for (unsigned int c = 0; c < in.cells.n_cells; ++c)
         {
-          Nodes w, g;
-          stretch_at_nodes(e.stretch_to_nodes.data(), in.log_w + c * q, w);
-          in.cells.friction->values(w, g);
+          Nodes g;
+          friction_at_nodes(in, c, g);
           for (int i = 0; i < n; ++i)
             M[c * q + i] += in.cells.cell_size[c] * e.node_weights[i] * g[i];
+        }
+      }
+
+      static void
+      friction(const LogCellInput &in, double *g)
+      {
+        for (unsigned int c = 0; c < in.cells.n_cells; ++c)
+        {
+          Nodes at_nodes;
+          friction_at_nodes(in, c, at_nodes);
+          std::copy(at_nodes.begin(), at_nodes.end(), g + c * n);
         }
       }
 
@@ -119,9 +169,8 @@ namespace crawler
         {
           const double h      = cells.cell_size[c];
           const double *log_w = in.log_w + c * q, *v = cells.v + c * q;
-          Nodes w, g, w_dg;
-          stretch_at_nodes(E, log_w, w);
-          cells.friction->values_and_log_derivatives(w, g, w_dg);
+          Nodes g, w_dg;
+          friction_at_nodes(in, c, g, w_dg);
           Points v_s;
           rates(D, v, 1. / h, v_s);
           auto &f = reinterpret_cast<Factors<Number> *>(factors)[c];
@@ -218,9 +267,8 @@ namespace crawler
         {
           const double h  = cells.cell_size[c];
           const double *u = cells.u + c * q, *v = cells.v + c * q;
-          Nodes w, g;
-          stretch_at_nodes(e.stretch_to_nodes.data(), in.log_w + c * q, w);
-          cells.friction->values(w, g);
+          Nodes g;
+          friction_at_nodes(in, c, g);
           for (int i = 0; i < n; ++i)
           {
             const double ds = h * e.node_weights[i], friction = equation::friction_force(g[i], v[i]);
@@ -243,7 +291,7 @@ namespace crawler
         }
       }
 
-      static constexpr LogCellKernels table = {residual, mass, multiply, integrals};
+      static constexpr LogCellKernels table = {residual, mass, friction, multiply, integrals};
       template <typename Number>
       static constexpr LogElimination<Number> elimination = {jacobian<Number>, reduce<Number>, recover<Number>};
     };

@@ -43,7 +43,33 @@ namespace crawler
   LogCellInput
   LogStretchForm::log_input(const double t, const ConstVector y, const ConstVector v)
   {
-    return {input(t, displacement(y), v), log_stretch(y).data(), nullptr};
+    LogCellInput in{input(t, displacement(y), v), log_stretch(y).data(), nullptr, {}};
+    const unsigned int n = discretization_.n_local_cells();
+    if (q_ > 1 || n == 0 || discretization_.n_active_ranks() == 1)
+      return in;
+    const int rank = static_cast<int>(discretization_.rank()), tag = 0;
+    const int left  = discretization_.has_left_neighbour() ? rank - 1 : MPI_PROC_NULL;
+    const int right = discretization_.has_right_neighbour() ? rank + 1 : MPI_PROC_NULL;
+    const LogCellInput::Beside first{in.cells.cell_size[0], in.log_w[0]},
+      last{in.cells.cell_size[n - 1], in.log_w[n - 1]};
+    const auto exchange = [&](const auto &sent, const int to, auto &received, const int from)
+    {
+      MPI_Sendrecv(&sent,
+                   2,
+                   MPI_DOUBLE,
+                   to,
+                   tag,
+                   &received,
+                   2,
+                   MPI_DOUBLE,
+                   from,
+                   tag,
+                   discretization_.communicator(),
+                   MPI_STATUS_IGNORE);
+    };
+    exchange(first, left, in.beside[1], right);
+    exchange(last, right, in.beside[0], left);
+    return in;
   }
 
   bool
@@ -182,15 +208,18 @@ namespace crawler
       result[i] += x_dot[i];
   }
 
-  /// The friction matrix is diagonal here.
+  /// The friction matrix is diagonal here, and positive: the signs of the velocity are those of the forces.
   bool
   LogStretchForm::velocity(const double t, const ConstVector y, const Vector v)
   {
-    const LogCellInput in = log_input(t, y, {});
-    const std::size_t n   = discretization_.n_owned();
+    LogCellInput in     = log_input(t, y, {});
+    const std::size_t n = discretization_.n_owned();
     node_local_.assign(discretization_.n_local(), 0.);
     kernels_.residual(in, node_local_.data(), nullptr);
     discretization_.add_to_owned<double>(node_local_, v);
+    for (double &force : v)
+      force = -force;
+    in.cells.v = discretization_.to_local<double>(v, local_buffer_).data();
     node_local_.assign(discretization_.n_local(), 0.);
     kernels_.mass(in, node_local_.data());
     nodes_.resize(n);
@@ -198,7 +227,7 @@ namespace crawler
     int ok = 1;
     for (std::size_t i = 0; i < n; ++i)
     {
-      v[i] /= -nodes_[i];
+      v[i] /= nodes_[i];
       ok = ok != 0 && std::isfinite(v[i]);
     }
     if (discretization_.n_ranks() > 1)
@@ -232,20 +261,10 @@ namespace crawler
   {
     const LogCellInput in = log_input(t, y, v);
     const auto &e         = discretization_.element();
-    std::vector<double> w(e.n), g(e.n);
     g_v.resize(static_cast<std::size_t>(in.cells.n_cells) * e.n);
+    kernels_.friction(in, g_v.data());
     for (unsigned int c = 0; c < in.cells.n_cells; ++c)
-    {
       for (unsigned int i = 0; i < e.n; ++i)
-      {
-        double sum = 0.;
-        for (unsigned int p = 0; p < q_; ++p)
-          sum += e.stretch_to_nodes[i * q_ + p] * in.log_w[c * q_ + p];
-        w[i] = std::exp(sum);
-      }
-      scene_.friction->values(w, g);
-      for (unsigned int i = 0; i < e.n; ++i)
-        g_v[c * e.n + i] = g[i] * in.cells.v[c * q_ + i];
-    }
+        g_v[c * e.n + i] *= in.cells.v[c * q_ + i];
   }
 } // namespace crawler

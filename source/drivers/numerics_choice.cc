@@ -33,6 +33,8 @@ namespace crawler
     constexpr double space_factor = 4.;
     /// Error of the displacement in time is below this times the number of steps times the tolerance.
     constexpr double time_factor = 0.25;
+    /// Bodies softer than this, in natural units, have an error of about soft_error, relative, on adaptive meshes.
+    constexpr double soft = 1e-5, soft_error = 3e-4;
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;
 
@@ -311,27 +313,41 @@ namespace crawler
       void
       collapse()
       {
-        Numerics &n             = choice_.numerics;
-        n.degree                = 1;
-        n.formulation           = FormulationChoice::log_stretch;
-        n.mesh                  = {};
-        double before           = std::numeric_limits<double>::quiet_NaN();
+        Numerics &n   = choice_.numerics;
+        n.degree      = 1;
+        n.formulation = FormulationChoice::log_stretch;
+        n.mesh        = {};
+        if (parameters_.time.step_control == "adaptive")
+          n.integrator = "arkimex 4"; // bdf is less accurate here, or not stable enough: its steps become tiny
+        double before = std::numeric_limits<double>::quiet_NaN(), change_before = before;
+        bool inverted           = false;
         const unsigned int last = accuracy_ >= 1e-4 ? last_collapse_cells : last_accurate_collapse_cells;
         size_                   = 0.; // that of a failed pilot says nothing
         for (n.n_cells = first_collapse_cells;; n.n_cells *= 2)
         {
-          tolerance_ = size_ > 0. ? std::max(0.03 * accuracy_ * size_, 1e-10 * scale_) : 1e-5 * scale_;
+          tolerance_ = size_ > 0. ? std::max(0.1 * accuracy_ * size_, 1e-10 * scale_) : 1e-5 * scale_;
           pilot_     = pilot(pilot_numerics(1, n.n_cells, tolerance_));
           measure_size();
           // If it inverts, the time of that is what has to settle.
           const bool finished = pilot_.time.status == "finished";
           const double now    = finished ? pilot_.displacement : pilot_.inversion ? pilot_.inversion->t : 0.;
-          const double change = std::abs(now - before);
+          // All of it changes if one mesh inverts and the other does not.
+          const double change =
+            n.n_cells > first_collapse_cells && inverted == finished ? (finished ? size_ : T_) : std::abs(now - before);
+          inverted            = !finished;
           const double wanted = finished ? accuracy_ * size_ : std::max(accuracy_, 1e-4) * T_;
-          before              = now;
+          // An error of second order is a third of the last change, if the changes show that. Where the body inverts
+          // the place of a cell matters, and there is no such order.
+          const double error = !finished                       ? 2. * std::max(change, change_before)
+                               : change <= change_before / 2.5 ? 0.5 * change
+                                                               : change;
+          before             = now;
+          change_before      = change;
           if (finished)
-            choice_.promised_error = std::max(wanted, change);
-          if (change <= wanted || 2 * n.n_cells > last)
+            choice_.promised_error = std::max(wanted, error);
+          else
+            inversion_error_ = pilot_.inversion ? error : 0.;
+          if (error <= wanted || 2 * n.n_cells > last)
             break;
         }
         is_collapse_ = true;
@@ -355,7 +371,11 @@ namespace crawler
           std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance_), std::max(1e-15 * scale_, smallest()));
         n.tolerance = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
         if (!is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed && !parameters_.discretization.mesh_tolerance)
-          choice_.promised_error = accuracy_ * size_;
+        {
+          const bool is_soft =
+            n.mesh.tolerance > 0. && scene_.body.elastic_modulus < soft * natural_units(scene_).force;
+          choice_.promised_error = std::max(accuracy_, is_soft ? soft_error : 0.) * size_;
+        }
         const double seconds   = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         const std::string kind = is_collapse_ ? "the stretch collapses: log stretch with degree 1, "
                                  : n.mesh.tolerance > 0.
@@ -374,6 +394,8 @@ namespace crawler
                                  n_pilots_,
                                  n.n_cells,
                                  pilot_.time.message);
+        if (!predicts && inversion_error_ > 0.)
+          choice_.explanation += fmt::format("; the time of that has an error of about {:.2g}", inversion_error_);
         if (choice_.promised_error > 1.5 * accuracy_ * size_)
           choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
                                              choice_.promised_error / size_);
@@ -392,8 +414,9 @@ namespace crawler
       NumericsChoice choice_;
       SimulationResult pilot_; ///< the last one that counts
       double tolerance_ = 0., size_ = 0.;
-      unsigned int n_pilots_ = 0;
-      bool is_collapse_      = false;
+      unsigned int n_pilots_  = 0;
+      bool is_collapse_       = false;
+      double inversion_error_ = 0.; ///< of the time of an inversion that the collapse has found
     };
   } // namespace
 

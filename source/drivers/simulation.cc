@@ -40,12 +40,12 @@ namespace crawler
 
     /**
      * In the log-stretch form the stretch can be followed much further. Near an inversion w^(1+a) goes linearly to 0,
-     * so this is where 2e-9 of it is left; for a <= -1 there is none, and what limits w is the range of doubles.
+     * so this is where 1e-6 of it is left; for a <= -1 there is none, and what limits w is the range of doubles.
      */
     double
     lost_in_log_form(const double a)
     {
-      return a <= -1. ? std::exp(-700.) : std::exp(std::clamp(-20. / (1. + a), -690., std::log(1e-3)));
+      return a <= -1. ? std::exp(-700.) : std::exp(std::clamp(-14. / (1. + a), -690., std::log(1e-3)));
     }
 
     Numerics
@@ -86,6 +86,8 @@ namespace crawler
     , communicator_(communicator)
   {
     time_.end_time = 1.;
+    if (time_.integrator == "bdf" && !numerics_.integrator.empty())
+      time_.integrator = numerics_.integrator;
     build(std::make_unique<Discretization>(communicator, 1., numerics.n_cells, numerics.degree),
           numerics.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
     as_at_start_ = true;
@@ -107,6 +109,8 @@ namespace crawler
     assembler_->keep_stresses(integrator(time_.integrator).n_stages);
     stepper_ = std::make_unique<TimeStepper>(communicator_, assembler_->weights(), time_);
     rates_.assign(integrator(time_.integrator).n_stages + 1, {});
+    // The friction of degree 1 switches with the sign of the velocity.
+    stepper_->smooth = formulation == Formulation::position || numerics_.degree > 1;
     y_.resize(assembler_->n_owned());
     v_.resize(discretization_->n_owned());
     ++mesh_number_;
@@ -727,12 +731,15 @@ namespace crawler
 
   /**
    * For a <= -1 the stretch inside stays positive as long as the ends do (doc/theory.md, "When a body can invert"), so
-   * a loss of stretch there is an error of the mesh and is called that.
+   * a loss of stretch there is an error of the mesh and is called that. For -1 < a < 0 bodies do invert, but all forms
+   * lose the stretch too early, or without need, except log stretch with degree 1.
    */
   void
   Simulation::inverted_inside(const double value, const double s, const double t)
   {
-    if (scene_.body.friction_exponent() <= -1.)
+    const double a     = scene_.body.friction_exponent();
+    const bool is_safe = assembler_->formulation() == Formulation::log_stretch && numerics_.degree == 1;
+    if (a <= -1. || (a < 0. && !is_safe))
     {
       under_resolved(value, s, t);
       return;
@@ -749,20 +756,29 @@ namespace crawler
   void
   Simulation::under_resolved(const double value, const double s, const double t)
   {
+    const bool positive  = scene_.body.friction_exponent() <= -1.,
+               user_form = numerics_.formulation == FormulationChoice::position;
+    std::string needed;
+    if (user_form)
+      needed += "Discretization/Formulation = automatic, ";
+    if (numerics_.degree > 1)
+      needed +=
+        "Discretization/Degree = 1 with Formulation = log stretch (Degree and Number of cells = automatic choose "
+        "that), ";
     diagnosis_ = {
       "failed",
       "under_resolved",
-      fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, where the body itself "
-                  "stays uninverted (a <= -1): {} cells of degree {} are too coarse, or the steps too long; {}, or a "
-                  "smaller Time/Tolerance",
+      fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, {}: {} cells of degree {} "
+                  "are too coarse, or the steps too long; {}a larger Discretization/Number of cells or a smaller "
+                  "Time/Tolerance is needed",
                   value,
                   s * units_.length,
                   t * units_.time,
+                  positive ? "where the body itself stays uninverted (a <= -1)"
+                           : "which for a < 0 only log stretch with degree 1 is believed",
                   discretization_->n_cells(),
                   discretization_->element().degree,
-                  assembler_->formulation() == Formulation::position
-                    ? "Discretization/Formulation = automatic or a larger Number of cells is needed"
-                    : "a larger Discretization/Number of cells is needed")};
+                  needed.empty() ? "" : needed + "or ")};
   }
 
   /// Frames have the times that were asked for, exactly.

@@ -391,7 +391,8 @@ namespace crawler
         radau.known_rate = std::pow(radau.known_rate, 0.8);
       radau.last_correction = d;
       const double left     = radau.known_rate / (1. - std::min(radau.known_rate, 0.9)) * d;
-      if (left <= newton_fraction || d <= 1e-15 * scaled_norm(ts, state, ts->vatol, ts->atol))
+      const bool small      = radau.systems->smooth ? left <= newton_fraction : d <= newton_fraction && it >= 2;
+      if (small || d <= 1e-15 * scaled_norm(ts, state, ts->vatol, ts->atol))
         *reason = SNES_CONVERGED_SNORM_RELATIVE;
       else if (it >= 3 && radau.rate >= 1.)
         *reason = SNES_DIVERGED_DTOL;

@@ -460,7 +460,11 @@ namespace crawler
     if (it >= 2 && self.last_correction > 0.)
       self.convergence_constant = d / (self.last_correction * self.last_correction);
     self.last_correction = d;
-    if (d <= newton_fraction || self.convergence_constant * d * d <= predicted_fraction || d <= rounding)
+    // Where the equations have kinks the first correction, and a rate, say nothing about the next one.
+    const bool small = self.owner.smooth
+                         ? d <= newton_fraction || self.convergence_constant * d * d <= predicted_fraction
+                         : d <= newton_fraction && it >= 2;
+    if (small || d <= rounding)
       *reason = SNES_CONVERGED_SNORM_RELATIVE;
     return 0;
   }
@@ -650,9 +654,10 @@ namespace crawler
                      const double largest_step,
                      const double start_time)
   {
-    Implementation &self = *implementation_;
-    TS ts                = self.ts.get();
-    self.frames          = frames;
+    Implementation &self      = *implementation_;
+    TS ts                     = self.ts.get();
+    self.frames               = frames;
+    self.radau_systems.smooth = smooth;
     if (self.frames.empty() || self.frames.back() < self.parameters.end_time)
       self.frames.push_back(self.parameters.end_time);
     self.next_frame           = 0;

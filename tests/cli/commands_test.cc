@@ -398,6 +398,26 @@ TEST_F(Commands, UnusedPetscOptionsAreReported)
             "crawler run scene.prm --output results -- -ts_adapt_clp 0.1,2 -ts_type bdf");
 }
 
+/// For -1 < a < 0 only log stretch with degree 1 is believed when it says that a body inverts.
+TEST_F(Commands, InversionOfThePositionFormIsNotBelieved)
+{
+  const ProgramResult result = run({"--set",
+                                    "Active stress/Optimal wave/Choose wave by=wave speed",
+                                    "--set",
+                                    "Active stress/Optimal wave/Wave speed=1",
+                                    "--set",
+                                    "Active stress/Optimal wave/Perturbation parameter=0.7",
+                                    "--set",
+                                    "Body/Anchoring exponent=1.5",
+                                    "--set",
+                                    "Discretization/Formulation=position"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(contains(result.err, "Discretization/Formulation = automatic")) << result.err;
+  const json summary = summary_of(results);
+  EXPECT_EQ(summary.at("reason"), "under_resolved");
+  EXPECT_TRUE(summary.at("inversion").is_null());
+}
+
 /// With a = 1 and chi = 0.6 the body really inverts, inside, near t = 0.308.
 TEST_F(Commands, InversionInsideIsNamed)
 {

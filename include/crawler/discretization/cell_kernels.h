@@ -3,6 +3,8 @@
 
 #include <crawler/discretization/reference_element.h>
 
+#include <array>
+
 namespace crawler
 {
   class FrictionLaw;
@@ -26,6 +28,13 @@ namespace crawler
     CellInput cells;         ///< its m is at the stretch points [cell][q]
     const double *log_w;     ///< [cell][q] logarithm of the stretch at the stretch points
     const double *log_w_dot; ///< [cell][q] its time derivative
+
+    /// For degree 1: the cells to the left and to the right of these, of size 0 where there is none.
+    struct Beside
+    {
+      double size, log_w;
+    };
+    std::array<Beside, 2> beside;
   };
 
   /// Integrals over the body that the ledger is made of; see theory.md section 1 for their relations.
@@ -63,14 +72,18 @@ namespace crawler
    * The log-stretch form (doc/numerics.md, "Log-stretch form"): at each stretch point of a cell the equation
    *   L_p = d/dt log w - v_s/w,
    * and the residual F_i = int g v phi_i + int N phi_i,s with the stretch w = exp(log w); the friction integral by the
-   * Gauss-Lobatto formula at the nodes, the other by the Gauss formula at the stretch points.
+   * Gauss-Lobatto formula at the nodes, the other by the Gauss formula at the stretch points. With degree 1 friction at
+   * a node between two cells is the mean of theirs, or its harmonic mean where the emptier cell receives length.
    */
   struct LogCellKernels
   {
     /// Adds F to @p F and writes L [cell][q]. Without log_w_dot: F only, without friction.
     void (*residual)(const LogCellInput &, double *F, double *L);
-    /// The friction at the nodes, int g phi_i: the diagonal of the friction matrix; added to @p mass.
+    /// The friction at the nodes, int g phi_i: the diagonal of the friction matrix; added to @p mass. Of the velocity
+    /// only the sign matters.
     void (*mass)(const LogCellInput &, double *mass);
+    /// The friction g at the nodes of each cell [cell][n].
+    void (*friction)(const LogCellInput &, double *g);
     /// (f, l) += J (v, log w) with the real factors of LogElimination.
     void (*multiply)(const CellInput &, const double *factors, const double *v, const double *x, double *f, double *l);
     void (*integrals)(const LogCellInput &, CellIntegrals &);

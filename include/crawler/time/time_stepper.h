@@ -77,6 +77,8 @@ namespace crawler
     /// destination = dF/dy x + dF/dy_dot x_dot.
     std::function<void(unsigned int stage, double t, ConstVector y, ConstVector y_dot)> setup_stage;
     std::function<void(unsigned int stage, ConstVector x, ConstVector x_dot, Vector destination)> stage_vmult;
+    /// Has F derivatives everywhere? If not, Newton's method goes on until a second correction is small.
+    bool smooth = true;
     /// Sees the initial state and each accepted one; false stops the integration.
     std::function<bool(const Step &step, ConstVector y)> monitor;
 

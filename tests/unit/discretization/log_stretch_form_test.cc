@@ -41,6 +41,9 @@ namespace
           u[c * element.degree + i] = 0.06 * std::sin(5. * s) + 0.02 * s * s;
         }
       y = MeshTransfer(element).transfer(position, u, form);
+      // Not 0: the friction of degree 1 has kinks there.
+      for (std::size_t i = 0, n = d.n_unknowns(); i < n; ++i)
+        y[y.size() - n + i] = (i % 3 == 1 ? -0.1 : 0.2) * (1. + 0.1 * static_cast<double>(i));
       y_dot.resize(form.n_owned());
       for (std::size_t i = 0; i < y_dot.size(); ++i)
         y_dot[i] = 0.1 * std::cos(0.9 * static_cast<double>(i)) - 0.03;
@@ -174,6 +177,23 @@ TEST(LogStretchForm, IdentitiesOfAState)
       EXPECT_GT(sum.dissipation, 0.);
       EXPECT_GE(sum.positive_power, sum.stress_power);
     }
+}
+
+/// Degree 1: at a node that moves from a full cell to an empty one the mobilities 1/g are averaged, otherwise g.
+TEST(LogStretchForm, EmptyCellsCanBeRefilled)
+{
+  Case test(-1., 1, 2);
+  const std::size_t first_log = offset(test.form.log_stretch(test.y), test.y);
+  test.y[first_log]           = std::log(1e-6);
+  test.y[first_log + 1]       = 0.;
+  std::vector<double> v(test.d.n_owned());
+  const auto dissipation = [&](const double middle)
+  {
+    v = {0., middle, 0.};
+    return test.form.integrals(t, test.y, v).dissipation;
+  };
+  EXPECT_NEAR(dissipation(1.), 0.5 * 2. / (1e-6 + 1.), 1e-12);        // length goes to the left, to the empty cell
+  EXPECT_NEAR(dissipation(-1.) / (0.5 * (1e6 + 1.) / 2.), 1., 1e-12); // the empty cell gives length away
 }
 
 /// Where the position form has only round-off left of the stretch, this form still has all its digits.
