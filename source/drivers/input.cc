@@ -35,7 +35,9 @@ namespace crawler
         {"Active stress/Optimal wave/Energy", by_energy, choice},
         {"Active stress/Optimal wave/Root", by_energy, choice},
         {"Active stress/Optimal wave/Root index", wave.root == "index", "Root = " + wave.root},
-        {"Time/Order", p.time.integrator == "bdf", "Integrator = " + p.time.integrator},
+        {"Time/Order",
+         p.time.integrator == "bdf" || p.time.integrator == "automatic",
+         "Integrator = " + p.time.integrator},
         {"Output/Ledger tolerance", p.output.ledger, "Ledger = false"},
       };
       std::vector<std::string> notes;

@@ -273,7 +273,9 @@ namespace crawler
         n.degree    = parameters_.discretization.degree.value_or(adaptive_degree);
         n.n_cells   = user_cells_.value_or(
           static_cast<unsigned int>(std::clamp(std::ceil(L_ / scales_.length), 8., 1. * most_cells)));
-        n.mesh        = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
+        n.mesh = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
+        if (parameters_.time.step_control == "adaptive")
+          n.integrator = "radau 5"; // a method of several steps would start anew with each mesh
         double strain = pilot_.strain > 0. ? pilot_.strain : scale_ * scale_ / L_;
         // What needs more than this collapses, and the scheme that is safe then costs less.
         const TimeParameters usual = pilot_time_;
@@ -313,10 +315,12 @@ namespace crawler
       void
       collapse()
       {
-        Numerics &n   = choice_.numerics;
-        n.degree      = 1;
-        n.formulation = FormulationChoice::log_stretch;
-        n.mesh        = {};
+        const Numerics before_collapse = choice_.numerics;
+        const SimulationResult failed  = pilot_;
+        Numerics &n                    = choice_.numerics;
+        n.degree                       = 1;
+        n.formulation                  = FormulationChoice::log_stretch;
+        n.mesh                         = {};
         if (parameters_.time.step_control == "adaptive")
           n.integrator = "arkimex 4"; // bdf is less accurate here, or not stable enough: its steps become tiny
         double before = std::numeric_limits<double>::quiet_NaN(), change_before = before;
@@ -350,7 +354,14 @@ namespace crawler
           if (error <= wanted || 2 * n.n_cells > last)
             break;
         }
-        is_collapse_ = true;
+        // Thin layers look like a collapse to a pilot that does not resolve them; here their forces do not balance.
+        is_collapse_ = pilot_.largest_indicator < pilot_.strain;
+        if (!is_collapse_)
+        {
+          choice_.numerics       = before_collapse;
+          choice_.promised_error = std::numeric_limits<double>::quiet_NaN();
+          pilot_                 = failed;
+        }
       }
 
       /// The time tolerance, and the explanation.
@@ -363,8 +374,12 @@ namespace crawler
           size_ = scale_;
         // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
         // size.
-        const unsigned int nominal = integrator(parameters_.time.integrator).order;
-        const double r             = 1. / (1. + (nominal > 0 ? nominal : parameters_.time.order));
+        const Integrator &method =
+          integrator(parameters_.time.integrator == "automatic" && !n.integrator.empty() ? n.integrator
+                                                                                         : parameters_.time.integrator);
+        const double r = 1. / (1. + (method.n_stages > 1 ? method.n_stages
+                                     : method.order > 0  ? method.order
+                                                         : parameters_.time.order));
         const double wanted =
           accuracy_ * size_ / (time_factor * std::max(pilot_.time.steps, 1u) * std::pow(tolerance_, r));
         const double by_rule =

@@ -57,13 +57,16 @@ namespace crawler
         log.line("  " + line);
       for (const std::string &note : input.notes)
         log.line(note);
-      const Numerics &n = choice.numerics;
+      const Numerics &n            = choice.numerics;
+      const std::string integrator = p.time.integrator != "automatic" ? p.time.integrator
+                                     : n.integrator.empty()           ? "bdf"
+                                                                      : n.integrator;
       log.line(fmt::format("Mesh: {} cells of degree {}, {} unknowns. Time: {}{}, tolerance {:.3g}.",
                            n.n_cells,
                            n.degree,
                            static_cast<std::size_t>(n.n_cells) * n.degree + 1,
-                           p.time.integrator,
-                           p.time.integrator == "bdf" ? fmt::format(" of order {}", p.time.order) : "",
+                           integrator,
+                           integrator == "bdf" ? fmt::format(" of order {}", p.time.order) : "",
                            n.tolerance));
       log.line("  (" + choice.explanation + ")");
     }

@@ -12,7 +12,8 @@ namespace crawler
   {
     if (result.time.status != "finished" || !result.ledger)
       return;
-    const bool own_numerics = parameters.time.tolerance || parameters.time.integrator != "bdf" ||
+    const bool own_numerics = parameters.time.tolerance ||
+                              (parameters.time.integrator != "automatic" && parameters.time.integrator != "bdf") ||
                               parameters.time.order < 4 || parameters.time.step_control == "fixed";
     const double tolerance = parameters.output.ledger_tolerance.value_or(
       own_numerics ? 0.1 : std::max(1e-8, (result.log_stretch_since ? 300. : 10.) * parameters.accuracy));

@@ -86,8 +86,8 @@ namespace crawler
     , communicator_(communicator)
   {
     time_.end_time = 1.;
-    if (time_.integrator == "bdf" && !numerics_.integrator.empty())
-      time_.integrator = numerics_.integrator;
+    if (time_.integrator == "automatic")
+      time_.integrator = numerics_.integrator.empty() ? "bdf" : numerics_.integrator;
     build(std::make_unique<Discretization>(communicator, 1., numerics.n_cells, numerics.degree),
           numerics.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
     as_at_start_ = true;
@@ -377,7 +377,8 @@ namespace crawler
     }
     if (end_inverts(before, step.time))
       return false;
-    const bool in_position = assembler_->formulation() == Formulation::position;
+    const bool in_position = assembler_->formulation() == Formulation::position,
+               adaptive    = numerics_.mesh.tolerance > 0.;
     if (in_position && may_change_form() && stretch_.min.value < small_stretch)
     {
       // From this state if it is good, else from the one before.
@@ -390,10 +391,11 @@ namespace crawler
     }
     else if (stretch_.min.value <= (in_position ? lost_in_position : lost_in_log_form(scene_.body.friction_exponent())))
     {
-      locate_inversion(step);
+      // A mesh that is too coarse can lose it, too, so that is mended first.
+      if (!adaptive || !velocity(step.time, step.size, y, v_) || mesh_is_good(step, y))
+        locate_inversion(step);
       return false;
     }
-    const bool adaptive = numerics_.mesh.tolerance > 0.;
     // Pictures need the velocity at frames only, the ledger and adaptive meshes always.
     if (options_.ledger || adaptive || (has_observers_ && (step.is_frame || step.number == 0)))
       if (!velocity(step.time, step.size, y, v_))

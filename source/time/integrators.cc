@@ -28,7 +28,7 @@ namespace crawler
   integrator(const std::string &name)
   {
     for (const Integrator &entry : integrators())
-      if (entry.name == name)
+      if (entry.name == (name == "automatic" ? "bdf" : name))
         return entry;
     throw std::logic_error("no integrator is called " + name);
   }

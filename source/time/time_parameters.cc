@@ -12,7 +12,7 @@ namespace crawler
   void
   TimeParameters::add_parameters(Declarations &declarations)
   {
-    std::vector<std::string> names;
+    std::vector<std::string> names = {"automatic"};
     for (const Integrator &entry : integrators())
       names.push_back(entry.name);
     declarations.enter("Time");
@@ -21,7 +21,8 @@ namespace crawler
       "Integrator",
       integrator,
       quoted_list(names),
-      "Time integrator (PETSc TS). Integrators of PETSc that are not sound for this equation are refused "
+      "Time integrator (PETSc TS). Automatic: bdf; on adaptive meshes radau 5; where the stretch collapses arkimex 4. "
+      "Integrators of PETSc that are not sound for this equation are refused "
       "with the reason.");
     declarations.whole_number("Order", order, 1, 5, "Order of bdf; the other integrators have their own.");
     declarations.choice("Step control",
@@ -44,8 +45,8 @@ namespace crawler
   void
   TimeParameters::validate() const
   {
-    bool known = false;
-    std::vector<std::string> names;
+    bool known                     = integrator == "automatic";
+    std::vector<std::string> names = {"automatic"};
     for (const Integrator &entry : integrators())
     {
       names.push_back(entry.name);

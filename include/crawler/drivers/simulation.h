@@ -34,7 +34,7 @@ namespace crawler
     double largest_step           = std::numeric_limits<double>::infinity(); ///< [time]
     FormulationChoice formulation = FormulationChoice::automatic;
     MeshLimits mesh               = {}; ///< of an adaptive mesh
-    std::string integrator        = ""; ///< takes the place of bdf if not empty (time/integrators.h)
+    std::string integrator        = ""; ///< what an automatic integrator is (time/integrators.h); empty: bdf
   };
 
   /// What one simulation gives.

@@ -21,7 +21,8 @@ namespace crawler
   const std::vector<Integrator> &
   integrators();
 
-  /// Throws std::logic_error if there is none of that name.
+  /// "automatic" is bdf unless somebody chooses (drivers/numerics_choice.h). Throws std::logic_error if there is none
+  /// of that name.
   const Integrator &
   integrator(const std::string &name);
 

@@ -12,7 +12,7 @@ namespace crawler
   struct TimeParameters
   {
     double end_time          = 1.;
-    std::string integrator   = "bdf";
+    std::string integrator   = "automatic";
     unsigned int order       = 5;
     std::string step_control = "adaptive";
     std::optional<double> tolerance;    ///< absolute, in the displacement [length]
