@@ -385,7 +385,8 @@ namespace crawler
         const double by_rule =
           std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance_), std::max(1e-15 * scale_, smallest()));
         n.tolerance = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
-        if (!is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed && !parameters_.discretization.mesh_tolerance)
+        if (predicts && !is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed &&
+            !parameters_.discretization.mesh_tolerance)
         {
           const bool is_soft =
             n.mesh.tolerance > 0. && scene_.body.elastic_modulus < soft * natural_units(scene_).force;
