@@ -273,9 +273,7 @@ namespace crawler
         n.degree    = parameters_.discretization.degree.value_or(adaptive_degree);
         n.n_cells   = user_cells_.value_or(
           static_cast<unsigned int>(std::clamp(std::ceil(L_ / scales_.length), 8., 1. * most_cells)));
-        n.mesh = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
-        if (parameters_.time.step_control == "adaptive")
-          n.integrator = "radau 5"; // a method of several steps would start anew with each mesh
+        n.mesh        = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
         double strain = pilot_.strain > 0. ? pilot_.strain : scale_ * scale_ / L_;
         // What needs more than this collapses, and the scheme that is safe then costs less.
         const TimeParameters usual = pilot_time_;
@@ -290,7 +288,7 @@ namespace crawler
           measure_size();
           const bool finished = pilot_.time.status == "finished";
           const double before = strain;
-          if (pilot_.strain > 0.)
+          if (finished && pilot_.strain > 0.)
             strain = pilot_.strain;
           const bool strain_known = strain < 4. * before && strain > 0.25 * before;
           if (!finished)
@@ -305,6 +303,9 @@ namespace crawler
         const double part = parameters_.discretization.mesh_tolerance.value_or(
           std::min(accuracy_ / indicator_factor, tighter * resolved));
         n.mesh.tolerance = part * strain;
+        // bdf starts anew with each mesh, a one-step method goes on; but where the stretch collapses bdf is the faster.
+        if (parameters_.time.step_control == "adaptive" && pilot_.min_stretch.value > emptied)
+          n.integrator = "radau 5";
       }
 
       /**
@@ -374,12 +375,8 @@ namespace crawler
           size_ = scale_;
         // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
         // size.
-        const Integrator &method =
-          integrator(parameters_.time.integrator == "automatic" && !n.integrator.empty() ? n.integrator
-                                                                                         : parameters_.time.integrator);
-        const double r = 1. / (1. + (method.n_stages > 1 ? method.n_stages
-                                     : method.order > 0  ? method.order
-                                                         : parameters_.time.order));
+        const unsigned int nominal = integrator(parameters_.time.integrator).order; // of the pilots
+        const double r             = 1. / (1. + (nominal > 0 ? nominal : parameters_.time.order));
         const double wanted =
           accuracy_ * size_ / (time_factor * std::max(pilot_.time.steps, 1u) * std::pow(tolerance_, r));
         const double by_rule =

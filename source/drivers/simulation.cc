@@ -29,6 +29,10 @@ namespace crawler
     /// So many steps in succession smaller than this part of the duration are a failure.
     constexpr double tiny_step             = 1e-9;
     constexpr unsigned int most_tiny_steps = 2000;
+    /// So many of them at a stretch below this mean that it is lost: what is left of it is the error of Newton's
+    /// method.
+    constexpr unsigned int most_steps_at_zero = 20;
+    constexpr double nearly_zero              = 1e-6;
     /// The step after a change of mesh that settle() makes is this times the root of the tolerance.
     constexpr double settling_factor = 0.01;
 
@@ -428,6 +432,11 @@ namespace crawler
     }
     // Many steps that lead nowhere.
     tiny_steps_ = step.size > 0. && step.size < tiny_step ? tiny_steps_ + 1 : 0;
+    if (tiny_steps_ > most_steps_at_zero && scene_.body.friction_exponent() >= 0. && stretch_.min.value < nearly_zero)
+    {
+      inverted_inside(stretch_.min.value, stretch_.min.s, step.time);
+      return false;
+    }
     if (tiny_steps_ > most_tiny_steps)
     {
       diagnosis_ = {"failed",

@@ -22,6 +22,7 @@ namespace crawler
     constexpr unsigned int krylov_steps = 10;
     /// Relative tolerance of the Krylov method then.
     constexpr double krylov_tolerance = 0.01;
+    constexpr int krylov_iterations   = 30;
     /// The polynomial of the last step is a good guess up to this multiple of the step.
     constexpr double longest_extrapolation = 3.;
 
@@ -584,7 +585,7 @@ namespace crawler
         PetscCall(KSPSetType(ksp, KSPGMRES));
         PetscCall(KSPSetPC(ksp, pc));
         PetscCall(KSPSetPCSide(ksp, PC_RIGHT));
-        PetscCall(KSPSetTolerances(ksp, krylov_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+        PetscCall(KSPSetTolerances(ksp, krylov_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, krylov_iterations));
       }
       return 0;
     }

@@ -21,7 +21,7 @@ namespace crawler
       "Integrator",
       integrator,
       quoted_list(names),
-      "Time integrator (PETSc TS). Automatic: bdf; on adaptive meshes radau 5; where the stretch collapses arkimex 4. "
+      "Time integrator (PETSc TS). Automatic: bdf, radau 5 or arkimex 4, by mesh and stretch (doc/numerics.md). "
       "Integrators of PETSc that are not sound for this equation are refused "
       "with the reason.");
     declarations.whole_number("Order", order, 1, 5, "Order of bdf; the other integrators have their own.");
