@@ -68,6 +68,16 @@ namespace crawler
   CellInput
   Assembler::input(const double t, const ConstVector u, const ConstVector v)
   {
+    CellInput in = geometry();
+    in.u         = discretization_.to_local<double>(u, u_local_).data();
+    in.v         = v.data() == nullptr ? nullptr : discretization_.to_local<double>(v, v_local_).data();
+    in.m         = stress_at(t).data();
+    return in;
+  }
+
+  const std::vector<double> &
+  Assembler::stress_at(const double t)
+  {
     auto found = std::find_if(stresses_.begin(),
                               stresses_.end(),
                               [t](const StressAtTime &stress)
@@ -82,11 +92,7 @@ namespace crawler
       stress_->values(t, found->m);
       found->time = t;
     }
-    CellInput in = geometry();
-    in.u         = discretization_.to_local<double>(u, u_local_).data();
-    in.v         = v.data() == nullptr ? nullptr : discretization_.to_local<double>(v, v_local_).data();
-    in.m         = found->m.data();
-    return in;
+    return found->m;
   }
 
   void
@@ -220,10 +226,17 @@ namespace crawler
     const auto &to_points = friction_integration(); // [quadrature point][friction point]
     const unsigned int n = element.n, n_cells = discretization_.n_local_cells();
     const double k = scene_.body.elastic_modulus;
-    if (!quadrature_stress_)
+    // The position form has the active stress at these points already.
+    const std::size_t n_points = static_cast<std::size_t>(n_cells) * n;
+    if (n_stress_points_ != n_points && !quadrature_stress_)
       quadrature_stress_ = scene_.active_stress->at(discretization_.points(element.points));
-    m_at_quadrature_.resize(static_cast<std::size_t>(n_cells) * n);
-    quadrature_stress_->values(t, m_at_quadrature_);
+    if (quadrature_stress_)
+    {
+      m_at_quadrature_.resize(n_points);
+      quadrature_stress_->values(t, m_at_quadrature_);
+    }
+    else
+      m_at_quadrature_ = stress_at(t);
     friction(t, y, v, friction_at_);
     const std::vector<double> &weights = friction_weights();
 

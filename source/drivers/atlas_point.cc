@@ -76,6 +76,7 @@ namespace crawler
       run.promised_error = computed.choice.promised_error;
       run.min_stretch    = result.min_stretch.value;
       run.steps          = result.time.steps;
+      run.is_log_stretch = computed.choice.numerics.formulation == FormulationChoice::log_stretch;
       if (run.status == "finished")
         run.displacement = result.displacement;
       if (result.inversion)
@@ -190,7 +191,9 @@ namespace crawler
     {
       add(AtlasPoint::position, with_formulation(parameters, "position"));
       // The log-stretch form is for a < 0 (doc/numerics.md).
-      if (parameters.body.friction_exponent() < 0.)
+      if (point.runs[AtlasPoint::automatic].is_log_stretch) // the automatic choice was this very run
+        point.runs[AtlasPoint::log_stretch] = point.runs[AtlasPoint::automatic];
+      else if (parameters.body.friction_exponent() < 0.)
         add(AtlasPoint::log_stretch, with_formulation(parameters, "log stretch"));
     }
     add(AtlasPoint::refined, refined_parameters(parameters));

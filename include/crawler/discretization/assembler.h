@@ -216,6 +216,9 @@ namespace crawler
 
   private:
     std::unique_ptr<ActiveStressAtPoints> stress_, end_stress_, quadrature_stress_;
+    const std::vector<double> &
+    stress_at(double t);
+
     /// m at the stress points.
     struct StressAtTime
     {

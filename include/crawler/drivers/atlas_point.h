@@ -25,6 +25,7 @@ namespace crawler
     double inversion_s = unknown, inversion_t = unknown;
     double min_stretch = unknown;
     double steps = unknown, seconds = unknown;
+    bool is_log_stretch = false; ///< from the start
   };
 
   /// A point of the atlas: one scene, computed in several ways.
