@@ -33,8 +33,9 @@ namespace crawler
     constexpr double space_factor = 4.;
     /// Error of the displacement in time is below this times the number of steps times the tolerance.
     constexpr double time_factor = 0.25;
-    /// Bodies softer than this, in natural units, have an error of about soft_error, relative, on adaptive meshes.
-    constexpr double soft = 1e-5, soft_error = 3e-4;
+    /// On adaptive meshes the error of bodies softer than this, in natural units, is up to soft_factor times Accuracy,
+    /// and if they are softer than very_soft at least soft_error, relative.
+    constexpr double soft = 1e-3, soft_factor = 3., very_soft = 2e-5, soft_error = 3e-3;
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;
 
@@ -385,9 +386,9 @@ namespace crawler
         if (predicts && !is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
-          const bool is_soft =
-            n.mesh.tolerance > 0. && scene_.body.elastic_modulus < soft * natural_units(scene_).force;
-          choice_.promised_error = std::max(accuracy_, is_soft ? soft_error : 0.) * size_;
+          const double k = n.mesh.tolerance > 0. ? scene_.body.elastic_modulus / natural_units(scene_).force : 1.;
+          choice_.promised_error =
+            size_ * std::max(accuracy_ * (k < soft ? soft_factor : 1.), k < very_soft ? soft_error : 0.);
         }
         const double seconds   = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         const std::string kind = is_collapse_ ? "the stretch collapses: log stretch with degree 1, "

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 namespace crawler
 {
@@ -196,6 +197,8 @@ namespace crawler
     next_step_     = numerics_.initial_step;
 
     result_.time = integrate(frames, observers, keep_going);
+    if (result_.time.status == "finished" && !diagnosis_ && accepted_time_ < 1.)
+      throw std::logic_error("a run finished without a state at its end");
     if (!diagnosis_ && result_.time.status == "failed")
       explain_failure();
     if (result_.time.status == "finished" && numerics_.mesh.tolerance > 0. &&
@@ -276,7 +279,8 @@ namespace crawler
           may_change_form() && assembler_->formulation() == Formulation::position &&
           !end_inverts(accepted_time_, accepted_time_ + 1e-9))
         request_ = Request::log_stretch;
-      if (request_ == Request::none || diagnosis_ || outcome.status == "finished")
+      // The step to the end is done again like any other if its state was thrown away.
+      if (request_ == Request::none || diagnosis_ || accepted_time_ >= 1.)
         return outcome;
       before_ = outcome;
       // A state that was not accepted is done again, and its step does not count.

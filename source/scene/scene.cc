@@ -102,9 +102,10 @@ namespace crawler
   Units
   natural_units(const Scene &scene)
   {
-    // Squares of these, and of what is made of them, must not leave the range of doubles.
+    // Squares of these, and of what is made of them, must not leave the range of doubles. Stiffer bodies lose the
+    // digits of the ledger, softer ones have layers that no mesh reaches.
     constexpr double smallest = 1e-100, largest = 1e100;
-    constexpr double softest = 1e-20, stiffest = 1e20;
+    constexpr double softest = 1e-12, stiffest = 1e11;
 
     const Body &body = scene.body;
     const Units units{
@@ -123,11 +124,12 @@ namespace crawler
     const Units units   = natural_units(scene);
     const double strain = largest_active_stress(scene) / std::max(scene.body.elastic_modulus, units.force);
     if (strain != 0. && !(strain >= weakest && strain <= strongest))
-      throw InputError(fmt::format("the largest active stress, relative to the larger of k and gamma L^2/T, is {:.3g}, "
-                                   "but 0 or a number from {:g} to {:g} is expected",
-                                   strain,
-                                   weakest,
-                                   strongest));
+      throw InputError(fmt::format(
+        "the largest active stress that sampling finds, relative to the larger of k and gamma L^2/T, is {:.3g}, "
+        "but 0 or a number from {:g} to {:g} is expected",
+        strain,
+        weakest,
+        strongest));
   }
 
   Scene

@@ -144,3 +144,14 @@ TEST(Identities, ExactSolution)
   EXPECT_NEAR(result.max_stretch.value, 1. + 2. * exact.E, 1e-3);
   EXPECT_NEAR(result.min_stretch.t, 0.5, 0.02);
 }
+
+/// A step to the end time whose state the mesh refuses is done again: the last state is that of the end.
+TEST(Identities, AdaptiveRunsReachTheEnd)
+{
+  auto settings = test::wave(-1., 0.6, 0.7, 1., 0.00316227766017);
+  settings.emplace_back("Accuracy", "1e-4");
+  settings.emplace_back("Time/Integrator", "radau 5");
+  const auto outcome = test::run_with(settings);
+  EXPECT_EQ(outcome.result.time.status, "finished");
+  EXPECT_NEAR(outcome.result.displacement, 0.2936926, 3e-4 * 0.2936926);
+}
