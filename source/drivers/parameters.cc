@@ -52,6 +52,11 @@ namespace crawler
     time.validate();
     require_computable(time.tolerance, body.length, "Tolerance", "Length");
     require_computable(time.initial_step, time.end_time, "Initial step", "End time");
+    if (discretization.smallest_cell && !(*discretization.smallest_cell < body.length))
+      throw InputError(fmt::format("Smallest cell is {:g}, but less than the Length, {:g}, is expected",
+                                   *discretization.smallest_cell,
+                                   body.length),
+                       "Discretization/Smallest cell");
     Scene scene{body,
                 std::make_unique<PowerFriction>(body.friction_coefficient, body.friction_exponent()),
                 nullptr,
