@@ -137,6 +137,8 @@ namespace crawler
     look_at_extremes(double t, const StretchRange &range, bool is_first);
     void
     look_for_coarser_mesh(const Step &step);
+    double
+    lost_stretch() const;
     bool
     end_inverts(double from, double to);
     void

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The part of Simulation that gives a lost stretch and a failed time step their names (doc/numerics.md, "Failures and
+// inversions").
+#include <crawler/drivers/simulation.h>
+
+#include <boost/math/tools/toms748_solve.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /// In the position form a stretch below this is lost: nothing that is computed from it has a digit left.
+    constexpr double lost_in_position = 1e-12;
+    /// An end that inverts within this part of the duration after the inside was lost is the cause.
+    constexpr double end_reach = 1e-6;
+    /// The same if the stretch was lost at the very end: the body's own is 1 - m/k there, and nothing else.
+    constexpr double end_reach_at_end = 1e-3;
+    /// If states are refused, a stretch that is gone within this part of the duration at its present rate is lost.
+    constexpr double nearly_lost = 1e-4;
+
+    /**
+     * In the log-stretch form the stretch can be followed much further. Near an inversion w^(1+a) goes linearly to 0,
+     * so this is where 1e-6 of it is left; for a <= -1 there is none, and what limits w is the range of doubles.
+     */
+    double
+    lost_in_log_form(const double a)
+    {
+      return a <= -1. ? std::exp(-700.) : std::exp(std::clamp(-14. / (1. + a), -690., std::log(1e-3)));
+    }
+
+    /// The time in [from, to] where @p function, positive at @p from and not at @p to, becomes 0.
+    template <typename Function>
+    double
+    first_zero(const Function &function, const double from, const double to)
+    {
+      const double at_from = function(from), at_to = function(to);
+      if (!(at_from > 0.) || !(at_to < 0.))
+        return at_from > 0. ? to : from;
+      std::uintmax_t iterations = 100;
+      const auto bracket        = boost::math::tools::toms748_solve(
+        function, from, to, at_from, at_to, boost::math::tools::eps_tolerance<double>(50), iterations);
+      return 0.5 * (bracket.first + bracket.second);
+    }
+  } // namespace
+
+  /// A stretch at or below this is lost.
+  double
+  Simulation::lost_stretch() const
+  {
+    return assembler_->formulation() == Formulation::position ? lost_in_position
+                                                              : lost_in_log_form(scene_.body.friction_exponent());
+  }
+
+  /// Has the stretch that the end conditions prescribe, 1 - m/k, become 0 since @p from? Then the diagnosis says so.
+  bool
+  Simulation::end_inverts(const double from, const double to)
+  {
+    constexpr int parts = 4;
+    const auto smallest = [this](const double t)
+    {
+      const auto [left, right] = assembler_->end_stress(t);
+      return 1. - std::max(left, right) / scene_.body.elastic_modulus;
+    };
+    double begin = from;
+    for (int i = from < to ? 1 : parts; i <= parts; ++i)
+    {
+      const double end = i == parts ? to : from + (to - from) * i / parts;
+      if (!(smallest(end) <= 0.))
+      {
+        begin = end;
+        continue;
+      }
+      const double t           = begin < end ? first_zero(smallest, begin, end) : end;
+      const auto [left, right] = assembler_->end_stress(t);
+      const double s           = left >= right ? 0. : 1.;
+      result_.inversion        = SimulationResult::Extreme{0., s, t};
+      diagnosis_               = {"inverted",
+                                  "inverted_at_end",
+                                  fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, where "
+                                              "1 - m/k is not positive; the model ends there",
+                                s * units_.length,
+                                t * units_.time)};
+      return true;
+    }
+    return false;
+  }
+
+  /// The stretch was lost inside within the step: finds where and when on the integrator's dense output.
+  void
+  Simulation::locate_inversion(const Step &step)
+  {
+    const double threshold = lost_stretch();
+    std::vector<double> y(assembler_->n_owned());
+    StretchAt smallest = stretch_.min;
+    const auto above   = [&](const double t)
+    {
+      stepper_->interpolate(t, y);
+      smallest = assembler_->stretch_range(y).min;
+      return smallest.value - threshold;
+    };
+    double t = step.time;
+    if (step.size > 0.)
+      t = first_zero(above, step.time - step.size, step.time);
+    const bool at_end  = smallest.s == 0. || smallest.s == 1.;
+    const double reach = at_end ? end_reach_at_end : end_reach;
+    if (!end_inverts(t, std::min(t + reach, 1.)))
+      inverted_inside(stretch_.min.value, smallest.s, t);
+  }
+
+  /// What a failure of the time stepper means.
+  void
+  Simulation::explain_failure()
+  {
+    TimeOutcome &outcome = result_.time;
+    const double t       = accepted_time_;
+    // Very small steps may be the end of the model.
+    const double reach = std::max(end_reach, 2. * outcome.step_size);
+    if (outcome.reason != "petsc_error")
+    {
+      if (end_inverts(t, std::min(t + reach, 1.)))
+        return;
+      // How long is left at the present rate?
+      const StretchAt smallest = assembler_->stretch_range(accepted_).min;
+      const double before = min_history_[1].value, before_t = min_history_[1].t;
+      const double rate = t > before_t ? (before - smallest.value) / (t - before_t) : 0.;
+      const double left = rate > 0. ? smallest.value / rate : 1.;
+      // For a >= 0 the stretch reaches 0 at a bounded rate, so one that is not near 0 was not lost by the body.
+      const bool near = left < (outcome.domain_error ? nearly_lost : end_reach);
+      if (near || (outcome.domain_error && scene_.body.friction_exponent() < 0.))
+      {
+        inverted_inside(smallest.value, smallest.s, std::min(t + (near ? left : 0.), 1.));
+        return;
+      }
+    }
+    outcome.message +=
+      fmt::format(", at t = {:.9g} with step size {:.3g}", outcome.time * units_.time, outcome.step_size * units_.time);
+  }
+
+  /**
+   * For a <= -1 the stretch inside stays positive as long as the ends do (doc/theory.md, "When a body can invert"), so
+   * a loss of stretch there is an error of the mesh and is called that. For -1 < a < 0 bodies do invert, but all forms
+   * lose the stretch too early, or without need, except log stretch with degree 1.
+   */
+  void
+  Simulation::inverted_inside(const double value, const double s, const double t)
+  {
+    const double a     = scene_.body.friction_exponent();
+    const bool is_safe = assembler_->formulation() == Formulation::log_stretch && numerics_.degree == 1;
+    if (a <= -1. || (a < 0. && !is_safe))
+    {
+      under_resolved(value, s, t);
+      return;
+    }
+    result_.inversion = SimulationResult::Extreme{std::min(value, 0.), s, t};
+    diagnosis_        = {"inverted",
+                         "inverted_inside",
+                         fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model ends "
+                                     "there",
+                              s * units_.length,
+                              t * units_.time)};
+  }
+
+  void
+  Simulation::under_resolved(const double value, const double s, const double t)
+  {
+    const bool positive  = scene_.body.friction_exponent() <= -1.,
+               user_form = numerics_.formulation == FormulationChoice::position;
+    std::string needed;
+    if (user_form)
+      needed += "Discretization/Formulation = automatic, ";
+    if (numerics_.degree > 1)
+      needed +=
+        "Discretization/Degree = 1 with Formulation = log stretch (Degree and Number of cells = automatic choose "
+        "that), ";
+    diagnosis_ = {
+      "failed",
+      "under_resolved",
+      fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, {}: {} cells of degree {} "
+                  "are too coarse, or the steps too long; {}a larger Discretization/Number of cells or a smaller "
+                  "Time/Tolerance is needed",
+                  value,
+                  s * units_.length,
+                  t * units_.time,
+                  positive ? "where the body itself stays uninverted (a <= -1)"
+                           : "which for a < 0 only log stretch with degree 1 is believed",
+                  discretization_->n_cells(),
+                  discretization_->element().degree,
+                  needed.empty() ? "" : needed + "or ")};
+  }
+} // namespace crawler
