@@ -535,7 +535,7 @@ TEST_F(Commands, SignalsStopARunInOrder)
     EXPECT_EQ(summary.at("reason"), "signal");
     const auto rows = statistics_of(results);
     EXPECT_EQ(rows.size(), summary.at("steps").get<std::size_t>() + 1);
-    EXPECT_EQ(rows.back()[1], summary.at("end_time").get<double>());
+    EXPECT_DOUBLE_EQ(rows.back()[1], summary.at("end_time").get<double>());
     const std::vector<double> frames = frames_of(results);
     EXPECT_GE(frames.size(), 6u);
     EXPECT_LE(frames.back(), summary.at("end_time").get<double>() + 1e-11);
