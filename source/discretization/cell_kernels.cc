@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/discretization/cell_kernels.h>
+#include <crawler/discretization/cell_loops.h>
 #include <crawler/model/crawler_equation.h>
 #include <crawler/scene/friction_law.h>
 
@@ -9,20 +10,14 @@
 
 namespace crawler
 {
+  using namespace CRAWLER_INSTRUCTION_SET;
+
   namespace
   {
-    /// Stretch (and velocity) at the quadrature points of a cell.
-    template <int n>
-    inline void
-    evaluate(const double *table, const double *nodal, const double factor, const double offset, double *at_points)
+    ElementTables
+    tables_of(const ReferenceElement &element)
     {
-      for (int p = 0; p < n; ++p)
-      {
-        double sum = 0.;
-        for (int i = 0; i < n; ++i)
-          sum += table[p * n + i] * nodal[i];
-        at_points[p] = offset + factor * sum;
-      }
+      return {element.values.data(), element.derivatives.data(), element.weights.data(), element.stiffness.data()};
     }
 
     template <int q>
@@ -34,37 +29,20 @@ namespace crawler
       static long
       residual(const CellInput &in, double *F)
       {
-        const double *values = in.element->values.data(), *derivatives = in.element->derivatives.data();
-        const double *weights = in.element->weights.data();
-        long bad              = -1;
+        const ElementTables tables = tables_of(*in.element);
+        const auto friction        = [&in](const double *w, double *g)
+        {
+          in.friction->values({w, n}, {g, n});
+        };
+        long bad = -1;
         for (unsigned int c = 0; c < in.n_cells; ++c)
         {
-          const double h  = in.cell_size[c];
-          const double *u = in.u + c * q, *m = in.m + c * n;
-          double *f = F + c * q;
-          Points e, w, g, v, friction, force;
-          evaluate<n>(derivatives, u, 1. / h, 0., e.data());
+          double w[n];
+          const double *v = in.v != nullptr ? in.v + c * q : nullptr;
+          cell_residual<n>(tables, in.cell_size[c], in.k, in.u + c * q, v, in.m + c * n, friction, w, F + c * q);
           for (int p = 0; p < n; ++p)
-          {
-            w[p] = 1. + e[p];
             if (!(w[p] > 0.) && bad < 0)
               bad = static_cast<long>(c) * n + p;
-            force[p] = weights[p] * equation::body_force(e[p], m[p], in.k);
-          }
-          if (in.v != nullptr)
-          {
-            in.friction->values(w, g);
-            evaluate<n>(values, in.v + c * q, 1., 0., v.data());
-            for (int p = 0; p < n; ++p)
-              friction[p] = h * weights[p] * equation::friction_force(g[p], v[p]);
-            for (int p = 0; p < n; ++p)
-              for (int i = 0; i < n; ++i)
-                f[i] += friction[p] * values[p * n + i] + force[p] * derivatives[p * n + i];
-          }
-          else
-            for (int p = 0; p < n; ++p)
-              for (int i = 0; i < n; ++i)
-                f[i] += force[p] * derivatives[p * n + i];
         }
         return bad;
       }

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+
+/**
+ * Kernels and time integration of the position form in one piece, for uniform meshes and the p-model of friction: Radau
+ * IIA with the simplified Newton method, as in time/radau.h, without an object of PETSc. Several bodies are computed
+ * side by side in the lanes of vector registers, each with its own parameters and its own steps; a lane that is done
+ * takes the next body. No operation mixes lanes, so an answer does not depend on which bodies share a batch.
+ *
+ * Only plain data here: this header is included by code for instruction sets that the processor may not have.
+ * Everything is in natural units (scene/scene.h).
+ */
+namespace crawler
+{
+  /// What all lanes share: the mesh, the element (discretization/reference_element.h) and the method
+  /// (time/radau_tableau.h). All arrays belong to the caller.
+  struct LaneSetup
+  {
+    unsigned int degree, n_cells, n_stages;
+    const double *values, *derivatives, *weights, *stiffness; ///< of the element
+    unsigned int n_samples;                                   ///< per cell, where the stretch is looked at
+    const double *sample_derivatives;                         ///< [n_samples][degree+1]
+    const double *c, *inverse, *error_weights;                ///< of the method
+    double real_eigenvalue;
+    const double *eigenvalues; ///< [pairs][real, imaginary]
+    const double *vectors;     ///< [stages][1 + pairs][real, imaginary]
+    const double *rows;        ///< [1 + pairs][stages][real, imaginary]
+  };
+
+  /// One body to compute.
+  struct LaneJob
+  {
+    double k, a;      ///< elastic modulus, friction exponent
+    double tolerance; ///< root mean square of the error of a step
+    double initial_step, largest_step;
+    unsigned int most_steps;
+    double least_stretch; ///< a state with a smaller one is given up; the full path must tell what it means
+    double start_time;
+    const double *start;  ///< [unknowns] displacement at start_time; null: rest
+    const double *frames; ///< ascending times after start_time where steps must end; the run ends with the last
+    unsigned int n_frames;
+  };
+
+  /// An accepted step of a lane. The pointers are good until the host returns; element i is at [i*stride].
+  struct LaneStep
+  {
+    double time, size;
+    double next_size;
+    unsigned int number, rejected;
+    unsigned long newton_iterations;
+    bool is_frame;
+    std::size_t stride;
+    const double *y; ///< [unknowns] displacement
+    const double *z; ///< [stages][unknowns] displacements in the stages relative to the start of the step
+    double min_stretch, max_stretch;     ///< among the samples
+    unsigned int min_sample, max_sample; ///< cell*n_samples + sample
+  };
+
+  struct LaneOutcome
+  {
+    enum Status
+    {
+      finished,
+      stopped, ///< by the host, or at most_steps
+      gave_up  ///< something that only the full path can tell apart
+    } status;
+    double time, step_size; ///< of the last accepted state; step that would come next
+    unsigned int steps, rejected;
+    unsigned long newton_iterations;
+    double displacement; ///< int u ds at that time
+  };
+
+  /// Who gives the bodies and takes the answers. Lanes are numbered 0 to lanes - 1.
+  struct LaneHost
+  {
+    void *context;
+    /// The next body for a lane; false if there is none.
+    bool (*next)(void *context, unsigned int lane, LaneJob &job);
+    /// m at all quadrature points [cell][point].
+    void (*stress)(void *context, unsigned int lane, double t, double *m);
+    /// Sees each accepted step; false stops the lane. May be null.
+    bool (*accepted)(void *context, unsigned int lane, const LaneStep &step);
+    void (*done)(void *context, unsigned int lane, const LaneOutcome &outcome);
+  };
+
+  /// The engine as compiled for one instruction set and one number of lanes.
+  struct LaneEngine
+  {
+    const char *instruction_set;
+    unsigned int lanes;
+    /// Doubles of scratch memory that run() needs, aligned to 64 bytes.
+    std::size_t (*memory)(const LaneSetup &setup);
+    void (*run)(const LaneSetup &setup, const LaneHost &host, double *memory);
+  };
+
+  /// The best engine for this processor: for many bodies, or with one lane for one body.
+  const LaneEngine &
+  batch_engine();
+  const LaneEngine &
+  single_engine();
+
+  /// The engines for an instruction set ("sse2", "avx2", "avx512") if the processor has it, else null: for comparisons.
+  const LaneEngine *
+  batch_engine(const char *instruction_set);
+} // namespace crawler

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/instruction_set.h>
+
+#include <cmath>
+
+/**
+ * Numbers of several bodies side by side: GCC's vector types (clang has them too), which know + - * / and comparisons,
+ * and what they do not know. A plain double is a pack of one.
+ */
+namespace crawler::CRAWLER_INSTRUCTION_SET
+{
+  using pack2 = double __attribute__((vector_size(16)));
+  using pack4 = double __attribute__((vector_size(32)));
+  using pack8 = double __attribute__((vector_size(64)));
+
+  template <typename Pack>
+  struct PackTraits
+  {
+    static constexpr int size = sizeof(Pack) / sizeof(double);
+    using Mask                = decltype(Pack{} < Pack{});
+  };
+
+  template <typename Pack>
+  inline double
+  get_lane(const Pack &pack, const int l)
+  {
+    if constexpr (PackTraits<Pack>::size == 1)
+      return pack;
+    else
+      return pack[l];
+  }
+
+  template <typename Pack>
+  inline void
+  set_lane(Pack &pack, const int l, const double value)
+  {
+    if constexpr (PackTraits<Pack>::size == 1)
+      pack = value;
+    else
+      pack[l] = value;
+  }
+
+  template <typename Pack>
+  inline Pack
+  broadcast(const double value)
+  {
+    return Pack{} + value;
+  }
+
+  template <typename Pack>
+  inline Pack
+  smaller(const Pack &a, const Pack &b)
+  {
+    return a < b ? a : b;
+  }
+
+  template <typename Pack>
+  inline Pack
+  larger(const Pack &a, const Pack &b)
+  {
+    return a > b ? a : b;
+  }
+
+#ifdef __x86_64__
+  // The vector variants of pow of the C library (libmvec, x86-64 vector function ABI).
+  extern "C"
+  {
+    pack2 _ZGVbN2vv_pow(pack2, pack2);
+#  ifdef __AVX2__
+    pack4 _ZGVdN4vv_pow(pack4, pack4);
+#  endif
+#  ifdef __AVX512F__
+    pack8 _ZGVeN8vv_pow(pack8, pack8);
+#  endif
+  }
+#endif
+
+  /// x^y in each lane.
+  template <typename Pack>
+  inline Pack
+  power(const Pack &x, const Pack &y)
+  {
+#ifdef __x86_64__
+    if constexpr (PackTraits<Pack>::size == 2)
+      return _ZGVbN2vv_pow(x, y);
+#  ifdef __AVX2__
+    if constexpr (PackTraits<Pack>::size == 4)
+      return _ZGVdN4vv_pow(x, y);
+#  endif
+#  ifdef __AVX512F__
+    if constexpr (PackTraits<Pack>::size == 8)
+      return _ZGVeN8vv_pow(x, y);
+#  endif
+#endif
+    Pack result{};
+    for (int l = 0; l < PackTraits<Pack>::size; ++l)
+      set_lane(result, l, ::pow(get_lane(x, l), get_lane(y, l)));
+    return result;
+  }
+
+  /// A complex number in each lane; without the checks for infinities of std::complex.
+  template <typename Pack>
+  struct Complex
+  {
+    Pack re, im;
+  };
+
+  template <typename Pack>
+  inline Complex<Pack>
+  operator*(const Complex<Pack> &a, const Complex<Pack> &b)
+  {
+    return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+  }
+  template <typename Pack>
+  inline Complex<Pack>
+  operator+(const Complex<Pack> &a, const Complex<Pack> &b)
+  {
+    return {a.re + b.re, a.im + b.im};
+  }
+  template <typename Pack>
+  inline Complex<Pack>
+  operator-(const Complex<Pack> &a)
+  {
+    return {-a.re, -a.im};
+  }
+  template <typename Pack>
+  inline void
+  operator-=(Complex<Pack> &a, const Complex<Pack> &b)
+  {
+    a = {a.re - b.re, a.im - b.im};
+  }
+  template <typename Pack>
+  inline void
+  operator+=(Complex<Pack> &a, const Complex<Pack> &b)
+  {
+    a = {a.re + b.re, a.im + b.im};
+  }
+  template <typename Pack>
+  inline void
+  operator*=(Complex<Pack> &a, const Complex<Pack> &b)
+  {
+    a = a * b;
+  }
+  /// one/b, for one = 1.
+  template <typename Pack>
+  inline Complex<Pack>
+  operator/(const double one, const Complex<Pack> &b)
+  {
+    const Pack scale = one / (b.re * b.re + b.im * b.im);
+    return {b.re * scale, -b.im * scale};
+  }
+} // namespace crawler::CRAWLER_INSTRUCTION_SET
