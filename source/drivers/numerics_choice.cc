@@ -32,7 +32,11 @@ namespace crawler
     /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
     constexpr double space_factor = 4.;
     /// Error of the displacement in time is below this times the number of steps times the tolerance.
-    constexpr double time_factor = 0.25;
+    constexpr double time_factor = 0.25, radau_9_time_factor = 0.1;
+    /// On uniform meshes runs for a smaller Accuracy than this are by radau 9, others by radau 5.
+    constexpr double radau_9_accuracy = 1.1e-4;
+    /// First steps, relative to the duration: methods that start with order 1 need small ones.
+    constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
     /// On adaptive meshes the error of bodies softer than this, in natural units, is up to soft_factor times Accuracy,
     /// and if they are softer than very_soft at least soft_error, relative.
     constexpr double soft = 1e-3, soft_factor = 3., very_soft = 2e-5, soft_error = 3e-3;
@@ -107,10 +111,11 @@ namespace crawler
         , L_(scene.body.length)
         , accuracy_(parameters.accuracy)
         , scale_(scales_.displacement > 0. ? scales_.displacement : L_)
+        , adaptive_steps_(parameters.time.step_control == "adaptive")
       {
         Numerics &n              = choice_.numerics;
         n.degree                 = parameters.discretization.degree.value_or(automatic_degree);
-        n.initial_step           = parameters.time.initial_step.value_or(1e-5 * T_);
+        n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
         n.largest_step           = scales_.time;
         const std::string &form  = parameters.discretization.formulation;
         n.formulation            = form == "position"      ? FormulationChoice::position
@@ -178,8 +183,16 @@ namespace crawler
         numerics.degree       = degree;
         numerics.n_cells      = n_cells;
         numerics.tolerance    = tolerance;
-        numerics.initial_step = 1e-5 * T_;
+        numerics.initial_step = first_step(pilot_time_);
         return numerics;
+      }
+
+      /// The automatic size of the first step of a run with these parameters.
+      double
+      first_step(const TimeParameters &time) const
+      {
+        const std::string &name = time.integrator == "automatic" ? choice_.numerics.integrator : time.integrator;
+        return (name.starts_with("radau") ? one_step_start : multistep_start) * T_;
       }
 
       /// Has the last pilot lost a stretch inside that it should not, or that only the safe scheme can be trusted with?
@@ -201,6 +214,9 @@ namespace crawler
       bool
       uniform(const unsigned int most)
       {
+        Numerics &n = choice_.numerics;
+        if (adaptive_steps_)
+          n.integrator = "radau 5";
         // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
         const unsigned int pilot_degree = std::max(choice_.numerics.degree, 2u);
         // A cell of this degree resolves a stress whose scale is a quarter of its size.
@@ -270,9 +286,10 @@ namespace crawler
       void
       adaptive()
       {
-        Numerics &n = choice_.numerics;
-        n.degree    = parameters_.discretization.degree.value_or(adaptive_degree);
-        n.n_cells   = user_cells_.value_or(
+        Numerics &n  = choice_.numerics;
+        n.integrator = "";
+        n.degree     = parameters_.discretization.degree.value_or(adaptive_degree);
+        n.n_cells    = user_cells_.value_or(
           static_cast<unsigned int>(std::clamp(std::ceil(L_ / scales_.length), 8., 1. * most_cells)));
         n.mesh        = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
         double strain = pilot_.strain > 0. ? pilot_.strain : scale_ * scale_ / L_;
@@ -305,7 +322,7 @@ namespace crawler
           std::min(accuracy_ / indicator_factor, tighter * resolved));
         n.mesh.tolerance = part * strain;
         // bdf starts anew with each mesh, a one-step method goes on; but where the stretch collapses bdf is the faster.
-        if (parameters_.time.step_control == "adaptive" && pilot_.min_stretch.value > emptied)
+        if (adaptive_steps_ && pilot_.min_stretch.value > emptied)
           n.integrator = "radau 5";
       }
 
@@ -323,7 +340,7 @@ namespace crawler
         n.degree                       = 1;
         n.formulation                  = FormulationChoice::log_stretch;
         n.mesh                         = {};
-        if (parameters_.time.step_control == "adaptive")
+        if (adaptive_steps_)
           n.integrator = "arkimex 4"; // bdf is less accurate here, or not stable enough: its steps become tiny
         double before = std::numeric_limits<double>::quiet_NaN(), change_before = before;
         bool inverted           = false;
@@ -366,6 +383,18 @@ namespace crawler
         }
       }
 
+      /// The order of the error estimate of the run, by which its number of steps grows.
+      unsigned int
+      estimated_order() const
+      {
+        const std::string &own = parameters_.time.integrator;
+        const Integrator &method =
+          integrator(own == "automatic" && !choice_.numerics.integrator.empty() ? choice_.numerics.integrator : own);
+        if (method.petsc_type == "radau")
+          return method.n_stages;
+        return method.order > 0 ? method.order : parameters_.time.order;
+      }
+
       /// The time tolerance, and the explanation.
       void
       finish(const bool fixed)
@@ -374,12 +403,17 @@ namespace crawler
         const bool predicts = pilot_.time.status == "finished";
         if (size_ == 0.)
           size_ = scale_;
+        if (n.integrator == "radau 5" && n.mesh.tolerance == 0. && accuracy_ < radau_9_accuracy)
+          n.integrator = "radau 9";
+        if (!parameters_.time.initial_step)
+          n.initial_step = first_step(parameters_.time);
         // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
         // size.
-        const unsigned int nominal = integrator(parameters_.time.integrator).order; // of the pilots
-        const double r             = 1. / (1. + (nominal > 0 ? nominal : parameters_.time.order));
-        const double wanted =
-          accuracy_ * size_ / (time_factor * std::max(pilot_.time.steps, 1u) * std::pow(tolerance_, r));
+        const double r = 1. / (1. + estimated_order());
+        const bool is_radau_9 =
+          (parameters_.time.integrator == "automatic" ? n.integrator : parameters_.time.integrator) == "radau 9";
+        const double factor = is_radau_9 ? radau_9_time_factor : time_factor;
+        const double wanted = accuracy_ * size_ / (factor * std::max(pilot_.time.steps, 1u) * std::pow(tolerance_, r));
         const double by_rule =
           std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance_), std::max(1e-15 * scale_, smallest()));
         n.tolerance = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
@@ -424,6 +458,7 @@ namespace crawler
       const std::optional<unsigned int> &user_cells_;
       const std::optional<double> &user_tolerance_;
       const double T_, L_, accuracy_, scale_;
+      const bool adaptive_steps_;
       TimeParameters pilot_time_;
       NumericsChoice choice_;
       SimulationResult pilot_; ///< the last one that counts

@@ -16,8 +16,6 @@ namespace crawler
 {
   namespace
   {
-    /// `automatic` changes to the log-stretch form when the stretch falls below this.
-    constexpr double small_stretch = 0.1;
     /// So many steps in succession smaller than this part of the duration are a failure.
     constexpr double tiny_step             = 1e-9;
     constexpr unsigned int most_tiny_steps = 2000;
@@ -67,65 +65,22 @@ namespace crawler
 
   Simulation::~Simulation() = default;
 
-  /// Equation and time stepper on a mesh.
+  /// The equation on a mesh.
   void
   Simulation::build(std::unique_ptr<Discretization> discretization, const Formulation formulation)
   {
-    using Vector      = TimeStepper::Vector;
-    using ConstVector = TimeStepper::ConstVector;
-    using Complex     = TimeStepper::Complex;
-    stepper_.reset();
+    stepper_ = nullptr;
+    petsc_stepper_.reset();
+    fused_stepper_.reset();
     assembler_.reset();
     discretization_ = std::move(discretization);
     assembler_      = create_assembler(formulation, scene_, *discretization_);
     assembler_->keep_stresses(integrator(time_.integrator).n_stages);
-    stepper_ = std::make_unique<TimeStepper>(communicator_, assembler_->weights(), time_);
     rates_.assign(integrator(time_.integrator).n_stages + 1, {});
-    // The friction of degree 1 switches with the sign of the velocity.
-    stepper_->smooth = formulation == Formulation::position || numerics_.degree > 1;
     y_.resize(assembler_->n_owned());
     v_.resize(discretization_->n_owned());
     ++mesh_number_;
     as_at_start_ = false;
-
-    stepper_->implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F)
-    {
-      if (keeps_rate())
-        keep_rate(t, y_dot);
-      return assembler_->residual(t, y, y_dot, F);
-    };
-    stepper_->setup_jacobian = [this](const double t, const ConstVector y, const ConstVector y_dot, const double shift)
-    {
-      return assembler_->setup_jacobian(t, y, y_dot, shift);
-    };
-    stepper_->solve_with_jacobian = [this](const ConstVector b, const Vector x)
-    {
-      assembler_->solve_with_jacobian(b, x);
-    };
-    stepper_->setup_complex_jacobians =
-      [this](const double t, const ConstVector y, const ConstVector y_dot, const std::span<const Complex> sigma)
-    {
-      return assembler_->setup_complex_jacobians(t, y, y_dot, sigma);
-    };
-    stepper_->solve_with_complex_jacobian =
-      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x)
-    {
-      assembler_->solve_with_complex_jacobian(i, b, x);
-    };
-    stepper_->setup_stage =
-      [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot)
-    {
-      assembler_->setup_stage(stage, t, y, y_dot);
-    };
-    stepper_->stage_vmult =
-      [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector y)
-    {
-      assembler_->stage_vmult(stage, x, x_dot, y);
-    };
-    stepper_->jacobian_vmult = [this](const ConstVector x, const Vector y)
-    {
-      assembler_->jacobian_vmult(x, y);
-    };
   }
 
   SimulationResult
@@ -152,6 +107,7 @@ namespace crawler
     next_frame_    = 0;
     tiny_steps_    = 0;
     started_       = false;
+    fused_gave_up_ = false;
     integrals_     = {};
     if (options.ledger)
       result_.ledger.emplace();
@@ -200,8 +156,9 @@ namespace crawler
   {
     for (;;)
     {
-      request_          = Request::none;
-      bool resumed      = started_;
+      request_     = Request::none;
+      bool resumed = started_;
+      choose_stepper();
       stepper_->monitor = [&](const Step &part, const std::span<const double> y)
       {
         if (resumed) // the state from which this part starts has been seen already
@@ -241,6 +198,11 @@ namespace crawler
       outcome.newton_iterations += before_.newton_iterations;
       outcome.linear_iterations += before_.linear_iterations;
       result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
+      if (!diagnosis_ && request_ == Request::none && outcome.reason == FusedStepper::gave_up)
+      {
+        go_on_with_petsc(outcome);
+        continue;
+      }
       // A form that cannot go on because the stretch becomes small is changed, too.
       if (request_ == Request::none && !diagnosis_ && outcome.status == "failed" && outcome.domain_error &&
           may_change_form() && assembler_->formulation() == Formulation::position &&
@@ -249,17 +211,24 @@ namespace crawler
       // The step to the end is done again like any other if its state was thrown away.
       if (request_ == Request::none || diagnosis_ || accepted_time_ >= 1.)
         return outcome;
-      before_ = outcome;
-      // A state that was not accepted is done again, and its step does not count.
-      if (outcome.time > accepted_time_)
-      {
-        before_.steps -= std::min(before_.steps, 1u);
-        ++before_.rejected_steps;
-      }
+      count_part(outcome);
       next_step_ = std::min(outcome.step_size, numerics_.largest_step);
       if (time_.integrator == "bdf") // starts anew with order 1
         next_step_ = std::min(next_step_, numerics_.initial_step);
       change();
+    }
+  }
+
+  /// Keeps the counts of a part of the run that has ended.
+  void
+  Simulation::count_part(const TimeOutcome &outcome)
+  {
+    before_ = outcome;
+    // A state that was not accepted is done again, and its step does not count.
+    if (outcome.time > accepted_time_)
+    {
+      before_.steps -= std::min(before_.steps, 1u);
+      ++before_.rejected_steps;
     }
   }
 

@@ -23,27 +23,6 @@ namespace crawler
       }
       return result;
     }
-
-    struct Free
-    {
-      void
-      operator()(double *memory) const
-      {
-        std::free(memory);
-      }
-    };
-
-    /// Scratch memory of the engine, aligned to its packs.
-    std::unique_ptr<double, Free>
-    aligned_memory(const std::size_t n)
-    {
-      const std::size_t bytes = (n * sizeof(double) + 63) / 64 * 64;
-      std::unique_ptr<double, Free> memory(static_cast<double *>(std::aligned_alloc(64, bytes)));
-      if (!memory)
-        throw std::bad_alloc();
-      std::fill_n(memory.get(), bytes / sizeof(double), 0.);
-      return memory;
-    }
   } // namespace
 
   FusedTables::FusedTables(const FusedMethod &method)
@@ -95,6 +74,23 @@ namespace crawler
     return *tables;
   }
 
+  void
+  FusedMemoryFree::operator()(double *memory) const
+  {
+    std::free(memory);
+  }
+
+  FusedMemory
+  fused_memory(const std::size_t n)
+  {
+    const std::size_t bytes = (n * sizeof(double) + 63) / 64 * 64;
+    FusedMemory memory(static_cast<double *>(std::aligned_alloc(64, bytes)));
+    if (!memory)
+      throw std::bad_alloc();
+    std::fill_n(memory.get(), bytes / sizeof(double), 0.);
+    return memory;
+  }
+
   bool
   fits_fused(const Scene &scene)
   {
@@ -119,7 +115,7 @@ namespace crawler
       compute(const LaneEngine &engine)
       {
         const LaneHost host = {this, next, stress, accepted, done};
-        const auto memory   = aligned_memory(engine.memory(tables_.setup));
+        const auto memory   = fused_memory(engine.memory(tables_.setup));
         engine.run(tables_.setup, host, memory.get());
         return std::move(results_);
       }
@@ -153,18 +149,18 @@ namespace crawler
         std::vector<double> points(batch.tables_.points);
         for (double &s : points)
           s *= lane.units.length;
-        lane.stress = scene.active_stress->at(points);
-        job         = {scene.body.elastic_modulus / lane.units.force,
-                       scene.body.friction_exponent(),
-                       run.tolerance / lane.units.length,
-                       run.initial_step / lane.units.time,
-                       run.largest_step / lane.units.time,
-                       run.most_steps,
-                       0.1,
-                       0.,
-                       nullptr,
-                       &end,
-                       1};
+        lane.stress         = scene.active_stress->at(points);
+        job                 = {.k             = scene.body.elastic_modulus / lane.units.force,
+                               .a             = scene.body.friction_exponent(),
+                               .tolerance     = run.tolerance / lane.units.length,
+                               .initial_step  = run.initial_step / lane.units.time,
+                               .largest_step  = run.largest_step / lane.units.time,
+                               .most_steps    = run.most_steps,
+                               .least_stretch = small_stretch,
+                               .start_time    = 0.,
+                               .start         = nullptr,
+                               .frames        = &end,
+                               .n_frames      = 1};
         FusedResult &result = batch.results_[lane.run];
         result              = {};
         result.min_stretch = result.max_stretch = 1.;

@@ -17,13 +17,19 @@ namespace crawler
       names.push_back(entry.name);
     declarations.enter("Time");
     declarations.number("End time", end_time, positive(), "Duration T; the body starts at rest at time 0.", "time");
-    declarations.text(
-      "Integrator",
-      integrator,
-      quoted_list(names),
-      "Time integrator (PETSc TS). Automatic: bdf, radau 5 or arkimex 4, by mesh and stretch (doc/numerics.md). "
-      "Integrators of PETSc that are not sound for this equation are refused "
-      "with the reason.");
+    declarations.text("Integrator",
+                      integrator,
+                      quoted_list(names),
+                      "Time integrator (PETSc TS). Automatic: radau 5 or 9, bdf or arkimex 4, by accuracy and stretch "
+                      "(doc/numerics.md). "
+                      "Integrators of PETSc that are not sound for this equation are refused "
+                      "with the reason.");
+    declarations.choice("Engine",
+                        engine,
+                        {"automatic", "petsc"},
+                        "What carries the integrator out. Automatic: the fused engine of the program, which is several "
+                        "times faster, for the radau integrators in the position form on uniform meshes, and PETSc "
+                        "otherwise and where that gives up.");
     declarations.whole_number("Order", order, 1, 5, "Order of bdf; the other integrators have their own.");
     declarations.choice("Step control",
                         step_control,

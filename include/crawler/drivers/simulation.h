@@ -3,6 +3,7 @@
 
 #include <crawler/discretization/assembler.h>
 #include <crawler/discretization/mesh_marking.h>
+#include <crawler/fused/fused_stepper.h>
 #include <crawler/observers/observer.h>
 #include <crawler/time/time_stepper.h>
 
@@ -64,9 +65,9 @@ namespace crawler
   };
 
   /**
-   * One crawler: builds mesh, equation and time stepper in this order, connects them, and changes mesh and formulation
-   * on the way where that is asked for. It computes in natural units (scene.h); what goes in and comes out is in the
-   * scene's. It can run several times; that reuses everything as long as mesh and formulation did not change.
+   * One crawler: builds mesh, equation and time integration in this order, connects them, and changes mesh and
+   * formulation on the way where that is asked for. It computes in natural units (scene.h); what goes in and comes out
+   * is in the scene's. It can run several times; that reuses everything as long as mesh and formulation did not change.
    */
   class Simulation
   {
@@ -111,6 +112,18 @@ namespace crawler
 
     void
     build(std::unique_ptr<Discretization> discretization, Formulation formulation);
+    bool
+    fused_fits() const;
+    void
+    choose_stepper();
+    void
+    build_fused_stepper();
+    void
+    build_petsc_stepper();
+    void
+    go_on_with_petsc(const TimeOutcome &outcome);
+    void
+    count_part(const TimeOutcome &outcome);
     void
     change();
     void
@@ -169,8 +182,12 @@ namespace crawler
 
     std::unique_ptr<Discretization> discretization_;
     std::unique_ptr<Assembler> assembler_;
-    std::unique_ptr<TimeStepper> stepper_;
-    bool as_at_start_ = false; ///< mesh and formulation are those of the start
+    // Who integrates; built when they are needed.
+    std::unique_ptr<TimeStepper> petsc_stepper_;
+    std::unique_ptr<FusedStepper> fused_stepper_;
+    TimeIntegration *stepper_ = nullptr; ///< one of them
+    bool fused_gave_up_       = false;
+    bool as_at_start_         = false; ///< mesh and formulation are those of the start
 
     // The state of one run().
     struct Diagnosis

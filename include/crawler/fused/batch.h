@@ -22,6 +22,8 @@ namespace crawler
     operator<=>(const FusedMethod &) const = default;
   };
 
+  struct RadauTableau;
+
   /// The tables of a method, as the engine wants them.
   class FusedTables
   {
@@ -46,6 +48,19 @@ namespace crawler
   /// Kept from call to call.
   const FusedTables &
   fused_tables(const FusedMethod &method);
+
+  /// Scratch memory of the engine: so many doubles, aligned to its packs, all 0.
+  struct FusedMemoryFree
+  {
+    void
+    operator()(double *memory) const;
+  };
+  using FusedMemory = std::unique_ptr<double, FusedMemoryFree>;
+  FusedMemory
+  fused_memory(std::size_t n);
+
+  /// The formulation `automatic` changes to log stretch when the stretch falls below this.
+  constexpr double small_stretch = 0.1;
 
   /// Can the engine compute this scene?
   bool

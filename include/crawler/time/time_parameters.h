@@ -13,6 +13,7 @@ namespace crawler
   {
     double end_time          = 1.;
     std::string integrator   = "automatic";
+    std::string engine       = "automatic"; ///< or petsc: never the fused engine
     unsigned int order       = 5;
     std::string step_control = "adaptive";
     std::optional<double> tolerance;    ///< absolute, in the displacement [length]

@@ -1,45 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/time/time_integration.h>
 #include <crawler/time/time_parameters.h>
 
 #include <mpi.h>
 
 #include <complex>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace crawler
 {
-  /// An accepted step, as the monitor sees it.
-  struct Step
-  {
-    double time;
-    double size; ///< 0 for the initial state
-    unsigned int number;
-    bool is_frame;         ///< the time is one of the times that were asked for, exactly
-    unsigned int rejected; ///< rejected steps so far
-    unsigned long newton_iterations;
-  };
-
-  /// How a time integration ended.
-  struct TimeOutcome
-  {
-    /// finished, stopped (by the monitor or the step limit) or failed
-    std::string status;
-    std::string reason; ///< one of the names of doc/user_guide.md, empty if finished
-    std::string message;
-    bool domain_error  = false; ///< failed because implicit_function refused every state tried
-    double time        = 0.;    ///< of the last accepted state
-    double step_size   = 0.;    ///< that was tried last; if the monitor stopped: that would come next
-    unsigned int steps = 0, rejected_steps = 0;
-    unsigned long newton_iterations = 0, linear_iterations = 0;
-  };
-
   /**
    * Integrates F(t, y, y') = 0 with PETSc's TS, Newton's method by SNES, and KSP. It knows vectors and callbacks only,
    * no mesh. The callbacks have the names of dealii::PETScWrappers::TimeStepper of deal.II 9.6, which can replace this
@@ -49,17 +23,15 @@ namespace crawler
    * each divided by its weight, so y should be a displacement from rest. Newton's method stops when the estimated
    * remaining error is below 1% of that.
    */
-  class TimeStepper
+  class TimeStepper : public TimeIntegration
   {
   public:
     /// @p weights: for each owned unknown the error that counts as much as an error of 1 in the displacement.
     TimeStepper(MPI_Comm communicator, const std::vector<double> &weights, const TimeParameters &parameters);
-    ~TimeStepper();
+    ~TimeStepper() override;
     TimeStepper(const TimeStepper &) = delete;
 
-    using Vector      = std::span<double>;
-    using ConstVector = std::span<const double>;
-    using Complex     = std::complex<double>;
+    using Complex = std::complex<double>;
 
     /// residual = F(t, y, y_dot); false refuses the state (outside of the domain of F): the step is tried again
     /// smaller.
@@ -79,36 +51,17 @@ namespace crawler
     std::function<void(unsigned int stage, ConstVector x, ConstVector x_dot, Vector destination)> stage_vmult;
     /// Has F derivatives everywhere? If not, Newton's method goes on until a second correction is small.
     bool smooth = true;
-    /// Sees the initial state and each accepted one; false stops the integration.
-    std::function<bool(const Step &step, ConstVector y)> monitor;
-
-    /**
-     * Integrates from @p start_time to parameters.end_time. @p y is the first state on entry and the last accepted
-     * state on return. Steps end exactly on @p frames (ascending, within (start_time, end_time]) and on the end time.
-     * The same object can solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p
-     * initial_step [time] replace the parameters' automatic values. No adaptive step is longer than @p largest_step.
-     */
     TimeOutcome
     solve(std::vector<double> &y,
           const std::vector<double> &frames,
           double tolerance,
           double initial_step,
-          double largest_step = std::numeric_limits<double>::infinity(),
-          double start_time   = 0.);
-
-    /// Within the monitor: the state at a time of the step that has just been accepted, by the integrator's own
-    /// interpolation.
+          double largest_step,
+          double start_time) override;
     void
-    interpolate(double time, Vector y);
-
-    /// The formula by which the integrator itself integrates over a step: states interpolated at these parts of the
-    /// step, in (0, 1], have the accuracy of the method. Empty if it is not known.
-    struct QuadraturePoint
-    {
-      double place, weight;
-    };
+    interpolate(double time, Vector y) override;
     const std::vector<QuadraturePoint> &
-    quadrature() const;
+    quadrature() const override;
 
   private:
     struct Implementation;

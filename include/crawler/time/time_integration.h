@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// An accepted step, as the monitor sees it.
+  struct Step
+  {
+    double time;
+    double size; ///< 0 for the initial state
+    unsigned int number;
+    bool is_frame;         ///< the time is one of the times that were asked for, exactly
+    unsigned int rejected; ///< rejected steps so far
+    unsigned long newton_iterations;
+  };
+
+  /// How a time integration ended.
+  struct TimeOutcome
+  {
+    /// finished, stopped (by the monitor or the step limit) or failed
+    std::string status;
+    std::string reason; ///< one of the names of doc/user_guide.md, empty if finished
+    std::string message;
+    bool domain_error  = false; ///< failed because implicit_function refused every state tried
+    double time        = 0.;    ///< of the last accepted state
+    double step_size   = 0.;    ///< that was tried last; if the monitor stopped: that would come next
+    unsigned int steps = 0, rejected_steps = 0;
+    unsigned long newton_iterations = 0, linear_iterations = 0;
+  };
+
+  /// Integrates a state over time: by PETSc (time_stepper.h) or by the fused engine (fused/fused_stepper.h).
+  class TimeIntegration
+  {
+  public:
+    using Vector      = std::span<double>;
+    using ConstVector = std::span<const double>;
+
+    virtual ~TimeIntegration() = default;
+
+    /// Sees the initial state and each accepted one; false stops the integration.
+    std::function<bool(const Step &step, ConstVector y)> monitor;
+
+    /**
+     * Integrates from @p start_time to the end time. @p y is the first state on entry and the last accepted
+     * state on return. Steps end exactly on @p frames (ascending, within (start_time, end_time]) and on the end time.
+     * The same object can solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p
+     * initial_step [time] replace the parameters' automatic values. No adaptive step is longer than @p largest_step.
+     */
+    virtual TimeOutcome
+    solve(std::vector<double> &y,
+          const std::vector<double> &frames,
+          double tolerance,
+          double initial_step,
+          double largest_step,
+          double start_time) = 0;
+
+    /// Within the monitor: the state at a time of the step that has just been accepted, by the integrator's own
+    /// interpolation.
+    virtual void
+    interpolate(double time, Vector y) = 0;
+
+    /// The formula by which the integrator itself integrates over a step: states interpolated at these parts of the
+    /// step, in (0, 1], have the accuracy of the method. Empty if it is not known.
+    struct QuadraturePoint
+    {
+      double place, weight;
+    };
+    virtual const std::vector<QuadraturePoint> &
+    quadrature() const = 0;
+  };
+} // namespace crawler

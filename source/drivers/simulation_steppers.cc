@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Who integrates the equation of a simulation over time, and how they are connected.
+#include <crawler/base/communication.h>
+#include <crawler/drivers/simulation.h>
+#include <crawler/time/integrators.h>
+
+#include <algorithm>
+
+namespace crawler
+{
+  bool
+  Simulation::fused_fits() const
+  {
+    return time_.engine == "automatic" && integrator(time_.integrator).petsc_type == "radau" &&
+           time_.step_control == "adaptive" && assembler_->formulation() == Formulation::position &&
+           numerics_.mesh.tolerance == 0. && size_of(communicator_) == 1 && fits_fused(scene_);
+  }
+
+  /// The fused engine where it fits and has not given up, else PETSc. What is not used is not built.
+  void
+  Simulation::choose_stepper()
+  {
+    if (!fused_gave_up_ && fused_fits())
+    {
+      if (!fused_stepper_)
+        build_fused_stepper();
+      stepper_ = fused_stepper_.get();
+      return;
+    }
+    if (!petsc_stepper_)
+      build_petsc_stepper();
+    stepper_ = petsc_stepper_.get();
+  }
+
+  /// PETSc takes the last accepted state, with a step that is as small as the first one, or as the engine wanted it.
+  void
+  Simulation::go_on_with_petsc(const TimeOutcome &outcome)
+  {
+    constexpr double smallest_step = 1e-9;
+    count_part(outcome);
+    fused_gave_up_ = true;
+    y_             = accepted_;
+    next_step_     = std::max(std::min(outcome.step_size, numerics_.initial_step), smallest_step);
+  }
+
+  void
+  Simulation::build_fused_stepper()
+  {
+    const FusedMethod method = {numerics_.degree, discretization_->n_cells(), integrator(time_.integrator).n_stages};
+    fused_stepper_           = std::make_unique<FusedStepper>(scene_, method);
+    if (keeps_rate())
+      fused_stepper_->stage_rates = [this](const double t, const std::span<const double> v)
+      {
+        keep_rate(t, v);
+      };
+  }
+
+  void
+  Simulation::build_petsc_stepper()
+  {
+    using Vector         = TimeStepper::Vector;
+    using ConstVector    = TimeStepper::ConstVector;
+    using Complex        = TimeStepper::Complex;
+    petsc_stepper_       = std::make_unique<TimeStepper>(communicator_, assembler_->weights(), time_);
+    TimeStepper &stepper = *petsc_stepper_;
+    // The friction of degree 1 switches with the sign of the velocity.
+    stepper.smooth = assembler_->formulation() == Formulation::position || numerics_.degree > 1;
+
+    stepper.implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F)
+    {
+      if (keeps_rate())
+        keep_rate(t, y_dot);
+      return assembler_->residual(t, y, y_dot, F);
+    };
+    stepper.setup_jacobian = [this](const double t, const ConstVector y, const ConstVector y_dot, const double shift)
+    {
+      return assembler_->setup_jacobian(t, y, y_dot, shift);
+    };
+    stepper.solve_with_jacobian = [this](const ConstVector b, const Vector x)
+    {
+      assembler_->solve_with_jacobian(b, x);
+    };
+    stepper.setup_complex_jacobians =
+      [this](const double t, const ConstVector y, const ConstVector y_dot, const std::span<const Complex> sigma)
+    {
+      return assembler_->setup_complex_jacobians(t, y, y_dot, sigma);
+    };
+    stepper.solve_with_complex_jacobian =
+      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x)
+    {
+      assembler_->solve_with_complex_jacobian(i, b, x);
+    };
+    stepper.setup_stage = [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot)
+    {
+      assembler_->setup_stage(stage, t, y, y_dot);
+    };
+    stepper.stage_vmult = [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector y)
+    {
+      assembler_->stage_vmult(stage, x, x_dot, y);
+    };
+    stepper.jacobian_vmult = [this](const ConstVector x, const Vector y)
+    {
+      assembler_->jacobian_vmult(x, y);
+    };
+  }
+} // namespace crawler

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/fused/fused_stepper.h>
+#include <crawler/time/radau_tableau.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace crawler
+{
+  FusedStepper::FusedStepper(const Scene &scene, const FusedMethod &method)
+    : scene_(scene)
+    , tables_(fused_tables(method))
+    , tableau_(radau_tableau(method.n_stages))
+    , stress_(scene.active_stress->at(tables_.points))
+    , memory_(fused_memory(single_engine().memory(tables_.setup)))
+  {
+    for (unsigned int i = 0; i < tableau_.n; ++i)
+      quadrature_.push_back({tableau_.c[i], tableau_.b[i]});
+  }
+
+  TimeOutcome
+  FusedStepper::solve(std::vector<double> &y,
+                      const std::vector<double> &frames,
+                      const double tolerance,
+                      const double initial_step,
+                      const double largest_step,
+                      const double start_time)
+  {
+    constexpr double end_time = 1.;
+    frames_                   = frames;
+    if (frames_.empty() || frames_.back() < end_time)
+      frames_.push_back(end_time);
+    job_     = {.k             = scene_.body.elastic_modulus,
+                .a             = scene_.body.friction_exponent(),
+                .tolerance     = tolerance,
+                .initial_step  = initial_step,
+                .largest_step  = largest_step,
+                .most_steps    = std::numeric_limits<unsigned int>::max(), // the monitor's business
+                .least_stretch = 0.,
+                .start_time    = start_time,
+                .start         = y.data(),
+                .frames        = frames_.data(),
+                .n_frames      = static_cast<unsigned int>(frames_.size())};
+    started_ = false;
+    y_       = &y;
+    outcome_ = {};
+    if (monitor && !monitor({start_time, 0., 0, false, 0, 0}, y))
+    {
+      outcome_.status    = "stopped";
+      outcome_.time      = start_time;
+      outcome_.step_size = initial_step;
+      return outcome_;
+    }
+    const LaneHost host = {this, next, stress, accepted, done};
+    single_engine().run(tables_.setup, host, memory_.get());
+    return outcome_;
+  }
+
+  bool
+  FusedStepper::next(void *context, unsigned int, LaneJob &job)
+  {
+    auto &self         = *static_cast<FusedStepper *>(context);
+    const bool is_next = !self.started_;
+    self.started_      = true;
+    job                = self.job_;
+    return is_next;
+  }
+
+  void
+  FusedStepper::stress(void *context, unsigned int, const double t, double *m)
+  {
+    auto &self = *static_cast<FusedStepper *>(context);
+    self.stress_->values(t, {m, self.tables_.points.size()});
+  }
+
+  bool
+  FusedStepper::accepted(void *context, unsigned int, const LaneStep &step)
+  {
+    auto &self = *static_cast<FusedStepper *>(context);
+    self.step_ = step;
+    std::copy_n(step.y, self.y_->size(), self.y_->begin());
+    if (self.stage_rates)
+      self.show_rates();
+    return !self.monitor ||
+           self.monitor({step.time, step.size, step.number, step.is_frame, step.rejected, step.newton_iterations},
+                        *self.y_);
+  }
+
+  void
+  FusedStepper::done(void *context, unsigned int, const LaneOutcome &outcome)
+  {
+    auto &self                      = *static_cast<FusedStepper *>(context);
+    self.outcome_.status            = outcome.status == LaneOutcome::finished  ? "finished"
+                                      : outcome.status == LaneOutcome::stopped ? "stopped"
+                                                                               : "failed";
+    self.outcome_.reason            = outcome.status == LaneOutcome::gave_up ? gave_up : "";
+    self.outcome_.time              = outcome.time;
+    self.outcome_.step_size         = outcome.step_size;
+    self.outcome_.steps             = outcome.steps;
+    self.outcome_.rejected_steps    = outcome.rejected;
+    self.outcome_.newton_iterations = outcome.newton_iterations;
+  }
+
+  void
+  FusedStepper::show_rates()
+  {
+    const std::size_t n = y_->size();
+    rate_.resize(n);
+    for (unsigned int i = 0; i < tableau_.n; ++i)
+    {
+      std::fill(rate_.begin(), rate_.end(), 0.);
+      for (unsigned int j = 0; j < tableau_.n; ++j)
+        for (std::size_t d = 0; d < n; ++d)
+          rate_[d] += tableau_.inverse[i * tableau_.n + j] / step_.size * step_.z[j * n + d];
+      stage_rates(step_.time - (1. - tableau_.c[i]) * step_.size, rate_);
+    }
+  }
+
+  void
+  FusedStepper::interpolate(const double time, const Vector y)
+  {
+    const std::size_t n = y.size(), s = tableau_.n;
+    tableau_.collocation_weights(1. - (step_.time - time) / step_.size, weights_);
+    for (std::size_t d = 0; d < n; ++d)
+    {
+      double sum = step_.y[d] - step_.z[(s - 1) * n + d];
+      for (std::size_t j = 0; j < s; ++j)
+        sum += weights_[j] * step_.z[j * n + d];
+      y[d] = sum;
+    }
+  }
+} // namespace crawler
