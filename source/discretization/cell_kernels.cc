@@ -26,15 +26,22 @@ namespace crawler
       static constexpr int n = q + 1;
       using Points           = std::array<double, n>;
 
+      /// g at the points of a cell.
+      static auto
+      friction_of(const CellInput &in)
+      {
+        return [&in](const double *w, double *g)
+        {
+          in.friction->values({w, n}, {g, n});
+        };
+      }
+
       static long
       residual(const CellInput &in, double *F)
       {
         const ElementTables tables = tables_of(*in.element);
-        const auto friction        = [&in](const double *w, double *g)
-        {
-          in.friction->values({w, n}, {g, n});
-        };
-        long bad = -1;
+        const auto friction        = friction_of(in);
+        long bad                   = -1;
         for (unsigned int c = 0; c < in.n_cells; ++c)
         {
           double w[n];
@@ -79,59 +86,22 @@ namespace crawler
       static void
       mass(const CellInput &in, double *blocks)
       {
-        const double *values = in.element->values.data(), *derivatives = in.element->derivatives.data();
-        const double *weights = in.element->weights.data();
         for (unsigned int c = 0; c < in.n_cells; ++c)
-        {
-          const double h = in.cell_size[c];
-          double *M      = blocks + c * n * n;
-          Points w, g;
-          evaluate<n>(derivatives, in.u + c * q, 1. / h, 1., w.data());
-          in.friction->values(w, g);
-          for (int i = 0; i < n * n; ++i)
-            M[i] = 0.;
-          for (int p = 0; p < n; ++p)
-            for (int i = 0; i < n; ++i)
-            {
-              const double factor = h * weights[p] * g[p] * values[p * n + i];
-              for (int j = 0; j < n; ++j)
-                M[i * n + j] += factor * values[p * n + j];
-            }
-        }
+          cell_mass<n>(tables_of(*in.element), in.cell_size[c], in.u + c * q, friction_of(in), blocks + c * n * n);
       }
 
       static void
       integrals(const CellInput &in, CellIntegrals &sum)
       {
-        const double *values = in.element->values.data(), *derivatives = in.element->derivatives.data();
-        const double *weights = in.element->weights.data();
         for (unsigned int c = 0; c < in.n_cells; ++c)
-        {
-          const double h  = in.cell_size[c];
-          const double *m = in.m + c * n;
-          Points e, w, g, u, v, v_s;
-          evaluate<n>(derivatives, in.u + c * q, 1. / h, 0., e.data());
-          for (int p = 0; p < n; ++p)
-            w[p] = 1. + e[p];
-          evaluate<n>(values, in.u + c * q, 1., 0., u.data());
-          evaluate<n>(values, in.v + c * q, 1., 0., v.data());
-          evaluate<n>(derivatives, in.v + c * q, 1. / h, 0., v_s.data());
-          in.friction->values(w, g);
-          for (int p = 0; p < n; ++p)
-          {
-            const double ds = h * weights[p], power = equation::stress_power(m[p], v_s[p]);
-            const double friction = equation::friction_force(g[p], v[p]);
-            sum.displacement += ds * u[p];
-            sum.velocity += ds * v[p];
-            sum.elastic_energy += ds * equation::elastic_energy(e[p], in.k);
-            sum.stress_power += ds * power;
-            sum.positive_power += ds * std::max(power, 0.);
-            sum.absolute_power += ds * std::abs(power);
-            sum.dissipation += ds * equation::dissipation(g[p], v[p]);
-            sum.net_friction += ds * friction;
-            sum.abs_friction += ds * std::abs(friction);
-          }
-        }
+          cell_integrals<n>(tables_of(*in.element),
+                            in.cell_size[c],
+                            in.k,
+                            in.u + c * q,
+                            in.v + c * q,
+                            in.m + c * n,
+                            friction_of(in),
+                            sum);
       }
 
       static constexpr CellKernels table = {residual, jacobian, mass, integrals};

@@ -171,6 +171,23 @@ namespace crawler
         Simulation simulation(communicator_, scene_, pilot_time_, numerics);
         ++n_pilots_;
         SimulationResult result = simulation.run({}, {.ledger = false, .resolution = true}, {}, keep_going_);
+        if (getenv("DBG"))
+          fprintf(
+            stderr,
+            "pilot %s q %u N %u tol %.2e: %s %s steps %u rej %u unres %.2e ind %.2e strain %.2e D %.6g min %.3g\n",
+            numerics.integrator.c_str(),
+            numerics.degree,
+            numerics.n_cells,
+            numerics.tolerance,
+            result.time.status.c_str(),
+            result.time.reason.c_str(),
+            result.time.steps,
+            result.time.rejected_steps,
+            result.unresolved,
+            result.largest_indicator,
+            result.strain,
+            result.displacement,
+            result.min_stretch.value);
         if (result.time.status == "stopped" && result.time.reason.empty())
           throw Interrupted();
         return result;
@@ -257,7 +274,11 @@ namespace crawler
         // that.
         const double enough_cells = n_cells; // fewer failed or left too much unresolved
         const double full_rate = 2. * pilot_degree - 2., wanted_part = accuracy_ / space_factor;
-        double unresolved = pilot_.unresolved, indicator = pilot_.largest_indicator, rate = 0.;
+        const auto rate_of = [full_rate](const double coarse, const double fine)
+        {
+          return std::clamp(std::log2(coarse / fine), 0.5, full_rate);
+        };
+        double unresolved = pilot_.unresolved, indicator = pilot_.largest_indicator, rate = 0., indicator_rate = 0.;
         while (rate < 0.5 * full_rate && 2 * n_cells <= most_cells / 4)
         {
           if (2 * n_cells > most)
@@ -265,18 +286,25 @@ namespace crawler
           const SimulationResult finer = pilot(pilot_numerics(pilot_degree, 2 * n_cells, 0.01 * tolerance_));
           if (finer.time.status != "finished" || finer.unresolved == 0.)
             break;
-          rate       = std::clamp(std::log2(unresolved / finer.unresolved), 0.5, full_rate);
-          unresolved = finer.unresolved;
-          indicator  = finer.largest_indicator;
+          rate           = rate_of(unresolved, finer.unresolved);
+          indicator_rate = rate_of(indicator, finer.largest_indicator);
+          unresolved     = finer.unresolved;
+          indicator      = finer.largest_indicator;
           n_cells *= 2;
           if (unresolved <= 0.01 * wanted_part)
             break;
         }
-        const double cells = rate > 0. ? n_cells * std::pow(unresolved / wanted_part, 1. / rate) : n_cells;
-        // Layers that are thinner than the cells are not seen in the stretch, but the balance of forces tells.
-        const double gain = std::pow(std::max(1., cells / n_cells), full_rate);
-        if (most < most_cells && indicator_factor * indicator > accuracy_ * gain * pilot_.strain)
-          return false;
+        double cells = rate > 0. ? n_cells * std::pow(unresolved / wanted_part, 1. / rate) : n_cells;
+        // Layers that are thinner than the cells are not seen in the stretch, but the balance of forces tells; its
+        // rate, too, must be that of a smooth solution.
+        const double gain      = std::pow(std::max(1., cells / n_cells), full_rate);
+        const double too_large = indicator_factor * indicator / (accuracy_ * gain * pilot_.strain);
+        if (most < most_cells && too_large > 1.)
+        {
+          if (indicator_rate < 0.5 * full_rate)
+            return false;
+          cells = std::max(cells, 1. * n_cells) * std::pow(too_large, 1. / indicator_rate);
+        }
         choice_.numerics.n_cells =
           static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(most_cells)));
         return choice_.numerics.n_cells <= most;

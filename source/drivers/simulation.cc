@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/parabola.h>
 #include <crawler/discretization/mesh_transfer.h>
 #include <crawler/drivers/simulation.h>
 #include <crawler/time/integrators.h>
@@ -524,8 +523,19 @@ namespace crawler
   void
   Simulation::look_at_extremes(const double t, const StretchRange &range, const bool is_first)
   {
-    record({range.min.value, range.min.s, t}, 1., is_first, min_history_, result_.min_stretch);
-    record({range.max.value, range.max.s, t}, -1., is_first, max_history_, result_.max_stretch);
+    const Extreme least{range.min.value, range.min.s, t}, most{range.max.value, range.max.s, t};
+    if (is_first)
+    {
+      min_history_.start(least);
+      max_history_.start(most);
+    }
+    else
+    {
+      min_history_.add(least);
+      max_history_.add(most);
+    }
+    result_.min_stretch = min_history_.extreme();
+    result_.max_stretch = max_history_.extreme();
   }
 
   /// Displacement, and if wanted the ledger, at an accepted state.
@@ -565,32 +575,6 @@ namespace crawler
       result_.net_friction =
         std::max(result_.net_friction, std::abs(integrals_.net_friction) / integrals_.abs_friction);
     return true;
-  }
-
-  /// Keeps the smallest value (times sign) so far. Between steps the parabola through three of them comes closer.
-  void
-  Simulation::record(const SimulationResult::Extreme &now,
-                     const double sign,
-                     const bool is_first,
-                     History &history,
-                     SimulationResult::Extreme &extreme)
-  {
-    if (is_first)
-    {
-      history.fill(now);
-      extreme = now;
-      return;
-    }
-    history = {{history[1], history[2], now}};
-    if (sign * now.value < sign * extreme.value)
-      extreme = now;
-    const auto &[before, middle, after] = history;
-    if (before.t < middle.t && sign * middle.value < sign * before.value && sign * middle.value < sign * after.value)
-    {
-      const auto [t, value] = parabola_vertex(before.t, before.value, middle.t, middle.value, after.t, after.value);
-      if (sign * value < sign * extreme.value && value > 0.)
-        extreme = {value, middle.s, t};
-    }
   }
 
   /// Frames have the times that were asked for, exactly.

@@ -126,9 +126,9 @@ namespace crawler
         return;
       // How long is left at the present rate?
       const StretchAt smallest = assembler_->stretch_range(accepted_).min;
-      const double before = min_history_[1].value, before_t = min_history_[1].t;
-      const double rate = t > before_t ? (before - smallest.value) / (t - before_t) : 0.;
-      const double left = rate > 0. ? smallest.value / rate : 1.;
+      const Extreme before     = min_history_.before_last();
+      const double rate        = t > before.t ? (before.value - smallest.value) / (t - before.t) : 0.;
+      const double left        = rate > 0. ? smallest.value / rate : 1.;
       // For a >= 0 the stretch reaches 0 at a bounded rate, so one that is not near 0 was not lost by the body.
       const bool near = left < (outcome.domain_error ? nearly_lost : end_reach);
       if (near || (outcome.domain_error && scene_.body.friction_exponent() < 0.))

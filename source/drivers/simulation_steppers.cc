@@ -2,8 +2,8 @@
 //
 // Who integrates the equation of a simulation over time, and how they are connected.
 #include <crawler/base/communication.h>
+#include <crawler/drivers/batch.h>
 #include <crawler/drivers/simulation.h>
-#include <crawler/time/integrators.h>
 
 #include <algorithm>
 
@@ -12,9 +12,8 @@ namespace crawler
   bool
   Simulation::fused_fits() const
   {
-    return time_.engine == "automatic" && integrator(time_.integrator).petsc_type == "radau" &&
-           time_.step_control == "adaptive" && assembler_->formulation() == Formulation::position &&
-           numerics_.mesh.tolerance == 0. && size_of(communicator_) == 1 && fits_fused(scene_);
+    return assembler_->formulation() == Formulation::position && size_of(communicator_) == 1 &&
+           fused_method(scene_, time_, numerics_);
   }
 
   /// The fused engine where it fits and has not given up, else PETSc. What is not used is not built.
@@ -38,6 +37,14 @@ namespace crawler
   Simulation::go_on_with_petsc(const TimeOutcome &outcome)
   {
     constexpr double smallest_step = 1e-9;
+    if (getenv("DBG"))
+      fprintf(stderr,
+              "gave up at %g step %g tol %g n_steps %u rej %u\n",
+              outcome.time,
+              outcome.step_size,
+              numerics_.tolerance,
+              outcome.steps,
+              outcome.rejected_steps);
     count_part(outcome);
     fused_gave_up_ = true;
     y_             = accepted_;
@@ -47,8 +54,7 @@ namespace crawler
   void
   Simulation::build_fused_stepper()
   {
-    const FusedMethod method = {numerics_.degree, discretization_->n_cells(), integrator(time_.integrator).n_stages};
-    fused_stepper_           = std::make_unique<FusedStepper>(scene_, method);
+    fused_stepper_ = std::make_unique<FusedStepper>(scene_, *fused_method(scene_, time_, numerics_));
     if (keeps_rate())
       fused_stepper_->stage_rates = [this](const double t, const std::span<const double> v)
       {

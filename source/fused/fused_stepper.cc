@@ -51,7 +51,7 @@ namespace crawler
       outcome_.step_size = initial_step;
       return outcome_;
     }
-    const LaneHost host = {this, next, stress, accepted, done};
+    const LaneHost host = {this, next, stress, accepted, done, /*look_inside=*/false};
     single_engine().run(tables_.setup, host, memory_.get());
     return outcome_;
   }

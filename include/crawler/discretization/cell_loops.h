@@ -118,4 +118,64 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
   }
+
+  /// M alone.
+  template <int n, typename Number, typename Friction>
+  inline void
+  cell_mass(const ElementTables &tables, const double h, const Number *u, const Friction &friction, Number *M)
+  {
+    Number w[n], g[n];
+    evaluate<n>(tables.derivatives, u, 1. / h, 1., w);
+    friction(w, g);
+    for (int i = 0; i < n; ++i)
+    {
+      Number row[n];
+      for (int j = 0; j < n; ++j)
+        row[j] = Number{};
+      for (int p = 0; p < n; ++p)
+      {
+        const Number factor = h * tables.weights[p] * tables.values[p * n + i] * g[p];
+        for (int j = 0; j < n; ++j)
+          row[j] += factor * tables.values[p * n + j];
+      }
+      for (int j = 0; j < n; ++j)
+        M[i * n + j] = row[j];
+    }
+  }
+
+  /// Adds the integrals of a cell to @p sum, which has the members of CellIntegrals (cell_kernels.h).
+  template <int n, typename Number, typename Friction, typename Sums>
+  inline void
+  cell_integrals(const ElementTables &tables,
+                 const double h,
+                 const Number &k,
+                 const Number *u,
+                 const Number *v,
+                 const Number *m,
+                 const Friction &friction,
+                 Sums &sum)
+  {
+    Number e[n], w[n], g[n], u_at[n], v_at[n], v_s[n];
+    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
+    for (int p = 0; p < n; ++p)
+      w[p] = 1. + e[p];
+    evaluate<n>(tables.values, u, 1., 0., u_at);
+    evaluate<n>(tables.values, v, 1., 0., v_at);
+    evaluate<n>(tables.derivatives, v, 1. / h, 0., v_s);
+    friction(w, g);
+    for (int p = 0; p < n; ++p)
+    {
+      const double ds    = h * tables.weights[p];
+      const Number power = equation::stress_power(m[p], v_s[p]), force = equation::friction_force(g[p], v_at[p]);
+      sum.displacement += ds * u_at[p];
+      sum.velocity += ds * v_at[p];
+      sum.elastic_energy += ds * equation::elastic_energy(e[p], k);
+      sum.stress_power += ds * power;
+      sum.positive_power += ds * (power > 0. ? power : Number{});
+      sum.absolute_power += ds * (power > 0. ? power : -power);
+      sum.dissipation += ds * equation::dissipation(g[p], v_at[p]);
+      sum.net_friction += ds * force;
+      sum.abs_friction += ds * (force > 0. ? force : -force);
+    }
+  }
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

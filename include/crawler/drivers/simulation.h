@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/extreme_history.h>
 #include <crawler/discretization/assembler.h>
 #include <crawler/discretization/mesh_marking.h>
 #include <crawler/fused/fused_stepper.h>
@@ -51,10 +52,7 @@ namespace crawler
     std::optional<Ledger> ledger;
     double net_friction = 0.; ///< largest |int g v ds|/int |g v| ds over time [1]
 
-    struct Extreme
-    {
-      double value = 1., s = 0., t = 0.;
-    };
+    using Extreme = crawler::Extreme;
     Extreme min_stretch, max_stretch;
     std::optional<Extreme> inversion; ///< where and when the body inverted; value is the stretch there
 
@@ -194,14 +192,6 @@ namespace crawler
     {
       std::string status, reason, message;
     };
-    /// The last three extremes of one kind, newest last, to sharpen those between steps.
-    using History = std::array<SimulationResult::Extreme, 3>;
-    static void
-    record(const SimulationResult::Extreme &now,
-           double sign,
-           bool is_first,
-           History &history,
-           SimulationResult::Extreme &extreme);
 
     Options options_;
     bool has_observers_ = false;
@@ -214,7 +204,7 @@ namespace crawler
     Resolution largest_{}; ///< over time, if looked at
     CellIntegrals integrals_;
     StretchRange stretch_;
-    History min_history_, max_history_;
+    ExtremeHistory min_history_{ExtremeHistory::smallest}, max_history_{ExtremeHistory::largest};
     std::vector<double> y_, v_;
     std::vector<double> y_inside_, v_inside_; ///< of a state within a step
     struct Rate

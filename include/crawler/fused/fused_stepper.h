@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/fused/batch.h>
+#include <crawler/fused/fused_tables.h>
 #include <crawler/time/time_integration.h>
 
 namespace crawler

@@ -43,6 +43,16 @@ namespace crawler
     unsigned int n_frames;
   };
 
+  /// Of a stage of an accepted step (the last one is its end).
+  struct LaneStage
+  {
+    double min_stretch, max_stretch;     ///< among the samples
+    unsigned int min_sample, max_sample; ///< cell*n_samples + sample
+    // If rates are asked for (CellIntegrals).
+    double stress_power, positive_power, absolute_power, dissipation, net_friction, abs_friction;
+    double left_velocity, right_velocity; ///< of the ends of the body
+  };
+
   /// An accepted step of a lane. The pointers are good until the host returns; element i is at [i*stride].
   struct LaneStep
   {
@@ -52,10 +62,10 @@ namespace crawler
     unsigned long newton_iterations;
     bool is_frame;
     std::size_t stride;
-    const double *y; ///< [unknowns] displacement
-    const double *z; ///< [stages][unknowns] displacements in the stages relative to the start of the step
-    double min_stretch, max_stretch;     ///< among the samples
-    unsigned int min_sample, max_sample; ///< cell*n_samples + sample
+    const double *y;         ///< [unknowns] displacement
+    const double *z;         ///< [stages][unknowns] displacements in the stages relative to the start of the step
+    const LaneStage *stages; ///< [n_stages]; the last one alone is filled unless `look_inside` is set
+    double elastic_energy;   ///< at the end, if rates are asked for
   };
 
   struct LaneOutcome
@@ -83,6 +93,7 @@ namespace crawler
     /// Sees each accepted step; false stops the lane. May be null.
     bool (*accepted)(void *context, unsigned int lane, const LaneStep &step);
     void (*done)(void *context, unsigned int lane, const LaneOutcome &outcome);
+    bool look_inside; ///< stretch and rates in all stages
   };
 
   /// The engine as compiled for one instruction set and one number of lanes.

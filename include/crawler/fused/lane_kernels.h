@@ -47,6 +47,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     LaneFriction<Pack> friction;
   };
 
+  /// CellIntegrals of a pack of bodies.
+  template <typename Pack>
+  struct LaneIntegrals
+  {
+    Pack displacement{}, elastic_energy{}, stress_power{}, positive_power{}, absolute_power{}, dissipation{},
+      net_friction{}, abs_friction{}, velocity{};
+  };
+
   template <typename Pack, int q>
   struct LaneKernels
   {
@@ -73,6 +81,30 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           least = w[p] < least ? w[p] : least; // a stretch that is not a number makes F one, too
       }
       return least;
+    }
+
+    /// The right-hand side of M v = F for the velocity v in which all forces balance, and the factors of M.
+    static void
+    balance(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *m, Pack *F, Pack *blocks, Pack *schur)
+    {
+      const double h      = 1. / mesh.n_cells;
+      const auto friction = [&mesh](const Pack *w, Pack *g)
+      {
+        mesh.friction(w, g, n);
+      };
+      F[0] = Pack{};
+      for (int c = 0; c < mesh.n_cells; ++c)
+      {
+        Pack w[n];
+        for (int i = 1; i < n; ++i)
+          F[c * q + i] = Pack{};
+        cell_residual<n>(
+          mesh.tables, h, mesh.k, u + c * q, static_cast<const Pack *>(nullptr), m + c * n, friction, w, F + c * q);
+        cell_mass<n>(mesh.tables, h, u + c * q, friction, blocks + c * n * n);
+        condense_cell<q>(blocks + c * n * n, schur + 4 * c, [](const auto &) {});
+      }
+      for (int i = 0; i <= mesh.n_cells * q; ++i)
+        F[i] = -F[i];
     }
 
     /// The factors of K + real M, and of K + (re + i im) M for each pair.
@@ -130,6 +162,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         backward_cell<q>(blocks + c * n * n, x + c * q);
     }
 
+    static void
+    integrals(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, LaneIntegrals<Pack> &sum)
+    {
+      const double h      = 1. / mesh.n_cells;
+      const auto friction = [&mesh](const Pack *w, Pack *g)
+      {
+        mesh.friction(w, g, n);
+      };
+      for (int c = 0; c < mesh.n_cells; ++c)
+        cell_integrals<n>(mesh.tables, h, mesh.k, u + c * q, v + c * q, m + c * n, friction, sum);
+    }
+
     /// int u ds.
     static Pack
     integral(const LaneMesh<Pack> &mesh, const Pack *u)
@@ -181,6 +225,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   struct LaneKernelTable
   {
     Pack (*residual)(const LaneMesh<Pack> &, const Pack *, const Pack *, const Pack *, Pack *);
+    void (*balance)(const LaneMesh<Pack> &, const Pack *, const Pack *, Pack *, Pack *, Pack *);
+    void (*integrals)(const LaneMesh<Pack> &, const Pack *, const Pack *, const Pack *, LaneIntegrals<Pack> &);
     void (*factorize)(const LaneMesh<Pack> &,
                       const Pack *,
                       const Pack *,
@@ -201,6 +247,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
   template <typename Pack, int q>
   constexpr LaneKernelTable<Pack> lane_kernel_table = {LaneKernels<Pack, q>::residual,
+                                                       LaneKernels<Pack, q>::balance,
+                                                       LaneKernels<Pack, q>::integrals,
                                                        LaneKernels<Pack, q>::factorize,
                                                        LaneKernels<Pack, q>::template forward<Pack>,
                                                        LaneKernels<Pack, q>::template backward<Pack>,

@@ -573,27 +573,60 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     advance(const typename PackTraits<Pack>::Mask &accepted)
     {
+      if (host_.look_inside)
+        for (int i = 0; i + 1 < s; ++i)
+        {
+          state_of_stage(i);
+          look_at_stage(i, u_);
+        }
       for (int d = 0; d < n_; ++d)
         y_[d] = accepted ? y_[d] + z_[(s - 1) * n_ + d] : y_[d];
       for (int i = 0; i < s * n_; ++i)
         old_z_[i] = accepted ? z_[i] : old_z_[i];
       for (int i = 0; i < n_points_; ++i)
         m_start_[i] = accepted ? m_[(s - 1) * n_points_ + i] : m_start_[i];
-      Pack least, least_at, most, most_at;
-      kernels_.extremes(
-        mesh_, static_cast<int>(setup_.n_samples), setup_.sample_derivatives, y_, &least, &least_at, &most, &most_at);
+      if (host_.look_inside)
+      {
+        // The velocity in which all forces balance; that of the stage has the error of Newton's method.
+        kernels_.balance(mesh_, y_, m_ + (s - 1) * n_points_, v_, blocks_, schur_);
+        factorize_corners(schur_, lower_, pivot_, upper_);
+        solve(v_);
+      }
+      look_at_stage(s - 1, y_);
       for (int l = 0; l < lanes; ++l)
         if (lanes_[l].busy && lanes_[l].accepted)
-          arrive(l,
-                 get_lane(least, l),
-                 get_lane(most, l),
-                 static_cast<unsigned int>(get_lane(least_at, l)),
-                 static_cast<unsigned int>(get_lane(most_at, l)));
+          arrive(l);
+    }
+
+    /// Keeps the stretch, and the rates if they are asked for, of a stage with the state (@p u, v_).
+    void
+    look_at_stage(const int i, const Pack *u)
+    {
+      Pack least, least_at, most, most_at;
+      kernels_.extremes(
+        mesh_, static_cast<int>(setup_.n_samples), setup_.sample_derivatives, u, &least, &least_at, &most, &most_at);
+      LaneIntegrals<Pack> sums;
+      if (host_.look_inside)
+        kernels_.integrals(mesh_, u, v_, m_ + i * n_points_, sums);
+      for (int l = 0; l < lanes; ++l)
+        stages_[l][i] = {get_lane(least, l),
+                         get_lane(most, l),
+                         static_cast<unsigned int>(get_lane(least_at, l)),
+                         static_cast<unsigned int>(get_lane(most_at, l)),
+                         get_lane(sums.stress_power, l),
+                         get_lane(sums.positive_power, l),
+                         get_lane(sums.absolute_power, l),
+                         get_lane(sums.dissipation, l),
+                         get_lane(sums.net_friction, l),
+                         get_lane(sums.abs_friction, l),
+                         get_lane(v_[0], l),
+                         get_lane(v_[n_ - 1], l)};
+      elastic_energy_ = sums.elastic_energy;
     }
 
     /// A lane at the end of its step.
     void
-    arrive(const int l, const double least, const double most, const unsigned int least_at, const unsigned int most_at)
+    arrive(const int l)
     {
       Lane &lane          = lanes_[l];
       lane.t              = end_of_step(lane);
@@ -604,12 +637,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       ++lane.steps;
       if (is_frame)
         ++lane.frame;
-      bool go_on = true;
-      if (!(least > lane.job.least_stretch))
+      if (!(stages_[l][s - 1].min_stretch > lane.job.least_stretch))
       {
         end(l, LaneOutcome::gave_up);
         return;
       }
+      bool go_on = true;
       if (host_.accepted != nullptr)
         go_on = host_.accepted(host_.context,
                                static_cast<unsigned int>(l),
@@ -623,10 +656,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                 lanes,
                                 reinterpret_cast<const double *>(y_) + l,
                                 reinterpret_cast<const double *>(old_z_) + l,
-                                least,
-                                most,
-                                least_at,
-                                most_at});
+                                stages_[l],
+                                get_lane(elastic_energy_, l)});
       if (lane.frame == lane.job.n_frames)
         end(l, LaneOutcome::finished);
       else if (!go_on || lane.steps >= lane.job.most_steps)
@@ -653,6 +684,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Lane lanes_[lanes];
     Pack tolerance_, inverse_h_;
     bool friction_changed_ = true;
+    LaneStage stages_[lanes][s];
+    Pack elastic_energy_{};
 
     Pack *y_;               ///< at the start of the step
     Pack *z_, *old_z_, *F_; ///< [stage][unknown]

@@ -5,10 +5,7 @@
 #include <crawler/fused/lane_engine.h>
 #include <crawler/scene/scene.h>
 
-#include <functional>
 #include <memory>
-#include <optional>
-#include <span>
 #include <vector>
 
 namespace crawler
@@ -65,25 +62,4 @@ namespace crawler
   /// Can the engine compute this scene?
   bool
   fits_fused(const Scene &scene);
-
-  /// A scene to compute from rest to its end; all numbers are in the scene's units.
-  struct FusedRun
-  {
-    const Scene *scene;
-    double tolerance, initial_step, largest_step;
-    unsigned int most_steps;
-  };
-
-  struct FusedResult
-  {
-    bool finished;       ///< if not, only the full path can tell why
-    double displacement; ///< of the centre of mass [length]
-    double min_stretch, min_stretch_s, min_stretch_t, max_stretch, max_stretch_s, max_stretch_t;
-    unsigned int steps, rejected_steps;
-    unsigned long newton_iterations;
-  };
-
-  /// Computes all @p runs side by side with one method. The result of a run does not depend on the others.
-  std::vector<FusedResult>
-  run_batch(const FusedMethod &method, std::span<const FusedRun> runs, const LaneEngine &engine = batch_engine());
 } // namespace crawler

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/extreme_history.h>
+#include <crawler/drivers/batch.h>
+#include <crawler/time/integrators.h>
+#include <crawler/time/radau_tableau.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace crawler
+{
+  std::optional<FusedMethod>
+  fused_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
+  {
+    const std::string &name   = time.integrator == "automatic" ? numerics.integrator : time.integrator;
+    const Integrator &method  = integrator(name.empty() ? "automatic" : name);
+    const bool log_stretch    = numerics.formulation == FormulationChoice::log_stretch;
+    const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == "adaptive";
+    if (time.engine != "automatic" || !is_one_of_ours || log_stretch || numerics.mesh.tolerance != 0. ||
+        !fits_fused(scene))
+      return std::nullopt;
+    return FusedMethod{numerics.degree, numerics.n_cells, method.n_stages};
+  }
+
+  namespace
+  {
+    /// A record that is beaten by less than this part of a strain may be beaten after sharpening.
+    constexpr double sharpening = 0.05;
+
+    /// Hands the runs of one method out to the lanes and makes results of what they give.
+    class Batch
+    {
+    public:
+      using Results = std::vector<std::optional<SimulationResult>>;
+
+      Batch(const FusedMethod &method,
+            const std::span<const BatchRun> runs,
+            const std::vector<std::size_t> &members,
+            const Simulation::Options &options,
+            const std::function<bool()> &keep_going,
+            Results &results)
+        : tables_(fused_tables(method))
+        , tableau_(radau_tableau(method.n_stages))
+        , runs_(runs)
+        , members_(members)
+        , options_(options)
+        , keep_going_(keep_going)
+        , results_(results)
+      {
+      }
+
+      void
+      compute(const LaneEngine &engine)
+      {
+        lanes_.resize(engine.lanes);
+        const LaneHost host = {this, next, stress, accepted, done, options_.ledger};
+        const auto memory   = fused_memory(engine.memory(tables_.setup));
+        engine.run(tables_.setup, host, memory.get());
+      }
+
+    private:
+      struct Lane
+      {
+        std::size_t run = 0;
+        Units units;
+        std::unique_ptr<ActiveStressAtPoints> stress, end_stress;
+        SimulationResult result;
+        ExtremeHistory least{ExtremeHistory::smallest}, most{ExtremeHistory::largest};
+      };
+
+      static Batch &
+      self(void *context)
+      {
+        return *static_cast<Batch *>(context);
+      }
+
+      static bool
+      next(void *context, const unsigned int l, LaneJob &job)
+      {
+        Batch &batch = self(context);
+        if (batch.next_ == batch.members_.size() || batch.interrupted_)
+          return false;
+        Lane &lane = batch.lanes_[l];
+        lane.run   = batch.members_[batch.next_++];
+        batch.start(lane, job);
+        return true;
+      }
+
+      void
+      start(Lane &lane, LaneJob &job) const
+      {
+        static constexpr double end = 1.;
+        const Numerics &numerics    = *runs_[lane.run].numerics;
+        const Scene &scene          = *runs_[lane.run].scene;
+        lane.units                  = natural_units(scene);
+        std::vector<double> points  = tables_.points;
+        for (double &s : points)
+          s *= lane.units.length;
+        lane.stress = scene.active_stress->at(points);
+        lane.result = {};
+        lane.least.start({});
+        lane.most.start({});
+        if (options_.ledger)
+        {
+          lane.result.ledger.emplace();
+          lane.end_stress = scene.active_stress->at({0., lane.units.length});
+        }
+        job = {.k             = scene.body.elastic_modulus / lane.units.force,
+               .a             = scene.body.friction_exponent(),
+               .tolerance     = numerics.tolerance / lane.units.length,
+               .initial_step  = numerics.initial_step / lane.units.time,
+               .largest_step  = numerics.largest_step / lane.units.time,
+               .most_steps    = runs_[lane.run].time->max_steps,
+               .least_stretch = small_stretch,
+               .start_time    = 0.,
+               .start         = nullptr,
+               .frames        = &end,
+               .n_frames      = 1};
+      }
+
+      /// m in natural units.
+      static void
+      evaluate(const Lane &lane, ActiveStressAtPoints &stress, const double t, const std::span<double> m)
+      {
+        stress.values(t * lane.units.time, m);
+        if (lane.units.force != 1.)
+          for (double &value : m)
+            value /= lane.units.force;
+      }
+
+      static void
+      stress(void *context, const unsigned int l, const double t, double *m)
+      {
+        Batch &batch = self(context);
+        Lane &lane   = batch.lanes_[l];
+        evaluate(lane, *lane.stress, t, {m, batch.tables_.points.size()});
+      }
+
+      static bool
+      accepted(void *context, const unsigned int l, const LaneStep &step)
+      {
+        Batch &batch = self(context);
+        Lane &lane   = batch.lanes_[l];
+        if (batch.keep_going_ && !batch.keep_going_())
+          batch.interrupted_ = true;
+        if (batch.interrupted_)
+          return false;
+        const unsigned int n = batch.tableau_.n;
+        for (unsigned int i = batch.options_.ledger ? 0 : n - 1; i < n; ++i)
+        {
+          const double t = i + 1 < n ? step.time - (1. - batch.tableau_.c[i]) * step.size : step.time;
+          if (!(step.stages[i].min_stretch > small_stretch))
+            return false;
+          batch.look_at_extremes(lane, step, i, t);
+          if (batch.options_.ledger)
+            batch.add_rates(lane, step, i, t);
+        }
+        if (lane.result.ledger)
+          lane.result.ledger->elastic_energy = step.elastic_energy;
+        return true;
+      }
+
+      /// The same as Assembler::stretch_range and Simulation::look_at_extremes: if a sample may be a new extreme, the
+      /// parabola through its neighbours in the cell comes closer.
+      void
+      look_at_extremes(Lane &lane, const LaneStep &step, const unsigned int i, const double t) const
+      {
+        const LaneStage &stage = step.stages[i];
+        const auto show        = [&](ExtremeHistory &history, const double value, const unsigned int sample)
+        {
+          Extreme now{value, tables_.place_of_sample(sample), t};
+          const double record = history.extreme().value;
+          const double margin = sharpening * std::abs(record - 1.);
+          if (history.is_beyond(value, record) || std::abs(value - record) < margin)
+            sharpen(step, i, sample, now);
+          history.add(now);
+        };
+        show(lane.least, stage.min_stretch, stage.min_sample);
+        show(lane.most, stage.max_stretch, stage.max_sample);
+      }
+
+      void
+      sharpen(const LaneStep &step, const unsigned int i, const unsigned int sample, Extreme &now) const
+      {
+        const LaneSetup &setup   = tables_.setup;
+        const unsigned int place = sample % setup.n_samples, cell = sample / setup.n_samples;
+        if (place == 0 || place + 1 == setup.n_samples)
+          return;
+        const auto stretch_at = [&](const unsigned int p)
+        {
+          const std::size_t n = setup.degree + 1, unknowns = setup.n_cells * setup.degree + 1;
+          double sum = 0.;
+          for (unsigned int j = 0; j < n; ++j)
+          {
+            const std::size_t d = cell * setup.degree + j;
+            const double u = step.y[d * step.stride] - step.z[((setup.n_stages - 1) * unknowns + d) * step.stride] +
+                             step.z[(i * unknowns + d) * step.stride];
+            sum += setup.sample_derivatives[p * n + j] * u;
+          }
+          return 1. + setup.n_cells * sum;
+        };
+        const auto [s, value] = parabola_vertex(tables_.place_of_sample(sample - 1),
+                                                stretch_at(place - 1),
+                                                now.s,
+                                                now.value,
+                                                tables_.place_of_sample(sample + 1),
+                                                stretch_at(place + 1));
+        if (value > 0. && s > tables_.place_of_sample(sample - 1) && s < tables_.place_of_sample(sample + 1))
+        {
+          now.s     = s;
+          now.value = value;
+        }
+      }
+
+      void
+      add_rates(Lane &lane, const LaneStep &step, const unsigned int i, const double t) const
+      {
+        const LaneStage &stage = step.stages[i];
+        const double weight    = step.size * tableau_.b[i];
+        std::array<double, 2> m{};
+        evaluate(lane, *lane.end_stress, t, m);
+        Ledger &ledger = *lane.result.ledger;
+        ledger.stress_power += weight * stage.stress_power;
+        ledger.dissipation += weight * stage.dissipation;
+        ledger.positive_power += weight * stage.positive_power;
+        ledger.exchanged += weight * stage.absolute_power;
+        ledger.end_work += weight * (m[1] * stage.right_velocity - m[0] * stage.left_velocity);
+        if (i + 1 == tableau_.n && stage.abs_friction > 0.)
+          lane.result.net_friction =
+            std::max(lane.result.net_friction, std::abs(stage.net_friction) / stage.abs_friction);
+      }
+
+      static void
+      done(void *context, const unsigned int l, const LaneOutcome &outcome)
+      {
+        Batch &batch = self(context);
+        if (outcome.status == LaneOutcome::finished && !batch.interrupted_)
+          batch.results_[batch.lanes_[l].run] = batch.result_of(batch.lanes_[l], outcome);
+      }
+
+      SimulationResult
+      result_of(Lane &lane, const LaneOutcome &outcome) const
+      {
+        SimulationResult result       = std::move(lane.result);
+        const Units &units            = lane.units;
+        result.time.status            = "finished";
+        result.time.time              = runs_[lane.run].scene->end_time;
+        result.time.step_size         = outcome.step_size * units.time;
+        result.time.steps             = outcome.steps;
+        result.time.rejected_steps    = outcome.rejected;
+        result.time.newton_iterations = outcome.newton_iterations;
+        result.displacement           = outcome.displacement * units.length;
+        result.most_cells             = tables_.setup.n_cells;
+        const auto in_units           = [&units](const Extreme &extreme)
+        {
+          return Extreme{extreme.value, extreme.s * units.length, extreme.t * units.time};
+        };
+        result.min_stretch = in_units(lane.least.extreme());
+        result.max_stretch = in_units(lane.most.extreme());
+        if (result.ledger)
+          result.ledger = result.ledger->scaled(units.energy());
+        return result;
+      }
+
+      const FusedTables &tables_;
+      const RadauTableau &tableau_;
+      const std::span<const BatchRun> runs_;
+      const std::vector<std::size_t> &members_; ///< numbers of the runs
+      const Simulation::Options options_;
+      const std::function<bool()> &keep_going_;
+      Results &results_;
+      std::vector<Lane> lanes_;
+      std::size_t next_ = 0;
+      bool interrupted_ = false;
+    };
+  } // namespace
+
+  std::vector<std::optional<SimulationResult>>
+  run_batch(const std::span<const BatchRun> runs,
+            const Simulation::Options &options,
+            const std::function<bool()> &keep_going,
+            const LaneEngine &engine)
+  {
+    std::map<FusedMethod, std::vector<std::size_t>> members;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      members[fused_method(*runs[i].scene, *runs[i].time, *runs[i].numerics).value()].push_back(i);
+    std::vector<std::optional<SimulationResult>> results(runs.size());
+    for (const auto &[method, own] : members)
+      Batch(method, runs, own, options, keep_going, results).compute(engine);
+    return results;
+  }
+} // namespace crawler

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/fused/fused_tables.h>
+#include <crawler/time/radau_tableau.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <new>
+
+namespace crawler
+{
+  namespace
+  {
+    std::vector<double>
+    interleaved(const std::vector<std::complex<double>> &values)
+    {
+      std::vector<double> result;
+      for (const auto &value : values)
+      {
+        result.push_back(value.real());
+        result.push_back(value.imag());
+      }
+      return result;
+    }
+  } // namespace
+
+  FusedTables::FusedTables(const FusedMethod &method)
+    : method_(method)
+    , element_(method.degree)
+    , sample_places_(element_.points)
+  {
+    sample_places_.insert(sample_places_.begin(), 0.);
+    sample_places_.push_back(1.);
+    samples_                    = interpolation_matrix(element_.nodes, sample_places_, 1);
+    const RadauTableau &tableau = radau_tableau(method.n_stages);
+    eigenvalues_                = interleaved(tableau.eigenvalues);
+    vectors_                    = interleaved(tableau.vectors);
+    rows_                       = interleaved(tableau.rows);
+    for (unsigned int c = 0; c < method.n_cells; ++c)
+      for (const double place : element_.points)
+        points.push_back((c + place) / method.n_cells);
+    setup = {method.degree,
+             method.n_cells,
+             method.n_stages,
+             element_.values.data(),
+             element_.derivatives.data(),
+             element_.weights.data(),
+             element_.stiffness.data(),
+             static_cast<unsigned int>(sample_places_.size()),
+             samples_.data(),
+             tableau.c.data(),
+             tableau.inverse.data(),
+             tableau.error_weights.data(),
+             tableau.real_eigenvalue,
+             eigenvalues_.data(),
+             vectors_.data(),
+             rows_.data()};
+  }
+
+  double
+  FusedTables::place_of_sample(const unsigned int number) const
+  {
+    return (number / setup.n_samples + sample_places_[number % setup.n_samples]) / method_.n_cells;
+  }
+
+  const FusedTables &
+  fused_tables(const FusedMethod &method)
+  {
+    static std::map<FusedMethod, std::unique_ptr<FusedTables>> known;
+    auto &tables = known[method];
+    if (!tables)
+      tables = std::make_unique<FusedTables>(method);
+    return *tables;
+  }
+
+  void
+  FusedMemoryFree::operator()(double *memory) const
+  {
+    std::free(memory);
+  }
+
+  FusedMemory
+  fused_memory(const std::size_t n)
+  {
+    const std::size_t bytes = (n * sizeof(double) + 63) / 64 * 64;
+    FusedMemory memory(static_cast<double *>(std::aligned_alloc(64, bytes)));
+    if (!memory)
+      throw std::bad_alloc();
+    std::fill_n(memory.get(), bytes / sizeof(double), 0.);
+    return memory;
+  }
+
+  bool
+  fits_fused(const Scene &scene)
+  {
+    return dynamic_cast<const PowerFriction *>(scene.friction.get()) != nullptr;
+  }
+} // namespace crawler
