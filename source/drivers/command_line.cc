@@ -121,7 +121,10 @@ namespace crawler
       CommandOptions options;
       options.command_line = fmt::format("crawler {}", fmt::join(arguments, " "));
       if (!petsc_options.empty())
+      {
         options.command_line += fmt::format(" -- {}", fmt::join(petsc_options, " "));
+        options.overrides.emplace_back("Time/Engine=petsc"); // they are for its objects
+      }
       const auto common = [&](CLI::App *command)
       {
         command->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();

@@ -80,6 +80,7 @@ namespace crawler
     v_.resize(discretization_->n_owned());
     ++mesh_number_;
     as_at_start_ = false;
+    choose_stepper(); // options of PETSc are read now
   }
 
   SimulationResult

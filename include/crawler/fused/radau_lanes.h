@@ -16,6 +16,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   /// Error of Newton's method that is left, relative to the admissible error of a step.
   constexpr double newton_fraction = 0.01;
   constexpr int most_newton        = 8;
+  /// But the equations are solved at least as if the tolerance were this.
+  constexpr double largest_tolerance = 1e-3;
   /// Newton's method must converge faster than this per iteration, or the step is made shorter by failure_factor.
   constexpr double slowest_rate = 0.5, failure_factor = 0.25;
   constexpr unsigned int most_failures = 12;
@@ -474,8 +476,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         lane.known_rate = lane.rate < 1e-6 ? 1e-6 : lane.rate > 0.9 ? 0.9 : lane.rate;
       }
       lane.last_correction = correction;
+      const double excess  = lane.job.tolerance > largest_tolerance ? lane.job.tolerance / largest_tolerance : 1.;
       const double rate    = lane.known_rate < 0.9 ? lane.known_rate : 0.9;
-      const double left    = rate / (1. - rate) * correction;
+      const double left    = rate / (1. - rate) * correction * excess;
       const double floor   = 1e-15 / lane.job.tolerance; // of displacements up to 1: they are sums of such numbers
       if (left <= newton_fraction || correction <= floor)
         lane.iterating = false;
