@@ -105,8 +105,9 @@ namespace crawler
       }
     }
     dealii::DataOutBase::VtkFlags flags;
-    flags.time  = snapshot.step.time;
-    flags.cycle = snapshot.step.number;
+    flags.time              = snapshot.step.time;
+    flags.cycle             = snapshot.step.number;
+    flags.compression_level = dealii::DataOutBase::VtkFlags::best_speed; // the arrays are small
     output.set_flags(flags);
 
     const std::string name = fmt::format("solution/{:06}.vtu", record_.size());
