@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
 #include <sstream>
 
 namespace crawler
@@ -105,11 +107,12 @@ namespace crawler
       }
     }
     dealii::DataOutBase::VtkFlags flags;
-    flags.time  = snapshot.step.time;
-    flags.cycle = snapshot.step.number;
+    flags.time              = snapshot.step.time;
+    flags.cycle             = snapshot.step.number;
+    flags.compression_level = dealii::DataOutBase::VtkFlags::best_speed; // the arrays are small
     output.set_flags(flags);
 
-    const std::string name = fmt::format("solution/{:06}.vtu", record_.size());
+    const std::string name = fmt::format("solution/{:06}.vtu", n_files_++);
     if (d.n_ranks() == 1)
     {
       std::ostringstream text;
@@ -118,12 +121,30 @@ namespace crawler
     }
     else
       output.write_vtu_in_parallel((folder_ / name).string(), d.communicator());
-    record_.emplace_back(snapshot.step.time, name);
     if (d.rank() == 0)
+      add_to_record(snapshot.step.time, name);
+  }
+
+  void
+  VtuWriter::add_to_record(const double time, const std::string &name)
+  {
+    const std::filesystem::path path = folder_ / "solution.pvd";
+    std::ostringstream out;
+    dealii::DataOutBase::write_pvd_record(out, {{time, name}});
+    const std::string text = out.str();
+    const auto entry = text.find("    <DataSet"), end = text.find("  </Collection>");
+    if (n_files_ == 1)
     {
-      std::ostringstream text;
-      dealii::DataOutBase::write_pvd_record(text, record_);
-      write_file(folder_ / "solution.pvd", text.str());
+      write_file(path, text);
+      record_.open(path, std::ios::binary | std::ios::in | std::ios::out); // "in" keeps what is there
+      record_end_ = static_cast<std::streamoff>(entry);
     }
+    // One small write() takes the place of the end. To replace the file each time is quadratic, and ext4 waits for the
+    // disk whenever a file replaces another one.
+    record_.seekp(record_end_);
+    record_ << text.substr(entry) << std::flush;
+    if (!record_)
+      throw FileError("cannot write \"" + path.string() + "\": " + std::strerror(errno));
+    record_end_ += static_cast<std::streamoff>(end - entry);
   }
 } // namespace crawler

@@ -9,10 +9,14 @@
 //   run/rule/1e-4 ...    The same with the settings that Accuracy chooses, and with the ledger.
 //   run/pilot/1e-4 ...   What choosing them costs (set-up of all objects included).
 //   kernel/...           Residual, Jacobian, elimination and velocity on a mesh of n cells.
+//   kernel/expression/... The active stress as a formula: "bulk" evaluates it at the Gauss points of n cells of degree
+//   4
+//                        (items are points), "construction" prepares it for a mesh.
 //   scale/...            One Newton step (residual, Jacobian, elimination, solution) against the number of unknowns.
 #include "../support/run_text.h"
 
 #include <crawler/discretization/position_form.h>
+#include <crawler/scene/active_stress/expression.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -152,6 +156,41 @@ namespace
     state.SetItemsProcessed(state.iterations());
   }
 
+  /// The points where a mesh of @p n_cells cells of degree 4 asks for the active stress.
+  std::vector<double>
+  stress_points(const std::size_t n_cells)
+  {
+    std::vector<double> points(5 * n_cells);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points[i] = (static_cast<double>(i) + 0.5) / static_cast<double>(points.size());
+    return points;
+  }
+
+  void
+  expression_bulk(benchmark::State &state)
+  {
+    const auto points    = stress_points(static_cast<std::size_t>(state.range(0)));
+    const auto at_points = Expression({.active_stress = "0.1*sin(2*pi*(s+t))"}, 1., 1.).at(points);
+    std::vector<double> m(points.size());
+    double t = 0.;
+    for (auto _ : state)
+    {
+      at_points->values(t += 1e-3, m);
+      benchmark::DoNotOptimize(m.data());
+    }
+    state.SetItemsProcessed(state.iterations() * state.range(0) * 5);
+  }
+
+  void
+  expression_construction(benchmark::State &state)
+  {
+    const auto points = stress_points(static_cast<std::size_t>(state.range(0)));
+    const Expression expression({.active_stress = "0.1*sin(2*pi*(s+t))"}, 1., 1.);
+    for (auto _ : state)
+      benchmark::DoNotOptimize(expression.at(points));
+    state.SetItemsProcessed(state.iterations());
+  }
+
   void
   newton_step(benchmark::State &state)
   {
@@ -213,6 +252,8 @@ main(int argc, char **argv)
              {
                b.assembler.velocity(0.3, b.u, b.v);
              });
+  benchmark::RegisterBenchmark("kernel/expression/bulk", expression_bulk)->Arg(12)->Arg(1200);
+  benchmark::RegisterBenchmark("kernel/expression/construction", expression_construction)->Arg(12)->Arg(1200);
   benchmark::RegisterBenchmark("scale/newton_step", newton_step)
     ->RangeMultiplier(10)
     ->Range(10, 100000)

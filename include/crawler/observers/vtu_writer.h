@@ -5,8 +5,8 @@
 #include <crawler/observers/observer.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
-#include <vector>
 
 namespace crawler
 {
@@ -24,9 +24,15 @@ namespace crawler
     observe(const Snapshot &snapshot) override;
 
   private:
+    /// Adds a line to solution.pvd.
+    void
+    add_to_record(double time, const std::string &name);
+
     const std::filesystem::path folder_;
     std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
     unsigned int mesh_number_ = 0;
-    std::vector<std::pair<double, std::string>> record_;
+    unsigned int n_files_     = 0;
+    std::ofstream record_;          ///< solution.pvd, on rank 0
+    std::streamoff record_end_ = 0; ///< where its last lines begin
   };
 } // namespace crawler

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress.h>
+#include <crawler/scene/active_stress/formula.h>
 
 #include <string>
-#include <utility>
 
 namespace crawler
 {
@@ -39,7 +38,11 @@ namespace crawler
     at(const std::vector<double> &points) const override;
 
   private:
+    /// Throws InputError, see the constructor.
+    void
+    require_finite_values(double length, double end_time) const;
+
     std::string formula_;
-    std::vector<std::pair<std::string, double>> constants_;
+    std::shared_ptr<const Formula> compiled_;
   };
 } // namespace crawler
