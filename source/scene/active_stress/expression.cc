@@ -20,71 +20,6 @@ namespace crawler
     const std::string formula_entry   = "Active stress/Expression/Active stress";
     const std::string constants_entry = "Active stress/Expression/Constants";
 
-    /// The parser and the two variables it is bound to; neither can be copied.
-    class FormulaAtPoints : public ActiveStressAtPoints
-    {
-    public:
-      FormulaAtPoints(const std::string &formula,
-                      const std::vector<std::pair<std::string, double>> &constants,
-                      std::vector<double> points)
-        : points_(std::move(points))
-      {
-        // What users of formulas expect besides muParser's own functions.
-        parser_.DefineFun("pow",
-                          [](const double x, const double y)
-                          {
-                            return std::pow(x, y);
-                          });
-        parser_.DefineFun("floor",
-                          [](const double x)
-                          {
-                            return std::floor(x);
-                          });
-        parser_.DefineFun("ceil",
-                          [](const double x)
-                          {
-                            return std::ceil(x);
-                          });
-        parser_.DefineFun("mod",
-                          [](const double x, const double y)
-                          {
-                            return x - y * std::floor(x / y);
-                          });
-        parser_.DefineFun("erf",
-                          [](const double x)
-                          {
-                            return std::erf(x);
-                          });
-        parser_.DefineFun("erfc",
-                          [](const double x)
-                          {
-                            return std::erfc(x);
-                          });
-        for (const auto &[name, value] : constants)
-          parser_.DefineConst(name, value);
-        parser_.DefineVar("s", &s_);
-        parser_.DefineVar("t", &t_);
-        parser_.SetExpr(formula);
-        parser_.Eval(); // finds syntax errors now
-      }
-
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        t_ = t;
-        for (std::size_t i = 0; i < points_.size(); ++i)
-        {
-          s_   = points_[i];
-          m[i] = parser_.Eval();
-        }
-      }
-
-    private:
-      std::vector<double> points_;
-      double s_ = 0., t_ = 0.;
-      mu::Parser parser_;
-    };
-
     /// What muParser has against a formula, as one sentence with a position that counts from 1.
     std::string
     in_words(const mu::ParserError &error, const std::string &formula)
@@ -180,6 +115,86 @@ namespace crawler
   } // namespace
 
 
+  /// The parser and the two variables it is bound to; neither can be copied.
+  class Expression::Formula
+  {
+  public:
+    Formula(const std::string &formula, const std::vector<std::pair<std::string, double>> &constants)
+    {
+      // What users of formulas expect besides muParser's own functions.
+      parser_.DefineFun("pow",
+                        [](const double x, const double y)
+                        {
+                          return std::pow(x, y);
+                        });
+      parser_.DefineFun("floor",
+                        [](const double x)
+                        {
+                          return std::floor(x);
+                        });
+      parser_.DefineFun("ceil",
+                        [](const double x)
+                        {
+                          return std::ceil(x);
+                        });
+      parser_.DefineFun("mod",
+                        [](const double x, const double y)
+                        {
+                          return x - y * std::floor(x / y);
+                        });
+      parser_.DefineFun("erf",
+                        [](const double x)
+                        {
+                          return std::erf(x);
+                        });
+      parser_.DefineFun("erfc",
+                        [](const double x)
+                        {
+                          return std::erfc(x);
+                        });
+      for (const auto &[name, value] : constants)
+        parser_.DefineConst(name, value);
+      parser_.DefineVar("s", &s_);
+      parser_.DefineVar("t", &t_);
+      parser_.SetExpr(formula);
+      parser_.Eval(); // finds syntax errors now
+    }
+
+    double
+    value(const double s, const double t)
+    {
+      s_ = s;
+      t_ = t;
+      return parser_.Eval();
+    }
+
+  private:
+    double s_ = 0., t_ = 0.;
+    mu::Parser parser_;
+  };
+
+  class Expression::AtPoints : public ActiveStressAtPoints
+  {
+  public:
+    AtPoints(std::shared_ptr<Formula> formula, std::vector<double> points)
+      : formula_(std::move(formula))
+      , points_(std::move(points))
+    {
+    }
+
+    void
+    values(const double t, const std::span<double> m) override
+    {
+      for (std::size_t i = 0; i < points_.size(); ++i)
+        m[i] = formula_->value(points_[i], t);
+    }
+
+  private:
+    const std::shared_ptr<Formula> formula_;
+    const std::vector<double> points_;
+  };
+
+
   void
   ExpressionParameters::add_parameters(Declarations &declarations)
   {
@@ -196,43 +211,37 @@ namespace crawler
   }
 
   Expression::Expression(const ExpressionParameters &parameters, const double length, const double end_time)
-    : formula_(parameters.active_stress)
-    , constants_(parse_constants(parameters.constants, length, end_time))
   {
-    if (formula_.empty())
+    const std::string &formula = parameters.active_stress;
+    const auto constants       = parse_constants(parameters.constants, length, end_time);
+    if (formula.empty())
       throw InputError("the formula of the active stress is empty; an expression of s and t is expected",
                        formula_entry);
-    require_one_value(formula_);
+    require_one_value(formula);
     constexpr unsigned int n = 16;
-    std::vector<double> points(n + 1), m(n + 1);
-    for (unsigned int i = 0; i <= n; ++i)
-      points[i] = length * i / n;
     try
     {
-      const auto at_points = at(points);
+      formula_ = std::make_shared<Formula>(formula, constants);
       for (unsigned int j = 0; j <= n; ++j)
-      {
-        const double t = end_time * j / n;
-        at_points->values(t, m);
         for (unsigned int i = 0; i <= n; ++i)
-          if (!std::isfinite(m[i]))
-            throw InputError(fmt::format("the formula \"{}\" gives {} at s = {}, t = {}; a finite number is expected",
-                                         formula_,
-                                         m[i],
-                                         points[i],
-                                         t),
-                             formula_entry);
-      }
+        {
+          const double s = length * i / n, t = end_time * j / n, m = formula_->value(s, t);
+          if (!std::isfinite(m))
+            throw InputError(
+              fmt::format(
+                "the formula \"{}\" gives {} at s = {}, t = {}; a finite number is expected", formula, m, s, t),
+              formula_entry);
+        }
     }
     catch (const mu::ParserError &error)
     {
-      throw InputError(in_words(error, formula_), formula_entry);
+      throw InputError(in_words(error, formula), formula_entry);
     }
   }
 
   std::unique_ptr<ActiveStressAtPoints>
   Expression::at(const std::vector<double> &points) const
   {
-    return std::make_unique<FormulaAtPoints>(formula_, constants_, points);
+    return std::make_unique<AtPoints>(formula_, points);
   }
 } // namespace crawler

@@ -3,8 +3,8 @@
 
 #include <crawler/scene/active_stress.h>
 
+#include <memory>
 #include <string>
-#include <utility>
 
 namespace crawler
 {
@@ -39,7 +39,8 @@ namespace crawler
     at(const std::vector<double> &points) const override;
 
   private:
-    std::string formula_;
-    std::vector<std::pair<std::string, double>> constants_;
+    class Formula;
+    class AtPoints;
+    std::shared_ptr<Formula> formula_; ///< what at() gave away shares it: the parser is read once
   };
 } // namespace crawler
