@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace crawler
 {
@@ -43,6 +44,17 @@ namespace crawler
       places.push_back(1.);
       return places;
     }
+
+    /// The sampler at these places, made once for each degree.
+    const StretchSampler &
+    stretch_sampler(const ReferenceElement &element)
+    {
+      static std::map<unsigned int, const StretchSampler> samplers;
+      const auto known = samplers.find(element.degree);
+      return known != samplers.end()
+               ? known->second
+               : samplers.try_emplace(element.degree, element, sampled_places(element)).first->second;
+    }
   } // namespace
 
   Assembler::Assembler(const Scene &scene,
@@ -54,7 +66,7 @@ namespace crawler
     , end_stress_(scene.active_stress->at({0., scene.body.length}))
     , n_stress_points_(stress_points.size())
     , stresses_(1)
-    , sampler_(discretization.element(), sampled_places(discretization.element()))
+    , sampler_(stretch_sampler(discretization.element()))
   {
     // The stretch is a polynomial of degree q - 1 in a cell.
     const auto &element = discretization.element();

@@ -10,36 +10,48 @@
 
 namespace crawler
 {
+  namespace
+  {
+    /// The rank that owns a cell: each owns a run of neighbouring cells.
+    unsigned int
+    owner(const std::uint64_t cell, const std::uint64_t n_cells, const std::uint64_t n_ranks)
+    {
+      return static_cast<unsigned int>(cell * std::min(n_cells, n_ranks) / n_cells);
+    }
+  } // namespace
+
+  /// A sequence of meshes: cells of one size and what became of them. Most runs never adapt their mesh, and cells of
+  /// one size need no triangulation.
   struct Discretization::Mesh
   {
-    Mesh(MPI_Comm communicator, const double length, const unsigned int n_cells)
-      : triangulation(communicator,
-                      dealii::Triangulation<1>::none,
-                      /*allow_artificial_cells=*/false,
-                      dealii::parallel::shared::Triangulation<1>::partition_custom_signal)
-      , n_ranks(dealii::Utilities::MPI::n_mpi_processes(communicator))
-      , n_coarse_cells(n_cells)
+    void
+    make_triangulation(MPI_Comm communicator)
     {
+      triangulation     = std::make_unique<Triangulation>(communicator,
+                                                      dealii::Triangulation<1>::none,
+                                                      /*allow_artificial_cells=*/false,
+                                                      Triangulation::partition_custom_signal);
       const auto assign = [this]()
       {
         assign_ranks();
       };
-      triangulation.signals.create.connect(assign); // the first mesh does not count as a refinement
-      triangulation.signals.post_refinement.connect(assign);
-      dealii::GridGenerator::subdivided_hyper_cube(triangulation, n_cells, 0., length);
+      triangulation->signals.create.connect(assign); // the first mesh does not count as a refinement
+      triangulation->signals.post_refinement.connect(assign);
+      dealii::GridGenerator::subdivided_hyper_cube(*triangulation, n_coarse_cells, 0., length);
     }
 
-    using Iterator = dealii::Triangulation<1>::active_cell_iterator;
+    using Triangulation = dealii::parallel::shared::Triangulation<1>;
+    using Iterator      = dealii::Triangulation<1>::active_cell_iterator;
 
     /// The active cells from left to right; deal.II has them level by level.
     std::vector<Iterator>
     cells_along_the_body() const
     {
       std::vector<Iterator> cells;
-      cells.reserve(triangulation.n_active_cells());
-      for (const auto &cell : triangulation.active_cell_iterators())
+      cells.reserve(triangulation->n_active_cells());
+      for (const auto &cell : triangulation->active_cell_iterators())
         cells.push_back(cell);
-      if (triangulation.n_levels() > 1)
+      if (triangulation->n_levels() > 1)
         std::sort(cells.begin(),
                   cells.end(),
                   [](const Iterator &a, const Iterator &b)
@@ -49,26 +61,47 @@ namespace crawler
       return cells;
     }
 
-    /// Each rank owns a run of neighbouring cells.
     void
     assign_ranks()
     {
-      const auto cells         = cells_along_the_body();
-      const std::uint64_t n    = cells.size();
-      const std::uint64_t used = std::min<std::uint64_t>(n, n_ranks);
-      for (std::uint64_t i = 0; i < n; ++i)
-        cells[i]->set_subdomain_id(static_cast<dealii::types::subdomain_id>(i * used / n));
+      const auto cells = cells_along_the_body();
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        cells[i]->set_subdomain_id(owner(i, cells.size(), n_ranks));
     }
 
-    dealii::parallel::shared::Triangulation<1> triangulation;
+    /// The cells from left to right.
+    std::vector<Cell>
+    cells() const
+    {
+      const double coarse_size = length / n_coarse_cells;
+      std::vector<Cell> result;
+      if (!triangulation)
+      {
+        result.reserve(n_coarse_cells);
+        for (unsigned int c = 0; c < n_coarse_cells; ++c)
+          result.push_back({c * coarse_size, coarse_size, 0});
+        return result;
+      }
+      result.reserve(triangulation->n_active_cells());
+      for (const auto &cell : cells_along_the_body())
+        result.push_back(
+          {cell->vertex(0)[0], std::ldexp(coarse_size, -cell->level()), static_cast<unsigned int>(cell->level())});
+      return result;
+    }
+
+    const double length;
     const unsigned int n_ranks, n_coarse_cells;
+    std::unique_ptr<Triangulation> triangulation = nullptr; ///< once the mesh is adapted
   };
 
   Discretization::Discretization(MPI_Comm communicator,
                                  const double length,
                                  const unsigned int n_cells,
                                  const unsigned int degree)
-    : Discretization(communicator, length, degree, std::make_shared<Mesh>(communicator, length, n_cells))
+    : Discretization(communicator,
+                     length,
+                     degree,
+                     std::make_shared<Mesh>(length, dealii::Utilities::MPI::n_mpi_processes(communicator), n_cells))
   {
   }
 
@@ -78,41 +111,39 @@ namespace crawler
                                  std::shared_ptr<Mesh> mesh)
     : communicator_(communicator)
     , length_(length)
-    , element_(degree)
+    , element_(reference_element(degree))
     , rank_(dealii::Utilities::MPI::this_mpi_process(communicator))
-    , n_ranks_(dealii::Utilities::MPI::n_mpi_processes(communicator))
+    , n_ranks_(mesh->n_ranks)
     , mesh_(std::move(mesh))
   {
-    read_mesh();
+    set_cells(mesh_->cells());
   }
 
   Discretization::~Discretization() = default;
 
   void
-  Discretization::read_mesh()
+  Discretization::set_cells(std::vector<Cell> cells)
   {
-    const double coarse_size = length_ / mesh_->n_coarse_cells;
-    for (const auto &cell : mesh_->cells_along_the_body())
+    cells_          = std::move(cells);
+    n_active_ranks_ = std::min(n_cells(), n_ranks_);
+    for (unsigned int c = 0; c < n_cells(); ++c)
     {
-      const auto level = static_cast<unsigned int>(cell->level());
-      cells_.push_back({cell->vertex(0)[0], std::ldexp(coarse_size, -static_cast<int>(level)), level});
-      if (!cell->is_locally_owned())
+      if (owner(c, n_cells(), n_ranks_) != rank_)
         continue;
       if (cell_left_.empty())
-        first_cell_ = static_cast<unsigned int>(cells_.size()) - 1;
-      cell_left_.push_back(cells_.back().left);
-      cell_size_.push_back(cells_.back().size);
+        first_cell_ = c;
+      cell_left_.push_back(cells_[c].left);
+      cell_size_.push_back(cells_[c].size);
     }
-    n_active_ranks_ = std::min(n_cells(), n_ranks_);
-    if ((rank_ < n_active_ranks_) == cell_left_.empty())
-      throw std::logic_error("deal.II's ownership of cells is not the one that was asked for");
   }
 
   std::unique_ptr<Discretization>
   Discretization::adapted(std::vector<CellChange> changes) const
   {
     const unsigned int n = n_cells();
-    const auto cells     = mesh_->cells_along_the_body();
+    if (!mesh_->triangulation)
+      mesh_->make_triangulation(communicator_);
+    const auto cells = mesh_->cells_along_the_body();
     if (cells.size() != n)
       throw std::logic_error("only the latest of a sequence of meshes can be adapted");
 
@@ -161,7 +192,7 @@ namespace crawler
         cells[c]->set_refine_flag();
       else if (changes[c] == CellChange::join)
         cells[c]->set_coarsen_flag();
-    mesh_->triangulation.execute_coarsening_and_refinement();
+    mesh_->triangulation->execute_coarsening_and_refinement();
     return std::unique_ptr<Discretization>(new Discretization(communicator_, length_, element_.degree, mesh_));
   }
 

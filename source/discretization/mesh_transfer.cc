@@ -2,6 +2,7 @@
 #include <crawler/discretization/mesh_transfer.h>
 
 #include <cmath>
+#include <map>
 
 namespace crawler
 {
@@ -205,5 +206,12 @@ namespace crawler
     }
     result.resize(to.n_owned(), 0.);
     return result;
+  }
+
+  const MeshTransfer &
+  mesh_transfer(const unsigned int degree)
+  {
+    static std::map<unsigned int, const MeshTransfer> transfers;
+    return transfers.try_emplace(degree, reference_element(degree)).first->second;
   }
 } // namespace crawler

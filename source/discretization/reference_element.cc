@@ -4,6 +4,8 @@
 #include <deal.II/base/polynomial.h>
 #include <deal.II/base/quadrature_lib.h>
 
+#include <map>
+
 namespace crawler
 {
   std::vector<double>
@@ -86,5 +88,12 @@ namespace crawler
     stretch_to_points   = interpolation_matrix(stretch_points, points);
     integrate_points    = integration_matrix(points, points);
     integrate_nodes     = integration_matrix(nodes, points);
+  }
+
+  const ReferenceElement &
+  reference_element(const unsigned int degree)
+  {
+    static std::map<unsigned int, const ReferenceElement> elements;
+    return elements.try_emplace(degree, degree).first->second;
   }
 } // namespace crawler

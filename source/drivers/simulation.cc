@@ -243,8 +243,7 @@ namespace crawler
     auto mesh                     = old_discretization->adapted(
       to_log ? std::vector<CellChange>(old_discretization->n_cells(), CellChange::keep) : changes_);
     build(std::move(mesh), formulation);
-    const MeshTransfer transfer(discretization_->element());
-    y_ = transfer.transfer(*old_assembler, accepted_, *assembler_);
+    y_ = mesh_transfer(numerics_.degree).transfer(*old_assembler, accepted_, *assembler_);
     assembler_->make_consistent(accepted_time_, y_);
     const double old_time = accepted_time_;
     if (!to_log && keeps_rate())

@@ -12,6 +12,7 @@
 #include <exception>
 #include <limits>
 #include <optional>
+#include <set>
 
 namespace crawler
 {
@@ -21,6 +22,18 @@ namespace crawler
     constexpr double newton_fraction = 0.01;
     /// The same if it is only predicted, with the constant of an earlier step.
     constexpr double predicted_fraction = 0.1 * newton_fraction;
+
+    /// Keeps PETSc's duplicate of a communicator that lasts until the end; it would be made and freed with the objects
+    /// of every time stepper. PETSc frees it at its own end.
+    void
+    keep_duplicate(MPI_Comm communicator)
+    {
+      static std::set<MPI_Comm> kept;
+      if ((communicator != MPI_COMM_WORLD && communicator != MPI_COMM_SELF) || !kept.insert(communicator).second)
+        return;
+      MPI_Comm duplicate = MPI_COMM_NULL;
+      petsc(PetscCommDuplicate(communicator, &duplicate, nullptr));
+    }
   } // namespace
 
 
@@ -119,6 +132,7 @@ namespace crawler
     , parameters(parameters)
     , weights(weights)
   {
+    keep_duplicate(communicator);
     const std::size_t n_owned = weights.size();
     Vec vec                   = nullptr;
     petsc(VecCreate(communicator, &vec));

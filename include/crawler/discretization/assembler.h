@@ -229,7 +229,7 @@ namespace crawler
     std::vector<StressAtTime> stresses_; ///< the latest
     std::size_t oldest_stress_ = 0;
     std::vector<double> u_local_, v_local_;
-    const StretchSampler sampler_;     ///< at the left end, the quadrature points and the right end
+    const StretchSampler &sampler_;    ///< at the left end, the quadrature points and the right end
     std::vector<double> highest_mode_; ///< [point] weights that give the highest Legendre coefficient
     std::vector<double> friction_at_, m_at_quadrature_;
   };

@@ -27,9 +27,9 @@ namespace crawler
   };
 
   /**
-   * Mesh, element and numbering of the unknowns. The mesh is a deal.II parallel::shared::Triangulation<1> in which each
-   * rank owns a run of neighbouring cells (ranks beyond the number of cells own none). Unknowns are numbered along the
-   * body: node i of cell c has the number c*degree + i, so each matrix is a chain of small dense blocks.
+   * Mesh, element and numbering of the unknowns. Each rank owns a run of neighbouring cells (ranks beyond the number of
+   * cells own none). A mesh that is adapted is a deal.II parallel::shared::Triangulation<1>. Unknowns are numbered
+   * along the body: node i of cell c has the number c*degree + i, so each matrix is a chain of small dense blocks.
    *
    * A rank owns the unknowns of its cells except the first node of its first cell, which the rank to the left owns
    * (rank 0 owns that too). "Local" arrays hold all nodes of the own cells, that first one included: local node
@@ -155,17 +155,16 @@ namespace crawler
     add_to_owned(std::span<const Number> local, std::span<Number> owned) const;
 
   private:
-    struct Mesh; ///< deal.II's triangulation, kept out of this header
+    struct Mesh; ///< holds deal.II's triangulation, kept out of this header
 
     Discretization(MPI_Comm communicator, double length, unsigned int degree, std::shared_ptr<Mesh> mesh);
 
-    /// Reads the cells of deal.II's mesh.
     void
-    read_mesh();
+    set_cells(std::vector<Cell> cells);
 
     const MPI_Comm communicator_;
     const double length_;
-    const ReferenceElement element_;
+    const ReferenceElement &element_;
     const unsigned int rank_, n_ranks_;
     unsigned int n_active_ranks_ = 0, first_cell_ = 0;
     std::vector<Cell> cells_;

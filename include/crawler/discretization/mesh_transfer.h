@@ -24,10 +24,14 @@ namespace crawler
     transfer(const Assembler &from, std::span<const double> y, const Assembler &to) const;
 
   private:
-    const ReferenceElement element_;
+    const ReferenceElement &element_;
     std::vector<double> u_half_[2];   ///< [n][n] from a cell's nodes to those of its left and right half
     std::vector<double> log_half_[2]; ///< [q][q] the same for stretch points
     std::vector<double> u_join_;      ///< [n][2q+1] from the nodes of two halves to those of the cell
     std::vector<double> log_join_;    ///< [q][2q] the same for stretch points
   };
+
+  /// The transfer between meshes of a degree, made once for each.
+  const MeshTransfer &
+  mesh_transfer(unsigned int degree);
 } // namespace crawler

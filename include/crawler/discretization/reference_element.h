@@ -41,6 +41,10 @@ namespace crawler
     std::vector<double> integrate_nodes;  ///< [n points][n] ... the nodes
   };
 
+  /// The tables of a degree, made when they are first asked for and kept: a mesh is made more often than they change.
+  const ReferenceElement &
+  reference_element(unsigned int degree);
+
   /// The Lagrange polynomials through @p nodes, or their derivatives, at @p points: [points][nodes].
   std::vector<double>
   interpolation_matrix(const std::vector<double> &nodes,

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// A one-step method loses nothing when the mesh changes: a run that is interrupted again and again, its state carried
+// to another mesh and integrated on, takes the steps of one that is not. bdf, which starts anew each time, takes many
+// more.
+#include "../support/run_text.h"
+
+#include <crawler/discretization/mesh_transfer.h>
+#include <crawler/time/integrators.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  constexpr unsigned int degree = 6, n_cells = 8;
+  constexpr double first_step = 1e-5; ///< of every start of bdf, and of the first of a one-step method
+
+  /// A crawler on one mesh, and its time stepper.
+  struct OnMesh
+  {
+    OnMesh(const Scene &scene, const TimeParameters &time, std::unique_ptr<Discretization> discretization)
+      : mesh(std::move(discretization))
+      , form(create_assembler(Formulation::position, scene, *mesh))
+      , stepper(MPI_COMM_WORLD, form->weights(), time)
+    {
+      form->keep_stresses(integrator(time.integrator).n_stages);
+      stepper.implicit_function = [this](double t, auto y, auto y_dot, auto F)
+      {
+        return form->residual(t, y, y_dot, F);
+      };
+      stepper.setup_jacobian = [this](double t, auto y, auto y_dot, double shift)
+      {
+        return form->setup_jacobian(t, y, y_dot, shift);
+      };
+      stepper.solve_with_jacobian = [this](auto b, auto x)
+      {
+        form->solve_with_jacobian(b, x);
+      };
+      stepper.setup_complex_jacobians = [this](double t, auto y, auto y_dot, auto sigma)
+      {
+        return form->setup_complex_jacobians(t, y, y_dot, sigma);
+      };
+      stepper.solve_with_complex_jacobian = [this](unsigned int i, auto b, auto x)
+      {
+        form->solve_with_complex_jacobian(i, b, x);
+      };
+      stepper.setup_stage = [this](unsigned int stage, double t, auto y, auto y_dot)
+      {
+        form->setup_stage(stage, t, y, y_dot);
+      };
+      stepper.stage_vmult = [this](unsigned int stage, auto x, auto x_dot, auto y)
+      {
+        form->stage_vmult(stage, x, x_dot, y);
+      };
+    }
+
+    std::unique_ptr<Discretization> mesh;
+    std::unique_ptr<Assembler> form;
+    TimeStepper stepper;
+  };
+
+  /// What a run took, its interruptions included.
+  struct Count
+  {
+    unsigned int steps = 0, rejected = 0, mesh_changes = 0;
+    unsigned long newton_iterations = 0;
+    double displacement             = 0.;
+  };
+
+  /// Changes the mesh after every @p steps_on_a_mesh steps: all cells are divided, then joined again, and so on.
+  Count
+  run(const std::string &name, const double tolerance, const unsigned int steps_on_a_mesh)
+  {
+    auto parameters            = test::parameters_with(test::wave(-1., 0.3));
+    parameters.time.integrator = name;
+    const Scene scene          = parameters.create_scene();
+    auto part                  = std::make_unique<OnMesh>(
+      scene, parameters.time, std::make_unique<Discretization>(MPI_COMM_WORLD, 1., n_cells, degree));
+    const MeshTransfer transfer(part->mesh->element());
+    std::vector<double> y(part->form->n_owned(), 0.);
+    Count count;
+    double time = 0., size = first_step;
+    for (;;)
+    {
+      part->stepper.monitor = [&](const Step &step, auto)
+      {
+        return step.number < steps_on_a_mesh;
+      };
+      const TimeOutcome outcome = part->stepper.solve(y, {}, tolerance, size, 1., time);
+      count.steps += outcome.steps;
+      count.rejected += outcome.rejected_steps;
+      count.newton_iterations += outcome.newton_iterations;
+      if (outcome.status != "stopped")
+      {
+        EXPECT_EQ(outcome.status, "finished") << name;
+        const std::vector<double> at_rest(part->mesh->n_owned(), 0.);
+        count.displacement = part->form->integrals(1., y, at_rest).displacement;
+        return count;
+      }
+      const auto change = count.mesh_changes++ % 2 == 0 ? CellChange::divide : CellChange::join;
+      auto next         = std::make_unique<OnMesh>(
+        scene, parameters.time, part->mesh->adapted(std::vector<CellChange>(part->mesh->n_cells(), change)));
+      y    = transfer.transfer(*part->form, y, *next->form);
+      part = std::move(next);
+      time = outcome.time;
+      size = name == "bdf" ? std::min(outcome.step_size, first_step) : outcome.step_size;
+    }
+  }
+
+  constexpr unsigned int never = 1000000;
+
+  void
+  print(const std::string &name, const double tolerance, const Count &count)
+  {
+    fmt::print("{:8} tolerance {:.0e}: {:4} meshes, {:4} steps, {:3} rejected, {:5} Newton iterations, {:.10f}\n",
+               name,
+               tolerance,
+               count.mesh_changes + 1,
+               count.steps,
+               count.rejected,
+               count.newton_iterations,
+               count.displacement);
+  }
+} // namespace
+
+TEST(Remesh, CostsARadauMethodNoSteps)
+{
+  for (const std::string name : {"radau 5", "radau 9"})
+    for (const double tolerance : {1e-5, 1e-6, 1e-7, 1e-8})
+    {
+      const Count plain = run(name, tolerance, never);
+      print(name, tolerance, plain);
+      for (const unsigned int steps_on_a_mesh : {8u, 2u, 1u})
+      {
+        const Count remeshed = run(name, tolerance, steps_on_a_mesh);
+        print(name, tolerance, remeshed);
+        EXPECT_GE(remeshed.mesh_changes, plain.steps / steps_on_a_mesh - 1) << name;
+        EXPECT_LE(remeshed.steps + remeshed.rejected, plain.steps + plain.rejected + 2) << name;
+        EXPECT_NEAR(remeshed.displacement, plain.displacement, 10. * tolerance) << name;
+      }
+    }
+}
+
+TEST(Remesh, CostsBdfManySteps)
+{
+  const double tolerance = 1e-6;
+  const Count plain      = run("bdf", tolerance, never);
+  print("bdf", tolerance, plain);
+  for (const unsigned int steps_on_a_mesh : {40u, 20u})
+  {
+    const Count remeshed = run("bdf", tolerance, steps_on_a_mesh);
+    print("bdf", tolerance, remeshed);
+    EXPECT_GE(remeshed.steps, plain.steps + 15 * remeshed.mesh_changes);
+  }
+}
+
+/// The same within a whole run: a pulse that travels takes its fine cells with it, and the steps are those of a mesh
+/// that is fine everywhere, but for the norm of their error: it is a mean over nodes, which an adaptive mesh has where
+/// the errors are. A state that the mesh refuses is done again, so a change may cost that one step.
+TEST(Remesh, AnAdaptiveRunTakesTheStepsOfAFineMesh)
+{
+  auto parameters = test::parameters_with(
+    {{"Body/Anchoring exponent", "2"},
+     {"Active stress/Generator", "expression"},
+     {"Active stress/Expression/Active stress", "0.3*(1-exp(-(t/0.1)^2))*exp(-((s-0.2-0.6*t)/0.03)^2)"}});
+  const Scene scene = parameters.create_scene();
+  for (const std::string name : {"radau 5", "radau 9"})
+    for (const double tolerance : {1e-5, 1e-6, 1e-7})
+    {
+      parameters.time.integrator = name;
+      Numerics numerics{degree, 48, tolerance, first_step};
+      const auto fine     = Simulation(MPI_COMM_WORLD, scene, parameters.time, numerics).run({}, {});
+      numerics.n_cells    = n_cells;
+      numerics.mesh       = {.tolerance = 1e-8, .smallest_cell = 1e-3, .most_cells = 1000};
+      const auto adaptive = Simulation(MPI_COMM_WORLD, scene, parameters.time, numerics).run({}, {});
+      fmt::print("{} tolerance {:.0e}: {} steps on {} cells; {} and {} rejected on {} meshes of up to {} cells\n",
+                 name,
+                 tolerance,
+                 fine.time.steps,
+                 fine.most_cells,
+                 adaptive.time.steps,
+                 adaptive.time.rejected_steps,
+                 adaptive.mesh_changes + 1,
+                 adaptive.most_cells);
+      EXPECT_GE(adaptive.mesh_changes, 5u) << name;
+      EXPECT_LE(adaptive.time.steps, 1.1 * fine.time.steps + 1.) << name;
+      EXPECT_LE(adaptive.time.rejected_steps, adaptive.mesh_changes + 1) << name;
+    }
+}
