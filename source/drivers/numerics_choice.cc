@@ -171,7 +171,6 @@ namespace crawler
         Simulation simulation(communicator_, scene_, pilot_time_, numerics);
         ++n_pilots_;
         SimulationResult result = simulation.run({}, {.ledger = false, .resolution = true}, {}, keep_going_);
-        if (getenv("DBG"))
           fprintf(
             stderr,
             "pilot %s q %u N %u tol %.2e: %s %s steps %u rej %u unres %.2e ind %.2e strain %.2e D %.6g min %.3g\n",
