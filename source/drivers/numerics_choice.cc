@@ -171,21 +171,6 @@ namespace crawler
         Simulation simulation(communicator_, scene_, pilot_time_, numerics);
         ++n_pilots_;
         SimulationResult result = simulation.run({}, {.ledger = false, .resolution = true}, {}, keep_going_);
-        fprintf(stderr,
-                "pilot %s q %u N %u tol %.2e: %s %s steps %u rej %u unres %.2e ind %.2e strain %.2e D %.6g min %.3g\n",
-                numerics.integrator.c_str(),
-                numerics.degree,
-                numerics.n_cells,
-                numerics.tolerance,
-                result.time.status.c_str(),
-                result.time.reason.c_str(),
-                result.time.steps,
-                result.time.rejected_steps,
-                result.unresolved,
-                result.largest_indicator,
-                result.strain,
-                result.displacement,
-                result.min_stretch.value);
         if (result.time.status == "stopped" && result.time.reason.empty())
           throw Interrupted();
         return result;

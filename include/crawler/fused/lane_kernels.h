@@ -24,17 +24,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     operator()(const Pack *w, Pack *g, const int n) const
     {
-      for (int p = 0; p < n; ++p)
-      {
-        Pack by_products = broadcast<Pack>(1.);
-        if (any_whole)
+      if (any_other)
+        power_at_points(w, a, g, n);
+      if (any_whole)
+        for (int p = 0; p < n; ++p)
         {
-          Pack x = negative ? 1. / w[p] : w[p];
+          Pack by_products = broadcast<Pack>(1.), x = negative ? 1. / w[p] : w[p];
           for (int b = 0; b < n_bits; ++b, x *= x)
             by_products *= bits[b] ? x : broadcast<Pack>(1.);
+          g[p] = any_other ? (whole ? by_products : g[p]) : by_products;
         }
-        g[p] = any_other ? (whole ? by_products : power(w[p], a)) : by_products;
-      }
     }
   };
 
