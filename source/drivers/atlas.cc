@@ -192,14 +192,22 @@ namespace crawler
       std::ofstream out_;
     };
 
-    /// This rank's share of the points. A signal ends the work of all ranks; each drops the point it is at.
+    /// So many points are computed together: enough to fill the lanes of the fused engine, unless ranks would wait.
+    unsigned long
+    points_together(const unsigned long n_points, const unsigned int n_ranks)
+    {
+      constexpr unsigned long most = 8, parts_per_rank = 8;
+      return std::clamp(n_points / (parts_per_rank * n_ranks), 1ul, most);
+    }
+
+    /// This rank's share of the points. A signal ends the work of all ranks; each drops the points it is at.
     std::vector<AtlasPoint>
-    compute_points(MPI_Comm communicator,
-                   const ParameterFile &file,
-                   const AtlasAxes &axes,
-                   const StopSignal &stop_signal,
-                   RowWriter &rows,
-                   Log &log)
+    compute_own_points(MPI_Comm communicator,
+                       const ParameterFile &file,
+                       const AtlasAxes &axes,
+                       const StopSignal &stop_signal,
+                       RowWriter &rows,
+                       Log &log)
     {
       Form form(file);
       const std::vector<double> first = numbers_of(axes.first, ""), second = numbers_of(axes.second, "");
@@ -210,22 +218,38 @@ namespace crawler
         return stop_signal.arrived_anywhere(MPI_COMM_SELF);
       };
       std::vector<AtlasPoint> points;
-      const unsigned long stride = golden_stride(axes.n_points());
-      while (const auto number = queue.next())
+      const unsigned long stride     = golden_stride(axes.n_points());
+      const unsigned long n_together = points_together(axes.n_points(), size_of(communicator));
+      for (;;)
       {
-        const unsigned long index = *number * stride % axes.n_points();
-        auto point                = compute_point(form.filled(axes, index), interrupted);
-        if (!point)
+        std::vector<unsigned long> indices;
+        std::vector<Parameters> parameters;
+        while (indices.size() < n_together)
+        {
+          const auto number = queue.next();
+          if (!number)
+            break;
+          indices.push_back(*number * stride % axes.n_points());
+          parameters.push_back(form.filled(axes, indices.back()));
+        }
+        if (indices.empty())
+          break;
+        auto some = compute_points(parameters, interrupted);
+        if (!some)
         {
           queue.close();
           break;
         }
-        point->index  = index;
-        point->first  = first[index / second.size()];
-        point->second = second[index % second.size()];
-        rows.write(*point);
-        points.push_back(*point);
-        progress.report(queue.done());
+        for (std::size_t i = 0; i < indices.size(); ++i)
+        {
+          AtlasPoint &point = (*some)[i];
+          point.index       = indices[i];
+          point.first       = first[point.index / second.size()];
+          point.second      = second[point.index % second.size()];
+          rows.write(point);
+          points.push_back(point);
+          progress.report(queue.done());
+        }
       }
       return points;
     }
@@ -325,7 +349,7 @@ namespace crawler
                          n_ranks == 1 ? "" : "s"));
 
     RowWriter rows(folder / "rows", rank_of(communicator), axes);
-    const auto points    = collect(communicator, compute_points(communicator, file, axes, stop_signal, rows, log));
+    const auto points    = collect(communicator, compute_own_points(communicator, file, axes, stop_signal, rows, log));
     const auto summary   = summarize(points, axes);
     const double seconds = now() - start;
     on_first_rank(

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <new>
 
@@ -97,31 +96,21 @@ namespace crawler
       return run;
     }
 
-    /// One run. A whole scene or form that is inadmissible is "refused"; an error of the program itself is a failure.
+    /// What came of a task. A whole scene or form that is inadmissible is "refused"; an error of the program itself is
+    /// a failure.
     AtlasRun
-    compute_run(const Parameters &parameters, const std::function<bool()> &interrupted)
+    run_of(const Task &task)
     {
-      using Clock      = std::chrono::steady_clock;
-      const auto start = Clock::now();
-      const auto age   = [start]()
-      {
-        return std::chrono::duration<double>(Clock::now() - start).count();
-      };
-      const double limit = parameters.atlas.time_limit;
       AtlasRun run;
       try
       {
-        const Scene scene = parameters.create_scene();
-        run               = summary_of(compute(parameters,
-                                 scene,
-                                 [&]()
-                                 {
-                                   return age() <= limit && !interrupted();
-                                 }));
-        if (run.status == "stopped" && run.reason.empty())
+        if (task.error)
+          std::rethrow_exception(task.error);
+        run = summary_of(task.computed);
+        if (run.status == "stopped" && run.reason.empty() && task.is_out_of_time)
         {
           run.reason  = "time_limit";
-          run.message = fmt::format("stopped after {:g} s", limit);
+          run.message = fmt::format("stopped after {:g} s", task.parameters.atlas.time_limit);
         }
       }
       catch (const InputError &error)
@@ -136,7 +125,7 @@ namespace crawler
       {
         run = not_computed("failed", "exception", error.what());
       }
-      run.seconds = age();
+      run.seconds = task.seconds;
       return run;
     }
 
@@ -186,38 +175,84 @@ namespace crawler
     }
   } // namespace
 
-  std::optional<AtlasPoint>
-  compute_point(const Parameters &parameters, const std::function<bool()> &interrupted)
+  namespace
   {
-    AtlasPoint point;
-    const auto add = [&](const AtlasPoint::Run which, const Parameters &own)
+    /// The runs of one kind at those points for which @p own gives parameters.
+    void
+    add_runs(std::vector<AtlasPoint> &points,
+             const AtlasPoint::Run which,
+             const std::function<std::optional<Parameters>(std::size_t)> &own,
+             const std::function<bool()> &interrupted)
     {
-      if (!interrupted())
-        point.runs[which] = compute_run(own, interrupted);
-    };
-    add(AtlasPoint::automatic, parameters);
-    if (parameters.discretization.formulation == "automatic")
-    {
-      add(AtlasPoint::position, with_formulation(parameters, "position"));
-      // The log-stretch form is for a < 0 (doc/numerics.md).
-      if (point.runs[AtlasPoint::automatic].is_log_stretch) // the automatic choice was this very run
-        point.runs[AtlasPoint::log_stretch] = point.runs[AtlasPoint::automatic];
-      else if (parameters.body.friction_exponent() < 0.)
-        add(AtlasPoint::log_stretch, with_formulation(parameters, "log stretch"));
+      std::vector<Task> tasks;
+      std::vector<std::size_t> numbers;
+      for (std::size_t i = 0; i < points.size() && !interrupted(); ++i)
+        if (const auto parameters = own(i))
+        {
+          tasks.emplace_back().parameters = *parameters;
+          numbers.push_back(i);
+        }
+      if (tasks.empty())
+        return;
+      compute_all(tasks, tasks[0].parameters.atlas.time_limit, interrupted);
+      for (std::size_t i = 0; i < tasks.size(); ++i)
+        points[numbers[i]].runs[which] = run_of(tasks[i]);
     }
+  } // namespace
+
+  std::optional<std::vector<AtlasPoint>>
+  compute_points(const std::vector<Parameters> &parameters, const std::function<bool()> &interrupted)
+  {
+    std::vector<AtlasPoint> points(parameters.size());
+    const auto add = [&](const AtlasPoint::Run which, const std::function<std::optional<Parameters>(std::size_t)> &own)
+    {
+      add_runs(points, which, own, interrupted);
+    };
+    const auto both_forms = [&](const std::size_t i)
+    {
+      return parameters[i].discretization.formulation == "automatic";
+    };
+    add(AtlasPoint::automatic,
+        [&](const std::size_t i)
+        {
+          return parameters[i];
+        });
+    add(AtlasPoint::position,
+        [&](const std::size_t i) -> std::optional<Parameters>
+        {
+          if (!both_forms(i))
+            return std::nullopt;
+          return with_formulation(parameters[i], "position");
+        });
+    add(AtlasPoint::log_stretch,
+        [&](const std::size_t i) -> std::optional<Parameters>
+        {
+          // The log-stretch form is for a < 0 (doc/numerics.md).
+          if (!both_forms(i) || points[i].runs[AtlasPoint::automatic].is_log_stretch ||
+              parameters[i].body.friction_exponent() >= 0.)
+            return std::nullopt;
+          return with_formulation(parameters[i], "log stretch");
+        });
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (both_forms(i) &&
+          points[i].runs[AtlasPoint::automatic].is_log_stretch) // the automatic choice was this very run
+        points[i].runs[AtlasPoint::log_stretch] = points[i].runs[AtlasPoint::automatic];
     // Where the choice of mesh and steps does not depend on it, Accuracy is divided once more: a run is no check of
     // itself.
-    Parameters refined = parameters;
-    for (int i = 0; i < 2; ++i)
-    {
-      refined = refined_parameters(refined);
-      add(AtlasPoint::refined, refined);
-      if (!same_run(point.runs[AtlasPoint::automatic], point.runs[AtlasPoint::refined]))
-        break;
-    }
+    std::vector<Parameters> refined = parameters;
+    for (int round = 0; round < 2; ++round)
+      add(AtlasPoint::refined,
+          [&](const std::size_t i) -> std::optional<Parameters>
+          {
+            if (round > 0 && !same_run(points[i].runs[AtlasPoint::automatic], points[i].runs[AtlasPoint::refined]))
+              return std::nullopt;
+            refined[i] = refined_parameters(refined[i]);
+            return refined[i];
+          });
     if (interrupted())
       return std::nullopt;
-    judge(point, parameters);
-    return point;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      judge(points[i], parameters[i]);
+    return points;
   }
 } // namespace crawler

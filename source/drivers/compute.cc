@@ -1,9 +1,116 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/drivers/batch.h>
 #include <crawler/drivers/compute.h>
 #include <crawler/drivers/self_check.h>
 
+#include <chrono>
+
 namespace crawler
 {
+  namespace
+  {
+    SimulationResult
+    simulate(const Parameters &parameters,
+             const Scene &scene,
+             const Numerics &numerics,
+             const std::function<bool()> &keep_going)
+    {
+      Simulation simulation(MPI_COMM_SELF, scene, parameters.time, numerics);
+      return simulation.run({}, {.ledger = parameters.output.ledger, .resolution = false}, {}, keep_going);
+    }
+
+    class Clock
+    {
+    public:
+      double
+      seconds() const
+      {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+      }
+
+    private:
+      const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    };
+
+    /// A part of the work for one task: its time is taken, and what it throws is kept.
+    void
+    guarded(Task &task, const std::function<void()> &work)
+    {
+      const Clock clock;
+      try
+      {
+        work();
+      }
+      catch (...)
+      {
+        task.error = std::current_exception();
+      }
+      task.seconds += clock.seconds();
+    }
+
+    /// Scene and numerics; without them the task is stopped.
+    void
+    prepare(Task &task, const double time_limit, const std::function<bool()> &interrupted)
+    {
+      guarded(task,
+              [&]()
+              {
+                const Clock clock;
+                task.scene.emplace(task.parameters.create_scene());
+                const auto choice = choose_numerics(MPI_COMM_SELF,
+                                                    task.parameters,
+                                                    *task.scene,
+                                                    [&]()
+                                                    {
+                                                      task.is_out_of_time = clock.seconds() > time_limit;
+                                                      return !task.is_out_of_time && !interrupted();
+                                                    });
+                if (choice)
+                  task.computed.choice = *choice;
+                else
+                  task.computed.result.time.status = "stopped";
+              });
+    }
+
+    bool
+    is_ready(const Task &task)
+    {
+      return !task.error && task.computed.result.time.status.empty();
+    }
+
+    /// Runs that fit, side by side.
+    void
+    compute_batches(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)
+    {
+      std::vector<BatchRun> runs[2]; // without and with ledger
+      std::vector<Task *> members[2];
+      for (Task &task : tasks)
+        if (is_ready(task) && fused_method(*task.scene, task.parameters.time, task.computed.choice.numerics))
+        {
+          const bool ledger = task.parameters.output.ledger;
+          runs[ledger].push_back({&*task.scene, &task.parameters.time, &task.computed.choice.numerics});
+          members[ledger].push_back(&task);
+        }
+      for (const bool ledger : {false, true})
+      {
+        const double n = static_cast<double>(runs[ledger].size());
+        const Clock clock;
+        auto results = run_batch(runs[ledger],
+                                 {.ledger = ledger},
+                                 [&]()
+                                 {
+                                   return clock.seconds() <= n * time_limit && !interrupted();
+                                 });
+        for (std::size_t i = 0; i < results.size(); ++i)
+        {
+          members[ledger][i]->seconds += clock.seconds() / n;
+          if (results[i])
+            members[ledger][i]->computed.result = std::move(*results[i]);
+        }
+      }
+    }
+  } // namespace
+
   Computed
   compute(const Parameters &parameters, const Scene &scene, const std::function<bool()> &keep_going)
   {
@@ -15,9 +122,36 @@ namespace crawler
       return computed;
     }
     computed.choice = *choice;
-    Simulation simulation(MPI_COMM_SELF, scene, parameters.time, computed.choice.numerics);
-    computed.result = simulation.run({}, {.ledger = parameters.output.ledger, .resolution = false}, {}, keep_going);
+    computed.result = simulate(parameters, scene, computed.choice.numerics, keep_going);
     check_identities(computed.result, parameters);
     return computed;
+  }
+
+  void
+  compute_all(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)
+  {
+    for (Task &task : tasks)
+      prepare(task, time_limit, interrupted);
+    compute_batches(tasks, time_limit, interrupted);
+    for (Task &task : tasks)
+    {
+      if (is_ready(task))
+        guarded(task,
+                [&]()
+                {
+                  const double before = task.seconds;
+                  const Clock clock;
+                  task.computed.result = simulate(task.parameters,
+                                                  *task.scene,
+                                                  task.computed.choice.numerics,
+                                                  [&]()
+                                                  {
+                                                    task.is_out_of_time = before + clock.seconds() > time_limit;
+                                                    return !task.is_out_of_time && !interrupted();
+                                                  });
+                });
+      if (!task.error)
+        check_identities(task.computed.result, task.parameters);
+    }
   }
 } // namespace crawler

@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace crawler
 {
@@ -49,8 +50,8 @@ namespace crawler
     Verdict verdict;
   };
 
-  /// Computes the scene of @p parameters in all forms and refined, and compares. Nothing is thrown: what goes wrong is
+  /// Computes the scenes of all @p points in all forms and refined, and compares. Nothing is thrown: what goes wrong is
   /// the status of a run. Nothing is returned if @p interrupted said so before the end.
-  std::optional<AtlasPoint>
-  compute_point(const Parameters &parameters, const std::function<bool()> &interrupted);
+  std::optional<std::vector<AtlasPoint>>
+  compute_points(const std::vector<Parameters> &points, const std::function<bool()> &interrupted);
 } // namespace crawler
