@@ -218,7 +218,8 @@ namespace crawler
     petsc(SNESSetType(snes, SNESNEWTONLS));
     petsc(SNESGetLineSearch(snes, &line_search));
     petsc(SNESLineSearchSetType(line_search, SNESLINESEARCHBASIC));
-    petsc(SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, 10, PETSC_DEFAULT));
+    // No tolerance for the correction: a line search that fails after a small one would count as converged.
+    petsc(SNESSetTolerances(snes, PETSC_DEFAULT, PETSC_DEFAULT, /*correction=*/0., /*iterations=*/10, PETSC_DEFAULT));
     petsc(SNESSetConvergenceTest(snes, newton_converged, this, nullptr));
     petsc(SNESGetKSP(snes, &ksp));
     petsc(KSPSetType(ksp, KSPPREONLY)); // the elimination is exact
