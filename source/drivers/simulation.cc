@@ -21,7 +21,7 @@ namespace crawler
     /// So many of them at a stretch below this mean that it is lost: what is left of it is the error of Newton's
     /// method.
     constexpr unsigned int most_steps_at_zero = 20;
-    constexpr double nearly_zero              = 1e-5;
+    constexpr double nearly_zero              = 1e-6;
     /// The step after a change of mesh that settle() makes is this times the root of the tolerance.
     constexpr double settling_factor = 0.01;
 
@@ -106,7 +106,6 @@ namespace crawler
     frames_        = &frames;
     next_frame_    = 0;
     tiny_steps_    = 0;
-    steps_at_zero_ = 0;
     started_       = false;
     fused_gave_up_ = false;
     integrals_     = {};
@@ -371,13 +370,10 @@ namespace crawler
       result_.largest_u           = std::max(result_.largest_u, assembler_->root_mean_square(y));
     }
     // Many steps that lead nowhere.
-    tiny_steps_    = step.size > 0. && step.size < tiny_step ? tiny_steps_ + 1 : 0;
-    steps_at_zero_ = stretch_.min.value < nearly_zero ? steps_at_zero_ + 1 : 0;
-    if (steps_at_zero_ == 1)
-      zero_since_ = step.time;
-    if (steps_at_zero_ > most_steps_at_zero && scene_.body.friction_exponent() >= 0.)
+    tiny_steps_ = step.size > 0. && step.size < tiny_step ? tiny_steps_ + 1 : 0;
+    if (tiny_steps_ > most_steps_at_zero && scene_.body.friction_exponent() >= 0. && stretch_.min.value < nearly_zero)
     {
-      inverted_inside(stretch_.min.value, stretch_.min.s, zero_since_);
+      inverted_inside(stretch_.min.value, stretch_.min.s, step.time);
       return false;
     }
     if (tiny_steps_ > most_tiny_steps)

@@ -219,8 +219,7 @@ namespace crawler
     TimeOutcome before_; ///< counts of the parts of the run before the last change of mesh or formulation
     const std::vector<double> *frames_ = nullptr; ///< in physical units
     std::size_t next_frame_            = 0;
-    unsigned int mesh_number_ = 0, tiny_steps_ = 0, steps_at_zero_ = 0;
-    double zero_since_ = 0.;    ///< time at which steps_at_zero_ began to count
-    bool started_      = false; ///< a state has been accepted
+    unsigned int mesh_number_ = 0, tiny_steps_ = 0;
+    bool started_ = false; ///< a state has been accepted
   };
 } // namespace crawler
