@@ -3,7 +3,7 @@
 # A file includes only its own layer or earlier ones. Exit status 1, and the offending lines, if one does not.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-layers=(base parameters scene model discretization time observers drivers)
+layers=(base parameters scene model discretization time fused observers drivers)
 bad=0
 for i in "${!layers[@]}"; do
   layer=${layers[$i]}

@@ -26,6 +26,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   /// Step control: the next step is safety * (1/error)^(1/(stages+1)) of this one, within these factors.
   constexpr double safety = 0.9, after_rejection = 0.5, least_change = 0.1, most_change = 10.;
   constexpr double least_step = 1e-12;
+  /// A start disturbs stiff components; traces are left after so many steps.
+  constexpr unsigned int settling_steps = 3;
 
   template <typename Pack, int s>
   class RadauLanes
@@ -75,7 +77,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     struct Lane
     {
       LaneJob job;
-      bool busy = false, rests = false, restarts = true, has_old = false, just_rejected = false;
+      bool busy = false, rests = false, has_old = false, just_rejected = false;
       bool iterating = false, failed = false, accepted = false;
       double t = 0., h = 1., next = 1., old_h = 1., error = 0.;
       double rate = 0., known_rate = 1., last_correction = 0.;
@@ -516,14 +518,27 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         bool again = false;
         for (int l = 0; l < lanes; ++l)
         {
-          Lane &lane = lanes_[l];
-          if (round == 0 || (lane.error >= 1. && lane.restarts))
+          Lane &lane          = lanes_[l];
+          const bool settling = lane.steps < settling_steps;
+          if (round == 0)
             lane.error = ::sqrt(get_lane(square, l));
-          again = again || (lane.busy && !lane.failed && lane.error >= 1. && lane.restarts);
+          else if (lane.error >= 1. && settling)
+            lane.error = settled(::sqrt(get_lane(square, l)));
+          again = again || (lane.busy && !lane.failed && lane.error >= 1. && settling);
         }
         if (!again)
           break;
       }
+    }
+
+    /// An error that had to be filtered twice: the step must not grow.
+    static double
+    settled(const double error)
+    {
+      double least = safety;
+      for (int i = 0; i < s; ++i)
+        least *= safety;
+      return error < least ? least : error;
     }
 
     /// Accepts or rejects, and finds the next steps.
@@ -635,7 +650,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       lane.t              = end_of_step(lane);
       lane.old_h          = lane.h;
       lane.has_old        = true;
-      lane.restarts       = false;
       const bool is_frame = lane.t == lane.job.frames[lane.frame];
       ++lane.steps;
       if (is_frame)
