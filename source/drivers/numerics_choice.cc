@@ -38,7 +38,8 @@ namespace crawler
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
     /// On adaptive meshes the error of bodies softer than this, in natural units, is up to soft_factor times Accuracy,
-    /// and if they are softer than very_soft at least soft_error, relative.
+    /// and if they are softer than very_soft at least soft_error, relative. Layers of the latter are not seen on uniform
+    /// meshes.
     constexpr double soft = 1e-3, soft_factor = 3., very_soft = 2e-5, soft_error = 3e-3;
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;
@@ -210,6 +211,15 @@ namespace crawler
         size_ = std::max(finished ? std::abs(pilot_.displacement) : 0., displacement_floor * pilot_.largest_u);
       }
 
+      /// k T/(g L^2) for the largest friction g of the last pilot, which thin layers are a matter of.
+      double
+      stiffness_over_friction() const
+      {
+        const double a       = scene_.body.friction_exponent();
+        const double largest = std::max(std::pow(pilot_.min_stretch.value, a), std::pow(pilot_.max_stretch.value, a));
+        return scene_.body.elastic_modulus / natural_units(scene_).force / largest;
+      }
+
       /// A uniform mesh with up to @p most cells; returns whether that is enough.
       bool
       uniform(const unsigned int most)
@@ -284,7 +294,7 @@ namespace crawler
         const double too_large = indicator_factor * indicator / (accuracy_ * gain * pilot_.strain);
         if (most < most_cells && too_large > 1.)
         {
-          if (indicator_rate < 0.5 * full_rate)
+          if (indicator_rate < 0.5 * full_rate || stiffness_over_friction() < very_soft)
             return false;
           cells = std::max(cells, 1. * n_cells) * std::pow(too_large, 1. / indicator_rate);
         }
