@@ -20,7 +20,7 @@ namespace crawler
     /// A pilot that breaks off with a smaller stretch than this has lost it.
     constexpr double emptied = 0.1;
     /// Meshes that would need more cells than this are adaptive, with this degree.
-    constexpr unsigned int most_uniform_cells = 64, adaptive_degree = 4;
+    constexpr unsigned int most_uniform_cells = 256, adaptive_degree = 4;
     /// The error of the displacement, relative, is below this times the sum of the error indicators over the strain.
     constexpr double indicator_factor = 8.;
     /// Meshes of the collapse (degree 1): from the coarsest, doubled until the displacement settles.
@@ -272,7 +272,12 @@ namespace crawler
           return std::clamp(std::log2(coarse / fine), 0.5, full_rate);
         };
         double unresolved = pilot_.unresolved, indicator = pilot_.largest_indicator, rate = 0., indicator_rate = 0.;
-        while (rate < 0.5 * full_rate && 2 * n_cells <= most_cells / 4)
+        const auto unbalanced = [&]()
+        {
+          return most < most_cells && indicator_factor * indicator > accuracy_ * pilot_.strain &&
+                 indicator_rate < 0.5 * full_rate;
+        };
+        while ((rate < 0.5 * full_rate || unbalanced()) && 2 * n_cells <= most_cells / 4)
         {
           if (2 * n_cells > most)
             return false;
@@ -284,7 +289,7 @@ namespace crawler
           unresolved     = finer.unresolved;
           indicator      = finer.largest_indicator;
           n_cells *= 2;
-          if (unresolved <= 0.01 * wanted_part)
+          if (unresolved <= 0.01 * wanted_part && !unbalanced())
             break;
         }
         double cells = rate > 0. ? n_cells * std::pow(unresolved / wanted_part, 1. / rate) : n_cells;
