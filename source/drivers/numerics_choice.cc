@@ -38,8 +38,8 @@ namespace crawler
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
     /// On adaptive meshes the error of bodies softer than this, in natural units, is up to soft_factor times Accuracy,
-    /// and if they are softer than very_soft at least soft_error, relative. Layers of the latter are not seen on uniform
-    /// meshes.
+    /// and if they are softer than very_soft at least soft_error, relative. Layers of the latter are not seen on
+    /// uniform meshes.
     constexpr double soft = 1e-3, soft_factor = 3., very_soft = 2e-5, soft_error = 3e-3;
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;

@@ -205,7 +205,8 @@ def main():
         call(program, folder, "run", "scene.prm", "--output", "single", "--set", f"{CHI}=0.2", "--set", f"{P}=2",
              "--set", "Output/Number of snapshots=0")
         single = json.loads(pathlib.Path(folder, "single", "summary.json").read_text(encoding="utf-8"))
-        check(single["displacement"] == number(results[1][3]["run displacement"])
+        # The lanes of a batch and a run alone add up in another order.
+        check(math.isclose(single["displacement"], number(results[1][3]["run displacement"]), rel_tol=1e-13)
               and str(single["steps"]) == results[1][3]["run steps"], "crawler run gives the same answer")
         check_refused(program, folder)
         check_inverted(program, folder)

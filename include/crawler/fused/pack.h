@@ -100,26 +100,29 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return result;
   }
 
-  /// x^y at n points. For one body the points take the place of lanes.
+  /// x^y at n points. For one body the points take the place of lanes, so that its powers are those of a batch to the
+  /// last bit.
   template <typename Pack>
   inline void
   power_at_points(const Pack *x, const Pack &y, Pack *result, const int n)
   {
-    int i = 0;
-#ifdef __AVX2__
     if constexpr (PackTraits<Pack>::size == 1)
-      for (; i < n; i += 4)
+    {
+      using Points        = CRAWLER_PACK;
+      constexpr int width = PackTraits<Points>::size;
+      for (int i = 0; i < n; i += width)
       {
-        pack4 some = broadcast<pack4>(1.);
-        for (int j = 0; j < 4 && i + j < n; ++j)
+        Points some = broadcast<Points>(1.);
+        for (int j = 0; j < width && i + j < n; ++j)
           some[j] = x[i + j];
-        some = _ZGVdN4vv_pow(some, broadcast<pack4>(y));
-        for (int j = 0; j < 4 && i + j < n; ++j)
+        some = power(some, broadcast<Points>(y));
+        for (int j = 0; j < width && i + j < n; ++j)
           result[i + j] = some[j];
       }
-#endif
-    for (; i < n; ++i)
-      result[i] = power(x[i], y);
+    }
+    else
+      for (int i = 0; i < n; ++i)
+        result[i] = power(x[i], y);
   }
 
   /// A complex number in each lane; without the checks for infinities of std::complex.
