@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <limits>
 #include <stdexcept>
@@ -44,26 +45,28 @@ namespace crawler::test
       return setting;
     }
 
-    /// What one run gives and costs.
-    struct Trial
+    /// The fastest of some runs [s].
+    double
+    seconds_of(const std::function<double()> &run, const unsigned int n)
     {
-      double error, seconds;
-    };
-
-    Trial
-    time_run(const std::function<double()> &run)
-    {
-      const double start = processor_time(), error = run();
-      return {error, processor_time() - start};
+      double seconds = std::numeric_limits<double>::infinity();
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        const double start = processor_time();
+        run();
+        seconds = std::min(seconds, processor_time() - start);
+      }
+      return seconds;
     }
 
     /// Keeps the cheapest setting so far.
     class Search
     {
     public:
-      Search(const double wanted, const Prepare &prepare)
+      Search(const double wanted, const Prepare &prepare, const std::function<bool(const Setting &)> &confirm)
         : wanted_(wanted)
         , prepare_(prepare)
+        , confirm_(confirm)
       {
       }
 
@@ -71,20 +74,20 @@ namespace crawler::test
       bool
       ends_with(const Setting &setting)
       {
-        const auto run    = prepare_(setting);
-        const Trial first = time_run(run);
-        if (first.seconds > hopeless * seconds_)
+        const auto run     = prepare_(setting);
+        const double error = run(); // this one also builds what it needs
+        double seconds     = seconds_of(run, 2);
+        if (seconds > hopeless * seconds_)
           return true;
-        if (!(first.error <= wanted_))
+        if (!(error <= wanted_))
+          return is_stuck(error);
+        seconds = std::min(seconds, seconds_of(run, repetitions));
+        if (seconds >= seconds_)
+          return true;
+        if (!confirm_(setting))
           return false;
-        double seconds = first.seconds;
-        for (unsigned int i = 0; i < repetitions; ++i)
-          seconds = std::min(seconds, time_run(run).seconds);
-        if (seconds < seconds_)
-        {
-          seconds_ = seconds;
-          best     = setting;
-        }
+        seconds_ = seconds;
+        best     = setting;
         return true;
       }
 
@@ -96,9 +99,29 @@ namespace crawler::test
         return seconds_ < std::numeric_limits<double>::infinity();
       }
 
+      /// Forgets the errors of the last mesh.
+      void
+      start_mesh()
+      {
+        last_error_ = HUGE_VAL;
+        times_      = 0;
+      }
+
     private:
+      /// Is the error that of the mesh, which no tolerance makes smaller?
+      bool
+      is_stuck(const double error)
+      {
+        times_      = std::abs(error - last_error_) < 0.03 * error ? times_ + 1 : 0;
+        last_error_ = error;
+        return times_ == 3;
+      }
+
+      double last_error_  = HUGE_VAL;
+      unsigned int times_ = 0;
       const double wanted_;
       const Prepare &prepare_;
+      const std::function<bool(const Setting &)> &confirm_;
       double seconds_ = std::numeric_limits<double>::infinity();
     };
   } // namespace
@@ -115,15 +138,21 @@ namespace crawler::test
   }
 
   Setting
-  cheapest_setting(const SearchSpace &space, const double wanted, const Prepare &prepare)
+  cheapest_setting(const SearchSpace &space,
+                   const double wanted,
+                   const Prepare &prepare,
+                   const std::function<bool(const Setting &)> &confirm)
   {
-    Search search(wanted, prepare);
+    Search search(wanted, prepare, confirm);
     for (const std::string &integrator : space.integrators)
       for (const unsigned int degree : space.degrees)
         for (const unsigned int n_cells : space.cells)
+        {
+          search.start_mesh();
           for (double tolerance = space.loosest; tolerance >= space.tightest; tolerance *= space.tolerance_factor)
             if (search.ends_with(make_setting(space, integrator, degree, n_cells, tolerance)))
               break;
+        }
     if (!search.has_found())
       throw std::runtime_error(fmt::format("no setting reaches an error of {:g}", wanted));
     return search.best;

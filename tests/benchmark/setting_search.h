@@ -35,8 +35,11 @@ namespace crawler::test
   /// infinite if it fails.
   using Prepare = std::function<std::function<double()>(const Setting &)>;
 
-  /// The cheapest of the settings, in processor time, that reach a relative error of @p wanted. Throws if there is
-  /// none.
+  /// The cheapest of the settings, in processor time, that reach a relative error of @p wanted and that @p confirm
+  /// agrees to. Throws if there is none.
   Setting
-  cheapest_setting(const SearchSpace &space, double wanted, const Prepare &prepare);
+  cheapest_setting(const SearchSpace &space,
+                   double wanted,
+                   const Prepare &prepare,
+                   const std::function<bool(const Setting &)> &confirm);
 } // namespace crawler::test
