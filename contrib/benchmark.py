@@ -34,7 +34,7 @@ BATCH_FACTOR = 20  # goal: a batch is so many times as fast as the best peer
 
 
 def measure(program, names, repeat=1):
-    """Of the benchmarks whose names match, the fastest repetition by name, with rate [1/s] and seconds (processor time)."""
+    """The fastest repetition of each benchmark that matches, by name, with rate [1/s] and processor time [s]."""
     command = [program, f"--benchmark_filter={names}", f"--benchmark_repetitions={repeat}", "--benchmark_format=json"]
     finished = subprocess.run(command, stdout=subprocess.PIPE, check=False)
     if finished.returncode != 0:

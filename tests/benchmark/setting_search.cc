@@ -14,7 +14,7 @@ namespace crawler::test
   namespace
   {
     /// A setting that takes so much longer than the best is not worth a second look.
-    constexpr double hopeless = 1.5;
+    constexpr double hopeless = 2.;
     /// Repetitions of the timing.
     constexpr unsigned int repetitions = 8;
 
@@ -76,7 +76,7 @@ namespace crawler::test
       {
         const auto run     = prepare_(setting);
         const double error = run(); // this one also builds what it needs
-        double seconds     = seconds_of(run, 2);
+        double seconds     = seconds_of(run, 3);
         if (seconds > hopeless * seconds_)
           return true;
         if (!(error <= wanted_))
