@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Whole runs of one case to a given error, one at a time or side by side.
+#include "batch_scenes.h"
+#include "benchmarks.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <map>
+
+namespace crawler::test
+{
+  namespace
+  {
+    /// A problem with a known answer.
+    struct Case
+    {
+      std::string name;
+      Settings settings;
+      double displacement; ///< doc/theory.md, section 5, and contrib/reference/table.json
+      double end_time;
+      std::size_t batch_size;
+      std::vector<unsigned int> cells; ///< to choose from
+      double tolerance_factor = 0.66;  ///< between the tolerances to choose from
+    };
+
+    const Case &
+    fig_s1()
+    {
+      static const Case result{"run", wave(-1., 0.4), 9.007252980024e-2, 1., 4096, {12, 10, 8, 7, 6, 5, 4, 3, 2}};
+      return result;
+    }
+
+    const Case &
+    fig_2()
+    {
+      static const Case result{"fig2", wave(-1., 0.4, 1., 20.), 1.8019682398008, 20., 512, {7, 6, 5, 4}, 0.5};
+      return result;
+    }
+
+    /// The displacement is that of runs of degree 8 with 10 and 14 cells and a tolerance of 1e-13, by both engines.
+    const Case &
+    stiff()
+    {
+      static const Case result{
+        "stiff", wave(-1., 0.3, 1., 1., 100.), 4.860527262566e-2, 1., 4096, {10, 8, 6, 5, 4, 3, 2}};
+      return result;
+    }
+
+    double
+    error_of(const SimulationResult &result, const double exact)
+    {
+      return result.time.status == "finished" ? std::abs(result.displacement / exact - 1.) : HUGE_VAL;
+    }
+
+    double
+    error_of(const std::optional<SimulationResult> &result, const double exact)
+    {
+      return result ? error_of(*result, exact) : HUGE_VAL;
+    }
+
+    /// Simulations of one body, which are run again and again.
+    struct OneBody
+    {
+      OneBody(const Case &body, const Setting &chosen)
+        : setting(chosen)
+        , scene(parameters_with(body.settings).create_scene())
+        , simulation(MPI_COMM_WORLD, scene, setting.time, setting.numerics)
+      {
+      }
+
+      const Setting setting;
+      const Scene scene;
+      Simulation simulation;
+    };
+
+    /// "petsc", "fused" or "batch".
+    using Way = std::string;
+
+    SearchSpace
+    search_space(const Case &body, const Way &way, const double wanted)
+    {
+      SearchSpace space{.engine           = way == "petsc" ? "petsc" : "automatic",
+                        .integrators      = {"radau 9", "radau 5"},
+                        .degrees          = {6, 7, 5, 4},
+                        .cells            = body.cells,
+                        .loosest          = std::min(3e-3, 1e5 * wanted),
+                        .tightest         = 1e-3 * wanted * body.displacement,
+                        .end_time         = body.end_time,
+                        .tolerance_factor = body.tolerance_factor};
+      if (way == "petsc")
+        space.integrators.emplace_back("bdf");
+      return space;
+    }
+
+    Prepare
+    one_body(const Case &body)
+    {
+      return [&body](const Setting &setting)
+      {
+        return [&body, own = std::make_shared<OneBody>(body, setting)]()
+        {
+          return error_of(own->simulation.run({}, {}), body.displacement);
+        };
+      };
+    }
+
+    Prepare
+    small_batch(const Case &body)
+    {
+      static constexpr std::size_t size = 64;
+      const auto scenes =
+        std::make_shared<const BatchScenes>(BatchScenes::similar(parameters_with(body.settings), size));
+      return [&body, scenes](const Setting &setting)
+      {
+        return [&body, scenes, setting]()
+        {
+          return error_of(scenes->run(setting)[0], body.displacement);
+        };
+      };
+    }
+
+    /// The cheapest setting. An error that is small by luck does not count: smaller tolerances must reach it as well.
+    Setting
+    search(const Case &body, const Way &way, const double wanted)
+    {
+      const Prepare prepare = way == "batch" ? small_batch(body) : one_body(body);
+      const auto confirm    = [&](Setting setting)
+      {
+        for (int i = 0; i < 3; ++i)
+        {
+          setting.numerics.tolerance *= 0.6;
+          if (!(prepare(setting)() <= wanted))
+            return false;
+        }
+        return true;
+      };
+      return cheapest_setting(search_space(body, way, wanted), wanted, prepare, confirm);
+    }
+
+    /// The search is made once for all benchmarks of this process.
+    const Setting &
+    cheapest(const Case &body, const Way &way, const double wanted)
+    {
+      static std::map<std::string, Setting> known;
+      const std::string key = fmt::format("{} {} {:g}", body.name, way, wanted);
+      if (!known.contains(key))
+        known.emplace(key, search(body, way, wanted));
+      return known.at(key);
+    }
+
+    void
+    show(benchmark::State &state, const Setting &setting, const double error, const SimulationResult &result)
+    {
+      state.SetLabel(in_words(setting));
+      state.counters["error"] = error;
+      state.counters["steps"] = result.time.steps;
+    }
+
+    void
+    repeat_run(benchmark::State &state, const Case &body, const Setting &setting, const Simulation::Options &options)
+    {
+      OneBody own(body, setting);
+      SimulationResult result;
+      for (auto _ : state)
+        result = own.simulation.run({}, options);
+      state.SetItemsProcessed(state.iterations());
+      show(state, setting, error_of(result, body.displacement), result);
+    }
+
+    void
+    run_one(benchmark::State &state, const Case &body, const Way &way, const double accuracy)
+    {
+      repeat_run(state, body, cheapest(body, way, accuracy), {});
+    }
+
+    void
+    run_many(benchmark::State &state,
+             const Case &body,
+             const double accuracy,
+             const Simulation::Options &options,
+             const LaneEngine &engine)
+    {
+      const Setting &setting = cheapest(body, "batch", accuracy);
+      const auto scenes      = BatchScenes::similar(parameters_with(body.settings), body.batch_size);
+      BatchScenes::Results results;
+      for (auto _ : state)
+        results = scenes.run(setting, options, engine);
+      state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scenes.size()));
+      if (std::count(results.begin(), results.end(), std::nullopt) > 0)
+        state.SkipWithError("runs were given back");
+      else
+        show(state, setting, error_of(results[0], body.displacement), *results[0]);
+    }
+
+    Parameters
+    fig_s1_parameters(const double accuracy)
+    {
+      auto settings = fig_s1().settings;
+      settings.emplace_back("Accuracy", text(accuracy));
+      return parameters_with(settings);
+    }
+
+    void
+    run_rule(benchmark::State &state, const double accuracy)
+    {
+      const auto parameters = fig_s1_parameters(accuracy);
+      const Scene scene     = parameters.create_scene();
+      Setting setting{parameters.time, choose_numerics(MPI_COMM_WORLD, parameters, scene)->numerics};
+      if (!setting.numerics.integrator.empty())
+        setting.time.integrator = setting.numerics.integrator;
+      repeat_run(state, fig_s1(), setting, {.ledger = true});
+    }
+
+    void
+    run_pilot(benchmark::State &state, const double accuracy)
+    {
+      const auto parameters = fig_s1_parameters(accuracy);
+      const Scene scene     = parameters.create_scene();
+      for (auto _ : state)
+        benchmark::DoNotOptimize(choose_numerics(MPI_COMM_WORLD, parameters, scene)->numerics.n_cells);
+      state.SetItemsProcessed(state.iterations());
+    }
+
+    template <typename... Arguments>
+    void
+    add(const std::string &name, const Arguments &...arguments)
+    {
+      benchmark::RegisterBenchmark(name.c_str(), arguments...)->Unit(benchmark::kMillisecond);
+    }
+
+    void
+    add_fig_s1(const double accuracy)
+    {
+      const std::string end = fmt::format("/{:.0e}", accuracy).replace(4, 1, ""); // /1e-4
+      add("run/petsc" + end, run_one, fig_s1(), "petsc", accuracy);
+      add("run/fused" + end, run_one, fig_s1(), "fused", accuracy);
+      const auto add_batch = [&](const std::string &name, const LaneEngine *engine, const Simulation::Options &options)
+      {
+        if (engine != nullptr)
+          add(name + end, run_many, fig_s1(), accuracy, options, *engine);
+      };
+      add_batch("run/batch", &batch_engine(), {});
+      add_batch("run/batch_avx2", batch_engine("avx2"), {});
+      add_batch("run/batch_baseline", batch_engine("baseline"), {});
+      add_batch("run/batch_ledger", &batch_engine(), {.ledger = true});
+      add("run/rule" + end, run_rule, accuracy);
+      add("run/pilot" + end, run_pilot, accuracy);
+    }
+  } // namespace
+
+  void
+  add_run_benchmarks()
+  {
+    for (const double accuracy : {1e-4, 1e-6, 1e-9})
+      add_fig_s1(accuracy);
+    for (const Case &body : {fig_2(), stiff()})
+    {
+      const std::string name = "case/" + body.name + "/1e-6";
+      add(name + "/petsc", run_one, body, "petsc", 1e-6);
+      add(name + "/fused", run_one, body, "fused", 1e-6);
+      benchmark::RegisterBenchmark(
+        (name + "/batch").c_str(), run_many, body, 1e-6, Simulation::Options(), batch_engine())
+        ->Unit(benchmark::kMillisecond);
+    }
+  }
+} // namespace crawler::test

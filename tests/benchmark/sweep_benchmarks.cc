@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// A study over two parameters by batches, one setting for all, and what it needs of memory.
+#include "batch_scenes.h"
+#include "benchmarks.h"
+
+#include <benchmark/benchmark.h>
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <map>
+
+namespace crawler::test
+{
+  namespace
+  {
+    struct Outcome
+    {
+      std::vector<double> displacements; ///< not a number where a run failed
+      std::size_t given_back = 0;
+    };
+
+    /// A batch, and each of the runs that it gives back by a Simulation.
+    Outcome
+    compute(const BatchScenes &scenes, const Setting &setting, const std::vector<std::size_t> &members)
+    {
+      Outcome outcome;
+      const auto results = scenes.run_some(setting, members);
+      for (std::size_t i = 0; i < members.size(); ++i)
+      {
+        if (results[i])
+        {
+          outcome.displacements.push_back(results[i]->displacement);
+          continue;
+        }
+        ++outcome.given_back;
+        Simulation simulation(MPI_COMM_WORLD, scenes[members[i]], setting.time, setting.numerics);
+        const auto result = simulation.run({}, {});
+        outcome.displacements.push_back(result.time.status == "finished" ? result.displacement : std::nan(""));
+      }
+      return outcome;
+    }
+
+    Setting
+    fine(const unsigned int degree, const unsigned int n_cells, const double tolerance)
+    {
+      Setting setting;
+      setting.time.integrator = "radau 9";
+      setting.numerics        = {degree, n_cells, tolerance, 1e-2};
+      return setting;
+    }
+
+    double
+    largest_difference(const std::vector<double> &values,
+                       const std::vector<double> &exact,
+                       const std::vector<std::size_t> &members)
+    {
+      double largest = 0.;
+      for (std::size_t i = 0; i < members.size(); ++i)
+      {
+        const double error = std::abs(values[i] / exact[members[i]] - 1.);
+        largest            = std::isfinite(error) ? std::max(largest, error) : HUGE_VAL;
+      }
+      return largest;
+    }
+
+    /// The 1000 scenes, and what is known of them from runs that are far more accurate.
+    struct Sweep
+    {
+      const BatchScenes scenes               = BatchScenes::grid(40, 25);
+      const std::vector<std::size_t> members = scenes.some(1);
+      const std::vector<double> exact        = compute(scenes, fine(8, 10, 1e-11), members).displacements;
+      const double reference_error =
+        largest_difference(compute(scenes, fine(7, 10, 1e-10), members).displacements, exact, members);
+    };
+
+    const Sweep &
+    sweep()
+    {
+      static const Sweep result;
+      return result;
+    }
+
+    double
+    largest_error(const Setting &setting, const std::vector<std::size_t> &members)
+    {
+      return largest_difference(compute(sweep().scenes, setting, members).displacements, sweep().exact, members);
+    }
+
+    /// Compares settings with some of the scenes; all must be right.
+    Setting
+    search(const double wanted)
+    {
+      const auto some    = sweep().scenes.some(13);
+      const auto prepare = [&](const Setting &setting)
+      {
+        return [&some, setting]()
+        {
+          return largest_error(setting, some);
+        };
+      };
+      const SearchSpace space{.engine      = "automatic",
+                              .integrators = {"radau 9", "radau 5"},
+                              .degrees     = {6, 7, 5},
+                              .cells       = {8, 7, 6, 5, 4, 3, 2},
+                              .loosest     = wanted,
+                              .tightest    = 1e-4 * wanted,
+                              .end_time    = 1.};
+      return cheapest_setting(space,
+                              wanted,
+                              prepare,
+                              [&](const Setting &setting)
+                              {
+                                return largest_error(setting, sweep().members) <= wanted;
+                              });
+    }
+
+    const Setting &
+    cheapest(const double wanted)
+    {
+      static std::map<double, Setting> known;
+      if (!known.contains(wanted))
+        known.emplace(wanted, search(wanted));
+      return known.at(wanted);
+    }
+
+    void
+    run_sweep(benchmark::State &state, const double wanted)
+    {
+      const Setting &setting = cheapest(wanted);
+      Outcome outcome;
+      for (auto _ : state)
+        outcome = compute(sweep().scenes, setting, sweep().members);
+      state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(sweep().members.size()));
+      state.SetLabel(in_words(setting));
+      state.counters["error"]           = largest_difference(outcome.displacements, sweep().exact, sweep().members);
+      state.counters["reference_error"] = sweep().reference_error;
+      state.counters["given_back"]      = static_cast<double>(outcome.given_back);
+    }
+
+    /// Peak of resident memory of this process so far [MiB].
+    double
+    peak_memory()
+    {
+      rusage usage{};
+      getrusage(RUSAGE_SELF, &usage);
+      return static_cast<double>(usage.ru_maxrss) / 1024.; // Linux counts in KiB
+    }
+
+    /// A larger sweep, in chunks. "scenes" is the peak of memory once all scenes exist, "growth" what the runs add.
+    void
+    memory_of_sweep(benchmark::State &state)
+    {
+      static constexpr std::size_t chunk = 4096, n_chi = 25;
+      const Setting setting = fine(7, 4, 1e-5);
+      const auto scenes     = BatchScenes::grid(static_cast<std::size_t>(state.range(0)) / n_chi, n_chi);
+      const double before   = peak_memory();
+      for (auto _ : state)
+        for (std::size_t begin = 0; begin < scenes.size(); begin += chunk)
+          benchmark::DoNotOptimize(scenes.run(setting, begin, std::min(begin + chunk, scenes.size())));
+      state.SetItemsProcessed(state.iterations() * state.range(0));
+      state.counters["scenes"] = before;
+      state.counters["growth"] = peak_memory() - before;
+    }
+  } // namespace
+
+  void
+  add_sweep_benchmarks()
+  {
+    benchmark::RegisterBenchmark("sweep/1e-4", run_sweep, 1e-4)->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("sweep/1e-6", run_sweep, 1e-6)->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark("memory/sweep", memory_of_sweep)
+      ->RangeMultiplier(10)
+      ->Range(1000, 100000)
+      ->Iterations(1)
+      ->Unit(benchmark::kMillisecond);
+  }
+} // namespace crawler::test
