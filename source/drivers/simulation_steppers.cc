@@ -37,14 +37,6 @@ namespace crawler
   Simulation::go_on_with_petsc(const TimeOutcome &outcome)
   {
     constexpr double smallest_step = 1e-9;
-    if (getenv("DBG"))
-      fprintf(stderr,
-              "gave up at %g step %g tol %g n_steps %u rej %u\n",
-              outcome.time,
-              outcome.step_size,
-              numerics_.tolerance,
-              outcome.steps,
-              outcome.rejected_steps);
     count_part(outcome);
     fused_gave_up_ = true;
     y_             = accepted_;
