@@ -51,19 +51,23 @@ namespace crawler
       {
       }
 
-      void
+      /// Returns false if it was interrupted.
+      bool
       compute(const LaneEngine &engine)
       {
         lanes_.resize(engine.lanes);
         const LaneHost host = {this, next, stress, accepted, done, options_.ledger};
         const auto memory   = fused_memory(engine.memory(tables_.setup));
         engine.run(tables_.setup, host, memory.get());
+        return !interrupted_;
       }
 
     private:
       struct Lane
       {
         std::size_t run = 0;
+        bool given_up   = false;
+        double k        = 0.; ///< in natural units
         Units units;
         std::unique_ptr<ActiveStressAtPoints> stress, end_stress;
         SimulationResult result;
@@ -98,16 +102,16 @@ namespace crawler
         std::vector<double> points  = tables_.points;
         for (double &s : points)
           s *= lane.units.length;
-        lane.stress = scene.active_stress->at(points);
-        lane.result = {};
+        lane.stress     = scene.active_stress->at(points);
+        lane.end_stress = scene.active_stress->at({0., lane.units.length});
+        lane.given_up   = false;
+        lane.k          = scene.body.elastic_modulus / lane.units.force;
+        lane.result     = {};
         lane.least.start({});
         lane.most.start({});
         if (options_.ledger)
-        {
           lane.result.ledger.emplace();
-          lane.end_stress = scene.active_stress->at({0., lane.units.length});
-        }
-        job = {.k             = scene.body.elastic_modulus / lane.units.force,
+        job = {.k             = lane.k,
                .a             = scene.body.friction_exponent(),
                .tolerance     = numerics.tolerance / lane.units.length,
                .initial_step  = numerics.initial_step / lane.units.time,
@@ -143,23 +147,48 @@ namespace crawler
       {
         Batch &batch = self(context);
         Lane &lane   = batch.lanes_[l];
-        if (batch.keep_going_ && !batch.keep_going_())
+        if (!batch.interrupted_ && batch.keep_going_ && !batch.keep_going_())
           batch.interrupted_ = true;
-        if (batch.interrupted_)
+        // The engine calls a run finished that is stopped in its last step.
+        lane.given_up = batch.interrupted_ || !batch.look_at_step(lane, step);
+        return !lane.given_up;
+      }
+
+      /// False if the run is for a Simulation.
+      bool
+      look_at_step(Lane &lane, const LaneStep &step) const
+      {
+        if (end_inverts(lane, step))
           return false;
-        const unsigned int n = batch.tableau_.n;
-        for (unsigned int i = batch.options_.ledger ? 0 : n - 1; i < n; ++i)
+        const unsigned int n = tableau_.n;
+        for (unsigned int i = options_.ledger ? 0 : n - 1; i < n; ++i)
         {
-          const double t = i + 1 < n ? step.time - (1. - batch.tableau_.c[i]) * step.size : step.time;
+          const double t = i + 1 < n ? step.time - (1. - tableau_.c[i]) * step.size : step.time;
           if (!(step.stages[i].min_stretch > small_stretch))
             return false;
-          batch.look_at_extremes(lane, step, i, t);
-          if (batch.options_.ledger)
-            batch.add_rates(lane, step, i, t);
+          look_at_extremes(lane, step, i, t);
+          if (options_.ledger)
+            add_rates(lane, step, i, t);
         }
         if (lane.result.ledger)
           lane.result.ledger->elastic_energy = step.elastic_energy;
         return true;
+      }
+
+      /// Has the stretch that the end conditions prescribe, 1 - m/k, become 0 (Simulation::end_inverts)? A coarse mesh
+      /// may not have followed it.
+      static bool
+      end_inverts(const Lane &lane, const LaneStep &step)
+      {
+        constexpr int parts = 4;
+        std::array<double, 2> m{};
+        for (int i = step.number == 1 ? 0 : 1; i <= parts; ++i)
+        {
+          evaluate(lane, *lane.end_stress, i < parts ? step.time - step.size * (parts - i) / parts : step.time, m);
+          if (1. - std::max(m[0], m[1]) / lane.k <= 0.)
+            return true;
+        }
+        return false;
       }
 
       /// The same as Assembler::stretch_range and Simulation::look_at_extremes: if a sample may be a new extreme, the
@@ -236,8 +265,9 @@ namespace crawler
       done(void *context, const unsigned int l, const LaneOutcome &outcome)
       {
         Batch &batch = self(context);
-        if (outcome.status == LaneOutcome::finished && !batch.interrupted_)
-          batch.results_[batch.lanes_[l].run] = batch.result_of(batch.lanes_[l], outcome);
+        Lane &lane   = batch.lanes_[l];
+        if (outcome.status == LaneOutcome::finished && !lane.given_up)
+          batch.results_[lane.run] = batch.result_of(lane, outcome);
       }
 
       SimulationResult
@@ -288,7 +318,8 @@ namespace crawler
       members[fused_method(*runs[i].scene, *runs[i].time, *runs[i].numerics).value()].push_back(i);
     std::vector<std::optional<SimulationResult>> results(runs.size());
     for (const auto &[method, own] : members)
-      Batch(method, runs, own, options, keep_going, results).compute(engine);
+      if (!Batch(method, runs, own, options, keep_going, results).compute(engine))
+        break;
     return results;
   }
 } // namespace crawler

@@ -112,7 +112,8 @@ namespace crawler
   const LaneEngine &
   single_engine();
 
-  /// The engines for an instruction set ("sse2", "avx2", "avx512") if the processor has it, else null: for comparisons.
+  /// The engines for an instruction set ("baseline", "avx2", "avx512") if the processor has it, else null: for
+  /// comparisons.
   const LaneEngine *
   batch_engine(const char *instruction_set);
 } // namespace crawler

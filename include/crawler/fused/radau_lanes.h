@@ -21,6 +21,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   /// Newton's method must converge faster than this per iteration, or the step is made shorter by failure_factor.
   constexpr double slowest_rate = 0.5, failure_factor = 0.25;
   constexpr unsigned int most_failures = 12;
+  /// A body for which it has failed so often, and in so large a part of the steps, is left to who can do more.
+  constexpr unsigned int many_failures = 1000;
+  constexpr double large_part          = 0.9;
   /// The polynomial of the last step is a good guess up to this multiple of the step.
   constexpr double longest_extrapolation = 3.;
   /// Step control: the next step is safety * (1/error)^(1/(stages+1)) of this one, within these factors.
@@ -81,7 +84,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       bool iterating = false, failed = false, accepted = false;
       double t = 0., h = 1., next = 1., old_h = 1., error = 0.;
       double rate = 0., known_rate = 1., last_correction = 0.;
-      unsigned int steps = 0, rejected = 0, failures = 0, frame = 0;
+      unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, frame = 0;
       unsigned long newton = 0;
     };
 
@@ -560,9 +563,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       if (any)
         advance(accepted > 0.);
       for (int l = 0; l < lanes; ++l)
-        if (lanes_[l].busy && !lanes_[l].accepted &&
-            (lanes_[l].failures > most_failures || lanes_[l].next < least_step))
+        if (lanes_[l].busy && !lanes_[l].accepted && is_hopeless(lanes_[l]))
           end(l, LaneOutcome::gave_up);
+    }
+
+    static bool
+    is_hopeless(const Lane &lane)
+    {
+      return lane.failures > most_failures || lane.next < least_step ||
+             (lane.all_failures > many_failures && lane.all_failures > large_part * lane.steps);
     }
 
     void
@@ -573,6 +582,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         lane.next    = failure_factor * lane.h;
         lane.has_old = false; // it was no good guess
         ++lane.failures;
+        ++lane.all_failures;
         ++lane.rejected;
         return;
       }
