@@ -23,7 +23,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   constexpr unsigned int most_failures = 12;
   /// A body for which it has failed so often, and in so large a part of the steps, is left to who can do more.
   constexpr unsigned int many_failures = 1000;
-  constexpr double large_part          = 0.9;
+  constexpr double large_part          = 0.5;
   /// The polynomial of the last step is a good guess up to this multiple of the step.
   constexpr double longest_extrapolation = 3.;
   /// Step control: the next step is safety * (1/error)^(1/(stages+1)) of this one, within these factors.

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Required orders of the fused engine: 5 and 9 in time, 2q in space.
+#include "../support/exact_solution.h"
+#include "../support/fused_runs.h"
+#include "../support/observed_order.h"
+
+#include <gtest/gtest.h>
+
+using namespace crawler;
+using test::FusedRun;
+
+/// With a tolerance that any step meets all steps have the largest length. Newton's method is exact for a = 0, where
+/// the equation is linear. A stress that starts smoothly and a body that is not stiff: else the order is reduced.
+TEST(Fused, ReachesItsOrderWithEqualSteps)
+{
+  const auto energy = [](const std::string &integrator, const unsigned int n)
+  {
+    const FusedRun run(test::expression(0., "0.02*sin(pi*t/2)^8*cos(3*(s-2*t))", 1., 0.05),
+                       integrator,
+                       {.degree = 4, .n_cells = 1, .tolerance = 1e3, .initial_step = 1. / n, .largest_step = 1. / n});
+    const auto result = test::run_alone(run);
+    EXPECT_EQ(result->time.steps, n) << integrator;
+    return result->ledger->elastic_energy;
+  };
+  const double exact = energy("radau 9", 200);
+  for (const auto &[integrator, order, steps] : {std::tuple("radau 5", 5., std::vector<double>{20, 40, 80}),
+                                                 std::tuple("radau 9", 9., std::vector<double>{16, 24, 32})})
+  {
+    std::vector<double> errors;
+    for (const double n : steps)
+      errors.push_back(std::abs(energy(integrator, static_cast<unsigned int>(n)) / exact - 1.));
+    const double observed = test::observed_order(steps, errors);
+    fmt::print("{}: errors {:.2e} {:.2e} {:.2e}: observed order {:.2f}\n",
+               integrator,
+               errors[0],
+               errors[1],
+               errors[2],
+               observed);
+    EXPECT_GE(observed, order - 0.3) << integrator;
+  }
+}
+
+/// The steps follow the embedded formula, whose error goes as h^(s+1) with s stages; so the error of the method goes
+/// faster to 0 than the tolerance, and what is left of it at the end is that of Newton's method, a part of the
+/// tolerance. That the equations are solved for the right method is compared with PETSc (unit/fused).
+TEST(Fused, ErrorsFallWithTheToleranceOnTheWholeEquation)
+{
+  const auto run = [](const std::string &integrator, const double tolerance)
+  {
+    const FusedRun now(test::expression(-1., "0.4*sin(pi*t)^8*cos(2*pi*(s-t))"),
+                       integrator,
+                       {.degree = 4, .n_cells = 8, .tolerance = tolerance, .initial_step = 1e-2});
+    return *test::run_alone(now);
+  };
+  const double exact = run("radau 9", 1e-14).displacement;
+  for (const auto &[integrator, order, tolerances] :
+       {std::tuple("radau 5", 4., std::vector<double>{1e-6, 1e-7, 1e-8, 1e-9}),
+        std::tuple("radau 9", 6., std::vector<double>{1e-4, 1e-5, 1e-6, 1e-7, 1e-8})})
+  {
+    std::vector<double> steps, errors;
+    for (const double tolerance : tolerances)
+    {
+      const auto result = run(integrator, tolerance);
+      steps.push_back(result.time.steps);
+      errors.push_back(std::abs(result.displacement - exact));
+      EXPECT_LT(errors.back(), 0.1 * tolerance) << integrator;
+    }
+    const double observed = test::observed_order(steps, errors);
+    fmt::print("{}: errors {:.2e} ... {:.2e} with {} ... {} steps: observed order {:.2f}\n",
+               integrator,
+               errors.front(),
+               errors.back(),
+               steps.front(),
+               steps.back(),
+               observed);
+    EXPECT_GE(observed, order - 0.3) << integrator;
+  }
+}
+
+TEST(Fused, ReachesItsOrderInSpace)
+{
+  constexpr double end_time = 0.3;
+  // Meshes in the asymptotic range and errors above those of time and rounding.
+  const std::vector<std::vector<unsigned int>> meshes = {
+    {}, {32, 64, 128}, {8, 16, 32}, {6, 10, 16}, {6, 8, 10}, {3, 4, 5, 6}, {2, 3, 4}};
+  const test::ExactSolution exact;
+  for (unsigned int q = 1; q < meshes.size(); ++q)
+  {
+    std::vector<double> cells, errors;
+    for (const unsigned int n : meshes[q])
+    {
+      const FusedRun run(
+        exact.settings(end_time), "radau 9", {.degree = q, .n_cells = n, .tolerance = 1e-12, .initial_step = 1e-3});
+      const auto result = test::run_alone(run, {.ledger = false});
+      ASSERT_TRUE(result);
+      cells.push_back(n);
+      errors.push_back(std::abs(result->displacement - exact.displacement(end_time)));
+    }
+    const double observed = test::observed_order(cells, errors);
+    fmt::print(
+      "degree {}: errors {:.2e} ... {:.2e}, observed order {:.2f}\n", q, errors.front(), errors.back(), observed);
+    EXPECT_GE(observed, 2. * q - 0.3) << q;
+  }
+}

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include "run_text.h"
+
+#include <crawler/drivers/batch.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace crawler::test
+{
+  /// Everything that a run needs. It cannot be moved, since the others point to it.
+  struct FusedRun
+  {
+    Parameters parameters;
+    Scene scene;
+    Numerics numerics;
+
+    FusedRun(const Settings &settings, const std::string &integrator, const Numerics &chosen)
+      : parameters(parameters_with(settings))
+      , numerics(chosen)
+    {
+      parameters.time.integrator = integrator;
+      scene                      = parameters.create_scene();
+    }
+    FusedRun(const FusedRun &) = delete;
+
+    BatchRun
+    entry() const
+    {
+      return {&scene, &parameters.time, &numerics};
+    }
+
+    /// By a Simulation, on the fused engine ("automatic") or on PETSc ("petsc").
+    SimulationResult
+    simulate(const std::string &engine, const Simulation::Options &options = {.ledger = true}) const
+    {
+      TimeParameters time = parameters.time;
+      time.engine         = engine;
+      return Simulation(MPI_COMM_WORLD, scene, time, numerics).run({}, options);
+    }
+  };
+  using FusedRuns = std::vector<std::unique_ptr<FusedRun>>;
+
+  inline std::vector<BatchRun>
+  entries(const FusedRuns &runs)
+  {
+    std::vector<BatchRun> result;
+    for (const auto &run : runs)
+      result.push_back(run->entry());
+    return result;
+  }
+
+  /// A run alone in a batch.
+  inline std::optional<SimulationResult>
+  run_alone(const FusedRun &run,
+            const Simulation::Options &options = {.ledger = true},
+            const LaneEngine &engine           = batch_engine())
+  {
+    const std::array<BatchRun, 1> only = {{run.entry()}};
+    return run_batch(only, options, {}, engine).front();
+  }
+
+  /// The engines that this processor has.
+  inline std::vector<const LaneEngine *>
+  batch_engines()
+  {
+    std::vector<const LaneEngine *> result;
+    for (const char *name : {"baseline", "avx2", "avx512"})
+      if (const LaneEngine *engine = batch_engine(name))
+        result.push_back(engine);
+    return result;
+  }
+
+  /// Settings, and others that are stronger.
+  inline Settings
+  with(Settings settings, const Settings &others)
+  {
+    settings.insert(settings.end(), others.begin(), others.end());
+    return settings;
+  }
+
+  /// A stress by a formula, friction exponent @p a.
+  inline Settings
+  expression(const double a, const std::string &formula, const double end_time = 1., const double k = 1.)
+  {
+    return {{"Body/Anchoring exponent", text(1. - a)},
+            {"Body/Elastic modulus", text(k)},
+            {"Active stress/Generator", "expression"},
+            {"Active stress/Expression/Active stress", formula},
+            {"Time/End time", text(end_time)}};
+  }
+
+  /// All numbers of a result but the seconds.
+  inline std::vector<double>
+  numbers_of(const SimulationResult &r)
+  {
+    std::vector<double> result = {r.time.time,
+                                  r.time.step_size,
+                                  static_cast<double>(r.time.steps),
+                                  static_cast<double>(r.time.rejected_steps),
+                                  static_cast<double>(r.time.newton_iterations),
+                                  r.displacement,
+                                  r.largest_u,
+                                  r.unresolved,
+                                  r.strain,
+                                  r.net_friction,
+                                  r.min_stretch.value,
+                                  r.min_stretch.s,
+                                  r.min_stretch.t,
+                                  r.max_stretch.value,
+                                  r.max_stretch.s,
+                                  r.max_stretch.t,
+                                  static_cast<double>(r.mesh_changes),
+                                  static_cast<double>(r.most_cells),
+                                  r.largest_indicator};
+    if (r.ledger)
+      for (const double value : {r.ledger->stress_power,
+                                 r.ledger->dissipation,
+                                 r.ledger->positive_power,
+                                 r.ledger->exchanged,
+                                 r.ledger->end_work,
+                                 r.ledger->elastic_energy,
+                                 r.ledger->transfer_loss})
+        result.push_back(value);
+    return result;
+  }
+
+  /// The same to the last bit; signs of zeros and what is not a number included.
+  inline bool
+  same_bits(const std::vector<double> &a, const std::vector<double> &b)
+  {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+  }
+
+  inline bool
+  same_bits(const std::optional<SimulationResult> &a, const std::optional<SimulationResult> &b)
+  {
+    return a.has_value() == b.has_value() &&
+           (!a || (a->time.status == b->time.status && a->inversion.has_value() == b->inversion.has_value() &&
+                   same_bits(numbers_of(*a), numbers_of(*b))));
+  }
+} // namespace crawler::test
