@@ -121,10 +121,7 @@ namespace crawler
       CommandOptions options;
       options.command_line = fmt::format("crawler {}", fmt::join(arguments, " "));
       if (!petsc_options.empty())
-      {
         options.command_line += fmt::format(" -- {}", fmt::join(petsc_options, " "));
-        options.overrides.emplace_back("Time/Engine=petsc"); // they are for its objects
-      }
       const auto common = [&](CLI::App *command)
       {
         command->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();
@@ -171,6 +168,8 @@ namespace crawler
         throw InputError((unknown.empty() ? error.what() : unknown) +
                          " (crawler --help tells the commands and options)");
       }
+      if (!petsc_options.empty()) // they are for PETSc's objects, unless the user wants something else
+        options.overrides.insert(options.overrides.begin(), "Time/Engine=petsc");
       if (*parameter_command)
         return first ? print_parameters(format) : 0;
       if (*atlas_command)
