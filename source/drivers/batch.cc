@@ -65,11 +65,16 @@ namespace crawler
     private:
       struct Lane
       {
-        std::size_t run = 0;
-        bool given_up   = false;
-        double k        = 0.; ///< in natural units
+        std::size_t run         = 0;
+        bool given_up           = false;
+        double stretch_at_start = 1.; ///< of the ends
+        double k                = 0.; ///< in natural units
         Units units;
-        std::unique_ptr<ActiveStressAtPoints> stress, end_stress;
+        std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
+        std::unique_ptr<ActiveStressAtPoints> ends;   ///< at the ends alone
+        std::vector<double> m;
+        std::vector<std::array<double, 2>> end_stress; ///< m at the ends, in the stages of the step that is tried
+        std::size_t n_stress_calls = 0;
         SimulationResult result;
         ExtremeHistory least{ExtremeHistory::smallest}, most{ExtremeHistory::largest};
       };
@@ -102,11 +107,16 @@ namespace crawler
         std::vector<double> points  = tables_.points;
         for (double &s : points)
           s *= lane.units.length;
-        lane.stress     = scene.active_stress->at(points);
-        lane.end_stress = scene.active_stress->at({0., lane.units.length});
-        lane.given_up   = false;
-        lane.k          = scene.body.elastic_modulus / lane.units.force;
-        lane.result     = {};
+        points.push_back(0.);
+        points.push_back(lane.units.length);
+        lane.stress = scene.active_stress->at(points);
+        lane.ends   = scene.active_stress->at({0., lane.units.length});
+        lane.m.resize(points.size());
+        lane.end_stress.resize(tableau_.n);
+        lane.n_stress_calls = 0;
+        lane.given_up       = false;
+        lane.k              = scene.body.elastic_modulus / lane.units.force;
+        lane.result         = {};
         lane.least.start({});
         lane.most.start({});
         if (options_.ledger)
@@ -124,22 +134,52 @@ namespace crawler
                .n_frames      = 1};
       }
 
-      /// m in natural units.
-      static void
-      evaluate(const Lane &lane, ActiveStressAtPoints &stress, const double t, const std::span<double> m)
-      {
-        stress.values(t * lane.units.time, m);
-        if (lane.units.force != 1.)
-          for (double &value : m)
-            value /= lane.units.force;
-      }
-
+      /// The engine asks for m at the start of a run, and then in all stages of each step that it tries.
       static void
       stress(void *context, const unsigned int l, const double t, double *m)
       {
-        Batch &batch = self(context);
-        Lane &lane   = batch.lanes_[l];
-        evaluate(lane, *lane.stress, t, {m, batch.tables_.points.size()});
+        Batch &batch        = self(context);
+        Lane &lane          = batch.lanes_[l];
+        const std::size_t n = batch.tables_.points.size(), stages = batch.tableau_.n;
+        lane.stress->values(t * lane.units.time, lane.m);
+        if (lane.units.force != 1.)
+          for (double &value : lane.m)
+            value /= lane.units.force;
+        std::copy_n(lane.m.begin(), n, m);
+        const std::array<double, 2> ends{{lane.m[n], lane.m[n + 1]}};
+        if (lane.n_stress_calls == 0)
+          lane.stretch_at_start = end_stretch(lane, ends);
+        else
+          lane.end_stress[(lane.n_stress_calls - 1) % stages] = ends;
+        ++lane.n_stress_calls;
+      }
+
+      /// The smaller of the stretches that the end conditions prescribe, 1 - m/k.
+      static double
+      end_stretch(const Lane &lane, const std::array<double, 2> &m)
+      {
+        return 1. - std::max(m[0], m[1]) / lane.k;
+      }
+
+      /// Does an end invert (Simulation::end_inverts)? A coarse mesh may not have followed it. The ends are looked at
+      /// in the stages and between them.
+      static bool
+      end_inverts(const Lane &lane, const LaneStep &step)
+      {
+        constexpr int parts = 4;
+        double smallest     = lane.stretch_at_start;
+        for (const auto &m : lane.end_stress)
+          smallest = std::min(smallest, end_stretch(lane, m));
+        if (!(smallest > 0.))
+          return true;
+        std::array<double, 2> m{};
+        for (int i = 1; i < parts; ++i)
+        {
+          lane.ends->values((step.time - step.size * (parts - i) / parts) * lane.units.time, m);
+          if (!(1. - std::max(m[0], m[1]) / lane.units.force / lane.k > 0.))
+            return true;
+        }
+        return false;
       }
 
       static bool
@@ -168,27 +208,11 @@ namespace crawler
             return false;
           look_at_extremes(lane, step, i, t);
           if (options_.ledger)
-            add_rates(lane, step, i, t);
+            add_rates(lane, step, i);
         }
         if (lane.result.ledger)
           lane.result.ledger->elastic_energy = step.elastic_energy;
         return true;
-      }
-
-      /// Has the stretch that the end conditions prescribe, 1 - m/k, become 0 (Simulation::end_inverts)? A coarse mesh
-      /// may not have followed it.
-      static bool
-      end_inverts(const Lane &lane, const LaneStep &step)
-      {
-        constexpr int parts = 4;
-        std::array<double, 2> m{};
-        for (int i = step.number == 1 ? 0 : 1; i <= parts; ++i)
-        {
-          evaluate(lane, *lane.end_stress, i < parts ? step.time - step.size * (parts - i) / parts : step.time, m);
-          if (1. - std::max(m[0], m[1]) / lane.k <= 0.)
-            return true;
-        }
-        return false;
       }
 
       /// The same as Assembler::stretch_range and Simulation::look_at_extremes: if a sample may be a new extreme, the
@@ -244,13 +268,12 @@ namespace crawler
       }
 
       void
-      add_rates(Lane &lane, const LaneStep &step, const unsigned int i, const double t) const
+      add_rates(Lane &lane, const LaneStep &step, const unsigned int i) const
       {
         const LaneStage &stage = step.stages[i];
         const double weight    = step.size * tableau_.b[i];
-        std::array<double, 2> m{};
-        evaluate(lane, *lane.end_stress, t, m);
-        Ledger &ledger = *lane.result.ledger;
+        const auto &m          = lane.end_stress[i];
+        Ledger &ledger         = *lane.result.ledger;
         ledger.stress_power += weight * stage.stress_power;
         ledger.dissipation += weight * stage.dissipation;
         ledger.positive_power += weight * stage.positive_power;
