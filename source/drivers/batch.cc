@@ -68,7 +68,8 @@ namespace crawler
         std::size_t run         = 0;
         bool given_up           = false;
         double stretch_at_start = 1.; ///< of the ends
-        double k                = 0.; ///< in natural units
+        double largest_friction = 0., largest_net_friction = 0.;
+        double k = 0.; ///< in natural units
         Units units;
         std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
         std::unique_ptr<ActiveStressAtPoints> ends;   ///< at the ends alone
@@ -113,10 +114,11 @@ namespace crawler
         lane.ends   = scene.active_stress->at({0., lane.units.length});
         lane.m.resize(points.size());
         lane.end_stress.resize(tableau_.n);
-        lane.n_stress_calls = 0;
-        lane.given_up       = false;
-        lane.k              = scene.body.elastic_modulus / lane.units.force;
-        lane.result         = {};
+        lane.n_stress_calls   = 0;
+        lane.given_up         = false;
+        lane.largest_friction = lane.largest_net_friction = 0.;
+        lane.k                                            = scene.body.elastic_modulus / lane.units.force;
+        lane.result                                       = {};
         lane.least.start({});
         lane.most.start({});
         if (options_.ledger)
@@ -279,9 +281,11 @@ namespace crawler
         ledger.positive_power += weight * stage.positive_power;
         ledger.exchanged += weight * stage.absolute_power;
         ledger.end_work += weight * (m[1] * stage.right_velocity - m[0] * stage.left_velocity);
-        if (i + 1 == tableau_.n && stage.abs_friction > 0.)
-          lane.result.net_friction =
-            std::max(lane.result.net_friction, std::abs(stage.net_friction) / stage.abs_friction);
+        lane.largest_friction = std::max(lane.largest_friction, stage.abs_friction);
+        if (i + 1 == tableau_.n) // where the velocity balances all forces
+          lane.largest_net_friction = std::max(lane.largest_net_friction, std::abs(stage.net_friction));
+        if (lane.largest_friction > 0.)
+          lane.result.net_friction = lane.largest_net_friction / lane.largest_friction;
       }
 
       static void

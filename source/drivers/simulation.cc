@@ -96,19 +96,21 @@ namespace crawler
             numerics_.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
       as_at_start_ = true;
     }
-    options_       = options;
-    has_observers_ = !observers.empty();
-    result_        = {};
-    quadrature_    = {};
-    diagnosis_     = {};
-    largest_       = {};
-    before_        = {};
-    frames_        = &frames;
-    next_frame_    = 0;
-    tiny_steps_    = 0;
-    started_       = false;
-    fused_gave_up_ = false;
-    integrals_     = {};
+    options_              = options;
+    has_observers_        = !observers.empty();
+    result_               = {};
+    quadrature_           = {};
+    diagnosis_            = {};
+    largest_              = {};
+    before_               = {};
+    frames_               = &frames;
+    next_frame_           = 0;
+    tiny_steps_           = 0;
+    started_              = false;
+    fused_gave_up_        = false;
+    integrals_            = {};
+    largest_friction_     = 0.;
+    largest_net_friction_ = 0.;
     if (options.ledger)
       result_.ledger.emplace();
     if (numerics_.formulation == FormulationChoice::log_stretch)
@@ -571,9 +573,10 @@ namespace crawler
     ledger.exchanged += increment[3];
     ledger.end_work += increment[4];
     ledger.elastic_energy = integrals_.elastic_energy;
-    if (integrals_.abs_friction > 0.)
-      result_.net_friction =
-        std::max(result_.net_friction, std::abs(integrals_.net_friction) / integrals_.abs_friction);
+    largest_friction_     = std::max(largest_friction_, integrals_.abs_friction);
+    largest_net_friction_ = std::max(largest_net_friction_, std::abs(integrals_.net_friction));
+    if (largest_friction_ > 0.)
+      result_.net_friction = largest_net_friction_ / largest_friction_;
     return true;
   }
 

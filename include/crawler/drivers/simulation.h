@@ -50,7 +50,7 @@ namespace crawler
     double unresolved   = 0.; ///< Resolution: largest highest_mode over largest strain, if looked at
     double strain       = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]
     std::optional<Ledger> ledger;
-    double net_friction = 0.; ///< largest |int g v ds|/int |g v| ds over time [1]
+    double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
 
     using Extreme = crawler::Extreme;
     Extreme min_stretch, max_stretch;
@@ -203,6 +203,7 @@ namespace crawler
     RateQuadrature quadrature_;
     Resolution largest_{}; ///< over time, if looked at
     CellIntegrals integrals_;
+    double largest_friction_ = 0., largest_net_friction_ = 0.; ///< over time, int |g v| ds and |int g v ds|
     StretchRange stretch_;
     ExtremeHistory min_history_{ExtremeHistory::smallest}, max_history_{ExtremeHistory::largest};
     std::vector<double> y_, v_;
