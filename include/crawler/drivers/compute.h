@@ -40,8 +40,10 @@ namespace crawler
 
   /**
    * What compute() gives for all @p tasks, whose parameters alone are given, on this rank. Runs that fit share the
-   * lanes of the fused engine (drivers/batch.h), where an answer does not depend on its neighbours; the others, and
-   * those that the engine gives up, follow one by one. Nothing is thrown. No run takes longer than @p time_limit [s].
+   * lanes of the fused engine (drivers/batch.h), where an answer does not depend on its neighbours; the others,
+   * those that the engine gives up, and long ones that may end when their cycles repeat, follow one by one. A batch
+   * computes all cycles, so its answers differ from those of compute() by errors within Accuracy. Nothing is thrown. No
+   * run takes longer than @p time_limit [s].
    */
   void
   compute_all(std::span<Task> tasks, double time_limit, const std::function<bool()> &interrupted);
