@@ -27,6 +27,8 @@ namespace crawler
     constexpr unsigned int first_collapse_cells = 64, last_collapse_cells = 512, last_accurate_collapse_cells = 2048;
     constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000,
                            most_adaptive_pilot_cells = 1200;
+    /// How well a pilot that ends when its cycles repeat must know the displacement.
+    constexpr double pilot_accuracy = 1e-2;
     /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
     constexpr double resolved = 1e-3;
     /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
@@ -135,6 +137,9 @@ namespace crawler
         pilot_time_.petsc_prefix = "pilot_"; // options after "--" are for the real run
         pilot_time_.max_steps    = std::min(pilot_time_.max_steps, most_pilot_steps);
         tolerance_               = std::max(1e-3 * scale_, smallest());
+        cycles_                  = cycle_wish(parameters, scene, 0);
+        if (cycles_)
+          cycles_->accuracy = std::max(accuracy_, pilot_accuracy);
       }
 
       NumericsChoice
@@ -174,7 +179,8 @@ namespace crawler
       {
         Simulation simulation(communicator_, scene_, pilot_time_, numerics);
         ++n_pilots_;
-        SimulationResult result = simulation.run({}, {.ledger = false, .resolution = true}, {}, keep_going_);
+        SimulationResult result =
+          simulation.run({}, {.ledger = false, .resolution = true, .cycles = cycles_}, {}, keep_going_);
         if (result.time.status == "stopped" && result.time.reason.empty())
           throw Interrupted();
         return result;
@@ -205,6 +211,14 @@ namespace crawler
       {
         return pilot_.time.status != "finished" && pilot_.time.reason != "inverted_at_end" &&
                pilot_.min_stretch.value < emptied && scene_.body.friction_exponent() < 0.;
+      }
+
+      /// Of the last pilot, whether it went there or its cycles were extrapolated.
+      double
+      steps_to_the_end() const
+      {
+        const double steps = std::max(pilot_.time.steps, 1u);
+        return pilot_.cycles ? steps * (1. + 1. * pilot_.cycles->extrapolated / pilot_.cycles->computed) : steps;
       }
 
       void
@@ -374,6 +388,8 @@ namespace crawler
         if (adaptive_steps_)
           n.integrator = "arkimex 4"; // bdf is less accurate here, or not stable enough: its steps become tiny
         double before = std::numeric_limits<double>::quiet_NaN(), change_before = before;
+        if (cycles_)
+          cycles_->accuracy = accuracy_; // the displacements are compared here
         bool inverted           = false;
         const unsigned int last = accuracy_ >= 1e-4 ? last_collapse_cells : last_accurate_collapse_cells;
         size_                   = 0.; // that of a failed pilot says nothing
@@ -458,7 +474,7 @@ namespace crawler
         // size.
         const double r = 1. / (1. + estimated_order());
         const double wanted =
-          accuracy_ * size_ / (time_factor * std::max(pilot_.time.steps, 1u) * std::pow(tolerance_, r));
+          accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
         const double by_rule = std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
                                         std::max(1e-15 * scale_, smallest()));
         n.tolerance = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
@@ -506,6 +522,7 @@ namespace crawler
       const double T_, L_, accuracy_, scale_;
       const bool adaptive_steps_;
       TimeParameters pilot_time_;
+      std::optional<CycleWish> cycles_; ///< of pilots
       NumericsChoice choice_;
       SimulationResult pilot_; ///< the last one that counts
       double tolerance_ = 0., size_ = 0.;

@@ -39,6 +39,11 @@ namespace crawler
     json["displacement"]       = result.displacement;
     json["displacement_error"] = {{"total", nullptr}, {"space", nullptr}, {"time", nullptr}, {"model", nullptr}};
     json["end_time"]           = result.time.time;
+    json["cycles"]             = result.cycles ? Json{{"period", result.cycles->period},
+                                          {"computed", result.cycles->computed},
+                                          {"extrapolated", result.cycles->extrapolated},
+                                          {"error", result.cycles->bound}}
+                                               : Json(nullptr);
     json["model"]              = parameters.model;
     json["stress_power"]       = ledger(
       [](const Ledger &l)
@@ -108,6 +113,14 @@ namespace crawler
                                 result.solve_seconds + result.output_seconds));
     lines.push_back(std::isfinite(result.displacement) ? fmt::format("  displacement      {:.10g}", result.displacement)
                                                        : "  displacement      unknown");
+    if (result.cycles)
+      lines.push_back(
+        fmt::format("  cycles            {} of period {:.6g} computed, {} extrapolated with an error of at "
+                    "most {:.2g} in the displacement",
+                    result.cycles->computed,
+                    result.cycles->period,
+                    result.cycles->extrapolated,
+                    result.cycles->bound));
     if (result.ledger)
     {
       lines.push_back(fmt::format("  stress power      {:.10g}", result.ledger->stress_power));

@@ -3,6 +3,12 @@
 
 namespace crawler
 {
+  std::optional<double>
+  ActiveStress::period() const
+  {
+    return std::nullopt;
+  }
+
   void
   ActiveStress::report(std::ostream &) const
   {

@@ -53,6 +53,13 @@ namespace crawler
         return std::make_unique<ScaledAtPoints>(stress_.at(physical), units_);
       }
 
+      std::optional<double>
+      period() const override
+      {
+        const auto physical = stress_.period();
+        return physical ? std::optional(*physical / units_.time) : std::nullopt;
+      }
+
       void
       report(std::ostream &out) const override
       {

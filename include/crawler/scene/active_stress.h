@@ -3,6 +3,7 @@
 
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,11 @@ namespace crawler
     /// An evaluator at @p points [length] that may keep whatever does not depend on time.
     virtual std::unique_ptr<ActiveStressAtPoints>
     at(const std::vector<double> &points) const = 0;
+
+    /// The smallest P > 0 with m(s, t + P) = m(s, t) for all s and t [time]; nothing if there is none, or if it is not
+    /// known (the default).
+    virtual std::optional<double>
+    period() const;
 
     /// Writes lines for the log and for `crawler check`: what this generator chose. Nothing by default.
     virtual void

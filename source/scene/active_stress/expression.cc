@@ -3,6 +3,7 @@
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/expression.h>
+#include <crawler/scene/period.h>
 
 #include <fmt/format.h>
 #include <muParser.h>
@@ -130,7 +131,9 @@ namespace crawler
   }
 
   Expression::Expression(const ExpressionParameters &parameters, const double length, const double end_time)
-    : formula_(parameters.active_stress)
+    : length_(length)
+    , end_time_(end_time)
+    , formula_(parameters.active_stress)
   {
     const auto constants = parse_constants(parameters.constants, length, end_time);
     if (formula_.empty())
@@ -175,5 +178,13 @@ namespace crawler
   Expression::at(const std::vector<double> &points) const
   {
     return std::make_unique<FormulaAtPoints>(compiled_, points);
+  }
+
+  std::optional<double>
+  Expression::period() const
+  {
+    if (!period_)
+      period_ = find_period(*this, length_, end_time_);
+    return *period_;
   }
 } // namespace crawler
