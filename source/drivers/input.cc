@@ -31,6 +31,7 @@ namespace crawler
       const std::vector<Rule> rules = {
         {"Active stress/Optimal wave/", p.active_stress.generator == "optimal wave", generator},
         {"Active stress/Expression/", p.active_stress.generator == "expression", generator},
+        {"Active stress/Prescribed strain/", p.active_stress.generator == "prescribed strain", generator},
         {"Active stress/Optimal wave/Wave speed", !by_energy, choice},
         {"Active stress/Optimal wave/Energy", by_energy, choice},
         {"Active stress/Optimal wave/Root", by_energy, choice},
