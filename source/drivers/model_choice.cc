@@ -52,8 +52,8 @@ namespace crawler
                                      parameters.active_stress.generator),
                          "Model");
       if (model == "kinematic" && rungs.strain() == nullptr)
-        throw InputError(fmt::format("Model is kinematic, which needs the rate of the active stress, but the Generator "
-                                     "{} does not know it; Model = nonlinear or auto is expected",
+        throw InputError(fmt::format("Model is kinematic, which needs the rate of the active stress, but that of Generator = "
+                                     "{} is not known, or jumps; Model = nonlinear or auto is expected",
                                      parameters.active_stress.generator),
                          "Model");
     }
@@ -79,9 +79,8 @@ namespace crawler
       in_words() const
       {
         if (!known)
-          return "an error that cannot be estimated";
-        return error <= floor ? fmt::format("an error below {:g} of the length", floor) :
-                                fmt::format("an error of {:.2g}", relative());
+          return "an error that is not known";
+        return fmt::format("an error of {:.2g}", relative());
       }
     };
 
@@ -110,7 +109,7 @@ namespace crawler
                               candidate.error <= floor ? "" : fmt::format(" {:.2g}", candidate.relative()),
                               candidate.error <= floor ? fmt::format("{:g} of the length", floor) :
                                                          fmt::format("Accuracy {:g}", accuracy))};
-        tried += fmt::format("{} has {}, ", candidate.model, candidate.in_words());
+        tried += fmt::format("{}{} {}, ", candidate.model, tried.empty() ? " has" : "", candidate.in_words());
       }
       return {"nonlinear", fmt::format("Model nonlinear: {}Accuracy is {:g}", tried, accuracy)};
     }

@@ -21,7 +21,7 @@ namespace crawler
     std::array<const std::vector<double> *, n_fields>
     written(const Fields &fields)
     {
-      return {&fields.stretch, &fields.velocity, &fields.active_stress, &fields.friction_force, &fields.displacement};
+      return {{&fields.stretch, &fields.velocity, &fields.active_stress, &fields.friction_force, &fields.displacement}};
     }
 
     /// Those of the equidistant points that lie in this rank's cells.

@@ -39,7 +39,6 @@ namespace crawler
   {
     RungEnergies energies;
     energies.positive_power = RungEnergies::unknown;
-    energies.exchanged      = RungEnergies::unknown;
     for (const auto &h : wave_.harmonics)
     {
       const double half = std::sin(0.5 * h.q * wave_.speed * t);
@@ -47,6 +46,7 @@ namespace crawler
       energies.elastic_energy += wave_.stiffness * power(h) * half * half;
     }
     energies.stress_power = energies.dissipation + energies.elastic_energy;
+    energies.exchanged    = energies.stress_power; // the least that it can be
     return energies;
   }
 

@@ -14,7 +14,11 @@ namespace crawler
     else if (wave_)
       strain_ = &leading_order_.emplace(*wave_);
     else if (scene_.active_stress->rate_at({0.}) != nullptr)
-      strain_ = &stiff_.emplace(scene_);
+    {
+      const StrainHistory &stiff = stiff_.emplace(scene_);
+      if (!find_jump(stiff, 1., 1.))
+        strain_ = &stiff;
+    }
   }
 
   ModelErrors
@@ -24,7 +28,7 @@ namespace crawler
       return {.known = true};
     if (wave_)
       return estimate_model_errors(scene_, *wave_);
-    if (stiff_)
+    if (strain_ != nullptr)
       return estimate_model_errors(scene_, *stiff_);
     return {};
   }

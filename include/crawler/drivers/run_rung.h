@@ -22,4 +22,8 @@ namespace crawler
            const StopSignal &stop_signal,
            std::chrono::steady_clock::time_point start,
            Log &log);
+
+  /// The same for `crawler check`.
+  ExitCode
+  check_rung(const Input &input, const ModelChoice &choice, Log &log);
 } // namespace crawler

@@ -21,7 +21,7 @@ namespace crawler
     double stress_power   = 0.; ///< W = -int int m zeta_st ds dt
     double dissipation    = 0.; ///< Q = int int g v^2 ds dt
     double positive_power = 0.; ///< int int max(-m zeta_st, 0) ds dt; may be unknown
-    double exchanged      = 0.; ///< int int |m zeta_st| ds dt; may be unknown
+    double exchanged      = 0.; ///< int int |m zeta_st| ds dt
     double end_work       = 0.; ///< int [m v] from s = 0 to L dt; the paper's energy is W plus this
     double elastic_energy = 0.; ///< of the present state
     double elastic_start  = 0.; ///< of the initial state, which need not be at rest

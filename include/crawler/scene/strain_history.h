@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,22 @@ namespace crawler
   {
     StrainExtreme smallest, largest;
   };
+
+  /// A change of the strain in time that its rate does not explain.
+  struct StrainJump
+  {
+    double s, from, to; ///< where, and between which times
+    double change;      ///< of the strain
+    double integral;    ///< of its rate
+  };
+
+  /**
+   * A jump of the strain in time, of more than 1e-6 of its largest value: nothing that follows from the rate of such a
+   * strain is right. Changes at some points over some intervals are compared with the integrals of the rate; two jumps
+   * that cancel within an interval (1/37 of the duration) are not seen.
+   */
+  std::optional<StrainJump>
+  find_jump(const StrainHistory &history, double length, double end_time);
 
   /// Looked for on a grid of @p n_s times @p n_t points over the whole body and 0 <= t <= @p end_time, its ends
   /// included, and from there by a search with steps that become smaller (to 1e-4 of those of the grid).

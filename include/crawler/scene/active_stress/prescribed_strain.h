@@ -40,7 +40,8 @@ namespace crawler
   public:
     static constexpr const char *description = "the stress that brings about a given strain";
 
-    /// Throws InputError if formula, file or numbers do not make sense, or if 1 + e is not positive somewhere.
+    /// Throws InputError if formula, file or numbers do not make sense, if 1 + e is not positive somewhere,
+    /// or if the strain jumps in time.
     PrescribedStrain(const PrescribedStrainParameters &parameters, const Body &body, double end_time);
 
     std::unique_ptr<ActiveStressAtPoints>
@@ -57,7 +58,7 @@ namespace crawler
 
   private:
     void
-    require_positive_stretch(double end_time);
+    require_admissible_strain(double end_time);
     void
     choose_panels(double end_time);
 
