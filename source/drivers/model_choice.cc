@@ -22,7 +22,7 @@ namespace crawler
     void
     require_start_at_rest(const Scene &scene, const std::string &model)
     {
-      constexpr double round_off = 1e-8; // also of numbers in a table
+      constexpr double round_off   = 1e-8; // also of numbers in a table
       const StrainHistory *history = scene.active_stress->prescribed_strain();
       if (history == nullptr)
         return;
@@ -52,10 +52,11 @@ namespace crawler
                                      parameters.active_stress.generator),
                          "Model");
       if (model == "kinematic" && rungs.strain() == nullptr)
-        throw InputError(fmt::format("Model is kinematic, which needs the rate of the active stress, but that of Generator = "
-                                     "{} is not known, or jumps; Model = nonlinear or auto is expected",
-                                     parameters.active_stress.generator),
-                         "Model");
+        throw InputError(
+          fmt::format("Model is kinematic, which needs the rate of the active stress, but that of Generator = "
+                      "{} is not known, or jumps; Model = nonlinear or auto is expected",
+                      parameters.active_stress.generator),
+          "Model");
     }
 
     /// An approximate rung that was tried.
@@ -107,8 +108,8 @@ namespace crawler
                   fmt::format("Model {}: its estimated error{} is below {}",
                               candidate.model,
                               candidate.error <= floor ? "" : fmt::format(" {:.2g}", candidate.relative()),
-                              candidate.error <= floor ? fmt::format("{:g} of the length", floor) :
-                                                         fmt::format("Accuracy {:g}", accuracy))};
+                              candidate.error <= floor ? fmt::format("{:g} of the length", floor)
+                                                       : fmt::format("Accuracy {:g}", accuracy))};
         tried += fmt::format("{}{} {}, ", candidate.model, tried.empty() ? " has" : "", candidate.in_words());
       }
       return {"nonlinear", fmt::format("Model nonlinear: {}Accuracy is {:g}", tried, accuracy)};
@@ -120,9 +121,10 @@ namespace crawler
   {
     ModelChoice choice{parameters.model, "Model " + parameters.model + ": as set"};
     if (parameters.model == "linear" && scene.body.friction_exponent() != 0.)
-      throw InputError(fmt::format("Model is linear, but a = 1 - p is {:g}; a = 0 is expected (Anchoring exponent p = 1)",
-                                   scene.body.friction_exponent()),
-                       "Model");
+      throw InputError(
+        fmt::format("Model is linear, but a = 1 - p is {:g}; a = 0 is expected (Anchoring exponent p = 1)",
+                    scene.body.friction_exponent()),
+        "Model");
     if (parameters.model != "linear" && parameters.model != "nonlinear")
     {
       const RungScene rungs(scene);

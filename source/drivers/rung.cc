@@ -77,11 +77,10 @@ namespace crawler
     }
     const ModelErrors errors = rungs_.model_errors();
     result.displacement      = motion.displacement;
-    result.error             = {.space = motion.space_error,
-                                .time  = motion.time_error,
-                                .model = errors.known ? errors.kinematic : unknown};
-    result.ledger            = ledger_of(motion.energies);
-    result.net_friction      = motion.net_friction;
+    result.error             = {
+                  .space = motion.space_error, .time = motion.time_error, .model = errors.known ? errors.kinematic : unknown};
+    result.ledger       = ledger_of(motion.energies);
+    result.net_friction = motion.net_friction;
   }
 
   /// Is the error as small as was asked for?
@@ -98,15 +97,17 @@ namespace crawler
     const std::string relative =
       result.displacement == 0. ? "" : fmt::format(" ({:.2g} of it)", error.total / std::abs(result.displacement));
     result.time.message =
-      std::isfinite(error.total) ?
-        fmt::format("the estimated error of the displacement is {:.3g}{}, but Accuracy is {:g}; a larger one, or Model "
-                    "= auto, is needed",
-                    error.total * rungs_.units().length,
-                    relative,
-                    accuracy) :
-        fmt::format("the error of the {} model cannot be estimated for this scene, since its corrections do not become "
-                    "smaller; Model = auto is needed",
-                    model_);
+      std::isfinite(error.total)
+        ? fmt::format(
+            "the estimated error of the displacement is {:.3g}{}, but Accuracy is {:g}; a larger one, or Model "
+            "= auto, is needed",
+            error.total * rungs_.units().length,
+            relative,
+            accuracy)
+        : fmt::format(
+            "the error of the {} model cannot be estimated for this scene, since its corrections do not become "
+            "smaller; Model = auto is needed",
+            model_);
   }
 
   SimulationResult

@@ -33,16 +33,16 @@ namespace crawler
       return result.ledger ? Json(value(*result.ledger)) : Json(nullptr);
     };
     Json json;
-    json["status"]             = result.time.status;
-    json["reason"]             = result.time.status == "finished" ? Json(nullptr) : Json(result.time.reason);
-    json["message"]            = result.time.status == "finished" ? Json(nullptr) : Json(result.time.message);
-    json["displacement"]       = result.displacement;
+    json["status"]                = result.time.status;
+    json["reason"]                = result.time.status == "finished" ? Json(nullptr) : Json(result.time.reason);
+    json["message"]               = result.time.status == "finished" ? Json(nullptr) : Json(result.time.message);
+    json["displacement"]          = result.displacement;
     const DisplacementError error = result.error.value_or(DisplacementError());
     json["displacement_error"]    = {
          {"total", error.total}, {"space", error.space}, {"time", error.time}, {"model", error.model}};
-    json["end_time"]           = result.time.time;
-    json["model"]              = parameters.model;
-    json["stress_power"]       = ledger(
+    json["end_time"]     = result.time.time;
+    json["model"]        = parameters.model;
+    json["stress_power"] = ledger(
       [](const Ledger &l)
       {
         return l.stress_power;
@@ -122,11 +122,10 @@ namespace crawler
     {
       lines.push_back(fmt::format("  stress power      {:.10g}", result.ledger->stress_power));
       lines.push_back(fmt::format("  dissipation       {:.10g}", result.ledger->dissipation));
-      lines.push_back(fmt::format("  ledger residual   {:.2e} (relative), net friction {}",
-                                  result.ledger->residual(),
-                                  std::isfinite(result.net_friction) ?
-                                    fmt::format("{:.2e} (relative)", result.net_friction) :
-                                    "unknown"));
+      lines.push_back(fmt::format(
+        "  ledger residual   {:.2e} (relative), net friction {}",
+        result.ledger->residual(),
+        std::isfinite(result.net_friction) ? fmt::format("{:.2e} (relative)", result.net_friction) : "unknown"));
     }
     lines.push_back(
       fmt::format("  stretch           {:.4g} (s = {:.4g}, t = {:.4g}) to {:.4g} (s = {:.4g}, t = {:.4g})",

@@ -209,7 +209,7 @@ namespace crawler
     unsigned int n_space = 2, n_time = 4;
     for (;;)
     {
-      const Sums coarse = integrate(scene, strain, n_space, n_time, keep_going);
+      const Sums coarse  = integrate(scene, strain, n_space, n_time, keep_going);
       const bool inverts = !(1. + coarse.smallest.strain > 0.);
       Sums in_space, in_time, both;
       if (!inverts && !coarse.stopped)
@@ -222,11 +222,11 @@ namespace crawler
         result.stopped = true;
         return result;
       }
-      result.space_error     = std::abs(in_space.displacement - coarse.displacement);
-      result.time_error      = std::abs(in_time.displacement - coarse.displacement);
-      const double allowed   = share * std::max(tolerance * std::abs(in_time.displacement), floor);
-      const bool space_fits  = result.space_error <= allowed, time_fits = result.time_error <= allowed;
-      const bool at_limit    = (!space_fits && 4 * n_space > most_space) || (!time_fits && 4 * n_time > most_time) ||
+      result.space_error    = std::abs(in_space.displacement - coarse.displacement);
+      result.time_error     = std::abs(in_time.displacement - coarse.displacement);
+      const double allowed  = share * std::max(tolerance * std::abs(in_time.displacement), floor);
+      const bool space_fits = result.space_error <= allowed, time_fits = result.time_error <= allowed;
+      const bool at_limit = (!space_fits && 4 * n_space > most_space) || (!time_fits && 4 * n_time > most_time) ||
                             std::size_t{16} * n_space * n_time > most_in_all;
       if (!inverts && !(space_fits && time_fits) && !at_limit)
       {
@@ -240,7 +240,7 @@ namespace crawler
         both = integrate(scene, strain, 2 * n_space, 2 * n_time, keep_going);
       // The extremes are looked for where the finest quadrature has seen them.
       const unsigned int n_s = std::clamp(8 * n_space, 33u, 257u), n_t = std::clamp(8 * n_time, 33u, 2049u);
-      result.extremes        = find_extremes(strain, 1., 1., n_s, n_t);
+      result.extremes = find_extremes(strain, 1., 1., n_s, n_t);
       if (inverts || !(1. + result.extremes.smallest.strain > 0.) || !(1. + both.smallest.strain > 0.))
       {
         result.inversion = inverts ? coarse.smallest : result.extremes.smallest;
@@ -260,8 +260,7 @@ namespace crawler
       result.converged    = space_fits && time_fits;
       result.displacement = both.displacement;
       result.energies     = both.energies;
-      result.net_friction =
-        both.largest_friction > 0. ? both.largest_net_friction / both.largest_friction : 0.;
+      result.net_friction = both.largest_friction > 0. ? both.largest_net_friction / both.largest_friction : 0.;
       return result;
     }
   }

@@ -12,9 +12,12 @@ namespace crawler
   {
     constexpr double pi = std::numbers::pi;
 
-    /// The change of the displacement by the second correction is multiplied by this for all that follow.
-    constexpr double safety = 2.;
-    /// Corrections that become smaller by less than this are not trusted.
+    constexpr unsigned int n_corrections = 3;
+    /// For all corrections that are left out: this times the change of the displacement by the last one.
+    constexpr double safety = 3.;
+    /// For the grid: this part of the error.
+    constexpr double grid_share = 0.05;
+    /// If the last change is more than this part of the largest one the corrections are not trusted.
     constexpr double slowest_decay = 0.7;
 
     /// An approximate motion on a grid: n_s points in the middle of equal parts of the body, n_t equal steps.
@@ -109,13 +112,14 @@ namespace crawler
         for (std::size_t j = 1; j <= n_modes_; ++j)
           for (std::size_t i = 0; i < motion.n_s; ++i)
           {
-            const double angle                     = static_cast<double>(j) * pi * motion.place(i);
+            const double angle                = static_cast<double>(j) * pi * motion.place(i);
             cosine_[(j - 1) * motion.n_s + i] = std::cos(angle);
             sine_[(j - 1) * motion.n_s + i]   = -static_cast<double>(j) * pi * std::sin(angle);
           }
       }
 
-      /// The displacement with the present correction, or not a number if a stretch is not positive; keeps the residual.
+      /// The displacement with the present correction, or not a number if a stretch is not positive; keeps the
+      /// residual.
       double
       displacement()
       {
@@ -183,7 +187,7 @@ namespace crawler
         {
           const double q = static_cast<double>(j + 1) * pi, z = stiffness_ * q * q * dt, decay = std::exp(-z);
           // The integral over a step of exp(-z (1-x)) times 1-x and x.
-          const double both = z < 1e-3 ? 1. - z / 2. + z * z / 6. : -std::expm1(-z) / z;
+          const double both   = z < 1e-3 ? 1. - z / 2. + z * z / 6. : -std::expm1(-z) / z;
           const double at_end = z < 1e-3 ? 0.5 - z / 6. + z * z / 24. : (1. - both) / z, at_start = both - at_end;
           for (std::size_t n = 0; n < motion_.n_t; ++n)
           {
@@ -199,7 +203,7 @@ namespace crawler
       const FrictionLaw &friction_;
       const double stiffness_;
       const std::size_t n_modes_;
-      std::vector<double> cosine_, sine_; ///< [mode][point]: cos(j pi s) and its derivative
+      std::vector<double> cosine_, sine_;    ///< [mode][point]: cos(j pi s) and its derivative
       std::vector<double> modes_, residual_; ///< [time][mode]
       bool is_corrected_ = false;
     };
@@ -230,24 +234,25 @@ namespace crawler
     estimate(const Motion &motion, const Scene &scene)
     {
       Correction correction(motion, *scene.friction, scene.body.elastic_modulus);
-      std::array<double, 3> D{};
+      std::array<double, n_corrections + 1> D{};
+      std::array<double, n_corrections> change{};
       D[0] = correction.displacement();
-      for (unsigned int i = 1; i < 3; ++i)
+      for (unsigned int i = 0; i < n_corrections; ++i)
       {
         correction.correct();
-        D[i] = correction.displacement();
-        if (!std::isfinite(D[i]))
+        D[i + 1]  = correction.displacement();
+        change[i] = std::abs(D[i + 1] - D[i]);
+        if (!std::isfinite(D[i + 1]))
           return {};
       }
+      const double last = change.back(), rest = safety * last;
       ModelErrors errors;
-      errors.displacement = D[2];
-      errors.first        = std::abs(D[1] - D[0]);
-      errors.second       = std::abs(D[2] - D[1]);
-      errors.known        = true;
-      const double rest   = safety * errors.second;
-      errors.kinematic    = std::abs(D[2] - D[0]) + rest;
-      errors.perturbation =
-        std::abs(D[2] - second_order_displacement(motion, scene.body.friction_exponent())) + rest;
+      errors.displacement = D.back();
+      errors.changes      = change;
+      errors.known        = last <= slowest_decay * *std::max_element(change.begin(), change.end() - 1);
+      const double series = second_order_displacement(motion, scene.body.friction_exponent());
+      errors.kinematic    = (1. + grid_share) * std::abs(D.back() - D.front()) + rest;
+      errors.perturbation = (1. + grid_share) * std::abs(D.back() - series) + rest;
       return errors;
     }
   } // namespace

@@ -79,8 +79,8 @@ namespace crawler
   Perturbation::extremes() const
   {
     constexpr unsigned int per_wave = 16, most = 2001;
-    const double waves   = wave_.n_waves(), strides = std::abs(wave_.speed);
-    const auto n_of      = [](const double n)
+    const double waves = wave_.n_waves(), strides = std::abs(wave_.speed);
+    const auto n_of = [](const double n)
     {
       return static_cast<unsigned int>(std::min<double>(most, per_wave * std::ceil(n) + 1));
     };

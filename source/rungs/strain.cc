@@ -120,8 +120,7 @@ namespace crawler
                        {}};
     for (unsigned int n = 1; n <= shape.a.size(); ++n)
       if (shape.power(n) != 0.)
-        result.harmonics.push_back(
-          {2. * std::numbers::pi * n, chi * (shape.a[n - 1] / c), chi * (shape.b[n - 1] / c)});
+        result.harmonics.push_back({2. * std::numbers::pi * n, chi * (shape.a[n - 1] / c), chi * (shape.b[n - 1] / c)});
     return result;
   }
 

@@ -116,8 +116,8 @@ namespace crawler
       rate_at(const std::vector<double> &points) const override
       {
         auto rate = stress_.rate_at(times(points, units_.length));
-        return rate ? std::make_unique<ScaledAtPoints>(std::move(rate), units_.time, units_.force / units_.time) :
-                      nullptr;
+        return rate ? std::make_unique<ScaledAtPoints>(std::move(rate), units_.time, units_.force / units_.time)
+                    : nullptr;
       }
 
       const StrainHistory *

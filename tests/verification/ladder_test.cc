@@ -111,10 +111,9 @@ TEST(Ladder, AutomaticChoice)
   EXPECT_EQ(model(test::wave(0., 0.4), 1e-6), "linear");
   EXPECT_EQ(model({{"Active stress/Generator", "prescribed strain"}}, 1e-10), "kinematic");
   // A stiff body follows its active stress.
-  const test::Settings stiff = {
-    {"Active stress/Generator", "expression"},
-    {"Active stress/Expression/Active stress", "2e4*(sin(2*pi*(s+t)) - sin(2*pi*s))"},
-    {"Body/Elastic modulus", "1e5"}};
+  const test::Settings stiff = {{"Active stress/Generator", "expression"},
+                                {"Active stress/Expression/Active stress", "2e4*(sin(2*pi*(s+t)) - sin(2*pi*s))"},
+                                {"Body/Elastic modulus", "1e5"}};
   EXPECT_EQ(model(stiff, 1e-2), "kinematic");
   EXPECT_EQ(model(stiff, 1e-9), "nonlinear");
   EXPECT_EQ(choice(with(test::wave(-1., 0.05), {{"Model", "auto"}, {"Accuracy", "1e-2"}})).explanation.substr(0, 44),

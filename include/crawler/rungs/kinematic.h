@@ -66,8 +66,8 @@ namespace crawler
   struct KinematicResult
   {
     double displacement = 0., space_error = 0., time_error = 0.; ///< errors of the quadrature
-    bool converged = false;                                        ///< the errors are as small as was asked for
-    bool stopped   = false;                                        ///< keep_going said no
+    bool converged = false;                                      ///< the errors are as small as was asked for
+    bool stopped   = false;                                      ///< keep_going said no
     RungEnergies energies;
     double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time
     StrainExtremes extremes{};

@@ -4,18 +4,18 @@
 #include <crawler/rungs/strain.h>
 #include <crawler/scene/scene.h>
 
-#include <vector>
+#include <array>
 
 namespace crawler
 {
   /// Estimated errors of the displacement that the approximate rungs have because of their model, in natural units.
   struct ModelErrors
   {
-    bool known          = false; ///< not if a stretch is not positive, or if the corrections do not become smaller
-    double perturbation = 0.;    ///< of the series; only for the optimal wave
-    double kinematic    = 0.;    ///< of the body with the approximate strain
-    double displacement = 0.;    ///< after the corrections
-    double first = 0., second = 0.; ///< how much the two corrections change the displacement
+    bool known          = false;     ///< not if a stretch is not positive, or if the corrections do not become smaller
+    double perturbation = 0.;        ///< of the series; only for the optimal wave
+    double kinematic    = 0.;        ///< of the body with the approximate strain
+    double displacement = 0.;        ///< after the corrections
+    std::array<double, 3> changes{}; ///< of the displacement by each of the corrections
   };
 
   /**
@@ -25,8 +25,9 @@ namespace crawler
    *   u_t = k u_ss - r,   u_s = 0 at the ends,
    *
    * in cosine modes, which an exponential integrator (r linear in each step) takes through time. With the strain
-   * e + u_s the body goes another distance; this is done twice, the second time with the residual of the corrected
-   * motion. The error is the change of the displacement by both corrections plus a multiple of that by the second one.
+   * e + u_s the body goes another distance. This is done three times, with the residual of the corrected motion. The
+   * error is the change of the displacement by all corrections, and a twentieth more for the grid, plus three times the
+   * change by the last one for what follows.
    *
    * This one is for the optimal wave; @p scene is in natural units.
    */

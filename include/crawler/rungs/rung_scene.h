@@ -37,7 +37,8 @@ namespace crawler
     }
 
     /// The strain of the kinematic rung: the prescribed one, that of the optimal wave to leading order, or that of a
-    /// stiff body, -m/k. Null if the rate of the active stress is not known, or the stress jumps, so that the rung does not fit.
+    /// stiff body, -m/k. Null if the rate of the active stress is not known, or the stress jumps, so that the rung does
+    /// not fit.
     const StrainHistory *
     strain() const
     {

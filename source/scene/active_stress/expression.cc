@@ -35,9 +35,8 @@ namespace crawler
 
   Expression::Expression(const ExpressionParameters &parameters, const double length, const double end_time)
     : formula_(parameters.active_stress)
-    , compiled_(read_formula({"active stress", formula_, parameters.constants, formula_entry, constants_entry},
-                             length,
-                             end_time))
+    , compiled_(read_formula(
+        {"active stress", formula_, parameters.constants, formula_entry, constants_entry}, length, end_time))
   {
     require_finite_values(length, end_time);
   }

@@ -269,10 +269,9 @@ namespace crawler
       const auto loop = count < 0 ? function_of_many : count == 1 ? function_of_one : function_of_two;
       // A function without a name is the sign: -x (muParser defines no other).
       const auto name = names_.find(reinterpret_cast<Function>(function._pRawFun));
-      add({.loop     = loop,
-           .tangent  = tangent_of(name == names_.end() ? "-" : name->second),
-           .function = function._pRawFun},
-          static_cast<std::size_t>(std::abs(count)));
+      add(
+        {.loop = loop, .tangent = tangent_of(name == names_.end() ? "-" : name->second), .function = function._pRawFun},
+        static_cast<std::size_t>(std::abs(count)));
     }
 
     /// Its position.

@@ -73,7 +73,10 @@ namespace crawler
     }
 
     Formula::Constants
-    parse_constants(const std::string &text, const double length, const double end_time, const std::string &constants_entry)
+    parse_constants(const std::string &text,
+                    const double length,
+                    const double end_time,
+                    const std::string &constants_entry)
     {
       Formula::Constants constants = {{"pi", std::numbers::pi}, {"L", length}, {"T", end_time}};
       if (trimmed(text).empty())

@@ -114,7 +114,11 @@ namespace crawler
 
     const double gauss = 2. * std::numbers::inv_sqrtpi; // erf'(x) = gauss exp(-x^2)
 
-#define CRAWLER_DERIVATIVE(expression) chain<[]([[maybe_unused]] const double x, [[maybe_unused]] const double f) { return expression; }>
+#define CRAWLER_DERIVATIVE(expression)                                       \
+  chain<[]([[maybe_unused]] const double x, [[maybe_unused]] const double f) \
+        {                                                                    \
+          return expression;                                                 \
+        }>
     const std::map<std::string, Tangent> &
     tangents()
     {
@@ -234,8 +238,7 @@ namespace crawler
       double *const result = values_.data() + operation.result * block_size;
       operation.loop(operation.function, arguments_, result, n);
       if (operation.tangent != nullptr)
-        operation.tangent(
-          argument_values_, argument_rates_, result, rates_.data() + operation.result * block_size, n);
+        operation.tangent(argument_values_, argument_rates_, result, rates_.data() + operation.result * block_size, n);
     }
   }
 } // namespace crawler

@@ -185,10 +185,10 @@ namespace crawler
                                                  parameters.phase});
       if (parameters.given_by == "table")
         return std::make_unique<StrainTable>(parameters.file, length, end_time, section + "File");
-      return std::make_unique<FormulaStrain>(read_formula(
-        {"strain", parameters.strain, parameters.constants, section + "Strain", section + "Constants"},
-        length,
-        end_time));
+      return std::make_unique<FormulaStrain>(
+        read_formula({"strain", parameters.strain, parameters.constants, section + "Strain", section + "Constants"},
+                     length,
+                     end_time));
     }
   } // namespace
 
@@ -219,11 +219,8 @@ namespace crawler
                         "1");
     declarations.number("Amplitude", amplitude, any_number(), "Amplitude of the wave.", "1");
     declarations.number("Wave number", wave_number, positive(), "Number n of waves per body length.", "1");
-    declarations.number("Wave speed",
-                        wave_speed,
-                        any_number(),
-                        "Wave speed c; a positive one runs from s = L to s = 0.",
-                        "length/time");
+    declarations.number(
+      "Wave speed", wave_speed, any_number(), "Wave speed c; a positive one runs from s = L to s = 0.", "length/time");
     declarations.number("Phase", phase, any_number(), "Phase of the wave at s = 0, t = 0, in radians.", "1");
     declarations.text("File",
                       file,
@@ -250,18 +247,18 @@ namespace crawler
     constexpr unsigned int n = 161;
     extremes_                = find_extremes(*history_, body_.length, end_time, n, n);
     const auto &[e, s, t]    = extremes_.smallest;
-    const std::string entry =
-      section + (given_by_ == "wave" ? "Amplitude" : given_by_ == "table" ? "File" : "Strain");
+    const std::string entry  = section + (given_by_ == "wave" ? "Amplitude" : given_by_ == "table" ? "File" : "Strain");
     if (!std::isfinite(e))
       throw InputError(fmt::format("the strain is {} at s = {:.6g}, t = {:.6g}; a finite number is expected", e, s, t),
                        entry);
     if (!(1. + e > 0.))
       throw InputError(
-        fmt::format("the strain is {:.6g} at s = {:.6g}, t = {:.6g}, but more than -1 is expected: there the body would "
-                    "be inverted",
-                    e,
-                    s,
-                    t),
+        fmt::format(
+          "the strain is {:.6g} at s = {:.6g}, t = {:.6g}, but more than -1 is expected: there the body would "
+          "be inverted",
+          e,
+          s,
+          t),
         entry);
     const auto &largest = extremes_.largest;
     if (!(largest.strain <= 1e6))
@@ -271,14 +268,15 @@ namespace crawler
                                    largest.t),
                        entry);
     if (const auto jump = find_jump(*history_, body_.length, end_time))
-      throw InputError(fmt::format("the strain at s = {:.6g} changes by {:.6g} from t = {:.6g} to {:.6g}, but the integral "
-                                   "of its rate is {:.6g}; a strain without jumps in time is expected",
-                                   jump->s,
-                                   jump->change,
-                                   jump->from,
-                                   jump->to,
-                                   jump->integral),
-                       entry);
+      throw InputError(
+        fmt::format("the strain at s = {:.6g} changes by {:.6g} from t = {:.6g} to {:.6g}, but the integral "
+                    "of its rate is {:.6g}; a strain without jumps in time is expected",
+                    jump->s,
+                    jump->change,
+                    jump->from,
+                    jump->to,
+                    jump->integral),
+        entry);
   }
 
   /// Doubles the panels until the stress changes by no more than round-off at some times.

@@ -54,7 +54,7 @@ namespace crawler
         for (std::size_t point = 0; point < result.size(); ++point)
         {
           const double *y = values_.data() + point * in_t_.size() + i, *M = curvatures_.data() + (y - values_.data());
-          result[point]   = w.a * y[0] + w.b * y[1] + w.c * M[0] + w.d * M[1];
+          result[point] = w.a * y[0] + w.b * y[1] + w.c * M[0] + w.d * M[1];
         }
       }
 
@@ -90,10 +90,9 @@ namespace crawler
         if (number == 1)
         {
           if (words != std::vector<std::string>{"s", "t", "strain"})
-            throw InputError(fmt::format("the first row of \"{}\" is \"{}\", but the header s,t,strain is expected",
-                                         name,
-                                         line),
-                             entry);
+            throw InputError(
+              fmt::format("the first row of \"{}\" is \"{}\", but the header s,t,strain is expected", name, line),
+              entry);
           continue;
         }
         Row row{0., 0., 0., number};
@@ -132,11 +131,9 @@ namespace crawler
     {
       constexpr double round_off = 1e-12;
       if (values.size() < 4)
-        throw InputError(fmt::format("\"{}\" has {} different values of {}, but at least 4 are expected",
-                                     file,
-                                     values.size(),
-                                     name),
-                         entry);
+        throw InputError(
+          fmt::format("\"{}\" has {} different values of {}, but at least 4 are expected", file, values.size(), name),
+          entry);
       if (values.front() > round_off * end || values.back() < end * (1. - round_off))
         throw InputError(fmt::format("\"{}\" has {} from {:g} to {:g}, but the whole {}, from 0 to {:g}, is expected",
                                      file,
@@ -185,16 +182,17 @@ namespace crawler
     if (gap != seen.end())
     {
       const auto missing = static_cast<std::size_t>(gap - seen.begin());
-      throw InputError(fmt::format("\"{}\" has {} rows after the header, but {} are expected, each of {} values of s with "
-                                   "each of {} values of t; the first that is missing is s = {:g}, t = {:g}",
-                                   name,
-                                   rows.size(),
-                                   n_s * n_t,
-                                   n_s,
-                                   n_t,
-                                   grid.s[missing % n_s],
-                                   grid.t[missing / n_s]),
-                       entry);
+      throw InputError(
+        fmt::format("\"{}\" has {} rows after the header, but {} are expected, each of {} values of s with "
+                    "each of {} values of t; the first that is missing is s = {:g}, t = {:g}",
+                    name,
+                    rows.size(),
+                    n_s * n_t,
+                    n_s,
+                    n_t,
+                    grid.s[missing % n_s],
+                    grid.t[missing / n_s]),
+        entry);
     }
     return grid;
   }

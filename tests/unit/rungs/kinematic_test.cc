@@ -56,12 +56,10 @@ TEST(Kinematic, SineWaveOfStrain)
 
 TEST(Kinematic, OptimisedGaits)
 {
-  const auto retrograde =
-    compute(strain(-1., "0.08814294 + 0.29676868*sin(2*pi*(s+t)) + 0.09132339*cos(4*pi*(s+t))"));
+  const auto retrograde = compute(strain(-1., "0.08814294 + 0.29676868*sin(2*pi*(s+t)) + 0.09132339*cos(4*pi*(s+t))"));
   EXPECT_NEAR(retrograde.displacement, 0.051149479, 2e-9);
   EXPECT_NEAR(retrograde.ledger->dissipation, 0.051149479, 2e-9);
-  const auto prograde =
-    compute(strain(2., "-0.0930008 + 0.29263653*sin(2*pi*(s-t)) - 0.10029035*cos(4*pi*(s-t))"));
+  const auto prograde = compute(strain(2., "-0.0930008 + 0.29263653*sin(2*pi*(s-t)) - 0.10029035*cos(4*pi*(s-t))"));
   EXPECT_NEAR(prograde.displacement, 0.10710692, 1e-8);
   EXPECT_NEAR(prograde.ledger->dissipation, 0.045139762, 1e-9);
 }
@@ -78,11 +76,9 @@ TEST(Kinematic, ReciprocalMotionLeadsNowhere)
 TEST(Kinematic, Units)
 {
   auto scaled = strain(-1., "0.3*sin(2*pi*(s/2+t/4))");
-  scaled.insert(scaled.end(),
-                {{"Body/Length", "2"},
-                 {"Body/Friction coefficient", "3"},
-                 {"Body/Elastic modulus", "5"},
-                 {"Time/End time", "4"}});
+  scaled.insert(
+    scaled.end(),
+    {{"Body/Length", "2"}, {"Body/Friction coefficient", "3"}, {"Body/Elastic modulus", "5"}, {"Time/End time", "4"}});
   const double exact = 1. - std::sqrt(1. - 0.09);
   const auto result  = compute(scaled);
   EXPECT_NEAR(result.displacement, 2. * exact, 1e-10);
@@ -121,9 +117,9 @@ TEST(Kinematic, StiffBody)
 {
   const auto gap = [](const std::string &k)
   {
-    test::Settings settings = {{"Active stress/Generator", "expression"},
-                               {"Active stress/Expression/Active stress", k + "*0.2*(sin(2*pi*(s+t)) - sin(2*pi*s))"},
-                               {"Body/Elastic modulus", k}};
+    test::Settings settings  = {{"Active stress/Generator", "expression"},
+                                {"Active stress/Expression/Active stress", k + "*0.2*(sin(2*pi*(s+t)) - sin(2*pi*s))"},
+                                {"Body/Elastic modulus", k}};
     const double approximate = compute(settings).displacement;
     settings.emplace_back("Accuracy", "1e-7");
     return std::abs(approximate - test::run_with(settings).result.displacement);

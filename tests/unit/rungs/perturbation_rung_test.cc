@@ -55,7 +55,8 @@ TEST(PerturbationRung, FieldsFitTogether)
   const Perturbation series(*rungs.wave());
   const double t = 0.37, h = 1e-5;
   const std::vector<double> points = {0.2 - h, 0.2, 0.2 + h};
-  const auto now = series.fields(t, points), before = series.fields(t - h, points), after = series.fields(t + h, points);
+  const auto now = series.fields(t, points), before = series.fields(t - h, points),
+             after = series.fields(t + h, points);
   EXPECT_NEAR(now.strain[1], (now.displacement[2] - now.displacement[0]) / (2. * h), 1e-8);
   EXPECT_NEAR(now.velocity[1], (after.displacement[1] - before.displacement[1]) / (2. * h), 1e-8);
   EXPECT_NEAR(series.velocity(t), (series.displacement(t + h) - series.displacement(t - h)) / (2. * h), 1e-9);

@@ -60,8 +60,8 @@ namespace
       EXPECT_EQ(error.entry, "entry");
       const std::string message = error.what();
       const auto place          = message.find("\"" + name + "\"");
-      return place == std::string::npos ? message :
-                                          message.substr(0, place) + "FILE" + message.substr(place + name.size() + 2);
+      return place == std::string::npos ? message
+                                        : message.substr(0, place) + "FILE" + message.substr(place + name.size() + 2);
     }
     return "nothing";
   }
@@ -124,9 +124,7 @@ TEST(CubicSpline, ReproducesCubicsOnAnyKnots)
   {
     const auto p = spline.place(x);
     EXPECT_NEAR(p.a * y[p.i] + p.b * y[p.i + 1] + p.c * M[p.i] + p.d * M[p.i + 1], cubic(x), 1e-13);
-    EXPECT_NEAR(p.da * y[p.i] + p.db * y[p.i + 1] + p.dc * M[p.i] + p.dd * M[p.i + 1],
-                2. + x * (-6. + 2.1 * x),
-                1e-12);
+    EXPECT_NEAR(p.da * y[p.i] + p.db * y[p.i + 1] + p.dc * M[p.i] + p.dd * M[p.i + 1], 2. + x * (-6. + 2.1 * x), 1e-12);
   }
 }
 
@@ -198,15 +196,14 @@ TEST(PrescribedStrain, BalancesForces)
 /// A wave, and a table of it, are the formula.
 TEST(PrescribedStrain, WaveAndTable)
 {
-  const Scene by_formula =
-    test::parameters_with(strain("0.05 + 0.2*sin(2*pi*1.5*(s - 0.7*t) + 0.3)")).create_scene();
-  const Scene by_wave = test::parameters_with({{"Active stress/Generator", "prescribed strain"},
-                                               {"Active stress/Prescribed strain/Given by", "wave"},
-                                               {"Active stress/Prescribed strain/Mean strain", "0.05"},
-                                               {"Active stress/Prescribed strain/Amplitude", "0.2"},
-                                               {"Active stress/Prescribed strain/Wave number", "1.5"},
-                                               {"Active stress/Prescribed strain/Wave speed", "-0.7"},
-                                               {"Active stress/Prescribed strain/Phase", "0.3"}})
+  const Scene by_formula = test::parameters_with(strain("0.05 + 0.2*sin(2*pi*1.5*(s - 0.7*t) + 0.3)")).create_scene();
+  const Scene by_wave    = test::parameters_with({{"Active stress/Generator", "prescribed strain"},
+                                                  {"Active stress/Prescribed strain/Given by", "wave"},
+                                                  {"Active stress/Prescribed strain/Mean strain", "0.05"},
+                                                  {"Active stress/Prescribed strain/Amplitude", "0.2"},
+                                                  {"Active stress/Prescribed strain/Wave number", "1.5"},
+                                                  {"Active stress/Prescribed strain/Wave speed", "-0.7"},
+                                                  {"Active stress/Prescribed strain/Phase", "0.3"}})
                           .create_scene();
   const std::vector<double> points = {0., 0.123, 0.5, 1.};
   std::vector<double> a(4), b(4);
@@ -289,10 +286,12 @@ TEST(StrainTable, MustCoverBodyAndDuration)
 
 TEST(PrescribedStrain, SaysWhatIsWrong)
 {
-  EXPECT_EQ(complaint(strain("-1.5*s*t")).substr(0, 61), "the strain is -1.5 at s = 1, t = 1, but more than -1 is expec");
+  EXPECT_EQ(complaint(strain("-1.5*s*t")).substr(0, 61),
+            "the strain is -1.5 at s = 1, t = 1, but more than -1 is expec");
   EXPECT_EQ(complaint(strain("1/(s-0.5)/0*t")).find("the strain is"), 0u);
-  EXPECT_EQ(complaint(strain("0.1*s*floor(3*t)")).find("the strain at s = 1 changes by 0.1 from t = 0.324324 to 0.351351, "
-                                                       "but the integral of its rate is 0; a strain without jumps"),
+  EXPECT_EQ(complaint(strain("0.1*s*floor(3*t)"))
+              .find("the strain at s = 1 changes by 0.1 from t = 0.324324 to 0.351351, "
+                    "but the integral of its rate is 0; a strain without jumps"),
             0u);
   EXPECT_EQ(complaint(strain("sn(s)")).find("error in the formula \"sn(s)\" at position 1"), 0u);
   EXPECT_EQ(complaint(strain("")).find("the formula of the strain is empty"), 0u);

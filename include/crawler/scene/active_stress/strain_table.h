@@ -36,7 +36,7 @@ namespace crawler
     explicit StrainTable(Grid grid);
 
     const CubicSpline in_s_, in_t_;
-    const std::vector<double> strain_;     ///< [t][s]
-    std::vector<double> curvature_;        ///< [t][s], in s
+    const std::vector<double> strain_; ///< [t][s]
+    std::vector<double> curvature_;    ///< [t][s], in s
   };
 } // namespace crawler
