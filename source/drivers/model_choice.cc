@@ -88,10 +88,10 @@ namespace crawler
     ModelChoice
     choose_by_error(const RungScene &rungs, const double accuracy)
     {
-      if (rungs.scene().body.friction_exponent() == 0.)
-        return {"linear", "Model linear: a = 0, where the equation is linear and the displacement 0"};
       if (rungs.is_prescribed())
         return {"kinematic", "Model kinematic: the strain is prescribed, so there is no equation to solve"};
+      if (rungs.scene().body.friction_exponent() == 0.)
+        return {"linear", "Model linear: a = 0, where the equation is linear and the displacement 0"};
       if (rungs.strain() == nullptr)
         return {"nonlinear", "Model nonlinear: no simpler one fits this active stress"};
       const ModelErrors errors = rungs.model_errors();

@@ -144,7 +144,8 @@ namespace crawler
     {
       result.inversion->s *= units.length;
       result.inversion->t *= units.time;
-      result.time.reason  = "inverted";
+      const double s      = result.inversion->s;
+      result.time.reason  = s == 0. || s == units.length ? "inverted_at_end" : "inverted_inside";
       result.time.message = fmt::format("the strain that the kinematic model assumes gives the stretch {:.3g} at s = "
                                         "{:.6g}, t = {:.6g}; Model = nonlinear is needed",
                                         result.inversion->value,

@@ -257,7 +257,6 @@ namespace crawler
         result.extremes.smallest = both.smallest;
       if (both.largest.strain > result.extremes.largest.strain)
         result.extremes.largest = both.largest;
-      result.converged    = space_fits && time_fits;
       result.displacement = both.displacement;
       result.energies     = both.energies;
       result.net_friction = both.largest_friction > 0. ? both.largest_net_friction / both.largest_friction : 0.;

@@ -31,7 +31,7 @@ namespace crawler
     double sum = 0.;
     for (const auto &h : wave_.harmonics)
       sum += power(h) * (std::cos(h.q * wave_.speed * t) - 1.);
-    return 0.5 * wave_.friction_exponent * wave_.speed * sum;
+    return 0.5 * wave_.friction_exponent * wave_.speed * sum + 0.; // never -0
   }
 
   RungEnergies

@@ -66,8 +66,7 @@ namespace crawler
   struct KinematicResult
   {
     double displacement = 0., space_error = 0., time_error = 0.; ///< errors of the quadrature
-    bool converged = false;                                      ///< the errors are as small as was asked for
-    bool stopped   = false;                                      ///< keep_going said no
+    bool stopped = false;                                        ///< keep_going said no
     RungEnergies energies;
     double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time
     StrainExtremes extremes{};
@@ -78,7 +77,8 @@ namespace crawler
   /**
    * The displacement and the works of a body with a given strain over 0 <= t <= 1. The panels in s and in t are doubled
    * until the changes of the displacement that this makes are, each, below a quarter of @p tolerance times the
-   * displacement (or of 1e-12); these are the errors, and the values are those of the doubled panels.
+   * displacement (or of 1e-12), and the works balance to @p tolerance, or until there are a million of them; the
+   * changes are the errors, and the values are those of the doubled panels.
    */
   KinematicResult
   kinematic(const Scene &scene,
