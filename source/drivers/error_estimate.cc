@@ -61,11 +61,10 @@ namespace crawler
       second.petsc_prefix          = "second_"; // options after "--" are for the run itself
       Simulation simulation(communicator, scene, second, finer(choice.numerics, integrator));
       const SimulationResult better = simulation.run({}, {}, {}, keep_going);
-      const double x                = better.time.status == "finished" ?
-                                        std::abs(better.displacement - result.displacement) :
-                                        DisplacementError::unknown;
-      total = std::isfinite(choice.promised_error) ? measured_factor * x + promised_part * choice.promised_error :
-                                                     factor_without_promise * x;
+      const double x = better.time.status == "finished" ? std::abs(better.displacement - result.displacement)
+                                                        : DisplacementError::unknown;
+      total = std::isfinite(choice.promised_error) ? measured_factor * x + promised_part * choice.promised_error
+                                                   : factor_without_promise * x;
     }
     if (std::isfinite(total))
     {

@@ -472,17 +472,16 @@ namespace crawler
           n.initial_step = first_step(parameters_.time);
         // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
         // size.
-        const double r = 1. / (1. + estimated_order());
-        const double wanted =
-          accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
+        const double r       = 1. / (1. + estimated_order());
+        const double wanted  = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
         const double by_rule = std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
                                         std::max(1e-15 * scale_, smallest()));
-        n.tolerance = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
+        n.tolerance          = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
         if (predicts && !is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
-          const double k = n.mesh.tolerance > 0. ? scene_.body.elastic_modulus / natural_units(scene_).force : 1.;
-          choice_.space_share    = space_over_time_ / (1. + space_over_time_);
+          const double k      = n.mesh.tolerance > 0. ? scene_.body.elastic_modulus / natural_units(scene_).force : 1.;
+          choice_.space_share = space_over_time_ / (1. + space_over_time_);
           choice_.promised_error =
             size_ * std::max(accuracy_ * (k < soft ? soft_factor : 1.), k < very_soft ? soft_error : 0.);
         }

@@ -73,9 +73,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     /// @p correction and what may be left of it, @p newton_fraction, are relative to the tolerance.
     void
     look_at_correction(const int it,
- const double least_stretch_of_stages,
- const double correction,
- const double newton_fraction)
+                       const double least_stretch_of_stages,
+                       const double correction,
+                       const double newton_fraction)
     {
       ++newton;
       if (!(least_stretch_of_stages > 0.) || !(correction < HUGE_VAL))

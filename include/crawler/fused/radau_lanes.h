@@ -168,7 +168,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         for (int l = 0; l < lanes; ++l)
           if (lanes_[l].iterating)
             lanes_[l].look_at_correction(
- it, get_lane(least, l), ::sqrt(get_lane(correction, l)), setup_.newton_fraction);
+              it, get_lane(least, l), ::sqrt(get_lane(correction, l)), setup_.newton_fraction);
       }
       for (Lane &lane : lanes_)
         if (lane.iterating)

@@ -14,7 +14,7 @@ namespace crawler
   {
     explicit RadauTableau(unsigned int n_stages);
 
-    const unsigned int n;                          ///< s
+    const unsigned int n; ///< s
     /// The error of Newton's method that is left in a step, relative to its admissible error. The end of a step is much
     /// more accurate than that, so Newton's method has to be, too.
     const double newton_fraction;
