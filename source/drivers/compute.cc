@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/drivers/batch.h>
 #include <crawler/drivers/compute.h>
+#include <crawler/drivers/error_estimate.h>
 #include <crawler/drivers/model_choice.h>
 #include <crawler/drivers/rung.h>
 #include <crawler/drivers/self_check.h>
 
 #include <chrono>
+#include <utility>
 
 namespace crawler
 {
@@ -135,6 +137,32 @@ namespace crawler
         }
       }
     }
+    /// What the batch has left: runs, and errors of the displacement with what follows from them.
+    void
+    finish(Task &task, const double time_limit, const std::function<bool()> &interrupted)
+    {
+      const double before = task.seconds;
+      const Clock clock;
+      const auto keep_going = [&]()
+      {
+        task.is_out_of_time = before + clock.seconds() > time_limit;
+        return !task.is_out_of_time && !interrupted();
+      };
+      bool is_computed = !task.computed.result.time.status.empty();
+      Answer answer    = run_as_promised(
+        MPI_COMM_SELF,
+        task.parameters,
+        *task.scene,
+        task.computed.choice,
+        [&](const NumericsChoice &choice)
+        {
+          return std::exchange(is_computed, false)
+                      ? task.computed.result
+                      : simulate(task.parameters, *task.scene, choice.numerics, keep_going);
+        },
+        keep_going);
+      task.computed = {std::move(answer.result), std::move(answer.choice)};
+    }
   } // namespace
 
   void
@@ -145,20 +173,11 @@ namespace crawler
     compute_batches(tasks, time_limit, interrupted);
     for (Task &task : tasks)
     {
-      if (is_ready(task))
+      if (task.scene && !task.error && task.computed.result.time.status != "stopped" && !task.computed.result.error)
         guarded(task,
                 [&]()
                 {
-                  const double before = task.seconds;
-                  const Clock clock;
-                  task.computed.result = simulate(task.parameters,
-                                                  *task.scene,
-                                                  task.computed.choice.numerics,
-                                                  [&]()
-                                                  {
-                                                    task.is_out_of_time = before + clock.seconds() > time_limit;
-                                                    return !task.is_out_of_time && !interrupted();
-                                                  });
+                  finish(task, time_limit, interrupted);
                 });
       if (!task.error)
         check_identities(task.computed.result, task.parameters);

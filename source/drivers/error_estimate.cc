@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/drivers/error_estimate.h>
+#include <crawler/drivers/self_check.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -15,14 +18,18 @@ namespace crawler
     constexpr double more_cells = 1.1, finer_tolerance = 0.1, finer_mesh_tolerance = 0.1;
     /// The same if the run is not by radau 9, which is more accurate for the same tolerance than all others.
     constexpr double finer_tolerance_than_others = 0.5;
+    constexpr const char *best_integrator        = "radau 9";
+    /// Its first step, relative to the duration, at least: others start with smaller ones.
+    constexpr double first_step = 1e-3;
     /// For the next try.
     constexpr double refined_cells = 1.2, refined_tolerance = 0.1;
-    constexpr const char *best_integrator = "radau 9";
+    /// An error that is known beforehand to be so many times as large as wanted is not worth another try.
+    constexpr double hopeless = 4.;
     /// No displacement is more accurate than this part of the body length.
     constexpr double round_off = 1e-15;
 
     Numerics
-    finer(const Numerics &numerics, const std::string &integrator)
+    finer(const Numerics &numerics, const std::string &integrator, const double end_time)
     {
       Numerics n = numerics;
       if (n.mesh.tolerance > 0.)
@@ -30,64 +37,116 @@ namespace crawler
       else
         n.n_cells = static_cast<unsigned int>(std::ceil(more_cells * n.n_cells));
       n.tolerance *= integrator == best_integrator ? finer_tolerance : finer_tolerance_than_others;
-      n.integrator = best_integrator;
-      if (integrator == "bdf" || integrator == "") // which starts with tiny steps
-        n.initial_step = std::max(n.initial_step, n.tolerance);
+      n.integrator   = best_integrator;
+      n.initial_step = std::max(n.initial_step, first_step * end_time);
       return n;
+    }
+
+    NumericsChoice
+    refined(const NumericsChoice &choice)
+    {
+      NumericsChoice next = choice;
+      Numerics &n         = next.numerics;
+      if (n.mesh.tolerance > 0.)
+        n.mesh.tolerance *= refined_tolerance;
+      else
+        n.n_cells = static_cast<unsigned int>(std::ceil(refined_cells * n.n_cells));
+      n.tolerance *= refined_tolerance;
+      return next;
+    }
+
+    /// The difference of the displacement to that of the finer run; not a number if that did not finish.
+    double
+    difference_to_finer_run(MPI_Comm communicator,
+                            const Parameters &parameters,
+                            const Scene &scene,
+                            const NumericsChoice &choice,
+                            const SimulationResult &result,
+                            const std::function<bool()> &keep_going)
+    {
+      TimeParameters time          = parameters.time;
+      const std::string integrator = time.integrator == "automatic" ? choice.numerics.integrator : time.integrator;
+      time.integrator              = "automatic";
+      time.engine                  = "automatic";
+      time.step_control            = "adaptive";
+      time.petsc_prefix            = "second_"; // options after "--" are for the run itself
+      Simulation simulation(communicator, scene, time, finer(choice.numerics, integrator, scene.end_time));
+      const SimulationResult better = simulation.run({}, {.cycles = cycle_wish(parameters, scene, 0)}, {}, keep_going);
+      return better.time.status == "finished" ? std::abs(better.displacement - result.displacement)
+                                              : DisplacementError::unknown;
     }
   } // namespace
 
-  ErrorEstimate
+  DisplacementError
   estimate_error(MPI_Comm communicator,
+                 const Parameters &parameters,
                  const Scene &scene,
-                 const TimeParameters &time,
                  const NumericsChoice &choice,
                  const SimulationResult &result,
                  const std::function<bool()> &keep_going)
   {
-    ErrorEstimate estimate;
+    DisplacementError error;
     if (result.time.status != "finished")
-      return estimate;
-    const auto start   = std::chrono::steady_clock::now();
-    const double least = round_off * scene.body.length;
-    double total       = choice.promised_error;
+      return error;
+    double total = choice.promised_error;
     if (!choice.is_collapse)
     {
-      const std::string integrator = time.integrator == "automatic" ? choice.numerics.integrator : time.integrator;
-      TimeParameters second        = time;
-      second.integrator            = "automatic";
-      second.engine                = "automatic";
-      second.step_control          = "adaptive";
-      second.petsc_prefix          = "second_"; // options after "--" are for the run itself
-      Simulation simulation(communicator, scene, second, finer(choice.numerics, integrator));
-      const SimulationResult better = simulation.run({}, {}, {}, keep_going);
-      const double x = better.time.status == "finished" ? std::abs(better.displacement - result.displacement)
-                                                        : DisplacementError::unknown;
+      const double x = difference_to_finer_run(communicator, parameters, scene, choice, result, keep_going);
       total = std::isfinite(choice.promised_error) ? measured_factor * x + promised_part * choice.promised_error
                                                    : factor_without_promise * x;
     }
-    if (std::isfinite(total))
-    {
-      DisplacementError &error = estimate.error;
-      error.total              = std::max(total, least);
-      error.space              = choice.space_share * error.total;
-      error.time               = error.total - error.space;
-      error.model              = 0.;
-    }
-    estimate.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return estimate;
+    if (!std::isfinite(total))
+      return error;
+    const double cycles = result.cycles ? result.cycles->bound : 0.;
+    const double rest   = std::max(total, round_off * scene.body.length);
+    error.total         = rest + cycles;
+    error.space         = choice.space_share * rest;
+    error.time          = error.total - error.space;
+    error.model         = 0.;
+    return error;
   }
 
-  NumericsChoice
-  refined(const NumericsChoice &choice)
+  Answer
+  run_as_promised(MPI_Comm communicator,
+                  const Parameters &parameters,
+                  const Scene &scene,
+                  const NumericsChoice &choice,
+                  const std::function<SimulationResult(const NumericsChoice &)> &simulate,
+                  const std::function<bool()> &keep_going)
   {
-    NumericsChoice next = choice;
-    Numerics &n         = next.numerics;
-    if (n.mesh.tolerance > 0.)
-      n.mesh.tolerance *= refined_tolerance;
-    else
-      n.n_cells = static_cast<unsigned int>(std::ceil(refined_cells * n.n_cells));
-    n.tolerance *= refined_tolerance;
-    return next;
+    using Clock = std::chrono::steady_clock;
+    Answer answer;
+    answer.choice       = choice;
+    const double wanted = choice.wanted_error;
+    // What has been measured on one mesh after the other is not tried again.
+    const bool may_refine = !choice.is_collapse && choice.promised_error < hopeless * wanted;
+    for (;; ++answer.refinements, answer.choice = refined(answer.choice))
+    {
+      answer.result            = simulate(answer.choice);
+      SimulationResult &result = answer.result;
+      if (!parameters.error_estimate || result.time.status != "finished")
+        return answer;
+      const auto start = Clock::now();
+      result.error     = estimate_error(communicator, parameters, scene, answer.choice, result, keep_going);
+      answer.estimate_seconds += std::chrono::duration<double>(Clock::now() - start).count();
+      const double total = result.error->total;
+      // A ledger that does not close asks for a finer run, too; if that does not help it is the self-check's business.
+      const bool closes  = !result.ledger || result.ledger->residual() <= ledger_tolerance(result, parameters);
+      const bool stopped = std::isnan(total) && keep_going && !keep_going();
+      const bool is_good = std::isnan(wanted) || total <= wanted || stopped;
+      if (is_good && (closes || std::isnan(wanted)))
+        return answer;
+      if (may_refine && answer.refinements < most_refinements)
+        continue;
+      if (is_good)
+        return answer;
+      result.time.status = "failed";
+      result.time.reason = "accuracy_not_met";
+      result.time.message =
+        std::isnan(total)
+          ? "the error of the displacement is not known: a finer run did not finish"
+          : fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}", total, wanted);
+      return answer;
+    }
   }
 } // namespace crawler

@@ -35,8 +35,8 @@ namespace crawler
     constexpr double space_factor = 4.;
     /// Error of the displacement in time is below this times the number of steps times the tolerance.
     constexpr double time_factor = 0.25;
-    /// The steps of radau 5 and 9 on uniform meshes end much more accurately than their tolerance says: the tolerance
-    /// is so many times the one of that rule.
+    /// The steps of radau 5 and 9 on uniform meshes in the position form end much more accurately than their tolerance
+    /// says: the tolerance is so many times the one of that rule.
     constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
     /// On uniform meshes runs for a smaller Accuracy than this are by radau 9, others by radau 5.
     constexpr double radau_9_accuracy = 1.1e-4;
@@ -453,7 +453,8 @@ namespace crawler
       {
         const std::string &own  = parameters_.time.integrator;
         const std::string &name = own == "automatic" ? choice_.numerics.integrator : own;
-        if (choice_.numerics.mesh.tolerance > 0. || is_collapse_)
+        if (choice_.numerics.mesh.tolerance > 0. || choice_.numerics.formulation == FormulationChoice::log_stretch ||
+            is_collapse_ || pilot_.min_stretch.value < emptied)
           return 1.;
         return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
       }
@@ -480,11 +481,14 @@ namespace crawler
         if (predicts && !is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
-          const double k      = n.mesh.tolerance > 0. ? scene_.body.elastic_modulus / natural_units(scene_).force : 1.;
-          choice_.space_share = space_over_time_ / (1. + space_over_time_);
+          const double k       = n.mesh.tolerance > 0. ? scene_.body.elastic_modulus / natural_units(scene_).force : 1.;
+          choice_.space_share  = space_over_time_ / (1. + space_over_time_);
+          choice_.wanted_error = accuracy_ * size_;
           choice_.promised_error =
             size_ * std::max(accuracy_ * (k < soft ? soft_factor : 1.), k < very_soft ? soft_error : 0.);
         }
+        if (is_collapse_ && predicts)
+          choice_.wanted_error = accuracy_ * size_;
         const double seconds   = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         const std::string kind = is_collapse_ ? "the stretch collapses: log stretch with degree 1, "
                                  : n.mesh.tolerance > 0.

@@ -57,14 +57,20 @@ namespace crawler
     for (const char *name : {"original.prm",
                              "parameters.prm",
                              "log.txt",
-                             "statistics.csv",
                              "summary.json",
-                             "solution.pvd",
-                             "kymograph.vts",
                              "atlas.csv",
                              "atlas.h5",
                              "atlas.png",
                              "atlas.svg"})
+      fs::remove(folder / name, error);
+    remove_fields(folder);
+  }
+
+  void
+  remove_fields(const fs::path &folder)
+  {
+    std::error_code error;
+    for (const char *name : {"statistics.csv", "solution.pvd", "kymograph.vts"})
       fs::remove(folder / name, error);
     if (fs::is_directory(folder / "solution", error))
       for (const auto &file : fs::directory_iterator(folder / "solution"))

@@ -44,6 +44,10 @@ namespace crawler
       "Wanted relative error of the displacement. Chooses degree, cells and time tolerance where they "
       "are automatic (doc/numerics.md).",
       "1");
+    declarations.flag("Error estimate",
+                      error_estimate,
+                      "Whether a second, finer run tells the error of the displacement; about as expensive as a run "
+                      "without output.");
     body.add_parameters(declarations);
     active_stress.add_parameters(declarations);
     discretization.add_parameters(declarations);

@@ -2,6 +2,8 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/stop_signal.h>
+#include <crawler/drivers/batch.h>
+#include <crawler/drivers/error_estimate.h>
 #include <crawler/drivers/input.h>
 #include <crawler/drivers/log.h>
 #include <crawler/drivers/numerics_choice.h>
@@ -37,24 +39,31 @@ namespace crawler
       return times;
     }
 
+    std::string
+    describe(const Numerics &n, const Input &input)
+    {
+      const TimeParameters &time   = input.parameters.time;
+      const std::string integrator = time.integrator != "automatic" ? time.integrator
+                                     : n.integrator.empty()         ? "bdf"
+                                                                    : n.integrator;
+      return fmt::format("Mesh: {} cells of degree {}, {} unknowns. Time: {}{}, tolerance {:.3g}.",
+                         n.n_cells,
+                         n.degree,
+                         static_cast<std::size_t>(n.n_cells) * n.degree + 1,
+                         integrator,
+                         integrator == "bdf"                  ? fmt::format(" of order {}", time.order)
+                         : fused_method(input.scene, time, n) ? " (fused engine)"
+                                                              : "",
+                         n.tolerance);
+    }
+
     /// The lines that say what will be computed.
     void
     report_plan(Log &log, const Input &input, const ModelChoice &model, const NumericsChoice &choice)
     {
       report_scene(log, input);
       log.line(model.explanation);
-      const Parameters &p          = input.parameters;
-      const Numerics &n            = choice.numerics;
-      const std::string integrator = p.time.integrator != "automatic" ? p.time.integrator
-                                     : n.integrator.empty()           ? "bdf"
-                                                                      : n.integrator;
-      log.line(fmt::format("Mesh: {} cells of degree {}, {} unknowns. Time: {}{}, tolerance {:.3g}.",
-                           n.n_cells,
-                           n.degree,
-                           static_cast<std::size_t>(n.n_cells) * n.degree + 1,
-                           integrator,
-                           integrator == "bdf" ? fmt::format(" of order {}", p.time.order) : "",
-                           n.tolerance));
+      log.line(describe(choice.numerics, input));
       log.line("  (" + choice.explanation + ")");
     }
 
@@ -163,10 +172,14 @@ namespace crawler
       log.warn("stopped by a signal during the pilot runs; nothing was written");
       return ExitCode::stopped;
     }
-    const NumericsChoice &choice = *chosen;
     // Either all ranks share the cells, or each computes the whole body and the first one writes.
-    const bool shared = parameters.discretization.shares(choice.numerics.n_cells);
-    Simulation simulation(shared ? communicator : MPI_COMM_SELF, input.scene, parameters.time, choice.numerics);
+    const bool shared        = parameters.discretization.shares(chosen->numerics.n_cells);
+    const MPI_Comm computing = shared ? communicator : MPI_COMM_SELF;
+    const auto keep_going    = [&]()
+    {
+      return !stop_signal.arrived_anywhere(computing);
+    };
+    auto simulation = std::make_unique<Simulation>(computing, input.scene, parameters.time, chosen->numerics);
 
     // Everything is in order: from here on there are files.
     on_first_rank(communicator,
@@ -180,31 +193,53 @@ namespace crawler
                     log.open(folder / "log.txt");
                     return "";
                   });
-    report_plan(log, input, model, choice);
+    report_plan(log, input, model, *chosen);
 
-    std::vector<std::unique_ptr<Observer>> observers;
-    const bool writes = shared || first;
-    if (writes && output.n_snapshots > 0)
+    const bool writes           = shared || first;
+    const auto create_observers = [&]()
     {
-      observers.push_back(std::make_unique<VtuWriter>(folder));
-      if (output.kymograph)
-        observers.push_back(std::make_unique<KymographWriter>(input.scene.end_time, folder));
-    }
-    if (writes && output.statistics)
-      observers.push_back(std::make_unique<StatisticsWriter>(input.scene.body.length, first, folder, output.ledger));
-    if (writes && !options.quiet)
-      observers.push_back(std::make_unique<Progress>(log, input.scene));
-
-    const double setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    SimulationResult result    = simulation.run(
-      frame_times(output.n_snapshots, parameters.time.end_time),
-      {.ledger = output.ledger, .resolution = false, .cycles = cycle_wish(parameters, input.scene, output.n_snapshots)},
-      observers,
-      [&]()
+      std::vector<std::unique_ptr<Observer>> observers;
+      if (writes && output.n_snapshots > 0)
       {
-        return !stop_signal.arrived_anywhere(shared ? communicator : MPI_COMM_SELF);
-      });
-    result.setup_seconds = setup_seconds;
+        observers.push_back(std::make_unique<VtuWriter>(folder));
+        if (output.kymograph)
+          observers.push_back(std::make_unique<KymographWriter>(input.scene.end_time, folder));
+      }
+      if (writes && output.statistics)
+        observers.push_back(std::make_unique<StatisticsWriter>(input.scene.body.length, first, folder, output.ledger));
+      if (writes && !options.quiet)
+        observers.push_back(std::make_unique<Progress>(log, input.scene));
+      return observers;
+    };
+    const double setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    unsigned int n_runs        = 0;
+    const auto simulate        = [&](const NumericsChoice &choice)
+    {
+      if (++n_runs > 1)
+      {
+        log.line("The error is larger than Accuracy asks for: once more, finer.");
+        simulation = std::make_unique<Simulation>(computing, input.scene, parameters.time, choice.numerics);
+        if (writes)
+          on_first_rank(computing,
+                        [&]()
+                        {
+                          remove_fields(folder);
+                          return "";
+                        });
+        log.line(describe(choice.numerics, input));
+      }
+      return simulation->run(frame_times(output.n_snapshots, parameters.time.end_time),
+                             {.ledger     = output.ledger,
+                              .resolution = false,
+                              .cycles     = cycle_wish(parameters, input.scene, output.n_snapshots)},
+                             create_observers(),
+                             keep_going);
+    };
+    Answer answer            = run_as_promised(computing, parameters, input.scene, *chosen, simulate, keep_going);
+    SimulationResult &result = answer.result;
+    result.setup_seconds     = setup_seconds;
+    result.estimate_seconds  = answer.estimate_seconds;
+    result.refinements       = answer.refinements;
     if (result.time.status == "stopped" && result.time.reason.empty())
     {
       result.time.reason  = "signal";
@@ -219,7 +254,7 @@ namespace crawler
       {
         write_file(
           folder / "summary.json",
-          summary_json(result, parameters, &simulation.discretization(), size_of(communicator), options.command_line));
+          summary_json(result, parameters, &simulation->discretization(), size_of(communicator), options.command_line));
         return "";
       });
     for (const std::string &line : summary_lines(result, parameters))

@@ -7,16 +7,22 @@
 
 namespace crawler
 {
+  double
+  ledger_tolerance(const SimulationResult &result, const Parameters &parameters)
+  {
+    const bool own_numerics = parameters.time.tolerance ||
+                              (parameters.time.integrator != "automatic" && parameters.time.integrator != "bdf") ||
+                              parameters.time.order < 4 || parameters.time.step_control == "fixed";
+    return parameters.output.ledger_tolerance.value_or(
+      own_numerics ? 0.1 : std::max(1e-8, (result.log_stretch_since ? 300. : 10.) * parameters.accuracy));
+  }
+
   void
   check_identities(SimulationResult &result, const Parameters &parameters)
   {
     if (result.time.status != "finished" || !result.ledger)
       return;
-    const bool own_numerics = parameters.time.tolerance ||
-                              (parameters.time.integrator != "automatic" && parameters.time.integrator != "bdf") ||
-                              parameters.time.order < 4 || parameters.time.step_control == "fixed";
-    const double tolerance = parameters.output.ledger_tolerance.value_or(
-      own_numerics ? 0.1 : std::max(1e-8, (result.log_stretch_since ? 300. : 10.) * parameters.accuracy));
+    const double tolerance              = ledger_tolerance(result, parameters);
     constexpr double friction_tolerance = 1e-6;
     std::string problem;
     if (!(result.ledger->residual() <= tolerance))

@@ -165,6 +165,8 @@ namespace crawler
 
     for (const auto &observer : observers)
       observer->end();
+    result_.integrator    = time_.integrator;
+    result_.engine        = !fused_stepper_ ? "petsc" : fused_gave_up_ || petsc_stepper_ ? "fused, petsc" : "fused";
     result_.solve_seconds = now() - start - result_.output_seconds;
     return in_physical_units();
   }

@@ -92,10 +92,15 @@ namespace crawler
     json["newton_iterations"]  = result.time.newton_iterations;
     json["ranks"]              = n_ranks;
     json["cells_shared"]       = discretization && discretization->n_ranks() > 1;
-    json["seconds"]            = {
-                 {"setup", result.setup_seconds}, {"solve", result.solve_seconds}, {"output", result.output_seconds}};
-    json["versions"]     = versions();
-    json["command_line"] = command_line;
+    json["refinements"]        = result.refinements;
+    json["integrator"]         = result.integrator.empty() ? Json(nullptr) : Json(result.integrator);
+    json["engine"]             = result.engine.empty() ? Json(nullptr) : Json(result.engine);
+    json["seconds"]            = {{"setup", result.setup_seconds},
+                                  {"solve", result.solve_seconds},
+                                  {"output", result.output_seconds},
+                                  {"error", result.estimate_seconds}};
+    json["versions"]           = versions();
+    json["command_line"]       = command_line;
     return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
   }
 

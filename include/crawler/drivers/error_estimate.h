@@ -8,33 +8,47 @@
 
 namespace crawler
 {
-  /// How far off the displacement of a run may be.
-  struct ErrorEstimate
-  {
-    DisplacementError error;
-    double seconds = 0.; ///< that the estimate took
-  };
-
   /**
    * The error of the displacement of @p result, which a Simulation with @p choice gave (collective). A second, finer
    * run tells it (doc/numerics.md, "Error bars"): with x the difference of both displacements and w the error that the
    * choice promises,
    *
-   *   total = 1.1 x + 0.2 w   (without a promise 2 x), and at least the error of round-off.
+   *   total = 1.1 x + 0.2 w   (without a promise 2 x), and at least 1e-15 L, the error of round-off.
    *
    * It is split into space and time as the rule that chose the numerics expects it. Where the stretch collapses the
    * choice has measured the error, and no second run is made. Nothing is known of a result that is not finished, or
    * if the finer run did not finish or was stopped by @p keep_going.
    */
-  ErrorEstimate
+  DisplacementError
   estimate_error(MPI_Comm communicator,
+                 const Parameters &parameters,
                  const Scene &scene,
-                 const TimeParameters &time,
                  const NumericsChoice &choice,
                  const SimulationResult &result,
                  const std::function<bool()> &keep_going = {});
 
-  /// What is tried if an error is larger than promised: more cells, a smaller tolerance.
-  NumericsChoice
-  refined(const NumericsChoice &choice);
+  /// A run with its error, and how it was found.
+  struct Answer
+  {
+    SimulationResult result; ///< with its error, if that was asked for and is known
+    NumericsChoice choice;   ///< what was used in the end
+    unsigned int refinements = 0;
+    double estimate_seconds  = 0.; ///< that the errors took
+  };
+
+  constexpr unsigned int most_refinements = 3;
+
+  /**
+   * Runs @p simulate with @p choice, estimates the error of the displacement if `Error estimate` is set, and as long
+   * as that is more than wanted, tries again with more cells and a smaller tolerance, at most most_refinements times
+   * (collective). What then has too large an error, or an unknown one, is named a failure, `accuracy_not_met`: with all
+   * results and the error that was reached. If the user chose the numerics, their error is reported and that is all.
+   */
+  Answer
+  run_as_promised(MPI_Comm communicator,
+                  const Parameters &parameters,
+                  const Scene &scene,
+                  const NumericsChoice &choice,
+                  const std::function<SimulationResult(const NumericsChoice &)> &simulate,
+                  const std::function<bool()> &keep_going = {});
 } // namespace crawler

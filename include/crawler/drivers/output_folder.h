@@ -17,4 +17,8 @@ namespace crawler
   /// Makes the folder, without the results of an earlier run (only files that this program writes are removed).
   void
   prepare(const std::filesystem::path &folder);
+
+  /// Removes what a run has written while it went on: the fields and the statistics.
+  void
+  remove_fields(const std::filesystem::path &folder);
 } // namespace crawler

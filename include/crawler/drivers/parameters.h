@@ -17,8 +17,9 @@ namespace crawler
   /// All sections of the parameter file, in file order.
   struct Parameters
   {
-    std::string model = "nonlinear";
-    double accuracy   = 1e-6;
+    std::string model   = "nonlinear";
+    double accuracy     = 1e-6;
+    bool error_estimate = true;
     Body body;
     ActiveStressParameters active_stress;
     DiscretizationParameters discretization;

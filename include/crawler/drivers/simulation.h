@@ -48,6 +48,8 @@ namespace crawler
 
     /// Of the centre of mass, (1/L) int u ds [length]; not a number if nobody looked before the run broke off.
     double displacement = std::numeric_limits<double>::quiet_NaN();
+    /// How: an integrator of time/integrators.h; petsc, fused, or "fused, petsc" where the fused engine gave up.
+    std::string integrator, engine;
     std::optional<DisplacementError> error; ///< of the displacement
     double largest_u  = 0.;                 ///< root mean square of u over the body, largest over time [length]
     double unresolved = 0.;                 ///< Resolution: largest highest_mode over largest strain, if looked at
@@ -65,6 +67,8 @@ namespace crawler
     unsigned int mesh_changes = 0, most_cells = 0; ///< of an adaptive mesh
     double largest_indicator = 0.; ///< largest sum of the error indicators of an accepted state [length]
     double setup_seconds = 0., solve_seconds = 0., output_seconds = 0.;
+    double estimate_seconds  = 0.; ///< that the error took (error_estimate.h)
+    unsigned int refinements = 0;  ///< tries before this one, whose errors were too large
   };
 
   /**

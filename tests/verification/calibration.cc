@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Is the error that a run reports larger than its true error, and not much larger? (doc/numerics.md, "Error bars")
+//   [mpirun -n N] calibration SCENES OUTPUT.csv [ACCURACY ...]       (default: 1e-3 1e-5 1e-8)
+// Runs so many random scenes (random_scenes.h) at each accuracy as `crawler run` does, and compares them with a far
+// finer run in the log-stretch form, of degree 8, by radau 5 through PETSc; its own error is the difference to bdf.
+// Writes a row for each run and prints a table. Exit status 1 if less than 99 % of the true errors are below the
+// reported ones, or the median of reported over true is above 10.
+#include "random_scenes.h"
+
+#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/base/work_queue.h>
+#include <crawler/drivers/error_estimate.h>
+#include <crawler/drivers/self_check.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
+
+namespace
+{
+  using namespace crawler;
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+  /// The displacement by a method that shares neither the formulation nor the integrator with the runs.
+  double
+  displacement(const Parameters &parameters, const std::string &integrator)
+  {
+    Parameters p                 = parameters;
+    p.accuracy                   = integrator == "bdf" ? 3e-10 : 1e-9;
+    p.time.integrator            = integrator;
+    p.time.engine                = "petsc";
+    p.time.max_steps             = 40000;
+    p.time.cycle_stop            = "off";
+    p.discretization.formulation = "log stretch";
+    p.discretization.mesh        = "uniform";
+    p.discretization.degree      = 8;
+    p.output.ledger              = false;
+    const Scene scene            = p.create_scene();
+    const auto choice            = choose_numerics(MPI_COMM_SELF, p, scene);
+    Simulation simulation(MPI_COMM_SELF, scene, p.time, choice->numerics);
+    const SimulationResult result = simulation.run({}, {});
+    return result.time.status == "finished" ? result.displacement : unknown;
+  }
+
+  struct Row
+  {
+    unsigned int scene;
+    std::string kind, status;
+    double accuracy, reference, reference_bar, value, reported, space, time, wanted, length;
+    unsigned int cells, steps, refinements;
+    double solve_seconds, estimate_seconds;
+  };
+
+  /// All rows of one scene; none if it inverts or has no reference.
+  std::vector<Row>
+  rows_of(const unsigned int number, const std::vector<double> &accuracies)
+  {
+    const test::RandomScene random = test::random_scene(number);
+    Parameters parameters          = test::parameters_with(random.settings);
+    const double reference         = displacement(parameters, "radau 5");
+    const double bar               = std::abs(displacement(parameters, "bdf") - reference);
+    std::vector<Row> rows;
+    if (!std::isfinite(bar))
+      return rows;
+    for (const double accuracy : accuracies)
+    {
+      parameters.accuracy            = accuracy;
+      const Scene scene              = parameters.create_scene();
+      const auto choice              = choose_numerics(MPI_COMM_SELF, parameters, scene);
+      const Answer answer            = run_as_promised(MPI_COMM_SELF,
+                                            parameters,
+                                            scene,
+                                            *choice,
+                                            [&](const NumericsChoice &c)
+                                            {
+                                              Simulation run(MPI_COMM_SELF, scene, parameters.time, c.numerics);
+                                              return run.run({}, {.ledger = true});
+                                            });
+      const SimulationResult &result = answer.result;
+      const DisplacementError error  = result.error.value_or(DisplacementError());
+      rows.push_back({number,
+                      random.kind,
+                      result.time.status == "finished" ? "finished" : result.time.reason,
+                      accuracy,
+                      reference,
+                      bar,
+                      result.displacement,
+                      error.total,
+                      error.space,
+                      error.time,
+                      choice->wanted_error,
+                      scene.body.length,
+                      result.most_cells,
+                      result.time.steps,
+                      answer.refinements,
+                      result.solve_seconds,
+                      answer.estimate_seconds});
+    }
+    return rows;
+  }
+
+  constexpr const char *names = "scene,kind,accuracy,status,reference,reference_bar,displacement,true_error,"
+                                "reported_error,reported_space,reported_time,wanted_error,length,cells,steps,"
+                                "refinements,solve_seconds,estimate_seconds";
+
+  std::string
+  line(const Row &r)
+  {
+    return fmt::format("{},{},{:g},{},{:.17g},{:.3g},{:.17g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{},{},{:.3g},"
+                       "{:.3g}\n",
+                       r.scene,
+                       r.kind,
+                       r.accuracy,
+                       r.status,
+                       r.reference,
+                       r.reference_bar,
+                       r.value,
+                       std::abs(r.value - r.reference),
+                       r.reported,
+                       r.space,
+                       r.time,
+                       r.wanted,
+                       r.length,
+                       r.cells,
+                       r.steps,
+                       r.refinements,
+                       r.solve_seconds,
+                       r.estimate_seconds);
+  }
+
+  double
+  median(std::vector<double> values)
+  {
+    if (values.empty())
+      return unknown;
+    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+    return values[values.size() / 2];
+  }
+
+  /// What the table counts, for one accuracy or all.
+  struct Count
+  {
+    unsigned int runs = 0, judged = 0, covered = 0, met = 0, refined = 0, failed = 0;
+    std::vector<double> ratios, overheads;
+
+    void
+    add(const Row &r)
+    {
+      ++runs;
+      refined += r.refinements > 0;
+      failed += r.status != "finished" && r.status != "accuracy_not_met";
+      // The reference must be good enough to tell.
+      if (!std::isfinite(r.reported) || r.reference_bar > 0.05 * r.reported)
+        return;
+      ++judged;
+      const double error = std::abs(r.value - r.reference);
+      covered += error <= r.reported;
+      met += error <= r.wanted;
+      ratios.push_back(r.reported / error);
+      if (r.estimate_seconds > 0.)
+        overheads.push_back(r.estimate_seconds / r.solve_seconds);
+    }
+
+    void
+    print(const std::string &name) const
+    {
+      fmt::print("{:>8} {:>6} {:>7} {:>9.2f} {:>9.2f} {:>10.1f} {:>8} {:>7} {:>9.2f}\n",
+                 name,
+                 runs,
+                 judged,
+                 100. * covered / judged,
+                 100. * met / judged,
+                 median(ratios),
+                 refined,
+                 failed,
+                 median(overheads));
+    }
+  };
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  int one = 1;
+  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  if (argc < 3)
+  {
+    fmt::print(stderr, "usage: calibration SCENES OUTPUT.csv [ACCURACY ...]\n");
+    return 2;
+  }
+  const auto n_scenes = static_cast<unsigned int>(std::stoul(argv[1]));
+  std::vector<double> accuracies;
+  for (int i = 3; i < argc; ++i)
+    accuracies.push_back(std::stod(argv[i]));
+  if (accuracies.empty())
+    accuracies = {1e-3, 1e-5, 1e-8};
+
+  WorkQueue queue(MPI_COMM_WORLD, n_scenes);
+  std::string rows;
+  while (const auto number = queue.next())
+    for (const Row &row : rows_of(static_cast<unsigned int>(*number), accuracies))
+      rows += line(row);
+  const auto all = gather(rows, MPI_COMM_WORLD);
+  if (rank_of(MPI_COMM_WORLD) > 0)
+    return 0;
+
+  std::map<double, Count, std::greater<>> counts;
+  Count total;
+  std::ofstream file(argv[2]);
+  file << names << "\n";
+  for (const std::string &text : all)
+  {
+    file << text;
+    std::istringstream lines(text);
+    for (std::string row; std::getline(lines, row);)
+    {
+      std::vector<std::string> c;
+      std::istringstream cells(row);
+      for (std::string cell; std::getline(cells, cell, ',');)
+        c.push_back(cell);
+      const auto number = [&](const unsigned int i)
+      {
+        return std::stod(c.at(i));
+      };
+      const Row r{0,
+                  c[1],
+                  c[3],
+                  number(2),
+                  number(4),
+                  number(5),
+                  number(6),
+                  number(8),
+                  number(9),
+                  number(10),
+                  number(11),
+                  number(12),
+                  0,
+                  0,
+                  static_cast<unsigned int>(number(15)),
+                  number(16),
+                  number(17)};
+      counts[r.accuracy].add(r);
+      total.add(r);
+    }
+  }
+  file.close();
+  if (!file)
+  {
+    fmt::print(stderr, "calibration: cannot write {}\n", argv[2]);
+    return 2;
+  }
+  fmt::print("{:>8} {:>6} {:>7} {:>9} {:>9} {:>10} {:>8} {:>7} {:>9}\n",
+             "accuracy",
+             "runs",
+             "judged",
+             "covered %",
+             "met %",
+             "rep./true",
+             "refined",
+             "failed",
+             "overhead");
+  for (const auto &[accuracy, count] : counts)
+    count.print(fmt::format("{:g}", accuracy));
+  total.print("all");
+  const bool kept = total.judged > 0 && total.covered >= 0.99 * total.judged && median(total.ratios) <= 10.;
+  fmt::print("{}\n", kept ? "the promise is kept" : "THE PROMISE IS NOT KEPT");
+  return kept ? 0 : 1;
+}
