@@ -74,7 +74,7 @@ TEST(Ladder, NonlinearFollowsAPrescribedStrain)
     EXPECT_NEAR(full.ledger->stress_power / motion.ledger->stress_power, 1., 1e-7);
     EXPECT_NEAR(full.ledger->dissipation / motion.ledger->dissipation, 1., 1e-7);
     EXPECT_NEAR(full.ledger->paper_energy() / motion.ledger->paper_energy(), 1., 1e-7);
-    EXPECT_NEAR(full.ledger->positive_power / motion.ledger->positive_power, 1., 1e-4); // an integrand with kinks
+    EXPECT_NEAR(full.ledger->positive_power / motion.ledger->positive_power, 1., 2e-3); // an integrand with kinks
     EXPECT_NEAR(full.ledger->elastic_energy / motion.ledger->elastic_energy, 1., 1e-7);
     EXPECT_NEAR(full.min_stretch.value, motion.min_stretch.value, 1e-4);
     EXPECT_NEAR(full.max_stretch.value, motion.max_stretch.value, 1e-4);
