@@ -274,6 +274,48 @@ TEST_F(Commands, RunWritesEveryFile)
   EXPECT_EQ(summary_of(folder.path / "output-again").at("displacement"), summary.at("displacement"));
 }
 
+/// Without a mesh the files and their names are the same; fields are at 201 points.
+TEST_F(Commands, RunsWithoutAMeshWriteEveryFile)
+{
+  const std::string waves =
+    in_section("Output", "set Number of snapshots = 3") +
+    "subsection Active stress\nset Generator = prescribed strain\nsubsection Prescribed strain\n"
+    "set Given by = wave\nend\nend\n";
+  const ProgramResult result = run({"--set", "Model=auto"}, waves);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, "Model kinematic: the strain is prescribed")) << result.out;
+  EXPECT_TRUE(contains(result.out, "displacement      0.04606079858 +- ")) << result.out;
+  EXPECT_EQ(read_text(results / "log.txt"), result.out);
+  EXPECT_EQ(read_text(results / "original.prm"), waves);
+  json summary = summary_of(results);
+  EXPECT_TRUE(summary.at("degree").is_null());
+  summary["degree"] = 0;
+  expect_complete_summary(summary);
+  EXPECT_EQ(summary.at("model"), "kinematic");
+  EXPECT_EQ(summary.at("cells"), 0);
+  for (const char *part : {"total", "space", "time", "model"})
+    EXPECT_TRUE(summary.at("displacement_error").at(part).is_number()) << part;
+  expect_frames(results, {0., 1. / 3., 2. / 3., 1.});
+  const auto rows = statistics_of(results);
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_NEAR(rows.back()[3], summary.at("displacement"), 1e-10);
+  EXPECT_TRUE(contains(read_text(results / "kymograph.vts"), "\"friction_force\""));
+}
+
+TEST_F(Commands, AModelThatCannotMeetAccuracySaysSo)
+{
+  const ProgramResult result = run({"--set", "Model=perturbation"}, "set Accuracy = 1e-4\n");
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(result.err.starts_with("crawler: accuracy_not_met: the estimated error of the displacement is 0.01"))
+    << result.err;
+  const json summary = summary_of(results);
+  EXPECT_EQ(summary.at("status"), "failed");
+  EXPECT_EQ(summary.at("reason"), "accuracy_not_met");
+  EXPECT_NEAR(summary.at("displacement"), 0.08, 1e-15);
+  EXPECT_GE(summary.at("displacement_error").at("total"), 9.00725298e-2 - 0.08);
+  EXPECT_TRUE(summary.at("positive_power").is_null());
+}
+
 TEST_F(Commands, OverridesBeatTheFileAndStandardInputIsRead)
 {
   const ProgramResult result = run_program(

@@ -4,6 +4,7 @@
 #include "../support/run_text.h"
 
 #include <crawler/base/exceptions.h>
+#include <crawler/drivers/compute.h>
 #include <crawler/drivers/model_choice.h>
 #include <crawler/drivers/rung.h>
 
@@ -73,7 +74,7 @@ TEST(Ladder, NonlinearFollowsAPrescribedStrain)
     EXPECT_NEAR(full.ledger->stress_power / motion.ledger->stress_power, 1., 1e-7);
     EXPECT_NEAR(full.ledger->dissipation / motion.ledger->dissipation, 1., 1e-7);
     EXPECT_NEAR(full.ledger->paper_energy() / motion.ledger->paper_energy(), 1., 1e-7);
-    EXPECT_NEAR(full.ledger->positive_power / motion.ledger->positive_power, 1., 1e-4); // an integrand with kinks
+    EXPECT_NEAR(full.ledger->positive_power / motion.ledger->positive_power, 1., 2e-3); // an integrand with kinks
     EXPECT_NEAR(full.ledger->elastic_energy / motion.ledger->elastic_energy, 1., 1e-7);
     EXPECT_NEAR(full.min_stretch.value, motion.min_stretch.value, 1e-4);
     EXPECT_NEAR(full.max_stretch.value, motion.max_stretch.value, 1e-4);
@@ -142,4 +143,26 @@ TEST(Ladder, AccuracyThatIsNotMet)
   const auto unknown = on_rung(test::wave(-1., 0.6), "perturbation", 1e-4);
   EXPECT_EQ(unknown.time.reason, "accuracy_not_met");
   EXPECT_TRUE(std::isnan(unknown.error->total));
+}
+
+/// Many runs in one call may be on different rungs.
+TEST(Ladder, ManyRunsAtOnce)
+{
+  std::vector<Task> tasks(3);
+  const double chi[] = {0.05, 0.4, 0.05};
+  for (unsigned int i = 0; i < 3; ++i)
+    tasks[i].parameters = test::parameters_with(
+      with(test::wave(-1., chi[i]), {{"Model", i < 2 ? "auto" : "nonlinear"}, {"Accuracy", "1e-2"}}));
+  compute_all(tasks,
+              100.,
+              []()
+              {
+                return false;
+              });
+  for (const Task &task : tasks)
+    EXPECT_EQ(task.computed.result.time.status, "finished") << task.computed.result.time.message;
+  EXPECT_EQ(tasks[0].parameters.model, "perturbation");
+  EXPECT_NEAR(tasks[0].computed.result.displacement, 1.25e-3, 1e-15);
+  EXPECT_EQ(tasks[1].parameters.model, "nonlinear");
+  EXPECT_NEAR(tasks[2].computed.result.displacement, 1.2505e-3, 1.25e-5);
 }
