@@ -64,7 +64,13 @@ namespace crawler
                              "atlas.csv",
                              "atlas.h5",
                              "atlas.png",
-                             "atlas.svg"})
+                             "atlas.svg",
+                             "tradeoff.csv",
+                             "tradeoff.h5",
+                             "tradeoff.png",
+                             "tradeoff.svg",
+                             "recommendations.prm",
+                             "reference.json"})
       fs::remove(folder / name, error);
     if (fs::is_directory(folder / "solution", error))
       for (const auto &file : fs::directory_iterator(folder / "solution"))
