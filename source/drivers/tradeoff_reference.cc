@@ -18,8 +18,10 @@ namespace crawler
     using Json = nlohmann::ordered_json;
 
     /// Relative to the displacement.
-    constexpr double settled = 1e-12, first_tolerance = 1e-7, last_tolerance = 1e-14, round_off = 1e-14;
+    constexpr double settled = 1e-12, last_tolerance = 1e-14, round_off = 1e-14;
     constexpr unsigned int most_levels = 6;
+    /// A method may take so many times the time limit of a run.
+    constexpr double most_time = 2.;
     /// Changes below this that grow again are round-off.
     constexpr double near_round_off = 1e-9;
     /// The displacement counts as no smaller than this part of the body's deformation, as in numerics_choice.cc.
@@ -29,10 +31,12 @@ namespace crawler
     constexpr unsigned int most_refinement = 32, most_cells = 4096, most_meshes = 5;
     constexpr double mesh_tolerance = 1e-12;
 
+    /// A way to compute the scene, and how it is refined: cells are doubled, tolerances multiplied by the factor.
     struct Method
     {
       TradeoffSetting setting;
       unsigned int first_cells;
+      double first_tolerance = 1e-7, factor = 0.01;
     };
 
     TradeoffSetting
@@ -50,14 +54,19 @@ namespace crawler
     std::vector<Method>
     methods(const Scene &scene)
     {
+      TradeoffSetting adaptive = setting("automatic", "petsc", "bdf", 4);
+      adaptive.mesh            = "adaptive";
+      adaptive.mesh_tolerance  = 1e-3;
       if (scene.body.friction_exponent() < 0.)
         return {{setting("position", "fused", "radau 9", 8), 8},
                 {setting("log stretch", "petsc", "radau 5", 7), 8},
-                {setting("log stretch", "petsc", "radau 9", 4), 16},
-                {setting("log stretch", "petsc", "arkimex 4", 1), 64},
+                // For bodies that collapse.
+                {adaptive, 0, 1e-5, 0.1},
+                {setting("log stretch", "petsc", "arkimex 4", 1), 64, 1e-4, 0.1},
                 {setting("position", "petsc", "bdf", 6), 8}};
       return {{setting("position", "fused", "radau 9", 8), 8},
               {setting("position", "petsc", "radau 5", 7), 8},
+              {adaptive, 0, 1e-5, 0.1},
               {setting("position", "petsc", "bdf", 6), 8}};
     }
 
@@ -85,6 +94,7 @@ namespace crawler
           if (interrupted_())
           {
             reference_.status = "stopped";
+            reference_.message.clear();
             return reference_;
           }
           if (!refined.method.empty())
@@ -111,6 +121,7 @@ namespace crawler
         if (std::find(lists_.meshes.begin(), lists_.meshes.end(), "uniform") != lists_.meshes.end())
           for (const unsigned int degree : lists_.degrees)
             reference_.meshes[degree] = meshes(degree);
+        reference_.message.clear(); // of methods that failed
         if (interrupted_())
           reference_.status = "stopped";
         return reference_;
@@ -152,11 +163,14 @@ namespace crawler
       {
         TradeoffSetting setting = method.setting;
         RefinedDisplacement refined;
-        double before = TradeoffSetting::none;
-        for (unsigned int level = 0; level < most_levels; ++level)
+        double before    = TradeoffSetting::none;
+        const double end = now() + most_time * parameters_.tradeoff.run_time_limit;
+        for (unsigned int level = 0; level < most_levels && now() < end; ++level)
         {
+          const double smaller          = std::pow(method.factor, level);
           setting.cells                 = method.first_cells << level;
-          setting.tolerance             = std::max(first_tolerance * std::pow(0.01, level), last_tolerance);
+          setting.mesh_tolerance        = method.setting.mesh_tolerance * smaller;
+          setting.tolerance             = std::max(method.first_tolerance * smaller, last_tolerance);
           const SimulationResult result = run(setting);
           if (result.time.status != "finished")
           {
@@ -175,7 +189,7 @@ namespace crawler
           const double change = std::abs(result.displacement - before), size = size_of(result.displacement);
           before = result.displacement;
           if (std::isnan(change))
-            continue;
+            continue; // the first
           if (change > 0.5 * refined.change && refined.change < near_round_off * size)
             break;
           refined = {in_words(setting), result.displacement, change};

@@ -47,11 +47,11 @@ namespace crawler
   /**
    * Refines the displacement by one method after another until two have settled: position form of degree 8 by radau 9;
    * for a < 0 log stretch of degree 7 by radau 5 on PETSc, otherwise position of degree 7 by that; then others, for
-   * scenes that these cannot do. Cells are doubled and tolerances divided by 100 until the displacement changes by less
-   * than 1e-12, or as long as it helps and a run takes no longer than the limit. The bar is the distance of the two,
-   * plus the last change of the reference, plus 1e-14 for round-off. Errors are relative to |displacement|, or to 1e-4
-   * of the largest root mean square of the body's own displacements if that is more (as Accuracy is).
-   * Then the error of uniform meshes is measured (position form if it works, radau 9).
+   * scenes that these cannot do (bodies that collapse). Cells are doubled and tolerances divided by 100 until the
+   * displacement changes by less than 1e-12, or as long as it helps and a run takes no longer than the limit. The bar
+   * is the distance of the two, plus the last change of the reference, plus 1e-14 for round-off. Errors are relative to
+   * |displacement|, or to 1e-4 of the largest root mean square of the body's own displacements if that is more (as
+   * Accuracy is). Then the error of uniform meshes is measured (position form if it works, radau 9).
    */
   TradeoffReference
   make_reference(const Parameters &parameters,
