@@ -178,7 +178,9 @@ namespace crawler
         for (int i = 1; i < parts; ++i)
         {
           lane.ends->values((step.time - step.size * (parts - i) / parts) * lane.units.time, m);
-          if (!(1. - std::max(m[0], m[1]) / lane.units.force / lane.k > 0.))
+          for (double &value : m)
+            value /= lane.units.force;
+          if (!(end_stretch(lane, m) > 0.))
             return true;
         }
         return false;

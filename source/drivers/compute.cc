@@ -111,22 +111,6 @@ namespace crawler
     }
   } // namespace
 
-  Computed
-  compute(const Parameters &parameters, const Scene &scene, const std::function<bool()> &keep_going)
-  {
-    Computed computed;
-    const auto choice = choose_numerics(MPI_COMM_SELF, parameters, scene, keep_going);
-    if (!choice)
-    {
-      computed.result.time.status = "stopped";
-      return computed;
-    }
-    computed.choice = *choice;
-    computed.result = simulate(parameters, scene, computed.choice.numerics, keep_going);
-    check_identities(computed.result, parameters);
-    return computed;
-  }
-
   void
   compute_all(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)
   {

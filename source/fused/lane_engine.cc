@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/fused/lane_engine.h>
 
+#include <algorithm>
 #include <cstring>
+#include <span>
 
 namespace crawler
 {
@@ -30,40 +32,39 @@ namespace crawler
     };
 
     /// The best one first.
-    const Compiled (&compiled())[3]
+    std::span<const Compiled>
+    compiled()
     {
 #ifdef __x86_64__
       static const bool has_avx2   = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"),
                         has_avx512 = has_avx2 && __builtin_cpu_supports("avx512f") &&
                                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-      static const Compiled list[3] = {{avx512::batch, avx512::single, has_avx512},
-                                       {avx2::batch, avx2::single, has_avx2},
-                                       {baseline::batch, baseline::single, true}};
+      static const Compiled list[] = {{avx512::batch, avx512::single, has_avx512},
+                                      {avx2::batch, avx2::single, has_avx2},
+                                      {baseline::batch, baseline::single, true}};
 #else
-      static const Compiled list[3] = {{baseline::batch, baseline::single, true},
-                                       {baseline::batch, baseline::single, true},
-                                       {baseline::batch, baseline::single, true}};
+      static const Compiled list[] = {{baseline::batch, baseline::single, true}};
 #endif
       return list;
+    }
+
+    const Compiled &
+    best()
+    {
+      return *std::ranges::find_if(compiled(), &Compiled::usable);
     }
   } // namespace
 
   const LaneEngine &
   batch_engine()
   {
-    for (const Compiled &engine : compiled())
-      if (engine.usable)
-        return engine.batch;
-    return baseline::batch;
+    return best().batch;
   }
 
   const LaneEngine &
   single_engine()
   {
-    for (const Compiled &engine : compiled())
-      if (engine.usable)
-        return engine.single;
-    return baseline::single;
+    return best().single;
   }
 
   const LaneEngine *

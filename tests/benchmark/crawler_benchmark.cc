@@ -16,9 +16,9 @@
 //   case/fig2/1e-6/...   20 strides (T = 20), by petsc, fused and batch.
 //   case/stiff/1e-6/...  The stiff body (a = -1, chi = 0.3, k = 100).
 //   sweep/1e-4, 1e-6     40 exponents a in [-3, -0.5] times 25 chi in [0.05, 0.45] by run_batch() with one setting for
-//                        each half of the chi, for
-//                        all, the cheapest with which the largest true error of all is below that. Runs that the batch
-//                        gives back are computed by a Simulation; the time includes them.
+//                        each half of the chi: the cheapest with which the largest true error of all its scenes is
+//                        below that. Runs that the batch gives back are computed by a Simulation; the time includes
+//                        them.
 //   memory/sweep/1000... Peak memory of larger sweeps, in chunks.
 //   kernel/...           Residual, Jacobian, elimination and velocity on a mesh of n cells.
 //   kernel/expression/... The active stress as a formula: "bulk" evaluates it at the Gauss points of n cells of degree

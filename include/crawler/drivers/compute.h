@@ -19,14 +19,6 @@ namespace crawler
     NumericsChoice choice;
   };
 
-  /**
-   * What `crawler run` computes for @p scene (made from @p parameters), on this rank alone and without files: choice of
-   * the numerics, simulation, self-check. @p keep_going is asked after every step, those of
-   * pilot runs too; if it stops one of these, the status is "stopped" and nothing else is known.
-   */
-  Computed
-  compute(const Parameters &parameters, const Scene &scene, const std::function<bool()> &keep_going);
-
   /// One of many runs: a scene to compute, and what came of it.
   struct Task
   {
@@ -39,9 +31,12 @@ namespace crawler
   };
 
   /**
-   * What compute() gives for all @p tasks, whose parameters alone are given, on this rank. Runs that fit share the
-   * lanes of the fused engine (drivers/batch.h), where an answer does not depend on its neighbours; the others, and
-   * those that the engine gives up, follow one by one. Nothing is thrown. No run takes longer than @p time_limit [s].
+   * What `crawler run` computes for each of @p tasks, whose parameters alone are given, on this rank alone and without
+   * files: choice of the numerics, simulation, self-check. Runs that fit share the lanes of the fused engine
+   * (drivers/batch.h), where an answer does not depend on its neighbours; the others, and those that the engine gives
+   * up, follow one by one. Nothing is thrown. No run takes longer than @p time_limit [s], and @p interrupted is asked
+   * after every step, those of pilot runs too; if a pilot is stopped, the status is "stopped" and nothing else is
+   * known.
    */
   void
   compute_all(std::span<Task> tasks, double time_limit, const std::function<bool()> &interrupted);

@@ -21,6 +21,36 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     bool any_whole, any_other;
     int n_bits;
 
+    /// To be called when an exponent has changed.
+    void
+    sort()
+    {
+      any_whole           = false;
+      any_other           = false;
+      n_bits              = 0;
+      constexpr int bound = (1 << most_bits) - 1;
+      Pack is_whole{}, is_negative{}, has_bit[most_bits] = {};
+      for (int l = 0; l < PackTraits<Pack>::size; ++l)
+      {
+        const double exponent = get_lane(a, l), size = exponent < 0. ? -exponent : exponent;
+        const bool is = size <= bound && size == static_cast<int>(size);
+        set_lane(is_whole, l, is);
+        set_lane(is_negative, l, exponent < 0.);
+        any_whole = any_whole || is;
+        any_other = any_other || !is;
+        for (int b = 0; b < most_bits; ++b)
+          if (is && (static_cast<int>(size) >> b & 1) != 0)
+          {
+            set_lane(has_bit[b], l, 1.);
+            n_bits = b + 1 > n_bits ? b + 1 : n_bits;
+          }
+      }
+      whole    = is_whole > 0.;
+      negative = is_negative > 0.;
+      for (int b = 0; b < most_bits; ++b)
+        bits[b] = has_bit[b] > 0.;
+    }
+
     void
     operator()(const Pack *w, Pack *g, const int n) const
     {
@@ -59,25 +89,50 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     static constexpr int n = q + 1;
 
+    /// At the points of a cell.
+    struct CellFriction
+    {
+      const LaneFriction<Pack> &law;
+
+      void
+      operator()(const Pack *w, Pack *g) const
+      {
+        law(w, g, n);
+      }
+
+      void
+      operator()(const Pack *w, Pack *g, Pack *w_dg) const
+      {
+        law(w, g, n);
+        for (int p = 0; p < n; ++p)
+          w_dg[p] = law.a * g[p];
+      }
+    };
+
+    /// Of the nodes of cell @p c those that no cell before it has.
+    static void
+    set_to_zero(const int c, Pack *F)
+    {
+      if (c == 0)
+        F[0] = Pack{};
+      for (int i = 1; i < n; ++i)
+        F[c * q + i] = Pack{};
+    }
+
     /// Overwrites @p F; returns the smallest stretch at a quadrature point.
     static Pack
     residual(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, Pack *F)
     {
-      const double h      = 1. / mesh.n_cells;
-      Pack least          = broadcast<Pack>(HUGE_VAL);
-      const auto friction = [&mesh](const Pack *w, Pack *g)
-      {
-        mesh.friction(w, g, n);
-      };
-      F[0] = Pack{};
+      const double h = 1. / mesh.n_cells;
+      Pack least     = broadcast<Pack>(HUGE_VAL);
+      const CellFriction friction{mesh.friction};
       for (int c = 0; c < mesh.n_cells; ++c)
       {
         Pack w[n];
-        for (int i = 1; i < n; ++i)
-          F[c * q + i] = Pack{};
+        set_to_zero(c, F);
         cell_residual<n>(mesh.tables, h, mesh.k, u + c * q, v + c * q, m + c * n, friction, w, F + c * q);
         for (int p = 0; p < n; ++p)
-          least = w[p] < least ? w[p] : least; // a stretch that is not a number makes F one, too
+          least = smaller(w[p], least); // a stretch that is not a number makes F one, too
       }
       return least;
     }
@@ -86,17 +141,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static void
     balance(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *m, Pack *F, Pack *blocks, Pack *schur)
     {
-      const double h      = 1. / mesh.n_cells;
-      const auto friction = [&mesh](const Pack *w, Pack *g)
-      {
-        mesh.friction(w, g, n);
-      };
-      F[0] = Pack{};
+      const double h = 1. / mesh.n_cells;
+      const CellFriction friction{mesh.friction};
       for (int c = 0; c < mesh.n_cells; ++c)
       {
         Pack w[n];
-        for (int i = 1; i < n; ++i)
-          F[c * q + i] = Pack{};
+        set_to_zero(c, F);
         cell_residual<n>(
           mesh.tables, h, mesh.k, u + c * q, static_cast<const Pack *>(nullptr), m + c * n, friction, w, F + c * q);
         cell_mass<n>(mesh.tables, h, u + c * q, friction, blocks + c * n * n);
@@ -119,13 +169,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
               Complex<Pack> *complex_blocks,
               Complex<Pack> *complex_schur)
     {
-      const double h      = 1. / mesh.n_cells;
-      const auto friction = [&mesh](const Pack *w, Pack *g, Pack *w_dg)
-      {
-        mesh.friction(w, g, n);
-        for (int p = 0; p < n; ++p)
-          w_dg[p] = mesh.friction.a * g[p];
-      };
+      const double h = 1. / mesh.n_cells;
+      const CellFriction friction{mesh.friction};
       const auto any_pivot = [](const auto &) {}; // what is not finite is seen in the solution
       for (int c = 0; c < mesh.n_cells; ++c)
       {
@@ -164,11 +209,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static void
     integrals(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, LaneIntegrals<Pack> &sum)
     {
-      const double h      = 1. / mesh.n_cells;
-      const auto friction = [&mesh](const Pack *w, Pack *g)
-      {
-        mesh.friction(w, g, n);
-      };
+      const double h = 1. / mesh.n_cells;
+      const CellFriction friction{mesh.friction};
       for (int c = 0; c < mesh.n_cells; ++c)
         cell_integrals<n>(mesh.tables, h, mesh.k, u + c * q, v + c * q, m + c * n, friction, sum);
     }
@@ -212,7 +254,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
             w += sample_derivatives[i * n + j] * u[c * q + j];
           w         = 1. + mesh.n_cells * w;
           *least_at = w < *least ? place : *least_at;
-          *least    = w < *least ? w : *least;
+          *least    = smaller(w, *least);
           *most_at  = w > *most ? place : *most_at;
           *most     = w > *most ? w : *most;
         }

@@ -49,18 +49,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     return Pack{} + value;
   }
 
+  /// b if they cannot be compared.
   template <typename Pack>
   inline Pack
   smaller(const Pack &a, const Pack &b)
   {
     return a < b ? a : b;
-  }
-
-  template <typename Pack>
-  inline Pack
-  larger(const Pack &a, const Pack &b)
-  {
-    return a > b ? a : b;
   }
 
 #ifdef __x86_64__
@@ -146,12 +140,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   operator+(const Complex<Pack> &a, const Complex<Pack> &b)
   {
     return {a.re + b.re, a.im + b.im};
-  }
-  template <typename Pack>
-  inline Complex<Pack>
-  operator-(const Complex<Pack> &a)
-  {
-    return {-a.re, -a.im};
   }
   template <typename Pack>
   inline void
