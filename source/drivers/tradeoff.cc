@@ -268,7 +268,8 @@ namespace crawler
       log.line(in_words(results, course));
       for (const std::string &line : recommendation_lines(results))
         log.line(line);
-      draw("tradeoff.py", folder, log);
+      if (std::count(results.on_front.begin(), results.on_front.end(), true) > 0) // there is something to draw
+        draw("tradeoff.py", folder, log);
       log.line(fmt::format("Results are in {0}/; {0}/recommendations.prm has the blocks to paste.", folder.string()));
     }
   } // namespace
@@ -350,7 +351,11 @@ namespace crawler
     if (known.empty())
     {
       // On every rank alike, that no one has an idle core beside it; what counts is the first one's.
-      known = broadcast(pack(make_reference(parameters, input.scene, lists, interrupted)), communicator);
+      const auto report = [&log](const std::string &line)
+      {
+        log.line(line);
+      };
+      known = broadcast(pack(make_reference(parameters, input.scene, lists, interrupted, report)), communicator);
       if (first && unpack_reference(known).status == "finished")
         write_file(reference_file, known);
     }

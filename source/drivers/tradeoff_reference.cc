@@ -76,11 +76,13 @@ namespace crawler
       ReferenceMaker(const Parameters &parameters,
                      const Scene &scene,
                      const TradeoffLists &lists,
-                     const std::function<bool()> &interrupted)
+                     const std::function<bool()> &interrupted,
+                     const std::function<void(const std::string &)> &report)
         : parameters_(parameters)
         , scene_(scene)
         , lists_(lists)
         , interrupted_(interrupted)
+        , report_(report)
       {
       }
 
@@ -90,6 +92,7 @@ namespace crawler
         std::vector<RefinedDisplacement> settled_ones;
         for (const Method &method : methods(scene_))
         {
+          const double start                = now();
           const RefinedDisplacement refined = refine(method);
           if (interrupted_())
           {
@@ -97,6 +100,13 @@ namespace crawler
             reference_.message.clear();
             return reference_;
           }
+          report_(refined.method.empty()
+                    ? fmt::format("  {:.1f} s: {} does not work here", now() - start, in_words(method.setting))
+                    : fmt::format("  {:.1f} s: {}: {:.12g}, last change {:.1e}",
+                                  now() - start,
+                                  refined.method,
+                                  refined.displacement,
+                                  refined.change));
           if (!refined.method.empty())
             settled_ones.push_back(refined);
           if (settled_ones.size() == 2)
@@ -247,6 +257,7 @@ namespace crawler
       const Scene &scene_;
       const TradeoffLists &lists_;
       const std::function<bool()> &interrupted_;
+      const std::function<void(const std::string &)> &report_;
       TradeoffReference reference_;
       double largest_u_ = 0.;                 ///< of the first run that finished [length]
       double size_      = scene_.body.length; ///< of the displacement, as far as it is known [length]
@@ -275,9 +286,10 @@ namespace crawler
   make_reference(const Parameters &parameters,
                  const Scene &scene,
                  const TradeoffLists &lists,
-                 const std::function<bool()> &interrupted)
+                 const std::function<bool()> &interrupted,
+                 const std::function<void(const std::string &)> &report)
   {
-    return ReferenceMaker(parameters, scene, lists, interrupted).make();
+    return ReferenceMaker(parameters, scene, lists, interrupted, report).make();
   }
 
   std::vector<std::pair<unsigned int, double>>

@@ -57,7 +57,8 @@ namespace crawler
   make_reference(const Parameters &parameters,
                  const Scene &scene,
                  const TradeoffLists &lists,
-                 const std::function<bool()> &interrupted);
+                 const std::function<bool()> &interrupted,
+                 const std::function<void(const std::string &)> &report);
 
   /// Up to five of the meshes (cells, error), evenly spaced from the first whose error is at most 3 % to the first
   /// whose error is at most @p wanted; the last one if none is that good.
