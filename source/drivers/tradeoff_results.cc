@@ -414,7 +414,9 @@ namespace crawler
       "fronts; gaps: {}. The same short run took {} to {}, over ranks and time. {:.0f} s on {} rank{}.",
       results.rows.size(),
       course.n_settings,
-      course.status == "finished" ? " (the others cannot be better than those on their mesh)" : "",
+      course.status == "finished" && results.rows.size() < course.n_settings
+        ? " (the others cannot be better than those on their mesh)"
+        : "",
       statuses["finished"],
       below_bar,
       on_front,
