@@ -30,7 +30,13 @@ namespace crawler
   void
   Parameters::add_parameters(Declarations &declarations)
   {
-    declarations.choice("Model", model, {"nonlinear"}, "The model: the full nonlinear equation.");
+    declarations.choice(
+      "Model",
+      model,
+      {"auto", "perturbation", "kinematic", "linear", "nonlinear"},
+      "The rung of the model's ladder (doc/theory.md): the series for the optimal wave in closed form, "
+      "a body whose strain is known, the equation for a = 0, or the full nonlinear equation; auto is "
+      "the first of these whose estimated error is at most Accuracy.");
     declarations.number(
       "Accuracy",
       accuracy,

@@ -10,4 +10,6 @@ namespace crawler::test
   add_sweep_benchmarks();
   void
   add_kernel_benchmarks();
+  void
+  add_rung_benchmarks();
 } // namespace crawler::test

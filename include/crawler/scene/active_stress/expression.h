@@ -36,6 +36,8 @@ namespace crawler
 
     std::unique_ptr<ActiveStressAtPoints>
     at(const std::vector<double> &points) const override;
+    std::unique_ptr<ActiveStressAtPoints>
+    rate_at(const std::vector<double> &points) const override;
 
   private:
     /// Throws InputError, see the constructor.
