@@ -23,8 +23,10 @@ WAYS = {("position", "uniform", "fused"): ("position, fused engine", "#0072B2"),
         ("position", "adaptive", "petsc"): ("position, adaptive mesh, PETSc", "#CC79A7"),
         ("log stretch", "uniform", "petsc"): ("log stretch, PETSc", "#D55E00"),
         ("log stretch", "adaptive", "petsc"): ("log stretch, adaptive mesh, PETSc", "#56B4E9")}
-RUNGS = "#7F7F7F"  # rungs of the model that need no mesh
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")  # one for each integrator
+# Rungs of the model that need no mesh: name, colour, marker.
+RUNGS = {"perturbation": ("perturbation, closed form", "#000000", "*"),
+         "kinematic": ("kinematic, quadrature", "#7F7F7F", "X")}
+MARKERS = ("o", "s", "^", "D", "v", "P", "<", ">")  # one for each integrator
 INK = "0.15"
 
 
@@ -75,8 +77,8 @@ def envelope(points):
 
 def way_of(row):
     """The name and the colour of what computed a row."""
-    if row["formulation"] == "":
-        return f"rung {row['model']}", RUNGS
+    if row["model"] in RUNGS:
+        return RUNGS[row["model"]][:2]
     name = (row["formulation"], row["mesh"], row["engine"])
     return WAYS.get(name, (", ".join(name), INK))
 
@@ -89,14 +91,18 @@ def draw_ways(axes, tradeoff):
     groups = collections.defaultdict(list)
     for row in tradeoff.finished:
         groups[way_of(row), row["integrator"]].append((number(row["seconds"]), number(row["shown error"])))
-    order = [name for name, _ in WAYS.values()]
+    order = [name for name, *_ in [*WAYS.values(), *RUNGS.values()]]
+    rung_markers = {name: marker for name, _, marker in RUNGS.values()}
     ways = sorted({way for way, _ in groups}, key=lambda way: order.index(way[0]) if way[0] in order else len(order))
     for (way, integrator), points in groups.items():
         axes.plot(*zip(*points), ".", color=way[1], markersize=1.8, alpha=0.35, zorder=2, rasterized=True)
-        marker = MARKERS[tradeoff.integrators.index(integrator) % len(MARKERS)] if integrator else "*"
-        axes.plot(*zip(*envelope(points)), marker=marker, color=way[1], linewidth=0.6, markersize=4.2,
+        marker = (MARKERS[tradeoff.integrators.index(integrator) % len(MARKERS)] if integrator
+                  else rung_markers.get(way[0], "h"))
+        axes.plot(*zip(*envelope(points)), marker=marker, color=way[1], linewidth=0.6, markersize=4.2 if integrator else 8,
                   markeredgecolor="white", markeredgewidth=0.4, zorder=4)
-    handles = [Line2D([], [], color=colour, linewidth=3, label=name) for name, colour in ways]
+    handles = [Line2D([], [], color=colour, linewidth=3, label=name) if name not in rung_markers else
+               Line2D([], [], color=colour, linestyle="none", marker=rung_markers[name], markersize=7, label=name)
+               for name, colour in ways]
     return handles, [Line2D([], [], color="0.35", linestyle="none", marker=MARKERS[i % len(MARKERS)], markersize=5, label=name)
                      for i, name in enumerate(tradeoff.integrators)]
 
@@ -142,7 +148,7 @@ def draw(folder):
                          "ytick.labelsize": 9, "axes.linewidth": 0.7, "hatch.linewidth": 0.5,
                          "svg.hashsalt": "crawler"})
     figure = plt.figure(figsize=(7.5, 5.8), layout="constrained")
-    axes, legend = figure.subplot_mosaic("p;l", height_ratios=(1, 0.17)).values()
+    axes, legend = figure.subplot_mosaic("p;l", height_ratios=(1, 0.21)).values()
     axes.set(xscale="log", yscale="log", xlabel="processor time of a run [s]", ylabel="relative error of the displacement")
     ways, integrators = draw_ways(axes, tradeoff)
     handles = ways + draw_fronts(axes, tradeoff) + integrators + draw_bar(axes, tradeoff)

@@ -5,6 +5,7 @@
 #include <crawler/base/work_queue.h>
 #include <crawler/drivers/input.h>
 #include <crawler/drivers/log.h>
+#include <crawler/drivers/model_choice.h>
 #include <crawler/drivers/output_folder.h>
 #include <crawler/drivers/study.h>
 #include <crawler/drivers/tradeoff.h>
@@ -287,6 +288,10 @@ namespace crawler
     {
       try
       {
+        // The reference needs the whole equation.
+        Parameters whole = parameters;
+        whole.model      = "nonlinear";
+        choose_model(whole, input.scene);
         return read_lists(parameters);
       }
       catch (const InputError &error)
@@ -363,7 +368,7 @@ namespace crawler
     if (reference.status != "finished")
       return no_reference(reference, log);
     report_reference(reference, parameters, log);
-    const auto all_families = families(lists, input.scene, reference.meshes);
+    const auto all_families = families(lists, parameters, input.scene, reference.meshes);
     const Study study{parameters, input.scene, reference, all_families, interrupted};
     TradeoffCourse course;
     course.n_settings           = all_families.back().first_index + all_families.back().tolerances.size();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/drivers/batch.h>
+#include <crawler/drivers/rung.h>
 #include <crawler/drivers/self_check.h>
 #include <crawler/drivers/study.h>
 #include <crawler/drivers/tradeoff_measurement.h>
@@ -74,7 +75,7 @@ namespace crawler
   bool
   TradeoffMeasurement::choose(const Parameters &own, const double end)
   {
-    if (choice_)
+    if (choice_ || family_.setting.is_rung())
       return true;
     const double start = processor_seconds();
     choice_            = choose_numerics(MPI_COMM_SELF,
@@ -89,11 +90,13 @@ namespace crawler
     return choice_.has_value();
   }
 
-  /// One run, or a batch of runs that are all alike, of which the first is returned.
+  /// One run on this rung or mesh, or a batch of runs that are all alike, of which the first is returned.
   SimulationResult
   TradeoffMeasurement::run(const Parameters &own, const Numerics &numerics, const KeepGoing &keep_going) const
   {
     const Simulation::Options options = {.ledger = own.output.ledger, .resolution = false};
+    if (family_.setting.is_rung())
+      return Rung(scene_, own.model).compute(own.accuracy, own.output.ledger, keep_going);
     if (!family_.setting.is_batch())
     {
       Simulation simulation(MPI_COMM_SELF, scene_, own.time, numerics);
@@ -155,8 +158,12 @@ namespace crawler
     };
     if (!choose(own, end))
       return too_long();
-    Numerics numerics  = choice_->numerics;
-    numerics.tolerance = own.time.tolerance.value();
+    Numerics numerics;
+    if (choice_)
+    {
+      numerics           = choice_->numerics;
+      numerics.tolerance = own.time.tolerance.value();
+    }
     if (!row.setting.is_batch())
       row.prm = as_prm(own, row.setting);
     row.choice_seconds = choice_seconds_;
@@ -181,17 +188,26 @@ namespace crawler
     if (interrupted_())
       return false;
     check_identities(result, own);
-    row.status            = result.time.status;
-    row.reason            = result.time.reason;
-    row.message           = result.time.message;
-    row.steps             = result.time.steps;
-    row.rejected_steps    = result.time.rejected_steps;
-    row.newton_iterations = result.time.newton_iterations;
-    row.most_cells        = std::max(result.most_cells, numerics.n_cells);
-    if (row.status != "finished")
+    row.status  = result.time.status;
+    row.reason  = result.time.reason;
+    row.message = result.time.message;
+    if (choice_)
+    {
+      row.steps             = result.time.steps;
+      row.rejected_steps    = result.time.rejected_steps;
+      row.newton_iterations = result.time.newton_iterations;
+      row.most_cells        = std::max(result.most_cells, numerics.n_cells);
+    }
+    // A rung that does not promise what was asked for has an answer all the same, but no file can ask for it.
+    const bool breaks_promise = row.reason == "accuracy_not_met" && std::isfinite(result.displacement);
+    if (row.status != "finished" && !breaks_promise)
       return true;
+    row.status = "finished";
     row.reason.clear();
-    row.message.clear();
+    if (breaks_promise)
+      row.prm.clear();
+    else
+      row.message.clear();
     row.displacement = result.displacement;
     row.memory       = most_heap - heap_before;
     return time_runs(row, own, numerics, first_seconds);

@@ -10,10 +10,13 @@ namespace crawler
     const std::string numbers = "values separated by commas, \"linspace(first, last, count)\" or \"logspace(first "
                                 "exponent, last exponent, count)\"";
     declarations.enter("Tradeoff");
-    declarations.text("Formulations",
-                      formulations,
-                      "a list of \"position\" and \"log stretch\"",
-                      "The formulations that crawler tradeoff tries. All lists of this section are combined.");
+    declarations.text("Models",
+                      models,
+                      "a list of \"perturbation\", \"kinematic\" and \"nonlinear\"",
+                      "The rungs of the model that crawler tradeoff tries. The first two need no mesh; for nonlinear "
+                      "all other lists of this section are combined.");
+    declarations.text(
+      "Formulations", formulations, "a list of \"position\" and \"log stretch\"", "The formulations that it tries.");
     declarations.text("Meshes", meshes, "a list of \"uniform\" and \"adaptive\"", "The kinds of meshes that it tries.");
     declarations.text(
       "Engines",

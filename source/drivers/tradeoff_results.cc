@@ -70,7 +70,7 @@ namespace crawler
         std::size_t best    = results.rows.size();
         for (std::size_t i = 0; i < results.rows.size(); ++i)
           if (results.rows[i].status == "finished" && results.rows[i].setting.is_batch() == batch &&
-              safe[i] <= wanted &&
+              (batch || !results.rows[i].prm.empty()) && safe[i] <= wanted &&
               (best == results.rows.size() || results.rows[i].seconds < results.rows[best].seconds))
             best = i;
         if (best == results.rows.size())
@@ -277,14 +277,14 @@ namespace crawler
         });
     add("tolerance",
         "1",
-        "time tolerance over the size of the displacement",
+        "time tolerance over the size of the displacement; of a rung without a mesh: Accuracy",
         [&](const std::size_t i)
         {
           return rows[i].setting.tolerance;
         });
     add_text("status", "finished, inverted, failed, stopped, refused, or not offered", &TradeoffRow::status);
     add_text("reason", "name of what went wrong", &TradeoffRow::reason);
-    add_text("message", "what went wrong, in words", &TradeoffRow::message);
+    add_text("message", "what went wrong, or what the rung says about its error, in words", &TradeoffRow::message);
     add_number("displacement", "length", "of the centre of mass at the end time", &TradeoffRow::displacement);
     add("error",
         "1",

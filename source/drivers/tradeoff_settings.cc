@@ -3,6 +3,7 @@
 #include <crawler/base/nearest_name.h>
 #include <crawler/discretization/reference_element.h>
 #include <crawler/drivers/batch.h>
+#include <crawler/drivers/model_choice.h>
 #include <crawler/drivers/tradeoff_settings.h>
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
@@ -26,6 +27,9 @@ namespace crawler
     constexpr std::size_t failures_in_a_row = 3;
     /// First steps, relative to the duration, as numerics_choice.cc has them.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
+
+    /// The largest Accuracy.
+    constexpr double loosest_accuracy = 0.1;
 
     std::vector<std::string>
     words(const std::string &text, const std::string &entry, const std::vector<std::string> &known)
@@ -133,9 +137,40 @@ namespace crawler
     }
   } // namespace
 
+  namespace
+  {
+    /// A rung without a mesh: one setting, or several of different Accuracy.
+    TradeoffFamily
+    rung_family(const std::string &model, const TradeoffLists &lists, const Parameters &parameters, const Scene &scene)
+    {
+      TradeoffFamily family;
+      family.setting.model = model;
+      family.tolerances    = {loosest_accuracy};
+      try
+      {
+        Parameters own = parameters;
+        own.model      = model;
+        choose_model(own, scene);
+        if (model == "kinematic") // a closed form has no tolerance
+          for (const double tolerance : lists.tolerances)
+            if (tolerance < loosest_accuracy)
+              family.tolerances.push_back(tolerance);
+      }
+      catch (const InputError &error)
+      {
+        family.not_offered = error.what();
+        family.tolerances  = {TradeoffSetting::none};
+      }
+      return family;
+    }
+  } // namespace
+
   std::string
   in_words(const TradeoffSetting &s)
   {
+    if (s.is_rung())
+      return fmt::format(
+        "model {}{}", s.model, std::isnan(s.tolerance) ? "" : fmt::format(", Accuracy {:g}", s.tolerance));
     std::vector<std::string> parts;
     for (const std::string &word : {s.formulation, s.engine, s.integrator})
       if (!word.empty())
@@ -157,6 +192,7 @@ namespace crawler
   {
     const TradeoffParameters &texts = parameters.tradeoff;
     TradeoffLists lists;
+    lists.models          = words(texts.models, "Models", {"perturbation", "kinematic", "nonlinear"});
     lists.formulations    = words(texts.formulations, "Formulations", {"position", "log stretch"});
     lists.meshes          = words(texts.meshes, "Meshes", {"uniform", "adaptive"});
     lists.engines         = words(texts.engines, "Engines", {"fused", "petsc", "batch"});
@@ -170,7 +206,7 @@ namespace crawler
   }
 
   std::vector<TradeoffFamily>
-  families(const TradeoffLists &lists, const Scene &scene, const MeshErrors &meshes)
+  families(const TradeoffLists &lists, const Parameters &parameters, const Scene &scene, const MeshErrors &meshes)
   {
     std::vector<TradeoffFamily> result;
     unsigned long index = 0;
@@ -202,6 +238,15 @@ namespace crawler
         add(setting, tolerances);
       }
     };
+    for (const std::string &model : lists.models)
+      if (model != "nonlinear")
+      {
+        result.push_back(rung_family(model, lists, parameters, scene));
+        result.back().first_index = index;
+        index += result.back().tolerances.size();
+      }
+    if (std::find(lists.models.begin(), lists.models.end(), "nonlinear") == lists.models.end())
+      return result;
     for (const std::string &formulation : lists.formulations)
       for (const std::string &mesh : lists.meshes)
         for (const std::string &engine : lists.engines)
@@ -260,8 +305,13 @@ namespace crawler
   Parameters
   with_setting(const Parameters &parameters, const TradeoffSetting &setting, const double size)
   {
-    Parameters result                 = parameters;
-    result.model                      = setting.model;
+    Parameters result = parameters;
+    result.model      = setting.model;
+    if (setting.is_rung())
+    {
+      result.accuracy = setting.tolerance;
+      return result;
+    }
     result.discretization.formulation = setting.formulation;
     result.discretization.mesh        = setting.mesh;
     result.discretization.degree      = setting.degree;
@@ -282,6 +332,8 @@ namespace crawler
   std::string
   as_prm(const Parameters &parameters, const TradeoffSetting &setting)
   {
+    if (setting.is_rung())
+      return fmt::format("set Model    = {}\nset Accuracy = {}\n", parameters.model, to_text(parameters.accuracy));
     const DiscretizationParameters &d = parameters.discretization;
     const TimeParameters &t           = parameters.time;
     std::string text                  = fmt::format("set Model = {}\nsubsection Discretization\n"

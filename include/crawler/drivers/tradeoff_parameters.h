@@ -10,6 +10,7 @@ namespace crawler
   /// Section "Tradeoff": the settings that `crawler tradeoff` tries, as lists (tradeoff_settings.h reads them).
   struct TradeoffParameters
   {
+    std::string models          = "perturbation, kinematic, nonlinear";
     std::string formulations    = "position, log stretch";
     std::string meshes          = "uniform, adaptive";
     std::string engines         = "fused, petsc, batch";

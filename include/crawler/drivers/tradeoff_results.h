@@ -39,7 +39,8 @@ namespace crawler
 
   /**
    * Errors, fronts, and the cheapest setting for 1e-2, 1e-3, ... as far as the bar allows: of those whose error, and
-   * that of all tighter tolerances that were tried on their mesh, is below. So a lucky error is not recommended.
+   * that of all tighter tolerances that were tried on their mesh, is below. So a lucky error is not recommended, nor is
+   * a rung whose own estimate of the error is larger than it promises.
    */
   TradeoffResults
   evaluate(const TradeoffReference &reference, std::vector<TradeoffRow> rows);

@@ -26,7 +26,7 @@ namespace crawler
     double choice_seconds = unknown; ///< processor time of the pilot runs of an adaptive mesh [s]
     double memory         = unknown; ///< largest heap in use, of all bodies of a batch together [byte]
     double steps = unknown, rejected_steps = unknown, newton_iterations = unknown, most_cells = unknown;
-    std::string prm; ///< entries that repeat it with `crawler run`
+    std::string prm; ///< entries that repeat it with `crawler run`; empty if there are none
   };
 
   /// A row as a line of text (JSON), and back. unpack_row() throws std::exception if the line is not whole.

@@ -20,12 +20,19 @@ namespace crawler
     std::string model   = "nonlinear", formulation, mesh, engine, integrator;
     unsigned int degree = 0, cells = 0; ///< cells of a uniform mesh
     double mesh_tolerance = none;       ///< of an adaptive mesh, as the entry of Discretization [1]
-    double tolerance      = none;       ///< in time, relative to the displacement [1]
+    double tolerance      = none;       ///< in time, relative to the displacement; of a rung: Accuracy [1]
 
     bool
     is_batch() const
     {
       return engine == "batch";
+    }
+
+    /// A rung of the model that needs no mesh; then there is nothing but model and tolerance.
+    bool
+    is_rung() const
+    {
+      return model != "nonlinear";
     }
   };
 
@@ -36,7 +43,7 @@ namespace crawler
   /// The lists of section "Tradeoff", read.
   struct TradeoffLists
   {
-    std::vector<std::string> formulations, meshes, engines, integrators;
+    std::vector<std::string> models, formulations, meshes, engines, integrators;
     std::vector<unsigned int> degrees;
     std::vector<unsigned int> cells; ///< empty: automatic
     std::vector<double> mesh_tolerances, tolerances;
@@ -61,10 +68,11 @@ namespace crawler
 
   /**
    * All settings, in an order that depends on nothing but the arguments. @p meshes are those of uniform meshes for each
-   * degree of the lists. On a mesh with the error e, tolerances above 1e4 e are left out.
+   * degree of the lists. On a mesh with the error e, tolerances above 1e4 e are left out. The rung perturbation is one
+   * setting; for kinematic the tolerances are values of Accuracy, 0.1 at first.
    */
   std::vector<TradeoffFamily>
-  families(const TradeoffLists &lists, const Scene &scene, const MeshErrors &meshes);
+  families(const TradeoffLists &lists, const Parameters &parameters, const Scene &scene, const MeshErrors &meshes);
 
   /// What is known of a setting that was tried, for next_tolerance().
   struct TriedSetting

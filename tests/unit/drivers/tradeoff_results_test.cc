@@ -22,6 +22,7 @@ namespace
     row.setting.engine    = "fused";
     row.setting.degree    = 4;
     row.setting.cells     = cells;
+    row.prm               = "set Degree = 4\n";
     row.status            = "finished";
     row.displacement      = 1. + error;
     row.seconds           = seconds;

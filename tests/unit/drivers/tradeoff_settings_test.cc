@@ -36,7 +36,7 @@ namespace
   std::vector<TradeoffFamily>
   families_of(const Parameters &p)
   {
-    return families(read_lists(p), p.create_scene(), meshes);
+    return families(read_lists(p), p, p.create_scene(), meshes);
   }
 
   TriedSetting
@@ -72,6 +72,8 @@ TEST(TradeoffFamilies, WhatTheProgramCannotDoIsOneSettingWithItsReason)
   unsigned int not_offered = 0;
   for (const TradeoffFamily &family : families_of(parameters(small)))
   {
+    if (family.setting.is_rung())
+      continue;
     const bool radau  = family.setting.integrator != "bdf";
     const bool can_do = family.setting.engine == "petsc" ||
                         (radau && family.setting.formulation == "position" && family.setting.mesh == "uniform");
@@ -97,7 +99,7 @@ TEST(TradeoffFamilies, LogStretchIsForNegativeExponents)
 TEST(TradeoffFamilies, LooseTolerancesAreNotForFineMeshes)
 {
   for (const TradeoffFamily &family : families_of(parameters(small)))
-    if (family.not_offered.empty() && family.setting.mesh == "uniform")
+    if (family.not_offered.empty() && family.setting.mesh == "uniform") // of the nonlinear model
     {
       const std::vector<double> expected = family.setting.cells == 8 ? std::vector<double>{1e-2, 1e-4, 1e-6}
                                            : family.setting.cells == 16
@@ -105,6 +107,22 @@ TEST(TradeoffFamilies, LooseTolerancesAreNotForFineMeshes)
                                              : std::vector<double>{1e-6}; // the last one anyway
       EXPECT_EQ(family.tolerances, expected) << in_words(family.setting);
     }
+}
+
+TEST(TradeoffFamilies, RungsHaveNoMesh)
+{
+  const auto all = families_of(parameters(small));
+  EXPECT_EQ(in_words(all[0].setting), "model perturbation");
+  EXPECT_EQ(all[0].tolerances.size(), 1);
+  EXPECT_EQ(in_words(all[1].setting), "model kinematic");
+  EXPECT_EQ(all[1].tolerances, (std::vector<double>{0.1, 1e-2, 1e-4, 1e-6}));
+  EXPECT_EQ(all[1].first_index, 1);
+  EXPECT_EQ(all[2].first_index, 5);
+  Parameters other              = parameters(small + "set Models = perturbation\n");
+  other.active_stress.generator = "none";
+  const auto none               = families_of(other);
+  ASSERT_EQ(none.size(), 1);
+  EXPECT_NE(none[0].not_offered.find("a series for the optimal wave"), std::string::npos);
 }
 
 TEST(NextTolerance, EndsWhereTighterOnesCannotHelp)
