@@ -310,6 +310,56 @@ namespace crawler
     return {m[0], m[1]};
   }
 
+  void
+  Assembler::find_piece_ends(const unsigned int n_pieces)
+  {
+    const auto &left = discretization_.cell_left();
+    const auto &size = discretization_.cell_size();
+    const auto s     = [&](const unsigned int end)
+    {
+      return discretization_.length() * end / n_pieces;
+    };
+    piece_ends_       = {n_pieces, 0, {}, {}};
+    unsigned int next = 0;
+    while (next <= n_pieces && !left.empty() && s(next) < left.front())
+      ++next;
+    piece_ends_.first = next;
+    for (unsigned int c = 0; c < left.size(); ++c)
+    {
+      const bool is_last = !discretization_.has_right_neighbour() && c + 1 == left.size();
+      std::vector<double> places;
+      for (; next <= n_pieces && (is_last || s(next) < left[c] + size[c]); ++next)
+      {
+        places.push_back(std::clamp((s(next) - left[c]) / size[c], 0., 1.));
+        piece_ends_.cells.push_back(c);
+      }
+      const auto shape = interpolation_matrix(discretization_.element().nodes, places);
+      piece_ends_.shape.insert(piece_ends_.shape.end(), shape.begin(), shape.end());
+    }
+  }
+
+  std::vector<double>
+  Assembler::displacement_at(const unsigned int n_pieces, const ConstVector y)
+  {
+    if (piece_ends_.n_pieces != n_pieces)
+      find_piece_ends(n_pieces);
+    const auto u         = discretization_.to_local<double>(displacement(y), u_local_);
+    const unsigned int n = discretization_.element().n, q = discretization_.element().degree;
+    std::vector<double> values(n_pieces + 1, 0.);
+    for (std::size_t e = 0; e < piece_ends_.cells.size(); ++e)
+      for (unsigned int i = 0; i < n; ++i)
+        values[piece_ends_.first + e] +=
+          piece_ends_.shape[e * n + i] * u[static_cast<std::size_t>(piece_ends_.cells[e]) * q + i];
+    if (discretization_.n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE,
+                    values.data(),
+                    static_cast<int>(values.size()),
+                    MPI_DOUBLE,
+                    MPI_SUM,
+                    discretization_.communicator());
+    return values;
+  }
+
   double
   Assembler::end_power(const double t, const ConstVector v)
   {

@@ -18,7 +18,11 @@ namespace crawler
              const std::function<bool()> &keep_going)
     {
       Simulation simulation(MPI_COMM_SELF, scene, parameters.time, numerics);
-      return simulation.run({}, {.ledger = parameters.output.ledger, .resolution = false}, {}, keep_going);
+      return simulation.run(
+        {},
+        {.ledger = parameters.output.ledger, .resolution = false, .cycles = cycle_wish(parameters, scene, 0)},
+        {},
+        keep_going);
     }
 
     class Clock
@@ -87,6 +91,18 @@ namespace crawler
       return !task.error && task.computed.result.time.status.empty();
     }
 
+    /// Side by side a run is this much cheaper than alone, where it can end when its cycles repeat.
+    constexpr double batch_gain = 6.;
+    /// After so many cycles it usually does.
+    constexpr double few_cycles = 3.;
+
+    bool
+    is_faster_alone(const Task &task)
+    {
+      const auto cycles = cycle_wish(task.parameters, *task.scene, 0);
+      return cycles && task.scene->end_time / cycles->period > batch_gain * few_cycles;
+    }
+
     /// Runs that fit, side by side.
     void
     compute_batches(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)
@@ -94,7 +110,8 @@ namespace crawler
       std::vector<BatchRun> runs[2]; // without and with ledger
       std::vector<Task *> members[2];
       for (Task &task : tasks)
-        if (is_ready(task) && fused_method(*task.scene, task.parameters.time, task.computed.choice.numerics))
+        if (is_ready(task) && fused_method(*task.scene, task.parameters.time, task.computed.choice.numerics) &&
+            !is_faster_alone(task))
         {
           const bool ledger = task.parameters.output.ledger;
           runs[ledger].push_back({&*task.scene, &task.parameters.time, &task.computed.choice.numerics});

@@ -27,12 +27,17 @@ namespace crawler
     constexpr unsigned int first_collapse_cells = 64, last_collapse_cells = 512, last_accurate_collapse_cells = 2048;
     constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000,
                            most_adaptive_pilot_cells = 1200;
+    /// How well a pilot that ends when its cycles repeat must know the displacement.
+    constexpr double pilot_accuracy = 1e-2;
     /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
     constexpr double resolved = 1e-3;
     /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
     constexpr double space_factor = 4.;
     /// Error of the displacement in time is below this times the number of steps times the tolerance.
-    constexpr double time_factor = 0.25, radau_9_time_factor = 0.1;
+    constexpr double time_factor = 0.25;
+    /// The steps of radau 5 and 9 on uniform meshes end much more accurately than their tolerance says: the tolerance
+    /// is so many times the one of that rule.
+    constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
     /// On uniform meshes runs for a smaller Accuracy than this are by radau 9, others by radau 5.
     constexpr double radau_9_accuracy = 1.1e-4;
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
@@ -132,6 +137,9 @@ namespace crawler
         pilot_time_.petsc_prefix = "pilot_"; // options after "--" are for the real run
         pilot_time_.max_steps    = std::min(pilot_time_.max_steps, most_pilot_steps);
         tolerance_               = std::max(1e-3 * scale_, smallest());
+        cycles_                  = cycle_wish(parameters, scene, 0);
+        if (cycles_)
+          cycles_->accuracy = std::max(accuracy_, pilot_accuracy);
       }
 
       NumericsChoice
@@ -171,7 +179,8 @@ namespace crawler
       {
         Simulation simulation(communicator_, scene_, pilot_time_, numerics);
         ++n_pilots_;
-        SimulationResult result = simulation.run({}, {.ledger = false, .resolution = true}, {}, keep_going_);
+        SimulationResult result =
+          simulation.run({}, {.ledger = false, .resolution = true, .cycles = cycles_}, {}, keep_going_);
         if (result.time.status == "stopped" && result.time.reason.empty())
           throw Interrupted();
         return result;
@@ -202,6 +211,14 @@ namespace crawler
       {
         return pilot_.time.status != "finished" && pilot_.time.reason != "inverted_at_end" &&
                pilot_.min_stretch.value < emptied && scene_.body.friction_exponent() < 0.;
+      }
+
+      /// Of the last pilot, whether it went there or its cycles were extrapolated.
+      double
+      steps_to_the_end() const
+      {
+        const double steps = std::max(pilot_.time.steps, 1u);
+        return pilot_.cycles ? steps * (1. + 1. * pilot_.cycles->extrapolated / pilot_.cycles->computed) : steps;
       }
 
       void
@@ -305,6 +322,8 @@ namespace crawler
         }
         choice_.numerics.n_cells =
           static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(most_cells)));
+        // The rule's own idea of the error in space, relative to the wanted one.
+        space_over_time_ = std::pow(cells / choice_.numerics.n_cells, rate > 0. ? rate : full_rate);
         return choice_.numerics.n_cells <= most;
       }
 
@@ -369,6 +388,8 @@ namespace crawler
         if (adaptive_steps_)
           n.integrator = "arkimex 4"; // bdf is less accurate here, or not stable enough: its steps become tiny
         double before = std::numeric_limits<double>::quiet_NaN(), change_before = before;
+        if (cycles_)
+          cycles_->accuracy = accuracy_; // the displacements are compared here
         bool inverted           = false;
         const unsigned int last = accuracy_ >= 1e-4 ? last_collapse_cells : last_accurate_collapse_cells;
         size_                   = 0.; // that of a failed pilot says nothing
@@ -393,7 +414,11 @@ namespace crawler
           before             = now;
           change_before      = change;
           if (finished)
+          {
             choice_.promised_error = std::max(wanted, error);
+            choice_.space_share    = 0.9; // the time tolerance is a tenth of it
+            choice_.is_collapse    = true;
+          }
           else
             inversion_error_ = pilot_.inversion ? error : 0.;
           if (error <= wanted || 2 * n.n_cells > last)
@@ -404,8 +429,9 @@ namespace crawler
         if (!is_collapse_)
         {
           choice_.numerics       = before_collapse;
-          choice_.promised_error = std::numeric_limits<double>::quiet_NaN();
-          pilot_                 = failed;
+          choice_.promised_error = choice_.space_share = std::numeric_limits<double>::quiet_NaN();
+          choice_.is_collapse                          = false;
+          pilot_                                       = failed;
         }
       }
 
@@ -419,6 +445,17 @@ namespace crawler
         if (method.petsc_type == "radau")
           return method.n_stages;
         return method.order > 0 ? method.order : parameters_.time.order;
+      }
+
+      /// How much larger than by the rule the tolerance may be.
+      double
+      superconvergence() const
+      {
+        const std::string &own  = parameters_.time.integrator;
+        const std::string &name = own == "automatic" ? choice_.numerics.integrator : own;
+        if (choice_.numerics.mesh.tolerance > 0. || is_collapse_)
+          return 1.;
+        return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
       }
 
       /// The time tolerance, and the explanation.
@@ -435,18 +472,16 @@ namespace crawler
           n.initial_step = first_step(parameters_.time);
         // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
         // size.
-        const double r = 1. / (1. + estimated_order());
-        const bool is_radau_9 =
-          (parameters_.time.integrator == "automatic" ? n.integrator : parameters_.time.integrator) == "radau 9";
-        const double factor = is_radau_9 ? radau_9_time_factor : time_factor;
-        const double wanted = accuracy_ * size_ / (factor * std::max(pilot_.time.steps, 1u) * std::pow(tolerance_, r));
-        const double by_rule =
-          std::max(std::min(std::pow(wanted, 1. / (1. - r)), tolerance_), std::max(1e-15 * scale_, smallest()));
-        n.tolerance = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
+        const double r       = 1. / (1. + estimated_order());
+        const double wanted  = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
+        const double by_rule = std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
+                                        std::max(1e-15 * scale_, smallest()));
+        n.tolerance          = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
         if (predicts && !is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
-          const double k = n.mesh.tolerance > 0. ? scene_.body.elastic_modulus / natural_units(scene_).force : 1.;
+          const double k      = n.mesh.tolerance > 0. ? scene_.body.elastic_modulus / natural_units(scene_).force : 1.;
+          choice_.space_share = space_over_time_ / (1. + space_over_time_);
           choice_.promised_error =
             size_ * std::max(accuracy_ * (k < soft ? soft_factor : 1.), k < very_soft ? soft_error : 0.);
         }
@@ -486,11 +521,13 @@ namespace crawler
       const double T_, L_, accuracy_, scale_;
       const bool adaptive_steps_;
       TimeParameters pilot_time_;
+      std::optional<CycleWish> cycles_; ///< of pilots
       NumericsChoice choice_;
       SimulationResult pilot_; ///< the last one that counts
       double tolerance_ = 0., size_ = 0.;
       unsigned int n_pilots_  = 0;
       bool is_collapse_       = false;
+      double space_over_time_ = 1.; ///< errors as the rule expects them
       double inversion_error_ = 0.; ///< of the time of an inversion that the collapse has found
     };
   } // namespace

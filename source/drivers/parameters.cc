@@ -64,6 +64,12 @@ namespace crawler
                                    *discretization.smallest_cell,
                                    body.length),
                        "Discretization/Smallest cell");
+    if (time.cycle_stop == "on" && output.n_snapshots > 0)
+      throw InputError(
+        fmt::format("Cycle stop is on, but {} snapshots until the end time are wanted; 0 is expected for "
+                    "Output/Number of snapshots, or automatic or off here",
+                    output.n_snapshots),
+        "Time/Cycle stop");
     Scene scene{body,
                 std::make_unique<PowerFriction>(body.friction_coefficient, body.friction_exponent()),
                 nullptr,

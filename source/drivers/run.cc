@@ -196,14 +196,14 @@ namespace crawler
       observers.push_back(std::make_unique<Progress>(log, input.scene));
 
     const double setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    SimulationResult result =
-      simulation.run(frame_times(output.n_snapshots, parameters.time.end_time),
-                     {.ledger = output.ledger, .resolution = false},
-                     observers,
-                     [&]()
-                     {
-                       return !stop_signal.arrived_anywhere(shared ? communicator : MPI_COMM_SELF);
-                     });
+    SimulationResult result    = simulation.run(
+      frame_times(output.n_snapshots, parameters.time.end_time),
+      {.ledger = output.ledger, .resolution = false, .cycles = cycle_wish(parameters, input.scene, output.n_snapshots)},
+      observers,
+      [&]()
+      {
+        return !stop_signal.arrived_anywhere(shared ? communicator : MPI_COMM_SELF);
+      });
     result.setup_seconds = setup_seconds;
     if (result.time.status == "stopped" && result.time.reason.empty())
     {

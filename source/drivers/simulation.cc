@@ -103,7 +103,7 @@ namespace crawler
     diagnosis_            = {};
     largest_              = {};
     before_               = {};
-    frames_               = &frames;
+    frames_               = frames;
     next_frame_           = 0;
     tiny_steps_           = 0;
     started_              = false;
@@ -121,8 +121,25 @@ namespace crawler
     accepted_time_ = 0.;
     next_step_     = numerics_.initial_step;
 
-    result_.time = integrate(frames, observers, keep_going);
-    if (result_.time.status == "finished" && !diagnosis_ && accepted_time_ < 1.)
+    cycle_stop_.reset();
+    if (options.cycles && CycleStop::fits(options.cycles->period / units_.time))
+    {
+      if (!frames.empty())
+        throw std::logic_error("a run that may end when its cycles repeat has no frames");
+      cycle_stop_.emplace(CycleWish{options.cycles->period / units_.time, options.cycles->accuracy},
+                          numerics_.tolerance);
+      for (const double time : cycle_stop_->ends())
+        frames_.push_back(time * units_.time);
+    }
+
+    result_.time           = integrate(observers, keep_going);
+    const bool ended_early = cycle_stop_ && cycle_stop_->repeats();
+    if (ended_early)
+    {
+      result_.time.status = "finished";
+      result_.time.time   = 1.;
+    }
+    else if (result_.time.status == "finished" && !diagnosis_ && accepted_time_ < 1.)
       throw std::logic_error("a run finished without a state at its end");
     if (!diagnosis_ && result_.time.status == "failed")
       explain_failure();
@@ -142,7 +159,9 @@ namespace crawler
       result_.time.message = diagnosis_->message;
     }
     else if (!options.ledger && observers.empty())
-      result_.displacement = assembler_->integrals(result_.time.time, y_, v_).displacement;
+      result_.displacement = assembler_->integrals(accepted_time_, y_, v_).displacement;
+    if (ended_early)
+      result_.cycles = cycle_stop_->extrapolate(result_.displacement, result_.ledger ? &*result_.ledger : nullptr);
 
     for (const auto &observer : observers)
       observer->end();
@@ -152,8 +171,7 @@ namespace crawler
 
   /// From the first state to the end, with changes of mesh and formulation on the way.
   TimeOutcome
-  Simulation::integrate(const std::vector<double> &frames,
-                        const std::vector<std::unique_ptr<Observer>> &observers,
+  Simulation::integrate(const std::vector<std::unique_ptr<Observer>> &observers,
                         const std::function<bool()> &keep_going)
   {
     for (;;)
@@ -177,9 +195,11 @@ namespace crawler
         const double before = now();
         show(step, y, observers);
         result_.output_seconds += now() - before;
-        if (step.is_frame && next_frame_ < frames.size())
+        if (step.is_frame && next_frame_ < frames_.size())
           ++next_frame_;
         if (keep_going && !keep_going())
+          return false;
+        if (cycle_stop_ && cycle_repeats(step, y))
           return false;
         if (step.number >= time_.max_steps && step.time < 1.)
         {
@@ -190,8 +210,9 @@ namespace crawler
         return request_ == Request::none;
       };
       std::vector<double> rest;
-      for (std::size_t i = next_frame_; i < frames.size(); ++i)
-        rest.push_back(i + 1 == frames.size() && frames[i] == physical_scene_.end_time ? 1. : frames[i] / units_.time);
+      for (std::size_t i = next_frame_; i < frames_.size(); ++i)
+        rest.push_back(i + 1 == frames_.size() && frames_[i] == physical_scene_.end_time ? 1.
+                                                                                         : frames_[i] / units_.time);
       TimeOutcome outcome =
         stepper_->solve(y_, rest, numerics_.tolerance, next_step_, numerics_.largest_step, accepted_time_);
       stepper_->monitor = nullptr;
@@ -211,7 +232,7 @@ namespace crawler
           !end_inverts(accepted_time_, accepted_time_ + 1e-9))
         request_ = Request::log_stretch;
       // The step to the end is done again like any other if its state was thrown away.
-      if (request_ == Request::none || diagnosis_ || accepted_time_ >= 1.)
+      if (request_ == Request::none || diagnosis_ || accepted_time_ >= 1. || (cycle_stop_ && cycle_stop_->repeats()))
         return outcome;
       count_part(outcome);
       next_step_ = std::min(outcome.step_size, numerics_.largest_step);
@@ -276,7 +297,7 @@ namespace crawler
     constexpr unsigned int most_corrections = 10;
     const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
     const double t                          = accepted_time_ + size;
-    const double next_frame = next_frame_ < frames_->size() ? std::min((*frames_)[next_frame_] / units_.time, 1.) : 1.;
+    const double next_frame = next_frame_ < frames_.size() ? std::min(frames_[next_frame_] / units_.time, 1.) : 1.;
     if (t > next_frame - size)
       return;
     std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
@@ -540,6 +561,28 @@ namespace crawler
     result_.max_stretch = max_history_.extreme();
   }
 
+  /// Looks at the phases of a cycle that a step has passed: may the run end here?
+  bool
+  Simulation::cycle_repeats(const Step &step, const std::span<const double> y)
+  {
+    const auto see = [&](const std::span<const double> state)
+    {
+      const double extremes[] = {result_.min_stretch.value, result_.max_stretch.value};
+      double g[2];
+      scene_.friction->values(extremes, g);
+      return cycle_stop_->observe(assembler_->displacement_at(CycleStop::n_pieces, state),
+                                  assembler_->integrals(step.time, state, v_).displacement,
+                                  result_.ledger ? &*result_.ledger : nullptr,
+                                  scene_.body.elastic_modulus / std::max(g[0], g[1]));
+    };
+    y_inside_.resize(y_.size());
+    for (; !cycle_stop_->next_is_end() && cycle_stop_->next_time() <= step.time; see(y_inside_))
+      stepper_->interpolate(cycle_stop_->next_time(), y_inside_);
+    const bool is_end =
+      step.is_frame && cycle_stop_->next_is_end() && std::abs(cycle_stop_->next_time() - step.time) < 1e-6 * step.size;
+    return is_end && see(y);
+  }
+
   /// Displacement, and if wanted the ledger, at an accepted state.
   bool
   Simulation::compute_integrals(const Step &step, const std::span<const double> y)
@@ -584,8 +627,8 @@ namespace crawler
   double
   Simulation::physical_time(const Step &step) const
   {
-    if (step.is_frame && next_frame_ < frames_->size())
-      return (*frames_)[next_frame_];
+    if (step.is_frame && next_frame_ < frames_.size())
+      return frames_[next_frame_];
     return step.time * units_.time;
   }
 
@@ -646,6 +689,11 @@ namespace crawler
     scale(result.max_stretch);
     if (result.inversion)
       scale(*result.inversion);
+    if (result.cycles)
+    {
+      result.cycles->period *= units_.time;
+      result.cycles->bound *= units_.length;
+    }
     if (result.log_stretch_since)
       *result.log_stretch_since *= units_.time;
     return result;

@@ -41,6 +41,11 @@ namespace crawler
     json["displacement_error"]    = {
          {"total", error.total}, {"space", error.space}, {"time", error.time}, {"model", error.model}};
     json["end_time"]     = result.time.time;
+    json["cycles"]       = result.cycles ? Json{{"period", result.cycles->period},
+                                          {"computed", result.cycles->computed},
+                                          {"extrapolated", result.cycles->extrapolated},
+                                          {"error", result.cycles->bound}}
+                                         : Json(nullptr);
     json["model"]        = parameters.model;
     json["stress_power"] = ledger(
       [](const Ledger &l)
@@ -118,6 +123,14 @@ namespace crawler
                                   result.error->time,
                                   result.error->model);
     lines.push_back("  displacement      " + displacement);
+    if (result.cycles)
+      lines.push_back(
+        fmt::format("  cycles            {} of period {:.6g} computed, {} extrapolated with an error of at "
+                    "most {:.2g} in the displacement",
+                    result.cycles->computed,
+                    result.cycles->period,
+                    result.cycles->extrapolated,
+                    result.cycles->bound));
     if (result.ledger)
     {
       lines.push_back(fmt::format("  stress power      {:.10g}", result.ledger->stress_power));

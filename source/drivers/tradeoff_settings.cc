@@ -322,6 +322,7 @@ namespace crawler
     result.time.integrator   = setting.integrator;
     result.time.engine       = setting.engine == "petsc" ? "petsc" : "automatic";
     result.time.step_control = "adaptive";
+    result.time.cycle_stop   = "off"; // its error is no matter of the setting
     result.time.tolerance    = std::stod(fmt::format("{:.5e}", setting.tolerance * size));
     if (!result.time.initial_step)
       result.time.initial_step =
@@ -351,10 +352,11 @@ namespace crawler
       "end\nsubsection Time\n  set Integrator      = {}\n  set Engine          = {}\n", t.integrator, t.engine);
     if (t.integrator == "bdf")
       text += fmt::format("  set Order           = {}\n", t.order);
-    return text +
-           fmt::format("  set Step control    = {}\n  set Tolerance       = {}\n  set Initial step    = {}\nend\n",
-                       t.step_control,
-                       to_text(t.tolerance.value()),
-                       to_text(t.initial_step.value()));
+    return text + fmt::format("  set Step control    = {}\n  set Cycle stop      = {}\n  set Tolerance       = {}\n  "
+                              "set Initial step    = {}\nend\n",
+                              t.step_control,
+                              t.cycle_stop,
+                              to_text(t.tolerance.value()),
+                              to_text(t.initial_step.value()));
   }
 } // namespace crawler

@@ -3,6 +3,12 @@
 
 namespace crawler
 {
+  std::optional<double>
+  ActiveStress::period() const
+  {
+    return std::nullopt;
+  }
+
   std::unique_ptr<ActiveStressAtPoints>
   ActiveStress::rate_at(const std::vector<double> &) const
   {

@@ -126,6 +126,13 @@ namespace crawler
         return strain_ ? &*strain_ : nullptr;
       }
 
+      std::optional<double>
+      period() const override
+      {
+        const auto physical = stress_.period();
+        return physical ? std::optional(*physical / units_.time) : std::nullopt;
+      }
+
       void
       report(std::ostream &out) const override
       {

@@ -44,6 +44,12 @@ namespace crawler
                         "length");
     declarations.number(
       "Initial step", initial_step, positive(), "Size of the first step. Automatic: chosen from Accuracy.", "time");
+    declarations.choice("Cycle stop",
+                        cycle_stop,
+                        {"automatic", "on", "off"},
+                        "Whether a run whose active stress has a period ends when a cycle repeats; the cycles that are "
+                        "left are extrapolated, with a bound (doc/numerics.md). Automatic: if there are no snapshots "
+                        "and Step control is adaptive. A table of statistics ends with the cycles that are computed.");
     declarations.whole_number("Maximum number of steps", max_steps, 1, 999999999, "The run stops after so many steps.");
     declarations.leave();
   }

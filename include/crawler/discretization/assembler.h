@@ -156,6 +156,10 @@ namespace crawler
     double
     root_mean_square(ConstVector y) const;
 
+    /// The displacement at the ends of @p n_pieces equal pieces of the body, the same on all ranks [length].
+    std::vector<double>
+    displacement_at(unsigned int n_pieces, ConstVector y);
+
     /// The power that leaves through the ends in the paper's energy: [m v] from s = 0 to L (theory.md section 6).
     double
     end_power(double t, ConstVector v);
@@ -232,6 +236,16 @@ namespace crawler
     const StretchSampler &sampler_;    ///< at the left end, the quadrature points and the right end
     std::vector<double> highest_mode_; ///< [point] weights that give the highest Legendre coefficient
     std::vector<double> friction_at_, m_at_quadrature_;
+    /// Ends of equal pieces of the body in own cells, and the shape functions there.
+    struct PieceEnds
+    {
+      unsigned int n_pieces = 0, first = 0;
+      std::vector<unsigned int> cells;
+      std::vector<double> shape; ///< [end][n nodes]
+    };
+    PieceEnds piece_ends_;
+    void
+    find_piece_ends(unsigned int n_pieces);
   };
 
   std::unique_ptr<Assembler>

@@ -33,10 +33,10 @@ namespace crawler
   /**
    * What `crawler run` computes for each of @p tasks, whose parameters alone are given, on this rank alone and without
    * files: choice of the numerics, simulation, self-check. Runs that fit share the lanes of the fused engine
-   * (drivers/batch.h), where an answer does not depend on its neighbours; the others, and those that the engine gives
-   * up, follow one by one. Nothing is thrown. No run takes longer than @p time_limit [s], and @p interrupted is asked
-   * after every step, those of pilot runs too; if a pilot is stopped, the status is "stopped" and nothing else is
-   * known.
+   * (drivers/batch.h), where an answer does not depend on its neighbours and all cycles are computed; the others,
+   * those that the engine gives up, and long ones that may end when their cycles repeat, follow one by one. Nothing is
+   * thrown. No run takes longer than @p time_limit [s], and @p interrupted is asked after every step, those of pilot
+   * runs too; if a pilot is stopped, the status is "stopped" and nothing else is known.
    */
   void
   compute_all(std::span<Task> tasks, double time_limit, const std::function<bool()> &interrupted);

@@ -4,6 +4,7 @@
 #include <crawler/base/extreme_history.h>
 #include <crawler/discretization/assembler.h>
 #include <crawler/discretization/mesh_marking.h>
+#include <crawler/drivers/cycle_stop.h>
 #include <crawler/drivers/displacement_error.h>
 #include <crawler/fused/fused_stepper.h>
 #include <crawler/observers/observer.h>
@@ -58,6 +59,8 @@ namespace crawler
     Extreme min_stretch, max_stretch;
     std::optional<Extreme> inversion; ///< where and when the body inverted; value is the stretch there
 
+    std::optional<Cycles> cycles; ///< if the run ended because they repeat; all above is that of the end time
+
     std::optional<double> log_stretch_since;       ///< time from which on the log-stretch form was used [time]
     unsigned int mesh_changes = 0, most_cells = 0; ///< of an adaptive mesh
     double largest_indicator = 0.; ///< largest sum of the error indicators of an accepted state [length]
@@ -75,14 +78,16 @@ namespace crawler
     /// What is computed at each accepted step besides the state.
     struct Options
     {
-      bool ledger     = false; ///< works, energies, net friction
-      bool resolution = false; ///< SimulationResult::unresolved
+      bool ledger                     = false; ///< works, energies, net friction
+      bool resolution                 = false; ///< SimulationResult::unresolved
+      std::optional<CycleWish> cycles = {};    ///< end the run when its cycles repeat; not with frames
     };
 
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);
     ~Simulation();
 
-    /// Runs from rest. @p frames are times in (0, T] where steps must end. @p keep_going is asked after every step.
+    /// Runs from rest. If that is wished it ends when its cycles repeat (cycle_stop.h); the result is that of the end
+    /// time all the same. @p frames are times in (0, T] where steps must end. @p keep_going is asked after every step.
     SimulationResult
     run(const std::vector<double> &frames,
         const Options &options,
@@ -141,6 +146,8 @@ namespace crawler
     bool
     mesh_is_good(const Step &step, std::span<const double> y);
     bool
+    cycle_repeats(const Step &step, std::span<const double> y);
+    bool
     compute_integrals(const Step &step, std::span<const double> y);
     RateQuadrature::Rates
     rates(double t, const CellIntegrals &sums, std::span<const double> v);
@@ -163,9 +170,7 @@ namespace crawler
     void
     under_resolved(double value, double s, double t);
     TimeOutcome
-    integrate(const std::vector<double> &frames,
-              const std::vector<std::unique_ptr<Observer>> &observers,
-              const std::function<bool()> &keep_going);
+    integrate(const std::vector<std::unique_ptr<Observer>> &observers, const std::function<bool()> &keep_going);
     void
     show(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
     double
@@ -219,9 +224,10 @@ namespace crawler
     // The last state that was accepted, to which a change of mesh or formulation may go back.
     std::vector<double> accepted_;
     double accepted_time_ = 0., next_step_ = 0.;
-    TimeOutcome before_; ///< counts of the parts of the run before the last change of mesh or formulation
-    const std::vector<double> *frames_ = nullptr; ///< in physical units
-    std::size_t next_frame_            = 0;
+    TimeOutcome before_;         ///< counts of the parts of the run before the last change of mesh or formulation
+    std::vector<double> frames_; ///< in physical units
+    std::size_t next_frame_ = 0;
+    std::optional<CycleStop> cycle_stop_;
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
     bool started_ = false; ///< a state has been accepted
   };

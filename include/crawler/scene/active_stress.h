@@ -5,6 +5,7 @@
 
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,11 @@ namespace crawler
     /// An evaluator at @p points [length] that may keep whatever does not depend on time.
     virtual std::unique_ptr<ActiveStressAtPoints>
     at(const std::vector<double> &points) const = 0;
+
+    /// The smallest P > 0 with m(s, t + P) = m(s, t) for all s and t [time]; nothing if there is none, or if it is not
+    /// known (the default).
+    virtual std::optional<double>
+    period() const;
 
     /// The same for the derivative m_t [force/time]; null if the generator does not know it.
     virtual std::unique_ptr<ActiveStressAtPoints>

@@ -19,6 +19,7 @@ namespace crawler
     std::optional<double> tolerance;    ///< absolute, in the displacement [length]
     std::optional<double> initial_step; ///< [time]
     unsigned int max_steps = 100000000;
+    std::string cycle_stop = "automatic";
 
     std::string petsc_prefix; ///< of PETSc's options; not an entry of the file
 

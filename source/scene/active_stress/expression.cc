@@ -4,6 +4,7 @@
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/active_stress/formula_rate.h>
+#include <crawler/scene/period.h>
 
 #include <fmt/format.h>
 
@@ -34,7 +35,9 @@ namespace crawler
   }
 
   Expression::Expression(const ExpressionParameters &parameters, const double length, const double end_time)
-    : formula_(parameters.active_stress)
+    : length_(length)
+    , end_time_(end_time)
+    , formula_(parameters.active_stress)
     , compiled_(read_formula(
         {"active stress", formula_, parameters.constants, formula_entry, constants_entry}, length, end_time))
   {
@@ -68,6 +71,14 @@ namespace crawler
   Expression::at(const std::vector<double> &points) const
   {
     return std::make_unique<FormulaAtPoints>(compiled_, points);
+  }
+
+  std::optional<double>
+  Expression::period() const
+  {
+    if (!period_)
+      period_ = find_period(*this, length_, end_time_);
+    return *period_;
   }
 
   std::unique_ptr<ActiveStressAtPoints>

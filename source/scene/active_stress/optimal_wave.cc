@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <ostream>
 
 namespace crawler
@@ -222,6 +223,18 @@ namespace crawler
   OptimalWave::at(const std::vector<double> &points) const
   {
     return std::make_unique<WaveAtPoints>(points, shape_, body_, chi_, wave_.speed);
+  }
+
+  std::optional<double>
+  OptimalWave::period() const
+  {
+    unsigned int divisor = 0;
+    for (unsigned int n = 1; n <= shape_.a.size(); ++n)
+      if (shape_.power(n) != 0.)
+        divisor = std::gcd(divisor, n);
+    if (divisor == 0 || chi_ == 0.)
+      return std::nullopt;
+    return body_.length / (std::abs(wave_.speed) * divisor);
   }
 
   void

@@ -3,6 +3,7 @@
 
 #include <crawler/scene/active_stress/formula.h>
 
+#include <optional>
 #include <string>
 
 namespace crawler
@@ -39,12 +40,18 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     rate_at(const std::vector<double> &points) const override;
 
+    /// Looked for (scene/period.h).
+    std::optional<double>
+    period() const override;
+
   private:
     /// Throws InputError, see the constructor.
     void
     require_finite_values(double length, double end_time) const;
 
+    const double length_, end_time_;
     std::string formula_;
     std::shared_ptr<const Formula> compiled_;
+    mutable std::optional<std::optional<double>> period_; ///< once somebody has asked
   };
 } // namespace crawler

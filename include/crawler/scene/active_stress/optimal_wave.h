@@ -49,6 +49,10 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     at(const std::vector<double> &points) const override;
 
+    /// L/(|c| n), n the greatest common divisor of its harmonics' numbers.
+    std::optional<double>
+    period() const override;
+
     /// The wave, and all roots if it was chosen by its energy.
     void
     report(std::ostream &out) const override;

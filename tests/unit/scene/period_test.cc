@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/run_text.h"
+
+#include <crawler/scene/period.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  std::optional<double>
+  period_of(const std::string &formula, const double end_time = 20.)
+  {
+    const Scene scene = test::parameters_with({{"Active stress/Generator", "expression"},
+                                               {"Active stress/Expression/Active stress", formula},
+                                               {"Time/End time", test::text(end_time)}})
+                          .create_scene();
+    return scene.active_stress->period();
+  }
+
+  std::optional<double>
+  period_of_wave(const std::string &sine, const std::string &cosine, const double speed, const double chi = 0.1)
+  {
+    auto settings = test::wave(-1., chi, speed, 3.);
+    settings.insert(settings.end(),
+                    {{"Body/Length", "2"},
+                     {"Active stress/Optimal wave/Sine coefficients", sine},
+                     {"Active stress/Optimal wave/Cosine coefficients", cosine}});
+    return test::parameters_with(settings).create_scene().active_stress->period();
+  }
+} // namespace
+
+TEST(Period, OfWavesIsKnown)
+{
+  EXPECT_DOUBLE_EQ(period_of_wave("1", "0", 0.5).value(), 4.);
+  EXPECT_DOUBLE_EQ(period_of_wave("1, 0.3", "0", -0.5).value(), 4.);
+  EXPECT_DOUBLE_EQ(period_of_wave("0, 1", "0", 0.5).value(), 2.);
+  EXPECT_DOUBLE_EQ(period_of_wave("0, 1, 0, 0, 0, 0.1", "0, 0, 0, 0.2, 0, 0", 0.5).value(), 2.);
+  EXPECT_DOUBLE_EQ(period_of_wave("0, 0, 1, 0, 0, 0.1", "0", 0.5).value(), 4. / 3.);
+  EXPECT_FALSE(period_of_wave("1", "0", 0.5, 0.));
+}
+
+/// The declared period of a wave is one of its stress, and half of it is not.
+TEST(Period, OfAWaveRepeatsItsStress)
+{
+  const Scene scene = test::parameters_with(test::wave(-1., 0.4, 0.7, 20.)).create_scene();
+  const double P    = scene.active_stress->period().value();
+  const auto stress = scene.active_stress->at({0.1, 0.37, 0.8});
+  std::vector<double> now(3), later(3), half(3);
+  stress->values(0.3, now);
+  stress->values(0.3 + P, later);
+  stress->values(0.3 + 0.5 * P, half);
+  for (unsigned int i = 0; i < 3; ++i)
+    EXPECT_NEAR(now[i], later[i], 1e-14);
+  EXPECT_GT(std::abs(now[1] - half[1]), 0.01);
+}
+
+TEST(Period, OfFormulasIsFound)
+{
+  const double pi = std::numbers::pi;
+  EXPECT_NEAR(period_of("0.1*sin(2*pi*(s+t))").value(), 1., 1e-14);
+  EXPECT_NEAR(period_of("0.1*sin(2*pi*(s-t/6.5))").value(), 6.5, 1e-13);
+  EXPECT_NEAR(period_of("sin(s)*sin(sqrt(2)*t)^2").value(), pi / std::sqrt(2.), 1e-13);
+  EXPECT_NEAR(period_of("sin(3*t+s)+sin(5*t+2*s)").value(), 2. * pi, 1e-13);
+  EXPECT_NEAR(period_of("s*cos(40*t)").value(), pi / 20., 1e-14);
+  EXPECT_NEAR(period_of("sin(2*pi*(s+t))*(1+0.3*cos(pi*t))").value(), 2., 1e-14);
+  EXPECT_NEAR(period_of("1e-9*sin(2*pi*(s+t))").value(), 1., 1e-14);
+}
+
+/// Where the derivative says nothing.
+TEST(Period, OfPulsesIsFound)
+{
+  EXPECT_DOUBLE_EQ(period_of("(mod(t,1.25)<0.5)*0.1*s").value_or(0.), 1.25);
+  EXPECT_DOUBLE_EQ(period_of("exp(-((mod(t,0.7)-0.3)/0.05)^2)*s").value_or(0.), 0.7);
+  EXPECT_DOUBLE_EQ(period_of("mod(t,T/7)*s").value_or(0.), 20. / 7.);
+}
+
+TEST(Period, IsNotInvented)
+{
+  EXPECT_FALSE(period_of("0.1*sin(2*pi*(s+t*t/10))"));                      // chirp
+  EXPECT_FALSE(period_of("0.1*sin(2*pi*s)*(1-exp(-t))"));                   // start-up
+  EXPECT_FALSE(period_of("sin(t)+sin(sqrt(2)*t)*s"));                       // quasi-periodic
+  EXPECT_FALSE(period_of("0.1*sin(2*pi*s)"));                               // steady
+  EXPECT_FALSE(period_of("0*s"));                                           // nothing
+  EXPECT_FALSE(period_of("0.1*sin(2*pi*(s+t))*(1-1e-8*t)"));                // decays slowly
+  EXPECT_FALSE(period_of("0.1*sin(2*pi*(s+t))+1e-6*exp(-((t-10)/0.1)^2)")); // a single event
+  EXPECT_FALSE(period_of("0.1*sin(2*pi*(s+t))", 1.9));                      // not twice within the duration
+}

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Runs that end when their cycles repeat, against runs to the end time.
+#include "../support/run_text.h"
+
+#include <crawler/base/exceptions.h>
+#include <crawler/drivers/compute.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  struct Pair
+  {
+    SimulationResult cycles, full;
+  };
+
+  /// The same numerics with and without the stop; @p accuracy is that of the stop.
+  Pair
+  run_both(const test::Settings &settings, const double accuracy, const std::string &engine = "automatic")
+  {
+    auto parameters        = test::parameters_with(settings);
+    parameters.time.engine = engine;
+    const Scene scene      = parameters.create_scene();
+    const auto choice      = *choose_numerics(MPI_COMM_WORLD, parameters, scene);
+    parameters.accuracy    = accuracy;
+    Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, choice.numerics);
+    Pair pair;
+    pair.cycles = simulation.run({}, {.ledger = true, .cycles = cycle_wish(parameters, scene, 0)});
+    pair.full   = simulation.run({}, {.ledger = true});
+    EXPECT_EQ(pair.full.time.status, "finished");
+    EXPECT_EQ(pair.cycles.time.status, "finished");
+    EXPECT_FALSE(pair.full.cycles);
+    return pair;
+  }
+
+  /// What is computed where no files are written.
+  SimulationResult
+  compute(const Parameters &parameters)
+  {
+    const Scene scene = parameters.create_scene();
+    return test::run_with(parameters, {.ledger = true, .cycles = cycle_wish(parameters, scene, 0)}).result;
+  }
+
+  /// The settings with Accuracy 1e-9.
+  test::Settings
+  accurate(test::Settings settings)
+  {
+    settings.emplace_back("Accuracy", "1e-9");
+    return settings;
+  }
+
+  /// Is the difference within the bound, but for the errors in time of both runs?
+  void
+  expect_honest(const Pair &pair, const double accuracy)
+  {
+    ASSERT_TRUE(pair.cycles.cycles);
+    const double error = std::abs(pair.cycles.displacement - pair.full.displacement);
+    EXPECT_LE(error, pair.cycles.cycles->bound + 2e-9 * std::abs(pair.full.displacement));
+    EXPECT_LE(pair.cycles.cycles->bound, 0.2 * accuracy * std::abs(pair.cycles.displacement));
+  }
+} // namespace
+
+TEST(CycleStop, Fig2NeedsThreeOfItsTwentyCycles)
+{
+  const auto computed = [](const double accuracy)
+  {
+    auto settings = test::wave(-1., 0.4, 1., 20.);
+    settings.emplace_back("Accuracy", test::text(accuracy));
+    return compute(test::parameters_with(settings));
+  };
+  for (const double accuracy : {1e-3, 1e-6, 1e-9})
+  {
+    const auto result = computed(accuracy);
+    ASSERT_TRUE(result.cycles);
+    EXPECT_EQ(result.cycles->period, 1.);
+    EXPECT_LE(result.cycles->computed, 3u);
+    EXPECT_EQ(result.cycles->computed + result.cycles->extrapolated, 20u);
+    EXPECT_EQ(result.time.time, 20.);
+    EXPECT_NEAR(result.displacement, 1.801968240, accuracy * 1.8 + 0.6e-9);
+    EXPECT_NEAR(result.ledger->stress_power, 1.674733, accuracy * 1.7 + 0.6e-6);
+  }
+}
+
+TEST(CycleStop, LedgerIsThatOfTheWholeRun)
+{
+  const Pair pair = run_both(accurate(test::wave(-1., 0.4, 1., 20.)), 1e-9);
+  expect_honest(pair, 1e-9);
+  const Ledger &cycles = *pair.cycles.ledger, &full = *pair.full.ledger;
+  EXPECT_NEAR(cycles.stress_power / full.stress_power, 1., 1e-8);
+  EXPECT_NEAR(cycles.dissipation / full.dissipation, 1., 1e-8);
+  EXPECT_NEAR(cycles.positive_power / full.positive_power, 1., 1e-4); // its integrand has kinks
+  EXPECT_NEAR(cycles.paper_energy() / full.paper_energy(), 1., 1e-8);
+  EXPECT_NEAR(cycles.elastic_energy, full.elastic_energy, 1e-9 * full.exchanged);
+  EXPECT_LT(cycles.residual(), 1e-9);
+  EXPECT_NEAR(pair.cycles.min_stretch.value, pair.full.min_stretch.value, 1e-4);
+  EXPECT_NEAR(pair.cycles.max_stretch.value, pair.full.max_stretch.value, 1e-3);
+}
+
+/// A duration that is not a whole number of periods: the run begins with the part of one.
+TEST(CycleStop, PartOfACycle)
+{
+  const Pair pair = run_both(accurate(test::wave(2., 0.2, 1., 7.37, 0.5)), 1e-7);
+  expect_honest(pair, 1e-7);
+  EXPECT_EQ(pair.cycles.cycles->computed + pair.cycles.cycles->extrapolated, 7u);
+}
+
+TEST(CycleStop, PeriodOfAFormula)
+{
+  const Pair pair = run_both(
+    accurate({{"Active stress/Generator", "expression"},
+              {"Active stress/Expression/Active stress", "(0.2*sin(2*pi*(s-t/0.7))+0.1*cos(4*pi*t/0.7))*sin(pi*s)"},
+              {"Time/End time", "9"}}),
+    1e-6);
+  expect_honest(pair, 1e-6);
+  EXPECT_NEAR(pair.cycles.cycles->period, 0.7, 1e-14);
+}
+
+TEST(CycleStop, BdfAndAdaptiveMeshes)
+{
+  for (const auto &[entry, value] :
+       test::Settings{{"Time/Integrator", "bdf"}, {"Discretization/Mesh", "adaptive"}, {"Time/Engine", "petsc"}})
+  {
+    auto settings = test::wave(-1., 0.3, 1., 6.);
+    settings.insert(settings.end(), {{"Accuracy", "1e-5"}, {entry, value}});
+    const Pair pair = run_both(settings, 1e-4);
+    ASSERT_TRUE(pair.cycles.cycles) << value;
+    EXPECT_NEAR(pair.cycles.displacement,
+                pair.full.displacement,
+                pair.cycles.cycles->bound + 2e-5 * std::abs(pair.full.displacement))
+      << value;
+    EXPECT_LT(pair.cycles.time.steps, pair.full.time.steps) << value;
+  }
+}
+
+/// A soft body takes many cycles to settle: as many are computed as the accuracy needs, and the bound holds.
+TEST(CycleStop, SlowSettling)
+{
+  unsigned int before = 2;
+  for (const double accuracy : {1e-2, 1e-4, 1e-6})
+  {
+    const Pair pair = run_both(accurate(test::wave(1., 0.3, -1., 40., 0.05)), accuracy);
+    expect_honest(pair, accuracy);
+    EXPECT_GT(pair.cycles.cycles->computed, before);
+    before = pair.cycles.cycles->computed;
+  }
+}
+
+/// One that has not settled at the end is computed to the end.
+TEST(CycleStop, NotSettled)
+{
+  const Pair pair = run_both(accurate(test::wave(-1., 0.2, 1., 8., 0.01)), 1e-7);
+  EXPECT_FALSE(pair.cycles.cycles);
+  EXPECT_NEAR(pair.cycles.displacement, pair.full.displacement, 2e-9 * std::abs(pair.full.displacement));
+}
+
+TEST(CycleStop, BodyThatInvertsLaterInverts)
+{
+  // The mean of the stress grows from cycle to cycle; without this part the period would be 1.
+  test::Settings settings = {{"Body/Anchoring exponent", "0"},
+                             {"Active stress/Generator", "expression"},
+                             {"Active stress/Expression/Active stress", "(0.1*sin(2*pi*t)+0.12*t)*sin(pi*s)"},
+                             {"Time/End time", "20"}};
+  const auto result       = compute(test::parameters_with(settings));
+  EXPECT_EQ(result.time.status, "inverted");
+  EXPECT_FALSE(result.cycles);
+}
+
+/// The watcher itself, shown a gait whose displacement repeats while its stretch drifts: a mode of the strain that does
+/// not decay is not extrapolated, however well the displacement repeats.
+TEST(CycleStop, DriftOfTheStretchIsSeen)
+{
+  const auto watch = [](const double ratio)
+  {
+    CycleStop stop({0.05, 1e-2}, 1e-12);
+    unsigned int n = 0;
+    double drift   = 0.;
+    while (stop.next_time() < 1. && !stop.repeats())
+    {
+      const double t = stop.next_time() / 0.05;
+      drift          = ratio == 1. ? 0.03 * t : 0.03 * (1. - std::pow(ratio, t)) / (1. - ratio);
+      std::vector<double> u(CycleStop::n_pieces + 1);
+      for (unsigned int i = 0; i <= CycleStop::n_pieces; ++i)
+      {
+        const double s = 1. * i / CycleStop::n_pieces;
+        u[i]           = 0.01 * t +
+               (0.03 * std::sin(2. * std::numbers::pi * t) - drift) * std::sin(std::numbers::pi * s) / std::numbers::pi;
+      }
+      stop.observe(u, 0.01 * t, nullptr, /*decay=*/1e3);
+      n = static_cast<unsigned int>(std::floor(t));
+    }
+    return stop.repeats() ? n : 0;
+  };
+  EXPECT_EQ(watch(1.), 0u);
+  EXPECT_EQ(watch(0.999), 0u);
+  EXPECT_GT(watch(0.1), 2u);
+  EXPECT_LT(watch(0.1), 6u);
+}
+
+TEST(CycleStop, WhenItIsWished)
+{
+  const auto wish = [](const test::Settings &settings, const unsigned int n_frames)
+  {
+    const auto parameters = test::parameters_with(settings);
+    const Scene scene     = parameters.create_scene();
+    return cycle_wish(parameters, scene, n_frames).has_value();
+  };
+  auto settings = test::wave(-1., 0.1, 1., 20.);
+  EXPECT_TRUE(wish(settings, 0));
+  EXPECT_FALSE(wish(settings, 50)); // every frame is wanted
+  EXPECT_FALSE(wish(test::wave(-1., 0.1, 1., 2.5), 0));
+  settings.emplace_back("Time/Cycle stop", "off");
+  EXPECT_FALSE(wish(settings, 0));
+  settings.emplace_back("Time/Cycle stop", "on");
+  EXPECT_THROW(wish(settings, 50), InputError); // refused with the default of 50 snapshots
+  settings.emplace_back("Output/Number of snapshots", "0");
+  EXPECT_TRUE(wish(settings, 0));
+  settings = test::wave(-1., 0.1, 1., 20.);
+  settings.insert(settings.end(), {{"Time/Step control", "fixed"}, {"Time/Initial step", "0.01"}});
+  EXPECT_FALSE(wish(settings, 0));
+  EXPECT_FALSE(wish({{"Active stress/Generator", "none"}, {"Time/End time", "20"}}, 0));
+}
+
+/// Many runs at once: long ones that repeat are taken out of the batch, and give what compute() gives.
+TEST(CycleStop, AmongManyRuns)
+{
+  std::vector<Task> tasks(2);
+  tasks[0].parameters = test::parameters_with(test::wave(-1., 0.2, 1., 40.));
+  tasks[1].parameters = test::parameters_with(test::wave(-1., 0.2, 1., 4.));
+  compute_all(tasks,
+              1e3,
+              []()
+              {
+                return false;
+              });
+  ASSERT_TRUE(tasks[0].computed.result.cycles);
+  EXPECT_FALSE(tasks[1].computed.result.cycles);
+  EXPECT_EQ(tasks[0].computed.result.displacement, compute(tasks[0].parameters).displacement);
+}
