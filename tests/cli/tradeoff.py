@@ -103,8 +103,8 @@ def check_rows(rows, summary):
     check(all(number(row["shown error"]) == max(number(row["error"]), reference["relative_bar"]) and
               (row["below bar"] == "true") == (number(row["error"]) < reference["relative_bar"]) for row in finished),
           "errors are shown at the bar or above")
-    check(all(number(row["seconds"]) > 0 and number(row["memory"]) >= (row["model"] == "nonlinear") and number(row["repetitions"]) >= 1
-              and number(row["spread"]) >= 0 for row in finished), "all that finished have a cost")
+    check(all(number(row["seconds"]) > 0 and number(row["memory"]) >= (row["model"] == "nonlinear")
+              and number(row["repetitions"]) >= 1 and number(row["spread"]) >= 0 for row in finished), "all that finished have a cost")
     gaps = [row for row in rows if row["status"] != "finished"]
     check(all(row["reason"] and row["message"] and not row["seconds"] and row["pareto"] == "false" for row in gaps),
           f"{len(gaps)} gaps have a reason, and no cost")
