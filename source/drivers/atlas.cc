@@ -1,36 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
-#include <crawler/base/process.h>
 #include <crawler/base/stop_signal.h>
-#include <crawler/base/versions.h>
 #include <crawler/base/work_queue.h>
 #include <crawler/drivers/atlas.h>
 #include <crawler/drivers/atlas_results.h>
 #include <crawler/drivers/input.h>
 #include <crawler/drivers/log.h>
 #include <crawler/drivers/output_folder.h>
+#include <crawler/drivers/study.h>
 #include <crawler/parameters/declarations.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <fstream>
-#include <numeric>
 #include <sstream>
 
 namespace crawler
 {
   namespace
   {
-    double
-    now()
-    {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    }
-
     /// The parameter file as a form in which the two entries of the axes can be filled in.
     class Form
     {
@@ -123,51 +113,6 @@ namespace crawler
       }
     }
 
-    /// A line every few seconds at most: points done, speed, time left.
-    class PointProgress
-    {
-    public:
-      PointProgress(Log &log, const unsigned long n_points)
-        : log_(log)
-        , n_points_(n_points)
-      {
-      }
-
-      void
-      report(const unsigned long done)
-      {
-        constexpr double pause = 5.; // seconds
-        if (now() < last_ + pause)
-          return;
-        last_             = now();
-        const double rate = done / (last_ - start_);
-        log_.line(fmt::format("  {:3.0f} %  {} of {} points, {:.3g} points/s, {:.0f} s left",
-                              100. * done / n_points_,
-                              done,
-                              n_points_,
-                              rate,
-                              (n_points_ - done) / rate));
-      }
-
-    private:
-      Log &log_;
-      const unsigned long n_points_;
-      const double start_ = now();
-      double last_        = now();
-    };
-
-    /// A number without common divisor with @p n, near the golden section of it: its multiples modulo n visit all of n
-    /// points, spread out from the beginning. So the time left is known early, and an atlas that is stopped is a coarse
-    /// map of everything.
-    unsigned long
-    golden_stride(const unsigned long n)
-    {
-      auto stride = static_cast<unsigned long>(std::ceil(0.618034 * n));
-      while (std::gcd(stride, n) != 1)
-        ++stride;
-      return stride;
-    }
-
     /**
      * The rows of one rank as they come, in a file of their own (OUTPUT/rows/RANK.csv), so that a job that is killed
      * loses none. The tables at the end replace it.
@@ -218,7 +163,7 @@ namespace crawler
       Form form(file);
       const std::vector<double> first = numbers_of(axes.first, ""), second = numbers_of(axes.second, "");
       WorkQueue queue(communicator, axes.n_points());
-      PointProgress progress(log, axes.n_points());
+      StudyProgress progress(log, axes.n_points(), "points");
       const auto interrupted = [&stop_signal]()
       {
         return stop_signal.arrived_anywhere(MPI_COMM_SELF);
@@ -275,31 +220,6 @@ namespace crawler
                   return a.index < b.index;
                 });
       return all;
-    }
-
-    /// Where the effective parameters, versions and command come from: attributes of the HDF5 file.
-    std::map<std::string, std::string>
-    provenance(const std::string &effective, const CommandOptions &options)
-    {
-      std::map<std::string, std::string> attributes = {{"parameters.prm", effective},
-                                                       {"command line", options.command_line}};
-      for (const auto &[name, version] : versions())
-        attributes["version of " + name] = version;
-      return attributes;
-    }
-
-    /// Draws the picture with Python, or says how to.
-    void
-    draw(const std::filesystem::path &folder, Log &log)
-    {
-      const std::string script  = CRAWLER_SOURCE_DIR "/contrib/plot/atlas.py";
-      const std::string debians = "/usr/bin/python3";
-      for (const std::string &python : {debians, std::string("python3")})
-        if (run_silently({python, script, folder.string()}))
-          return;
-      log.line(fmt::format("There is no picture (it needs Python with numpy and matplotlib); draw it with: "
-                           "python3 contrib/plot/atlas.py {}",
-                           folder.string()));
     }
 
     /// The points in which something is wrong, the first few.
@@ -364,7 +284,7 @@ namespace crawler
       {
         const Table table = atlas_table(points, axes);
         write_file(folder / "atlas.csv", csv(table));
-        write_hdf5(folder / "atlas.h5", "atlas", table, provenance(effective, options));
+        write_hdf5(folder / "atlas.h5", "atlas", table, provenance(effective, options.command_line));
         std::filesystem::remove_all(folder / "rows");
         const std::string status = summary.computed() == summary.points ? "finished" : "stopped";
         write_file(folder / "summary.json", atlas_json(summary, axes, status, seconds, n_ranks, options.command_line));
@@ -372,7 +292,7 @@ namespace crawler
         log.line(in_words(summary, axes, seconds, n_ranks));
         if (status == "stopped")
           log.warn(fmt::format("stopped by a signal after {} of {} points", summary.computed(), summary.points));
-        draw(folder, log);
+        draw("atlas.py", folder, log);
         log.line(fmt::format("Results are in {}/.", folder.string()));
         return "";
       });

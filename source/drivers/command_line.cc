@@ -7,6 +7,7 @@
 #include <crawler/drivers/command_line.h>
 #include <crawler/drivers/parameters.h>
 #include <crawler/drivers/run.h>
+#include <crawler/drivers/tradeoff.h>
 #include <crawler/parameters/declarations.h>
 
 #include <deal.II/base/mpi.h>
@@ -138,7 +139,11 @@ namespace crawler
       CLI::App *atlas_command =
         app.add_subcommand("atlas", "Maps two entries of a parameter file: runs every point in all forms and compares");
       common(atlas_command);
-      for (CLI::App *command : {run_command, atlas_command})
+      CLI::App *tradeoff_command =
+        app.add_subcommand("tradeoff", "Measures cost against error of many settings on the scene of a parameter file");
+      common(tradeoff_command);
+      tradeoff_command->add_flag("--resume", options.resume, "Goes on with a tradeoff that was stopped or killed");
+      for (CLI::App *command : {run_command, atlas_command, tradeoff_command})
       {
         command->add_flag("--overwrite", options.overwrite, "Replaces the results in the output folder");
         command->add_flag("--quiet", options.quiet, "Prints nothing but errors");
@@ -174,6 +179,8 @@ namespace crawler
         return first ? print_parameters(format) : 0;
       if (*atlas_command)
         return static_cast<int>(atlas(communicator, options));
+      if (*tradeoff_command)
+        return static_cast<int>(tradeoff(communicator, options));
       return static_cast<int>(*run_command ? run(communicator, options) : check(communicator, options));
     }
   } // namespace

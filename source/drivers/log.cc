@@ -41,11 +41,11 @@ namespace crawler
   }
 
   void
-  Log::open(const std::filesystem::path &file)
+  Log::open(const std::filesystem::path &file, const bool append)
   {
     if (!active_)
       return;
-    file_.open(file);
+    file_.open(file, append ? std::ios::app : std::ios::trunc);
     file_ << earlier_ << std::flush;
     if (!file_)
       throw FileError("cannot write \"" + file.string() + "\"");

@@ -61,7 +61,13 @@ namespace crawler
                              "atlas.csv",
                              "atlas.h5",
                              "atlas.png",
-                             "atlas.svg"})
+                             "atlas.svg",
+                             "tradeoff.csv",
+                             "tradeoff.h5",
+                             "tradeoff.png",
+                             "tradeoff.svg",
+                             "recommendations.prm",
+                             "reference.json"})
       fs::remove(folder / name, error);
     remove_fields(folder);
   }

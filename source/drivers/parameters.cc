@@ -54,6 +54,7 @@ namespace crawler
     time.add_parameters(declarations);
     output.add_parameters(declarations);
     atlas.add_parameters(declarations);
+    tradeoff.add_parameters(declarations);
   }
 
   Scene

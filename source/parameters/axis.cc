@@ -102,6 +102,21 @@ namespace crawler
     }
   } // namespace
 
+  std::vector<std::string>
+  parse_values(const std::string &text, const std::string &name)
+  {
+    const auto values = text.find('(') == std::string::npos ? listed(text, name) : evenly_spaced(text, name);
+    std::set<std::string> seen;
+    for (const std::string &value : values)
+    {
+      const auto number = to_number(value);
+      if (!seen.insert(number ? to_text(*number) : value).second)
+        throw InputError(fmt::format("\"{}\": the value {} occurs twice, but different ones are expected", name, value),
+                         name);
+    }
+    return values;
+  }
+
   Axis
   parse_axis(const std::string &text, const std::string &name)
   {
@@ -110,17 +125,7 @@ namespace crawler
     const std::string rest  = colon == std::string::npos ? "" : trimmed(text.substr(colon + 1));
     if (entry.empty() || rest.empty())
       throw InputError(fmt::format("\"{}\" is \"{}\", but {} is expected", name, text, axis_syntax), name);
-    Axis axis{fmt::format("{}", fmt::join(split_path(entry), "/")),
-              rest.find('(') == std::string::npos ? listed(rest, name) : evenly_spaced(rest, name)};
-    std::set<std::string> seen;
-    for (const std::string &value : axis.values)
-    {
-      const auto number = to_number(value);
-      if (!seen.insert(number ? to_text(*number) : value).second)
-        throw InputError(fmt::format("\"{}\": the value {} occurs twice, but different ones are expected", name, value),
-                         name);
-    }
-    return axis;
+    return {fmt::format("{}", fmt::join(split_path(entry), "/")), parse_values(rest, name)};
   }
 
   void

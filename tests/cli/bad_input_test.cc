@@ -293,6 +293,53 @@ namespace
     };
   }
 
+  BadInput
+  bad_tradeoff(const std::string &name, const std::string &lines, const Words &message)
+  {
+    return {name, in_section("Tradeoff", lines), message, 2, {"tradeoff", "bad.prm", "--output", "results"}};
+  }
+
+  std::vector<BadInput>
+  tradeoffs()
+  {
+    return {
+      bad_tradeoff("TradeoffIntegratorUnknown",
+                   "set Integrators = radau 5, rado 9",
+                   {"bad.prm, line 2", "\"Tradeoff/Integrators\"", "\"rado 9\"", "the nearest is \"radau 9\""}),
+      bad_tradeoff("TradeoffIntegratorUnsound",
+                   "set Integrators = rosw",
+                   {"bad.prm, line 2", "\"rosw\" is refused", "constant mass matrix"}),
+      bad_tradeoff("TradeoffIntegratorWithoutEstimate",
+                   "set Integrators = arkimex ars443",
+                   {"bad.prm, line 2", "\"arkimex ars443\" has no error estimate"}),
+      bad_tradeoff("TradeoffIntegratorAutomatic",
+                   "set Integrators = automatic",
+                   {"bad.prm, line 2", "\"automatic\" is no integrator"}),
+      bad_tradeoff("TradeoffDegreeOutOfRange",
+                   "set Degrees = 2, 9",
+                   {"bad.prm, line 2", "\"Tradeoff/Degrees\"", "\"9\"", "a whole number from 1 to 8"}),
+      bad_tradeoff("TradeoffWithoutDegrees", "set Degrees =", {"bad.prm, line 2", "\"Tradeoff/Degrees\"", "is empty"}),
+      bad_tradeoff("TradeoffWithoutEngines", "set Engines =", {"bad.prm, line 2", "\"Tradeoff/Engines\"", "is empty"}),
+      bad_tradeoff("TradeoffDegreeTwice", "set Degrees = 2, 2", {"bad.prm, line 2", "the value 2 occurs twice"}),
+      bad_tradeoff("TradeoffFormulationUnknown",
+                   "set Formulations = position, log strech",
+                   {"bad.prm, line 2", "\"log strech\"", "the nearest is \"log stretch\""}),
+      bad_tradeoff("TradeoffHalfCells", "set Cells = 2, 2.5", {"bad.prm, line 2", "\"2.5\"", "a whole number from 1"}),
+      bad_tradeoff("TradeoffToleranceTooLarge",
+                   "set Tolerances = logspace(0, -2, 3)",
+                   {"bad.prm, line 2", "\"1\"", "a number between 0 and 1"}),
+      bad_tradeoff("TradeoffWithoutTime", "set Time limit = 0", {"bad.prm, line 2", "a positive number"}),
+      bad_arguments("TradeoffInFullFolder", {"tradeoff", "good.prm", "--output", "full"}, {"\"full\" is not empty"}),
+      bad_arguments("TradeoffResumesWhatIsNone",
+                    {"tradeoff", "good.prm", "--output", "full", "--resume"},
+                    {"\"full\" has no tradeoff that could be resumed"}),
+      bad_arguments("TradeoffResumedAndOverwritten",
+                    {"tradeoff", "good.prm", "--resume", "--overwrite"},
+                    {"--resume and --overwrite contradict each other"}),
+      bad_arguments("RunIsNotResumed", {"run", "good.prm", "--resume"}, {"unknown option \"--resume\""}),
+    };
+  }
+
   std::vector<BadInput>
   files()
   {
@@ -454,6 +501,7 @@ INSTANTIATE_TEST_SUITE_P(Values, BadInputTest, testing::ValuesIn(values()), name
 INSTANTIATE_TEST_SUITE_P(Formulas, BadInputTest, testing::ValuesIn(formulas()), name_of);
 INSTANTIATE_TEST_SUITE_P(Waves, BadInputTest, testing::ValuesIn(waves()), name_of);
 INSTANTIATE_TEST_SUITE_P(Atlases, BadInputTest, testing::ValuesIn(atlases()), name_of);
+INSTANTIATE_TEST_SUITE_P(Tradeoffs, BadInputTest, testing::ValuesIn(tradeoffs()), name_of);
 INSTANTIATE_TEST_SUITE_P(Files, BadInputTest, testing::ValuesIn(files()), name_of);
 INSTANTIATE_TEST_SUITE_P(CommandLines, BadInputTest, testing::ValuesIn(command_lines()), name_of);
 

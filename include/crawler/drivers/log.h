@@ -20,9 +20,10 @@ namespace crawler
     void
     warn(const std::string &text);
 
-    /// Writes everything from now on, and all earlier lines, to @p file as well. Throws FileError.
+    /// Writes everything from now on, and all earlier lines, to @p file as well, behind what is in it if @p append.
+    /// Throws FileError.
     void
-    open(const std::filesystem::path &file);
+    open(const std::filesystem::path &file, bool append = false);
 
   private:
     void

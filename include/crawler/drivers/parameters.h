@@ -3,6 +3,7 @@
 
 #include <crawler/discretization/discretization_parameters.h>
 #include <crawler/drivers/atlas_parameters.h>
+#include <crawler/drivers/tradeoff_parameters.h>
 #include <crawler/observers/output_parameters.h>
 #include <crawler/scene/active_stress_library.h>
 #include <crawler/scene/scene.h>
@@ -26,6 +27,7 @@ namespace crawler
     TimeParameters time;
     OutputParameters output;
     AtlasParameters atlas;
+    TradeoffParameters tradeoff;
 
     void
     add_parameters(Declarations &declarations);

@@ -17,6 +17,7 @@ namespace crawler
     std::vector<std::string> overrides;
     std::string output;
     bool overwrite = false;
+    bool resume    = false;
     bool quiet     = false;
     std::string command_line;
   };

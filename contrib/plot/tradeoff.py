@@ -1,0 +1,187 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Draws a tradeoff of crawler: the error of every setting over its processor time, and the Pareto fronts.
+
+    python3 tradeoff.py OUTPUT_FOLDER
+
+Reads tradeoff.csv and summary.json of the folder and writes tradeoff.png and tradeoff.svg there; needs numpy and
+matplotlib (Debian: python3-matplotlib). Colours are those of Okabe and Ito, safe for colour-blind readers; integrators
+differ by their markers.
+"""
+import argparse
+import collections
+import csv
+import json
+import math
+import pathlib
+import sys
+
+# What computes: colour. Names are (formulation, mesh, engine) of the table.
+WAYS = {("position", "uniform", "fused"): ("position, fused engine", "#0072B2"),
+        ("position", "uniform", "batch"): ("position, batch of 8, per body", "#009E73"),
+        ("position", "uniform", "petsc"): ("position, PETSc", "#E69F00"),
+        ("position", "adaptive", "petsc"): ("position, adaptive mesh, PETSc", "#CC79A7"),
+        ("log stretch", "uniform", "petsc"): ("log stretch, PETSc", "#D55E00"),
+        ("log stretch", "adaptive", "petsc"): ("log stretch, adaptive mesh, PETSc", "#56B4E9")}
+# Rungs of the model that need no mesh: name, colour, marker.
+RUNGS = {"perturbation": ("perturbation, closed form", "#000000", "*"),
+         "kinematic": ("kinematic, quadrature", "#7F7F7F", "X")}
+MARKERS = ("o", "s", "^", "D", "v", "P", "<", ">")  # one for each integrator
+INK = "0.15"
+
+
+class Problem(Exception):
+    """What to tell the user."""
+
+
+def number(text):
+    """What is not known is not a number."""
+    return float(text) if text else math.nan
+
+
+class Tradeoff:
+    """The rows of tradeoff.csv, and the summary."""
+
+    def __init__(self, folder):
+        path = folder / "tradeoff.csv"
+        if not path.is_file():
+            raise Problem(f"{path} does not exist; the output folder of crawler tradeoff is expected")
+        with open(path, newline="", encoding="utf-8") as file:
+            self.rows = list(csv.DictReader(file))
+        summary = folder / "summary.json"
+        self.summary = json.loads(summary.read_text(encoding="utf-8")) if summary.is_file() else {}
+        self.finished = [row for row in self.rows if row["status"] == "finished"]
+        if not self.finished:
+            raise Problem(f"{path} has no setting that finished")
+        self.integrators = list(dict.fromkeys(row["integrator"] for row in self.finished if row["integrator"]))
+
+    def gaps(self):
+        """Settings that did not finish, counted by their reason."""
+        return collections.Counter(row["reason"].replace("_", " ") for row in self.rows if row["status"] != "finished")
+
+    def front(self, batch):
+        """Times and errors on the Pareto front of single runs or batches, the cheapest first."""
+        return sorted((number(row["seconds"]), number(row["shown error"])) for row in self.finished
+                      if row["pareto"] == "true" and (row["engine"] == "batch") == batch)
+
+
+def envelope(points):
+    """Of points (time, error) those that no other one beats, the cheapest first."""
+    best, result = math.inf, []
+    for time, error in sorted(points):
+        if error < best:
+            best = error
+            result.append((time, error))
+    return result
+
+
+def way_of(row):
+    """The name and the colour of what computed a row."""
+    if row["model"] in RUNGS:
+        return RUNGS[row["model"]][:2]
+    name = (row["formulation"], row["mesh"], row["engine"])
+    return WAYS.get(name, (", ".join(name), INK))
+
+
+def draw_ways(axes, tradeoff):
+    """All settings as dots, and for each integrator of each way the best of them with a marker; returns the handles for
+    the ways and for the integrators."""
+    from matplotlib.lines import Line2D
+
+    groups = collections.defaultdict(list)
+    for row in tradeoff.finished:
+        groups[way_of(row), row["integrator"]].append((number(row["seconds"]), number(row["shown error"])))
+    order = [name for name, *_ in [*WAYS.values(), *RUNGS.values()]]
+    rung_markers = {name: marker for name, _, marker in RUNGS.values()}
+    ways = sorted({way for way, _ in groups}, key=lambda way: order.index(way[0]) if way[0] in order else len(order))
+    for (way, integrator), points in groups.items():
+        axes.plot(*zip(*points), ".", color=way[1], markersize=1.8, alpha=0.35, zorder=2, rasterized=True)
+        marker = (MARKERS[tradeoff.integrators.index(integrator) % len(MARKERS)] if integrator
+                  else rung_markers.get(way[0], "h"))
+        axes.plot(*zip(*envelope(points)), marker=marker, color=way[1], linewidth=0.6, markersize=4.2 if integrator else 8,
+                  markeredgecolor="white", markeredgewidth=0.4, zorder=4)
+    handles = [Line2D([], [], color=colour, linewidth=3, label=name) if name not in rung_markers else
+               Line2D([], [], color=colour, linestyle="none", marker=rung_markers[name], markersize=7, label=name)
+               for name, colour in ways]
+    return handles, [Line2D([], [], color="0.35", linestyle="none", marker=MARKERS[i % len(MARKERS)], markersize=5, label=name)
+                     for i, name in enumerate(tradeoff.integrators)]
+
+
+def draw_fronts(axes, tradeoff):
+    """Steps: what a budget of time buys. Returns the handles of the legend."""
+    from matplotlib.lines import Line2D
+
+    handles = []
+    for batch, style, name in ((False, "-", "Pareto front of single runs"), (True, (0, (4, 2)), "... of batches")):
+        points = tradeoff.front(batch)
+        if points:
+            axes.plot(*zip(*points), drawstyle="steps-post", color="black", linewidth=1.3, linestyle=style, zorder=3)
+            handles.append(Line2D([], [], color="black", linewidth=1.3, linestyle=style, label=name))
+    return handles
+
+
+def draw_bar(axes, tradeoff):
+    """The errors that nobody can tell from 0."""
+    from matplotlib.patches import Patch
+
+    bar = tradeoff.summary.get("reference", {}).get("relative_bar")
+    if not bar:
+        return []
+    low = min(bar / 3, min(number(row["shown error"]) for row in tradeoff.finished) / 2)
+    axes.axhspan(low, bar, facecolor="0.85", edgecolor="0.6", hatch="////", linewidth=0, zorder=1)
+    axes.set_ylim(bottom=low)
+    return [Patch(facecolor="0.85", edgecolor="0.6", hatch="////", linewidth=0.5, label=f"bar of the reference, {bar:.0e}")]
+
+
+def draw(folder):
+    """Reads the files and writes the pictures."""
+    try:
+        import matplotlib
+    except ImportError:
+        raise Problem("matplotlib is missing; install it (Debian: apt install python3-matplotlib)") from None
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    tradeoff = Tradeoff(folder)
+    plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "xtick.labelsize": 9,
+                         "ytick.labelsize": 9, "axes.linewidth": 0.7, "hatch.linewidth": 0.5,
+                         "svg.hashsalt": "crawler"})
+    figure = plt.figure(figsize=(7.5, 5.8), layout="constrained")
+    axes, legend = figure.subplot_mosaic("p;l", height_ratios=(1, 0.21)).values()
+    axes.set(xscale="log", yscale="log", xlabel="processor time of a run [s]", ylabel="relative error of the displacement")
+    ways, integrators = draw_ways(axes, tradeoff)
+    handles = ways + draw_fronts(axes, tradeoff) + integrators + draw_bar(axes, tradeoff)
+    axes.yaxis.set_major_locator(LogLocator(numticks=20))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.grid(True, which="major", color="0.9", linewidth=0.6)
+    axes.set_axisbelow(True)
+    gaps = tradeoff.gaps()
+    note = f"{len(tradeoff.finished)} settings" + (
+        f"; gaps: {', '.join(f'{n} {reason}' for reason, n in gaps.most_common())}" if gaps else ", no gaps")
+    if tradeoff.summary.get("status") == "stopped":
+        note += " (stopped early)"
+    axes.set_title(note)
+    legend.axis("off")
+    legend.legend(handles=handles, loc="center", ncols=3, fontsize=8, frameon=False, borderpad=0, borderaxespad=0)
+    try:
+        figure.savefig(folder / "tradeoff.png", dpi=200)
+        figure.savefig(folder / "tradeoff.svg", metadata={"Date": None}, dpi=200)
+    except OSError as error:
+        raise Problem(f"cannot write the pictures: {error}") from None
+
+
+def main():
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path, help="output folder of crawler tradeoff")
+    options = parser.parse_args()
+    try:
+        draw(options.folder)
+    except (Problem, OSError, ValueError) as problem:
+        sys.exit(f"tradeoff.py: {problem}")
+    print(f"wrote {options.folder / 'tradeoff.png'} and {options.folder / 'tradeoff.svg'}")
+
+
+if __name__ == "__main__":
+    main()
