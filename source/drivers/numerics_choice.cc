@@ -117,6 +117,7 @@ namespace crawler
         , adaptive_steps_(parameters.time.step_control == "adaptive")
       {
         Numerics &n              = choice_.numerics;
+        n.linear                 = parameters.model == "linear";
         n.degree                 = parameters.discretization.degree.value_or(automatic_degree);
         n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
         n.largest_step           = scales_.time;
@@ -153,8 +154,9 @@ namespace crawler
         }
         bool enough = false;
         if (mesh != "adaptive")
-          enough = uniform(mesh == "uniform" || user_cells_ ? most_cells : most_uniform_cells);
-        if (mesh == "adaptive" || (mesh == "automatic" && !enough && !user_cells_))
+          enough =
+            uniform(mesh == "uniform" || user_cells_ || choice_.numerics.linear ? most_cells : most_uniform_cells);
+        if (mesh == "adaptive" || (mesh == "automatic" && !enough && !user_cells_ && !choice_.numerics.linear))
           adaptive();
         if (collapses() && choice_.numerics.formulation != FormulationChoice::position && !user_cells_ &&
             !parameters_.discretization.degree)
@@ -218,11 +220,14 @@ namespace crawler
         return pilot_.cycles ? steps * (1. + 1. * pilot_.cycles->extrapolated / pilot_.cycles->computed) : steps;
       }
 
+      /// The size of the displacement, of which Accuracy is a part. The linear model knows it, 0, without any effort;
+      /// there the deformation u counts.
       void
       measure_size()
       {
         const bool finished = pilot_.time.status == "finished";
-        size_ = std::max(finished ? std::abs(pilot_.displacement) : 0., displacement_floor * pilot_.largest_u);
+        size_               = std::max(finished ? std::abs(pilot_.displacement) : 0.,
+                         (choice_.numerics.linear ? 1. : displacement_floor) * pilot_.largest_u);
       }
 
       /// k T/(g L^2) for the largest friction g of the last pilot, which thin layers are a matter of.
@@ -239,7 +244,7 @@ namespace crawler
       uniform(const unsigned int most)
       {
         Numerics &n = choice_.numerics;
-        if (adaptive_steps_)
+        if (adaptive_steps_ || n.linear)
           n.integrator = "radau 5";
         // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
         const unsigned int pilot_degree = std::max(choice_.numerics.degree, 2u);

@@ -7,6 +7,8 @@ namespace crawler::test
   void
   add_run_benchmarks();
   void
+  add_rung_benchmarks();
+  void
   add_sweep_benchmarks();
   void
   add_kernel_benchmarks();
