@@ -107,6 +107,12 @@ namespace crawler
         if (axes.first.entry == axes.second.entry)
           throw InputError(fmt::format("\"{}\" is on both axes; two different entries are expected", axes.first.entry),
                            second_name);
+        if (const std::string &model = scratch.parameters().model; model != "nonlinear")
+          throw InputError(
+            fmt::format("Model is {}, but an atlas compares formulations of the nonlinear model; Model = "
+                        "nonlinear is expected",
+                        model),
+            "Model");
         axes.first_unit  = unit_of(axes.first.entry, scratch.declarations());
         axes.second_unit = unit_of(axes.second.entry, scratch.declarations());
         return axes;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/drivers/batch.h>
 #include <crawler/drivers/compute.h>
+#include <crawler/drivers/model_choice.h>
+#include <crawler/drivers/rung.h>
 #include <crawler/drivers/self_check.h>
 
 #include <chrono>
@@ -52,7 +54,7 @@ namespace crawler
       task.seconds += clock.seconds();
     }
 
-    /// Scene and numerics; without them the task is stopped.
+    /// Scene and numerics, without which the task is stopped; or the result of a rung that needs none.
     void
     prepare(Task &task, const double time_limit, const std::function<bool()> &interrupted)
     {
@@ -61,14 +63,21 @@ namespace crawler
               {
                 const Clock clock;
                 task.scene.emplace(task.parameters.create_scene());
-                const auto choice = choose_numerics(MPI_COMM_SELF,
-                                                    task.parameters,
-                                                    *task.scene,
-                                                    [&]()
-                                                    {
-                                                      task.is_out_of_time = clock.seconds() > time_limit;
-                                                      return !task.is_out_of_time && !interrupted();
-                                                    });
+                const auto keep_going = [&]()
+                {
+                  task.is_out_of_time = clock.seconds() > time_limit;
+                  return !task.is_out_of_time && !interrupted();
+                };
+                const ModelChoice model = choose_model(task.parameters, *task.scene);
+                task.parameters.model   = model.model;
+                if (!model.needs_mesh())
+                {
+                  task.computed.result =
+                    Rung(*task.scene, model.model)
+                      .compute(task.parameters.accuracy, task.parameters.output.ledger, keep_going);
+                  return;
+                }
+                const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
                 if (choice)
                   task.computed.choice = *choice;
                 else

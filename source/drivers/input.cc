@@ -27,10 +27,21 @@ namespace crawler
       const auto &wave              = p.active_stress.optimal_wave;
       const std::string generator   = "Generator = " + p.active_stress.generator,
                         choice      = "Choose wave by = " + wave.choose_wave_by;
+      const auto &given_by          = p.active_stress.prescribed_strain.given_by;
+      const std::string source      = "Given by = " + given_by;
       const bool by_energy          = wave.choose_wave_by == "energy";
       const std::vector<Rule> rules = {
         {"Active stress/Optimal wave/", p.active_stress.generator == "optimal wave", generator},
         {"Active stress/Expression/", p.active_stress.generator == "expression", generator},
+        {"Active stress/Prescribed strain/", p.active_stress.generator == "prescribed strain", generator},
+        {"Active stress/Prescribed strain/Strain", given_by == "expression", source},
+        {"Active stress/Prescribed strain/Constants", given_by == "expression", source},
+        {"Active stress/Prescribed strain/File", given_by == "table", source},
+        {"Active stress/Prescribed strain/Mean strain", given_by == "wave", source},
+        {"Active stress/Prescribed strain/Amplitude", given_by == "wave", source},
+        {"Active stress/Prescribed strain/Wave", given_by == "wave", source},
+        {"Active stress/Prescribed strain/Phase", given_by == "wave", source},
+        {"Discretization/", p.model != "perturbation" && p.model != "kinematic", "Model = " + p.model},
         {"Active stress/Optimal wave/Wave speed", !by_energy, choice},
         {"Active stress/Optimal wave/Energy", by_energy, choice},
         {"Active stress/Optimal wave/Root", by_energy, choice},

@@ -26,6 +26,7 @@ namespace crawler
                                      unit_name),
                          std::string("Time/") + name);
     }
+
     /// The linear model has one formulation, one kind of mesh and one family of integrators.
     void
     require_linear(const Parameters &p)
@@ -39,10 +40,6 @@ namespace crawler
               "Model is linear and {} is {}, but {} is expected", entry.substr(entry.find('/') + 1), found, expected),
             entry);
       };
-      require(p.body.friction_exponent() == 0.,
-              "Body/Anchoring exponent",
-              fmt::format("{:g}", p.body.anchoring_exponent),
-              "1 (a = 0)");
       require(
         p.discretization.mesh != "adaptive", "Discretization/Mesh", p.discretization.mesh, "automatic or uniform");
       require(p.discretization.formulation != "log stretch",
@@ -60,11 +57,13 @@ namespace crawler
   void
   Parameters::add_parameters(Declarations &declarations)
   {
-    declarations.choice("Model",
-                        model,
-                        {"linear", "nonlinear"},
-                        "The model. Nonlinear: the full equation. Linear: the same without Newton's method, for a = 0 "
-                        "(Anchoring exponent 1), where it is linear.");
+    declarations.choice(
+      "Model",
+      model,
+      {"auto", "perturbation", "kinematic", "linear", "nonlinear"},
+      "The rung of the model's ladder (doc/theory.md): the series for the optimal wave in closed form, "
+      "a body whose strain is known, the equation for a = 0, or the full nonlinear equation; auto is "
+      "the first of these whose estimated error is at most Accuracy.");
     declarations.number(
       "Accuracy",
       accuracy,

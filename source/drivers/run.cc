@@ -8,6 +8,7 @@
 #include <crawler/drivers/output_folder.h>
 #include <crawler/drivers/progress.h>
 #include <crawler/drivers/run.h>
+#include <crawler/drivers/run_rung.h>
 #include <crawler/drivers/self_check.h>
 #include <crawler/drivers/simulation.h>
 #include <crawler/drivers/summary.h>
@@ -38,25 +39,11 @@ namespace crawler
 
     /// The lines that say what will be computed.
     void
-    report_plan(Log &log, const Input &input, const NumericsChoice &choice)
+    report_plan(Log &log, const Input &input, const ModelChoice &model, const NumericsChoice &choice)
     {
-      const Parameters &p = input.parameters;
-      log.line(fmt::format("Model {}: body L = {:g}, k = {:g}, gamma = {:g}, p = {:g} (a = {:g}), end time {:g}",
-                           p.model,
-                           p.body.length,
-                           p.body.elastic_modulus,
-                           p.body.friction_coefficient,
-                           p.body.anchoring_exponent,
-                           p.body.friction_exponent(),
-                           p.time.end_time));
-      std::ostringstream wave;
-      input.scene.active_stress->report(wave);
-      std::istringstream lines(wave.str());
-      log.line("Active stress: " + p.active_stress.generator);
-      for (std::string line; std::getline(lines, line);)
-        log.line("  " + line);
-      for (const std::string &note : input.notes)
-        log.line(note);
+      report_scene(log, input);
+      log.line(model.explanation);
+      const Parameters &p          = input.parameters;
       const Numerics &n            = choice.numerics;
       const std::string integrator = p.time.integrator != "automatic" ? p.time.integrator
                                      : n.integrator.empty()           ? "bdf"
@@ -82,31 +69,54 @@ namespace crawler
         log.warn(fmt::format("warning: nothing used the PETSc option -{}", names[i]));
       PetscOptionsLeftRestore(nullptr, &n, &names, &values);
     }
-
-    ExitCode
-    exit_code(const TimeOutcome &outcome)
-    {
-      if (outcome.status == "finished")
-        return ExitCode::finished;
-      if (outcome.status == "inverted")
-        return ExitCode::inverted;
-      if (outcome.status == "stopped")
-        return ExitCode::stopped;
-      if (outcome.reason == "ledger_residual" || outcome.reason == "net_friction")
-        return ExitCode::self_check_failed;
-      return ExitCode::numerical_failure;
-    }
   } // namespace
 
+  void
+  report_scene(Log &log, const Input &input)
+  {
+    const Parameters &p = input.parameters;
+    log.line(fmt::format("Body L = {:g}, k = {:g}, gamma = {:g}, p = {:g} (a = {:g}), end time {:g}",
+                         p.body.length,
+                         p.body.elastic_modulus,
+                         p.body.friction_coefficient,
+                         p.body.anchoring_exponent,
+                         p.body.friction_exponent(),
+                         p.time.end_time));
+    std::ostringstream wave;
+    input.scene.active_stress->report(wave);
+    std::istringstream lines(wave.str());
+    log.line("Active stress: " + p.active_stress.generator);
+    for (std::string line; std::getline(lines, line);)
+      log.line("  " + line);
+    for (const std::string &note : input.notes)
+      log.line(note);
+  }
+
+  ExitCode
+  exit_code(const TimeOutcome &outcome)
+  {
+    if (outcome.status == "finished")
+      return ExitCode::finished;
+    if (outcome.status == "inverted")
+      return ExitCode::inverted;
+    if (outcome.status == "stopped")
+      return ExitCode::stopped;
+    if (outcome.reason == "ledger_residual" || outcome.reason == "net_friction")
+      return ExitCode::self_check_failed;
+    return ExitCode::numerical_failure;
+  }
 
   ExitCode
   check(MPI_Comm communicator, const CommandOptions &options)
   {
     Log log(rank_of(communicator) == 0, /*quiet=*/false);
-    const Input input           = read_input(communicator, options.file, options.overrides);
+    const Input input       = read_input(communicator, options.file, options.overrides);
+    const ModelChoice model = choose_model(input);
+    if (!model.needs_mesh())
+      return check_rung(input, model, log);
     const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, input.parameters, input.scene);
     const Simulation simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);
-    report_plan(log, input, choice);
+    report_plan(log, input, model, choice);
     log.line(
       fmt::format("Output: {} snapshots{}{}{}, to \"{}\" unless --output is given.",
                   input.parameters.output.n_snapshots,
@@ -125,7 +135,7 @@ namespace crawler
     const auto start = std::chrono::steady_clock::now();
     const bool first = rank_of(communicator) == 0;
     Log log(first, options.quiet);
-    const Input input              = read_input(communicator, options.file, options.overrides);
+    Input input                    = read_input(communicator, options.file, options.overrides);
     const Parameters &parameters   = input.parameters;
     const OutputParameters &output = parameters.output;
     const auto folder              = output_folder(options.output, options.file);
@@ -136,6 +146,11 @@ namespace crawler
                     return "";
                   });
 
+    const ModelChoice model = choose_model(input);
+    if (!model.needs_mesh())
+      return run_rung(communicator, options, input, model, stop_signal, start, log);
+    input.parameters.model = model.model;
+    // The linear rung (a = 0) is computed by what follows, as the nonlinear one.
     const auto chosen = choose_numerics(MPI_COMM_SELF,
                                         parameters,
                                         input.scene,
@@ -165,7 +180,7 @@ namespace crawler
                     log.open(folder / "log.txt");
                     return "";
                   });
-    report_plan(log, input, choice);
+    report_plan(log, input, model, choice);
 
     std::vector<std::unique_ptr<Observer>> observers;
     const bool writes = shared || first;
@@ -204,7 +219,7 @@ namespace crawler
       {
         write_file(
           folder / "summary.json",
-          summary_json(result, parameters, simulation.discretization(), size_of(communicator), options.command_line));
+          summary_json(result, parameters, &simulation.discretization(), size_of(communicator), options.command_line));
         return "";
       });
     for (const std::string &line : summary_lines(result, parameters))

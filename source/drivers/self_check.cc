@@ -27,7 +27,7 @@ namespace crawler
                                         result.ledger->residual(),
                                         tolerance);
     }
-    else if (!(result.net_friction <= friction_tolerance))
+    else if (result.net_friction > friction_tolerance) // it is not known for a series
     {
       result.time.reason = "net_friction";
       result.time.message =

@@ -24,7 +24,7 @@ namespace crawler
   std::string
   summary_json(const SimulationResult &result,
                const Parameters &parameters,
-               const Discretization &discretization,
+               const Discretization *discretization,
                const unsigned int n_ranks,
                const std::string &command_line)
   {
@@ -33,19 +33,21 @@ namespace crawler
       return result.ledger ? Json(value(*result.ledger)) : Json(nullptr);
     };
     Json json;
-    json["status"]             = result.time.status;
-    json["reason"]             = result.time.status == "finished" ? Json(nullptr) : Json(result.time.reason);
-    json["message"]            = result.time.status == "finished" ? Json(nullptr) : Json(result.time.message);
-    json["displacement"]       = result.displacement;
-    json["displacement_error"] = {{"total", nullptr}, {"space", nullptr}, {"time", nullptr}, {"model", nullptr}};
-    json["end_time"]           = result.time.time;
-    json["cycles"]             = result.cycles ? Json{{"period", result.cycles->period},
+    json["status"]                = result.time.status;
+    json["reason"]                = result.time.status == "finished" ? Json(nullptr) : Json(result.time.reason);
+    json["message"]               = result.time.status == "finished" ? Json(nullptr) : Json(result.time.message);
+    json["displacement"]          = result.displacement;
+    const DisplacementError error = result.error.value_or(DisplacementError());
+    json["displacement_error"]    = {
+         {"total", error.total}, {"space", error.space}, {"time", error.time}, {"model", error.model}};
+    json["end_time"]     = result.time.time;
+    json["cycles"]       = result.cycles ? Json{{"period", result.cycles->period},
                                           {"computed", result.cycles->computed},
                                           {"extrapolated", result.cycles->extrapolated},
                                           {"error", result.cycles->bound}}
-                                               : Json(nullptr);
-    json["model"]              = parameters.model;
-    json["stress_power"]       = ledger(
+                                         : Json(nullptr);
+    json["model"]        = parameters.model;
+    json["stress_power"] = ledger(
       [](const Ledger &l)
       {
         return l.stress_power;
@@ -80,16 +82,16 @@ namespace crawler
     json["max_stretch"]        = extreme(result.max_stretch);
     json["log_stretch_since"]  = result.log_stretch_since ? Json(*result.log_stretch_since) : Json(nullptr);
     json["mesh_changes"]       = result.mesh_changes;
-    json["most_cells"]         = std::max(result.most_cells, discretization.n_cells());
+    json["most_cells"]         = std::max(result.most_cells, discretization ? discretization->n_cells() : 0);
     json["inversion"]          = result.inversion ? extreme(*result.inversion) : Json(nullptr);
-    json["cells"]              = discretization.n_cells();
-    json["degree"]             = discretization.element().degree;
-    json["degrees_of_freedom"] = discretization.n_unknowns();
+    json["cells"]              = discretization ? discretization->n_cells() : 0;
+    json["degree"]             = discretization ? Json(discretization->element().degree) : Json(nullptr);
+    json["degrees_of_freedom"] = discretization ? discretization->n_unknowns() : 0;
     json["steps"]              = result.time.steps;
     json["rejected_steps"]     = result.time.rejected_steps;
     json["newton_iterations"]  = result.time.newton_iterations;
     json["ranks"]              = n_ranks;
-    json["cells_shared"]       = discretization.n_ranks() > 1;
+    json["cells_shared"]       = discretization && discretization->n_ranks() > 1;
     json["seconds"]            = {
                  {"setup", result.setup_seconds}, {"solve", result.solve_seconds}, {"output", result.output_seconds}};
     json["versions"]     = versions();
@@ -102,17 +104,25 @@ namespace crawler
   {
     std::vector<std::string> lines;
     const auto &time = result.time;
-    lines.push_back(fmt::format("{} at t = {:g} after {} steps ({} rejected), {:.3g} s",
+    const std::string steps =
+      time.steps > 0 ? fmt::format(" after {} steps ({} rejected)", time.steps, time.rejected_steps) : "";
+    lines.push_back(fmt::format("{} at t = {:g}{}, {:.3g} s",
                                 time.status == "finished"   ? "Finished"
                                 : time.status == "inverted" ? "Inverted"
                                 : time.status == "stopped"  ? "Stopped"
                                                             : "FAILED (" + time.reason + ")",
                                 time.time,
-                                time.steps,
-                                time.rejected_steps,
+                                steps,
                                 result.solve_seconds + result.output_seconds));
-    lines.push_back(std::isfinite(result.displacement) ? fmt::format("  displacement      {:.10g}", result.displacement)
-                                                       : "  displacement      unknown");
+    std::string displacement =
+      std::isfinite(result.displacement) ? fmt::format("{:.10g}", result.displacement) : "unknown";
+    if (result.error && std::isfinite(result.error->total))
+      displacement += fmt::format(" +- {:.2g} (space {:.2g}, time {:.2g}, model {:.2g})",
+                                  result.error->total,
+                                  result.error->space,
+                                  result.error->time,
+                                  result.error->model);
+    lines.push_back("  displacement      " + displacement);
     if (result.cycles)
       lines.push_back(
         fmt::format("  cycles            {} of period {:.6g} computed, {} extrapolated with an error of at "
@@ -125,9 +135,10 @@ namespace crawler
     {
       lines.push_back(fmt::format("  stress power      {:.10g}", result.ledger->stress_power));
       lines.push_back(fmt::format("  dissipation       {:.10g}", result.ledger->dissipation));
-      lines.push_back(fmt::format("  ledger residual   {:.2e} (relative), net friction {:.2e} (relative)",
-                                  result.ledger->residual(),
-                                  result.net_friction));
+      lines.push_back(fmt::format(
+        "  ledger residual   {:.2e} (relative), net friction {}",
+        result.ledger->residual(),
+        std::isfinite(result.net_friction) ? fmt::format("{:.2e} (relative)", result.net_friction) : "unknown"));
     }
     lines.push_back(
       fmt::format("  stretch           {:.4g} (s = {:.4g}, t = {:.4g}) to {:.4g} (s = {:.4g}, t = {:.4g})",

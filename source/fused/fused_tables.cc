@@ -52,6 +52,7 @@ namespace crawler
              tableau.c.data(),
              tableau.inverse.data(),
              tableau.error_weights.data(),
+             tableau.newton_fraction,
              tableau.real_eigenvalue,
              eigenvalues_.data(),
              vectors_.data(),

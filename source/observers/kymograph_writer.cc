@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -12,9 +13,16 @@ namespace crawler
 {
   namespace
   {
-    constexpr unsigned int n_points = 201;
+    constexpr unsigned int n_points = KymographWriter::n_points;
     constexpr const char *names[]   = {"stretch", "velocity", "active_stress", "friction_force", "displacement"};
     constexpr unsigned int n_fields = std::size(names);
+
+    /// In the order of the names.
+    std::array<const std::vector<double> *, n_fields>
+    written(const Fields &fields)
+    {
+      return {{&fields.stretch, &fields.velocity, &fields.active_stress, &fields.friction_force, &fields.displacement}};
+    }
 
     /// Those of the equidistant points that lie in this rank's cells.
     std::vector<FieldSampler::Point>
@@ -62,14 +70,21 @@ namespace crawler
     for (unsigned int r = 1; r < n_ranks; ++r)
       offsets[r] = offsets[r - 1] + counts[r - 1];
     times_.push_back(snapshot.step.time);
-    for (const auto *field :
-         {&fields.stretch, &fields.velocity, &fields.active_stress, &fields.friction_force, &fields.displacement})
+    for (const auto *field : written(fields))
     {
       std::vector<double> all(d.rank() == 0 ? n_points : 0); // so rows_ stays empty on the others
       MPI_Gatherv(
         field->data(), own, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, 0, d.communicator());
       rows_.insert(rows_.end(), all.begin(), all.end());
     }
+  }
+
+  void
+  KymographWriter::add(const double time, const Fields &fields)
+  {
+    times_.push_back(time);
+    for (const auto *field : written(fields))
+      rows_.insert(rows_.end(), field->begin(), field->end());
   }
 
   void

@@ -4,8 +4,20 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace crawler
 {
+  namespace
+  {
+    /// Nothing for what is not known.
+    std::string
+    text(const fmt::format_string<const double &> format, const double value)
+    {
+      return std::isnan(value) ? "" : fmt::format(format, value);
+    }
+  } // namespace
+
   StatisticsWriter::StatisticsWriter(const double length,
                                      const bool is_first_rank,
                                      const std::filesystem::path &folder,
@@ -34,30 +46,41 @@ namespace crawler
   {
     if (!writes_)
       return;
-    out_ << fmt::format("{},{:.16g},{:.6g},{:.16g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}",
-                        snapshot.step.number,
-                        snapshot.step.time,
-                        snapshot.step.size,
-                        snapshot.integrals.displacement / length_,
-                        snapshot.stretch.min.value,
-                        snapshot.stretch.min.s,
-                        snapshot.stretch.max.value,
-                        snapshot.stretch.max.s,
-                        snapshot.step.rejected,
-                        snapshot.step.newton_iterations);
-    if (with_ledger_)
-      out_ << fmt::format(",{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.3g},{:.3g}",
-                          snapshot.integrals.velocity / length_,
-                          snapshot.ledger.stress_power,
-                          snapshot.ledger.dissipation,
-                          snapshot.ledger.elastic_energy,
-                          snapshot.ledger.paper_energy(),
-                          snapshot.ledger.positive_power,
-                          snapshot.ledger.residual(),
-                          snapshot.integrals.net_friction);
-    out_ << '\n';
+    write({snapshot.step,
+           snapshot.integrals.displacement / length_,
+           snapshot.stretch,
+           snapshot.integrals.velocity / length_,
+           snapshot.ledger,
+           snapshot.integrals.net_friction});
     if (snapshot.is_frame)
       out_.flush();
+  }
+
+  void
+  StatisticsWriter::write(const Row &row)
+  {
+    out_ << fmt::format("{},{:.16g},{:.6g},{:.16g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}",
+                        row.step.number,
+                        row.step.time,
+                        row.step.size,
+                        row.displacement,
+                        row.stretch.min.value,
+                        row.stretch.min.s,
+                        row.stretch.max.value,
+                        row.stretch.max.s,
+                        row.step.rejected,
+                        row.step.newton_iterations);
+    if (with_ledger_)
+      out_ << fmt::format(",{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{},{:.3g},{}",
+                          row.velocity,
+                          row.ledger.stress_power,
+                          row.ledger.dissipation,
+                          row.ledger.elastic_energy,
+                          row.ledger.paper_energy(),
+                          text("{:.12g}", row.ledger.positive_power),
+                          row.ledger.residual(),
+                          text("{:.3g}", row.net_friction));
+    out_ << '\n';
     if (!out_)
       throw FileError("cannot write \"" + path_.string() + "\" (is the disk full?)");
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/observers/vtu_writer.h>
@@ -75,19 +76,37 @@ namespace crawler
     const Discretization &d = snapshot.assembler.discretization();
     if (!sampler_ || mesh_number_ != snapshot.mesh_number)
       sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, line_points(d));
-    mesh_number_         = snapshot.mesh_number;
-    const Fields &fields = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
-    const unsigned int n = d.element().n, n_cells = d.n_local_cells();
+    mesh_number_        = snapshot.mesh_number;
     const double length = snapshot.units.length;
+    std::vector<Cell> cells(d.n_local_cells());
+    for (unsigned int c = 0; c < cells.size(); ++c)
+    {
+      const double left = d.cell_left()[c] * length;
+      cells[c]          = {left, left + d.cell_size()[c] * length};
+    }
+    write(snapshot.step.time,
+          snapshot.step.number,
+          cells,
+          d.element().n,
+          sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v),
+          d.communicator());
+  }
 
+  void
+  VtuWriter::write(const double time,
+                   const unsigned int number,
+                   const std::vector<Cell> &cells,
+                   const unsigned int n,
+                   const Fields &fields,
+                   MPI_Comm communicator)
+  {
     PatchOutput output;
-    output.patches.resize(n_cells);
-    for (unsigned int c = 0; c < n_cells; ++c)
+    output.patches.resize(cells.size());
+    for (unsigned int c = 0; c < cells.size(); ++c)
     {
       auto &patch          = output.patches[c];
-      const double left    = d.cell_left()[c] * length;
-      patch.vertices[0]    = dealii::Point<1>(left);
-      patch.vertices[1]    = dealii::Point<1>(left + d.cell_size()[c] * length);
+      patch.vertices[0]    = dealii::Point<1>(cells[c].left);
+      patch.vertices[1]    = dealii::Point<1>(cells[c].right);
       patch.patch_index    = c;
       patch.n_subdivisions = n - 1;
       patch.reference_cell = dealii::ReferenceCells::Line;
@@ -107,22 +126,22 @@ namespace crawler
       }
     }
     dealii::DataOutBase::VtkFlags flags;
-    flags.time              = snapshot.step.time;
-    flags.cycle             = snapshot.step.number;
+    flags.time              = time;
+    flags.cycle             = number;
     flags.compression_level = dealii::DataOutBase::VtkFlags::best_speed; // the arrays are small
     output.set_flags(flags);
 
     const std::string name = fmt::format("solution/{:06}.vtu", n_files_++);
-    if (d.n_ranks() == 1)
+    if (size_of(communicator) == 1)
     {
       std::ostringstream text;
       output.write_vtu(text);
       write_file(folder_ / name, text.str());
     }
     else
-      output.write_vtu_in_parallel((folder_ / name).string(), d.communicator());
-    if (d.rank() == 0)
-      add_to_record(snapshot.step.time, name);
+      output.write_vtu_in_parallel((folder_ / name).string(), communicator);
+    if (rank_of(communicator) == 0)
+      add_to_record(time, name);
   }
 
   void

@@ -9,6 +9,18 @@ namespace crawler
     return std::nullopt;
   }
 
+  std::unique_ptr<ActiveStressAtPoints>
+  ActiveStress::rate_at(const std::vector<double> &) const
+  {
+    return nullptr;
+  }
+
+  const StrainHistory *
+  ActiveStress::prescribed_strain() const
+  {
+    return nullptr;
+  }
+
   void
   ActiveStress::report(std::ostream &) const
   {

@@ -38,6 +38,12 @@ namespace crawler
          {
            return std::make_unique<Expression>(parameters.expression, body.length, end_time);
          }},
+        {"prescribed strain",
+         PrescribedStrain::description,
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
+           return std::make_unique<PrescribedStrain>(parameters.prescribed_strain, body, end_time);
+         }},
       };
       return list;
     }
@@ -57,6 +63,7 @@ namespace crawler
     declarations.choice("Generator", generator, names, documentation + ".");
     optimal_wave.add_parameters(declarations);
     expression.add_parameters(declarations);
+    prescribed_strain.add_parameters(declarations);
     declarations.leave();
   }
 

@@ -7,30 +7,90 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace crawler
 {
   namespace
   {
+    /// Values of a function of s and t, in other units.
     class ScaledAtPoints : public ActiveStressAtPoints
     {
     public:
-      ScaledAtPoints(std::unique_ptr<ActiveStressAtPoints> stress, const Units &units)
+      /// @p unit is that of the values.
+      ScaledAtPoints(std::unique_ptr<ActiveStressAtPoints> stress, const double time_unit, const double unit)
         : stress_(std::move(stress))
-        , units_(units)
+        , time_unit_(time_unit)
+        , unit_(unit)
       {
       }
 
       void
       values(const double t, const std::span<double> m) override
       {
-        stress_->values(t * units_.time, m);
+        stress_->values(t * time_unit_, m);
         for (double &value : m)
-          value /= units_.force;
+          value /= unit_;
       }
 
     private:
       const std::unique_ptr<ActiveStressAtPoints> stress_;
+      const double time_unit_, unit_;
+    };
+
+    class ScaledStrainAtPoints : public StrainAtPoints
+    {
+    public:
+      ScaledStrainAtPoints(std::unique_ptr<StrainAtPoints> strain, const double time_unit)
+        : strain_(std::move(strain))
+        , time_unit_(time_unit)
+      {
+      }
+
+      void
+      strain(const double t, const std::span<double> e) override
+      {
+        strain_->strain(t * time_unit_, e);
+      }
+      void
+      rate(const double t, const std::span<double> e_t) override
+      {
+        strain_->rate(t * time_unit_, e_t);
+        for (double &value : e_t)
+          value *= time_unit_;
+      }
+
+    private:
+      const std::unique_ptr<StrainAtPoints> strain_;
+      const double time_unit_;
+    };
+
+    std::vector<double>
+    times(std::vector<double> values, const double factor)
+    {
+      for (double &value : values)
+        value *= factor;
+      return values;
+    }
+
+    /// A strain history in other units.
+    class ScaledStrainHistory : public StrainHistory
+    {
+    public:
+      ScaledStrainHistory(const StrainHistory &history, const Units &units)
+        : history_(history)
+        , units_(units)
+      {
+      }
+
+      std::unique_ptr<StrainAtPoints>
+      at(const std::vector<double> &points) const override
+      {
+        return std::make_unique<ScaledStrainAtPoints>(history_.at(times(points, units_.length)), units_.time);
+      }
+
+    private:
+      const StrainHistory &history_;
       const Units units_;
     };
 
@@ -42,15 +102,28 @@ namespace crawler
         : stress_(stress)
         , units_(units)
       {
+        if (stress.prescribed_strain() != nullptr)
+          strain_.emplace(*stress.prescribed_strain(), units);
       }
 
       std::unique_ptr<ActiveStressAtPoints>
       at(const std::vector<double> &points) const override
       {
-        std::vector<double> physical(points);
-        for (double &s : physical)
-          s *= units_.length;
-        return std::make_unique<ScaledAtPoints>(stress_.at(physical), units_);
+        return std::make_unique<ScaledAtPoints>(stress_.at(times(points, units_.length)), units_.time, units_.force);
+      }
+
+      std::unique_ptr<ActiveStressAtPoints>
+      rate_at(const std::vector<double> &points) const override
+      {
+        auto rate = stress_.rate_at(times(points, units_.length));
+        return rate ? std::make_unique<ScaledAtPoints>(std::move(rate), units_.time, units_.force / units_.time)
+                    : nullptr;
+      }
+
+      const StrainHistory *
+      prescribed_strain() const override
+      {
+        return strain_ ? &*strain_ : nullptr;
       }
 
       std::optional<double>
@@ -69,6 +142,7 @@ namespace crawler
     private:
       const ActiveStress &stress_;
       const Units units_;
+      std::optional<ScaledStrainHistory> strain_;
     };
   } // namespace
 

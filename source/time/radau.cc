@@ -14,8 +14,8 @@ namespace crawler
 {
   namespace
   {
-    /// Error of Newton's method that is left, relative to the admissible error of a step.
-    constexpr double newton_fraction = 0.01;
+    /// The same where the Jacobian jumps with the state: there nothing is gained by more.
+    constexpr double rough_fraction = 0.01;
     /// Slower convergence than this factor per iteration asks for new factors.
     constexpr double slow = 0.1;
     /// So many steps are done with the Krylov method after the simplified Newton method failed.
@@ -396,7 +396,8 @@ namespace crawler
         radau.known_rate = std::pow(radau.known_rate, 0.8);
       radau.last_correction = d;
       const double left     = radau.known_rate / (1. - std::min(radau.known_rate, 0.9)) * d;
-      const bool small      = radau.systems->smooth ? left <= newton_fraction : d <= newton_fraction && it >= 2;
+      const double enough   = radau.tableau->newton_fraction;
+      const bool small      = radau.systems->smooth ? left <= enough : d <= rough_fraction && it >= 2;
       if (small || d <= 1e-15 * scaled_norm(ts, state, ts->vatol, ts->atol))
         *reason = SNES_CONVERGED_SNORM_RELATIVE;
       else if (it >= 3 && radau.rate >= 1.)

@@ -92,6 +92,7 @@ namespace crawler
 
   RadauTableau::RadauTableau(const unsigned int n_stages)
     : n(n_stages)
+    , newton_fraction(n_stages == 5 ? 1e-4 : 1e-3)
     , c(radau_points(n_stages))
     , inverse(static_cast<std::size_t>(n_stages) * n_stages)
     , error_weights(n_stages, 0.)

@@ -20,6 +20,8 @@ namespace crawler
   {
     /// Remaining error of Newton's method, relative to the admissible error of a step.
     constexpr double newton_fraction = 0.01;
+    /// An estimated error can be small by chance; the next step of a radau method must not be too long for that.
+    constexpr double radau_largest_growth = 3.;
     /// The same if it is only predicted, with the constant of an earlier step.
     constexpr double predicted_fraction = 0.1 * newton_fraction;
 
@@ -204,6 +206,8 @@ namespace crawler
     TSAdapt adapt = nullptr;
     petsc(TSGetAdapt(stepper, &adapt));
     petsc(TSAdaptSetType(adapt, parameters.step_control == "fixed" ? TSADAPTNONE : TSADAPTBASIC));
+    if (method.petsc_type == radau_type)
+      petsc(TSAdaptSetClip(adapt, /*low=*/0.1, radau_largest_growth));
     petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // before_step() makes steps end where they must
     petsc(TSSetMaxSNESFailures(stepper, -1));
     petsc(TSSetMaxStepRejections(stepper, 30));

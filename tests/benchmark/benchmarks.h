@@ -7,9 +7,9 @@ namespace crawler::test
   void
   add_run_benchmarks();
   void
-  add_rung_benchmarks();
-  void
   add_sweep_benchmarks();
   void
   add_kernel_benchmarks();
+  void
+  add_rung_benchmarks();
 } // namespace crawler::test

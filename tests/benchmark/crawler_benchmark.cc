@@ -21,6 +21,9 @@
 //                        each half of the chi: the cheapest with which the largest true error of all its scenes is
 //                        below that. Runs that the batch gives back are computed by a Simulation; the time includes
 //                        them.
+//   rung/...             The rungs without a mesh, from a scene to its result with the error (small optimal wave to
+//   1e-2,
+//                        prescribed strain to 1e-6), and the estimate of the models' errors alone.
 //   memory/sweep/1000... Peak memory of larger sweeps, in chunks.
 //   kernel/...           Residual, Jacobian, elimination and velocity on a mesh of n cells.
 //   kernel/expression/... The active stress as a formula: "bulk" evaluates it at the Gauss points of n cells of degree
@@ -38,9 +41,9 @@ main(int argc, char **argv)
   int one = 1;
   const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
   crawler::test::add_run_benchmarks();
-  crawler::test::add_rung_benchmarks();
   crawler::test::add_sweep_benchmarks();
   crawler::test::add_kernel_benchmarks();
+  crawler::test::add_rung_benchmarks();
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

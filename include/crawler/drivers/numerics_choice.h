@@ -18,6 +18,10 @@ namespace crawler
     std::string explanation;
     /// The error of the displacement that Accuracy stands for [length]; not a number if the user chose the numerics.
     double promised_error = std::numeric_limits<double>::quiet_NaN();
+    /// The part of the error that is of the mesh, as far as the rule can tell; not a number if it cannot [1].
+    double space_share = std::numeric_limits<double>::quiet_NaN();
+    /// Its promised error was measured with one mesh after the other: the stretch collapses.
+    bool is_collapse = false;
   };
 
   /**

@@ -21,6 +21,18 @@ namespace crawler
     std::string command_line;
   };
 
+  class Log;
+  struct Input;
+  struct TimeOutcome;
+
+  /// Logs body and active stress.
+  void
+  report_scene(Log &log, const Input &input);
+
+  /// What a run that ended like this returns to the shell.
+  ExitCode
+  exit_code(const TimeOutcome &outcome);
+
   /// crawler run: one simulation with all its files (collective).
   ExitCode
   run(MPI_Comm communicator, const CommandOptions &options);

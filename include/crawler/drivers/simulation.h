@@ -5,6 +5,7 @@
 #include <crawler/discretization/assembler.h>
 #include <crawler/discretization/mesh_marking.h>
 #include <crawler/drivers/cycle_stop.h>
+#include <crawler/drivers/displacement_error.h>
 #include <crawler/fused/fused_stepper.h>
 #include <crawler/fused/linear_stepper.h>
 #include <crawler/observers/observer.h>
@@ -49,9 +50,10 @@ namespace crawler
 
     /// Of the centre of mass, (1/L) int u ds [length]; not a number if nobody looked before the run broke off.
     double displacement = std::numeric_limits<double>::quiet_NaN();
-    double largest_u    = 0.; ///< root mean square of u over the body, largest over time [length]
-    double unresolved   = 0.; ///< Resolution: largest highest_mode over largest strain, if looked at
-    double strain       = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]
+    std::optional<DisplacementError> error; ///< of the displacement
+    double largest_u  = 0.;                 ///< root mean square of u over the body, largest over time [length]
+    double unresolved = 0.;                 ///< Resolution: largest highest_mode over largest strain, if looked at
+    double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]
     std::optional<Ledger> ledger;
     double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
 

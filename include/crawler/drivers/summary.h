@@ -9,11 +9,12 @@
 
 namespace crawler
 {
-  /// The text of summary.json. Its keys are a contract (doc/user_guide.md); what is not known is null.
+  /// The text of summary.json. Its keys are a contract (doc/user_guide.md); what is not known is null. @p
+  /// discretization is the last mesh, null if there was none.
   std::string
   summary_json(const SimulationResult &result,
                const Parameters &parameters,
-               const Discretization &discretization,
+               const Discretization *discretization,
                unsigned int n_ranks,
                const std::string &command_line);
 

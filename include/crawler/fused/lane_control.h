@@ -9,9 +9,7 @@
 /// What is decided for each body alone: convergence of Newton's method and sizes of steps (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// Error of Newton's method that is left, relative to the admissible error of a step.
-  constexpr double newton_fraction = 0.01;
-  constexpr int most_newton        = 8;
+  constexpr int most_newton = 8;
   /// But the equations are solved at least as if the tolerance were this.
   constexpr double largest_tolerance = 1e-3;
   /// Newton's method must converge faster than this per iteration, or the step is made shorter by failure_factor.
@@ -21,7 +19,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   constexpr unsigned int many_failures = 1000;
   constexpr double large_part          = 0.5;
   /// Step control: the next step is safety * (1/error)^(1/(stages+1)) of this one, within these factors.
-  constexpr double safety = 0.9, after_rejection = 0.5, least_change = 0.1, most_change = 10.;
+  constexpr double safety = 0.9, after_rejection = 0.5, least_change = 0.1, most_change = 3.;
   constexpr double least_step = 1e-12;
   /// A start disturbs stiff components; traces are left after so many steps.
   constexpr unsigned int settling_steps = 3;
@@ -72,9 +70,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     /// Newton's method converges linearly; with the rate so far the error that remains is rate/(1-rate) corrections.
-    /// @p correction is relative to the tolerance.
+    /// @p correction and what may be left of it, @p newton_fraction, are relative to the tolerance.
     void
-    look_at_correction(const int it, const double least_stretch_of_stages, const double correction)
+    look_at_correction(const int it,
+                       const double least_stretch_of_stages,
+                       const double correction,
+                       const double newton_fraction)
     {
       ++newton;
       if (!(least_stretch_of_stages > 0.) || !(correction < HUGE_VAL))

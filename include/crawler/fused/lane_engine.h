@@ -23,6 +23,7 @@ namespace crawler
     unsigned int n_samples;                                   ///< per cell, where the stretch is looked at
     const double *sample_derivatives;                         ///< [n_samples][degree+1]
     const double *c, *inverse, *error_weights;                ///< of the method
+    double newton_fraction; ///< of the method: error of Newton's method that is left, relative to the tolerance
     double real_eigenvalue;
     const double *eigenvalues; ///< [pairs][real, imaginary]
     const double *vectors;     ///< [stages][1 + pairs][real, imaginary]

@@ -167,7 +167,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         const Pack correction = correct();
         for (int l = 0; l < lanes; ++l)
           if (lanes_[l].iterating)
-            lanes_[l].look_at_correction(it, get_lane(least, l), ::sqrt(get_lane(correction, l)));
+            lanes_[l].look_at_correction(
+              it, get_lane(least, l), ::sqrt(get_lane(correction, l)), setup_.newton_fraction);
       }
       for (Lane &lane : lanes_)
         if (lane.iterating)

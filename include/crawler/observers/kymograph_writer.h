@@ -14,12 +14,18 @@ namespace crawler
   class KymographWriter : public Observer
   {
   public:
+    static constexpr unsigned int n_points = 201; ///< equidistant, both ends included
+
     KymographWriter(double end_time, const std::filesystem::path &folder);
 
     void
     observe(const Snapshot &snapshot) override;
     void
     end() override;
+
+    /// Adds a time with @p fields at all points.
+    void
+    add(double time, const Fields &fields);
 
   private:
     const double end_time_;

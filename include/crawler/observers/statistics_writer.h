@@ -20,6 +20,20 @@ namespace crawler
     void
     end() override;
 
+    /// A row of the table, in the user's units.
+    struct Row
+    {
+      const Step &step;
+      double displacement;
+      StretchRange stretch;
+      double velocity; ///< of the centre of mass
+      const Ledger &ledger;
+      double net_friction;
+    };
+
+    void
+    write(const Row &row);
+
   private:
     const double length_;
     const bool writes_, with_ledger_;

@@ -23,6 +23,21 @@ namespace crawler
     void
     observe(const Snapshot &snapshot) override;
 
+    /// A cell from one place to another [length].
+    struct Cell
+    {
+      double left, right;
+    };
+
+    /// Writes one snapshot: @p fields at @p n_points equidistant points of each of this rank's cells (collective).
+    void
+    write(double time,
+          unsigned int number,
+          const std::vector<Cell> &cells,
+          unsigned int n_points,
+          const Fields &fields,
+          MPI_Comm communicator);
+
   private:
     /// Adds a line to solution.pvd.
     void

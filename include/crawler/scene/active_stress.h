@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/scene/strain_history.h>
+
 #include <iosfwd>
 #include <memory>
 #include <optional>
@@ -37,6 +39,14 @@ namespace crawler
     /// known (the default).
     virtual std::optional<double>
     period() const;
+
+    /// The same for the derivative m_t [force/time]; null if the generator does not know it.
+    virtual std::unique_ptr<ActiveStressAtPoints>
+    rate_at(const std::vector<double> &points) const;
+
+    /// The strain that this active stress is made to bring about; null if it is not made from a strain.
+    virtual const StrainHistory *
+    prescribed_strain() const;
 
     /// Writes lines for the log and for `crawler check`: what this generator chose. Nothing by default.
     virtual void

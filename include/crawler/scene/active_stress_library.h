@@ -4,6 +4,7 @@
 #include <crawler/scene/active_stress.h>
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
+#include <crawler/scene/active_stress/prescribed_strain.h>
 
 namespace crawler
 {
@@ -13,6 +14,7 @@ namespace crawler
     std::string generator = "optimal wave";
     OptimalWaveParameters optimal_wave;
     ExpressionParameters expression;
+    PrescribedStrainParameters prescribed_strain;
 
     void
     add_parameters(Declarations &declarations);

@@ -14,7 +14,10 @@ namespace crawler
   {
     explicit RadauTableau(unsigned int n_stages);
 
-    const unsigned int n;                          ///< s
+    const unsigned int n; ///< s
+    /// The error of Newton's method that is left in a step, relative to its admissible error. The end of a step is much
+    /// more accurate than that, so Newton's method has to be, too.
+    const double newton_fraction;
     std::vector<double> c;                         ///< [s] the nodes
     std::vector<double> b;                         ///< [s] the weights, exact for polynomials up to degree 2s-2
     std::vector<double> inverse;                   ///< [s][s] A^-1 of the Runge-Kutta matrix A

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/scene/active_stress/formula.h>
+#include <crawler/scene/active_stress/formula_rate.h>
 
 #include <muParser.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
 namespace crawler
 {
@@ -169,9 +171,11 @@ namespace crawler
   class FormulaReader
   {
   public:
-    explicit FormulaReader(Formula &formula)
+    FormulaReader(Formula &formula, const mu::Parser &parser)
       : formula_(formula)
     {
+      for (const auto &[name, function] : parser.GetFunDef())
+        names_[reinterpret_cast<Function>(function.GetAddr())] = name;
       add_value({true, false}); // s
       add_value({false, true}); // t
     }
@@ -241,7 +245,7 @@ namespace crawler
       const auto loop = loop_of(code);
       if (loop == nullptr)
         throw mu::ParserError(mu::ecINTERNAL_ERROR);
-      add({.loop = loop}, 2);
+      add({.loop = loop, .tangent = tangent_of(code)}, 2);
     }
 
     /// x x ... x, multiplied from the left as muParser does.
@@ -263,7 +267,11 @@ namespace crawler
       if (function._pUserData != nullptr || count == 0 || count > 2)
         throw mu::ParserError(mu::ecINTERNAL_ERROR);
       const auto loop = count < 0 ? function_of_many : count == 1 ? function_of_one : function_of_two;
-      add({.loop = loop, .function = function._pRawFun}, static_cast<std::size_t>(std::abs(count)));
+      // A function without a name is the sign: -x (muParser defines no other).
+      const auto name = names_.find(reinterpret_cast<Function>(function._pRawFun));
+      add(
+        {.loop = loop, .tangent = tangent_of(name == names_.end() ? "-" : name->second), .function = function._pRawFun},
+        static_cast<std::size_t>(std::abs(count)));
     }
 
     /// Its position.
@@ -283,7 +291,7 @@ namespace crawler
       formula_.of_both_[condition.skip_b].target = formula_.of_both_.size();
       conditions_.pop_back();
       stack_.insert(stack_.end() - 2, condition.value);
-      add({.loop = select}, 3);
+      add({.loop = select, .tangent = tangent_of("?")}, 3);
     }
 
     /// Takes the arguments from the stack, puts the result there and the operation into the list where it belongs.
@@ -343,7 +351,8 @@ namespace crawler
     }
 
     Formula &formula_;
-    std::vector<unsigned int> stack_; ///< Values.
+    std::map<Function, std::string> names_; ///< Of muParser's functions and ours.
+    std::vector<unsigned int> stack_;       ///< Values.
     std::vector<Condition> conditions_;
   };
 
@@ -359,7 +368,7 @@ namespace crawler
     parser.DefineVar("t", &t);
     parser.SetExpr(text);
     parser.Eval(); // finds syntax errors and makes the byte code
-    FormulaReader(*this).read(parser.GetByteCode().GetBase(), &s);
+    FormulaReader(*this, parser).read(parser.GetByteCode().GetBase(), &s);
   }
 
 

@@ -22,4 +22,10 @@ namespace crawler
   {
     return std::make_unique<Zero>();
   }
+
+  std::unique_ptr<ActiveStressAtPoints>
+  NoActiveStress::rate_at(const std::vector<double> &) const
+  {
+    return std::make_unique<Zero>();
+  }
 } // namespace crawler

@@ -37,6 +37,8 @@ namespace crawler
 
     std::unique_ptr<ActiveStressAtPoints>
     at(const std::vector<double> &points) const override;
+    std::unique_ptr<ActiveStressAtPoints>
+    rate_at(const std::vector<double> &points) const override;
 
     /// Looked for (scene/period.h).
     std::optional<double>

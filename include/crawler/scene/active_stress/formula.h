@@ -41,8 +41,15 @@ namespace crawler
     {
       using Function = void (*)();
       using Loop     = void (*)(Function, std::span<const Operand> arguments, double *result, std::size_t n);
+      /// The derivative of the result, from the arguments, their derivatives and the result (one number a point each).
+      using Tangent = void (*)(std::span<const double *const> arguments,
+                               std::span<const double *const> rates,
+                               const double *result,
+                               double *rate,
+                               std::size_t n);
 
       Loop loop                           = nullptr;
+      Tangent tangent                     = nullptr; ///< null: the result does not change, except by jumps
       Function function                   = nullptr; ///< For loops that call a function, of any type.
       std::vector<unsigned int> arguments = {};      ///< Values; for a skip the condition.
       unsigned int result                 = 0;       ///< Value.
@@ -52,6 +59,7 @@ namespace crawler
 
   private:
     friend class FormulaAtPoints;
+    friend class FormulaRateAtPoints;
     friend class FormulaReader;
 
     /// What a value depends on.

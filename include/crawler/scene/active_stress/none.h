@@ -13,5 +13,7 @@ namespace crawler
 
     std::unique_ptr<ActiveStressAtPoints>
     at(const std::vector<double> &points) const override;
+    std::unique_ptr<ActiveStressAtPoints>
+    rate_at(const std::vector<double> &points) const override;
   };
 } // namespace crawler

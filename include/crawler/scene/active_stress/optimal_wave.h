@@ -63,6 +63,16 @@ namespace crawler
     {
       return wave_;
     }
+    const WaveShape &
+    shape() const
+    {
+      return shape_;
+    }
+    double
+    perturbation_parameter() const
+    {
+      return chi_;
+    }
 
   private:
     void

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace crawler
+{
+  /// Gauss-Legendre quadrature with eight points on each of several equal panels, and running integrals of the
+  /// polynomials of degree 7 through a function's values at the points.
+  class GaussPanels
+  {
+  public:
+    static constexpr unsigned int n_points = 8; ///< of a panel
+
+    GaussPanels(double left, double right, unsigned int n_panels);
+
+    /// All points, panel by panel.
+    const std::vector<double> &
+    points() const
+    {
+      return points_;
+    }
+
+    /// The weights of the points.
+    const std::vector<double> &
+    weights() const
+    {
+      return weights_;
+    }
+
+    unsigned int
+    n_panels() const
+    {
+      return n_panels_;
+    }
+
+    /// The integral over all panels of what has the values @p f at the points.
+    double
+    integral(std::span<const double> f) const;
+
+    /// The integrals from the left end to each of the points.
+    void
+    running_integral(std::span<const double> f, std::span<double> result) const;
+
+    /// The integrals from the left end to any places: prepared once, then a few products for each.
+    class Places
+    {
+    public:
+      Places(const GaussPanels &panels, const std::vector<double> &places);
+
+      void
+      running_integral(std::span<const double> f, std::span<double> result) const;
+
+    private:
+      struct Place
+      {
+        std::size_t panel;
+        double weights[n_points]; ///< of the points of this panel
+      };
+
+      const std::vector<double> panel_weights_;
+      std::vector<Place> places_;
+      mutable std::vector<double> before_; ///< integrals up to the panels
+    };
+
+  private:
+    const double left_, size_;
+    const unsigned int n_panels_;
+    std::vector<double> points_, weights_;
+  };
+} // namespace crawler

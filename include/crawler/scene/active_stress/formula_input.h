@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/active_stress/formula.h>
+
+#include <memory>
+#include <string>
+
+namespace crawler
+{
+  /// A formula as the user writes it.
+  struct FormulaInput
+  {
+    std::string quantity; ///< what it gives, for messages
+    std::string formula, constants;
+    std::string formula_entry, constants_entry; ///< full names of the entries
+  };
+
+  /// Compiles a formula of s and t with the constants pi, L, T and the user's own. Throws InputError with the position
+  /// if the formula or the list of constants has an error.
+  std::shared_ptr<const Formula>
+  read_formula(const FormulaInput &input, double length, double end_time);
+} // namespace crawler

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/gauss_panels.h>
+#include <crawler/scene/active_stress.h>
+#include <crawler/scene/body.h>
+
+#include <string>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// Section "Active stress/Prescribed strain".
+  struct PrescribedStrainParameters
+  {
+    std::string given_by = "expression";
+
+    std::string strain    = "0.3*(sin(2*pi*(s+t)) - sin(2*pi*s))";
+    std::string constants = "";
+
+    double mean_strain = 0., amplitude = 0.3, wave_number = 1., wave_speed = 1., phase = 0.;
+
+    std::string file = "strain.csv";
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /**
+   * A strain e(s,t) = zeta_s - 1 that the body is made to follow. As an active stress it is what the balance of forces
+   * asks for (doc/theory.md, "Prescribed strain"): with g = (1+e)^a and <.> the mean over the body,
+   *
+   *   v = B_t - <g B_t>/<g>,   B_t = int_0^s e_t ds,   m = gamma int_0^s g v ds - k e.
+   *
+   * The integrals over s are Gauss quadrature on panels, which are doubled until m does not change any more.
+   */
+  class PrescribedStrain : public ActiveStress
+  {
+  public:
+    static constexpr const char *description = "the stress that brings about a given strain";
+
+    /// Throws InputError if formula, file or numbers do not make sense, if 1 + e is not positive somewhere,
+    /// or if the strain jumps in time.
+    PrescribedStrain(const PrescribedStrainParameters &parameters, const Body &body, double end_time);
+
+    std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &points) const override;
+
+    const StrainHistory *
+    prescribed_strain() const override
+    {
+      return history_.get();
+    }
+
+    void
+    report(std::ostream &out) const override;
+
+  private:
+    void
+    require_admissible_strain(double end_time);
+    void
+    choose_panels(double end_time);
+
+    const Body body_;
+    const std::string given_by_;
+    std::unique_ptr<const StrainHistory> history_;
+    StrainExtremes extremes_{};
+    unsigned int n_panels_ = 1;
+  };
+} // namespace crawler

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/gauss_panels.h>
+
+#include <boost/math/quadrature/gauss.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    constexpr unsigned int n = GaussPanels::n_points;
+
+    /// Weights of the integral from 0 to x of the polynomial through the points.
+    std::array<double, n>
+    integral_weights(const std::array<double, n> &points, const std::array<double, n> &weights, const double x)
+    {
+      std::array<double, n> result{};
+      for (unsigned int j = 0; j < n; ++j)
+        for (unsigned int g = 0; g < n; ++g)
+        {
+          double lagrange = x * weights[g];
+          for (unsigned int i = 0; i < n; ++i)
+            if (i != j)
+              lagrange *= (x * points[g] - points[i]) / (points[j] - points[i]);
+          result[j] += lagrange;
+        }
+      return result;
+    }
+
+    /// The rule on [0, 1], and its running integrals to the points.
+    struct Reference
+    {
+      std::array<double, n> points, weights;
+      std::array<std::array<double, n>, n> running;
+
+      Reference()
+      {
+        using Rule           = boost::math::quadrature::gauss<double, n>;
+        const auto &abscissa = Rule::abscissa(), &weight = Rule::weights(); // of the right half of [-1, 1]
+        for (unsigned int i = 0; i < n / 2; ++i)
+        {
+          points[n / 2 + i]      = 0.5 * (1. + abscissa[i]);
+          points[n / 2 - 1 - i]  = 0.5 * (1. - abscissa[i]);
+          weights[n / 2 + i]     = 0.5 * weight[i];
+          weights[n / 2 - 1 - i] = 0.5 * weight[i];
+        }
+        for (unsigned int i = 0; i < n; ++i)
+          running[i] = integral_weights(points, weights, points[i]);
+      }
+    };
+
+    const Reference &
+    reference()
+    {
+      static const Reference rule;
+      return rule;
+    }
+  } // namespace
+
+  GaussPanels::GaussPanels(const double left, const double right, const unsigned int n_panels)
+    : left_(left)
+    , size_((right - left) / n_panels)
+    , n_panels_(n_panels)
+  {
+    for (unsigned int p = 0; p < n_panels; ++p)
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        points_.push_back(left + (p + reference().points[i]) * size_);
+        weights_.push_back(reference().weights[i] * size_);
+      }
+  }
+
+  double
+  GaussPanels::integral(const std::span<const double> f) const
+  {
+    double sum = 0.;
+    for (std::size_t i = 0; i < weights_.size(); ++i)
+      sum += weights_[i] * f[i];
+    return sum;
+  }
+
+  void
+  GaussPanels::running_integral(const std::span<const double> f, const std::span<double> result) const
+  {
+    double before = 0.;
+    for (std::size_t first = 0; first < points_.size(); first += n)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        double sum = 0.;
+        for (unsigned int j = 0; j < n; ++j)
+          sum += reference().running[i][j] * f[first + j];
+        result[first + i] = before + size_ * sum;
+      }
+      for (unsigned int j = 0; j < n; ++j)
+        before += weights_[first + j] * f[first + j];
+    }
+  }
+
+  GaussPanels::Places::Places(const GaussPanels &panels, const std::vector<double> &places)
+    : panel_weights_(panels.weights_)
+    , before_(panels.n_panels_)
+  {
+    for (const double x : places)
+    {
+      const double in_panels = (x - panels.left_) / panels.size_;
+      const auto panel       = static_cast<std::size_t>(std::clamp(std::floor(in_panels), 0., panels.n_panels_ - 1.));
+      Place place{panel, {}};
+      const auto weights =
+        integral_weights(reference().points, reference().weights, in_panels - static_cast<double>(panel));
+      for (unsigned int j = 0; j < n; ++j)
+        place.weights[j] = panels.size_ * weights[j];
+      places_.push_back(place);
+    }
+  }
+
+  void
+  GaussPanels::Places::running_integral(const std::span<const double> f, const std::span<double> result) const
+  {
+    double sum = 0.;
+    for (std::size_t p = 0; p < before_.size(); ++p)
+    {
+      before_[p] = sum;
+      for (unsigned int j = 0; j < n; ++j)
+        sum += panel_weights_[p * n + j] * f[p * n + j];
+    }
+    for (std::size_t i = 0; i < places_.size(); ++i)
+    {
+      const Place &place = places_[i];
+      double integral    = before_[place.panel];
+      for (unsigned int j = 0; j < n; ++j)
+        integral += place.weights[j] * f[place.panel * n + j];
+      result[i] = integral;
+    }
+  }
+} // namespace crawler

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/formula_input.h>
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numbers>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    /// What muParser has against a formula, as one sentence with a position that counts from 1.
+    std::string
+    in_words(const mu::ParserError &error, const std::string &formula)
+    {
+      std::string problem = error.GetMsg();
+      if (error.GetCode() == mu::ecINTERNAL_ERROR)
+        problem = "the formula is not complete";
+      // muParser's own positions count from 0.
+      for (const char *position : {" found at position", " at expression position", " at position"})
+        problem = problem.substr(0, problem.find(position));
+      while (!problem.empty() && (problem.back() == '.' || problem.back() == '!'))
+        problem.pop_back();
+      const std::string token = error.GetToken();
+      if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty() &&
+          std::isalpha(static_cast<unsigned char>(token[0])))
+      {
+        const auto near = nearest_names(token,
+                                        {"s",    "t",    "L",    "T",    "pi",   "sin",   "cos",  "tan",  "asin",
+                                         "acos", "atan", "sinh", "cosh", "tanh", "exp",   "log",  "sqrt", "abs",
+                                         "sign", "min",  "max",  "pow",  "mod",  "floor", "ceil", "erf",  "erfc"},
+                                        1);
+        problem += near.empty() ? "" : "; the nearest name is " + quoted_list(near);
+      }
+      return fmt::format("error in the formula \"{}\" at position {}: {}",
+                         formula,
+                         std::min<std::size_t>(error.GetPos(), formula.size()) + 1,
+                         problem);
+    }
+
+    /// muParser takes "s = 3" for an assignment and "s, t" for two formulas; both are slips here.
+    void
+    require_one_value(const std::string &formula, const std::string &formula_entry)
+    {
+      int depth = 0;
+      for (std::size_t i = 0; i < formula.size(); ++i)
+      {
+        const char c = formula[i], before = i > 0 ? formula[i - 1] : ' ',
+                   after = i + 1 < formula.size() ? formula[i + 1] : ' ';
+        depth += (c == '(') - (c == ')');
+        if (c == ',' && depth == 0)
+          throw InputError(
+            fmt::format("error in the formula \"{}\" at position {}: one formula is expected, but there are "
+                        "several, separated by a comma",
+                        formula,
+                        i + 1),
+            formula_entry);
+        if (c == '=' && after != '=' && std::string("=<>!").find(before) == std::string::npos)
+          throw InputError(
+            fmt::format("error in the formula \"{}\" at position {}: \"=\" is found, but \"==\" is expected "
+                        "for a comparison",
+                        formula,
+                        i + 1),
+            formula_entry);
+      }
+    }
+
+    Formula::Constants
+    parse_constants(const std::string &text,
+                    const double length,
+                    const double end_time,
+                    const std::string &constants_entry)
+    {
+      Formula::Constants constants = {{"pi", std::numbers::pi}, {"L", length}, {"T", end_time}};
+      if (trimmed(text).empty())
+        return constants;
+      std::istringstream in(text + ",");
+      std::string item;
+      while (std::getline(in, item, ','))
+      {
+        const auto equals      = item.find('=');
+        const std::string name = trimmed(item.substr(0, equals));
+        const auto value   = equals == std::string::npos ? std::nullopt : to_number(trimmed(item.substr(equals + 1)));
+        const bool is_name = !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) &&
+                             std::all_of(name.begin(),
+                                         name.end(),
+                                         [](const unsigned char c)
+                                         {
+                                           return std::isalnum(c) || c == '_';
+                                         });
+        if (!is_name || !value)
+          throw InputError(fmt::format("found \"{}\" among the constants of the formula, but \"name=number, "
+                                       "name=number, ...\" is expected",
+                                       trimmed(item)),
+                           constants_entry);
+        if (name == "s" || name == "t")
+          throw InputError(fmt::format("\"{}\" is a variable of the formula and cannot be a constant", name),
+                           constants_entry);
+        for (const auto &[other, ignored] : constants)
+          if (other == name)
+            throw InputError(fmt::format("the constant \"{}\" is already defined", name), constants_entry);
+        constants.emplace_back(name, *value);
+      }
+      return constants;
+    }
+  } // namespace
+
+  std::shared_ptr<const Formula>
+  read_formula(const FormulaInput &input, const double length, const double end_time)
+  {
+    const auto constants = parse_constants(input.constants, length, end_time, input.constants_entry);
+    if (input.formula.empty())
+      throw InputError("the formula of the " + input.quantity + " is empty; an expression of s and t is expected",
+                       input.formula_entry);
+    require_one_value(input.formula, input.formula_entry);
+    try
+    {
+      return std::make_shared<const Formula>(input.formula, constants);
+    }
+    catch (const mu::ParserError &error)
+    {
+      throw InputError(in_words(error, input.formula), input.formula_entry);
+    }
+  }
+} // namespace crawler

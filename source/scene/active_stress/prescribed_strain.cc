@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/formula_input.h>
+#include <crawler/scene/active_stress/formula_rate.h>
+#include <crawler/scene/active_stress/prescribed_strain.h>
+#include <crawler/scene/active_stress/strain_table.h>
+#include <crawler/scene/friction_law.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ostream>
+
+namespace crawler
+{
+  namespace
+  {
+    const std::string section = "Active stress/Prescribed strain/";
+
+    class FormulaStrain : public StrainHistory
+    {
+    public:
+      explicit FormulaStrain(std::shared_ptr<const Formula> formula)
+        : formula_(std::move(formula))
+      {
+      }
+
+      std::unique_ptr<StrainAtPoints>
+      at(const std::vector<double> &points) const override
+      {
+        return std::make_unique<AtPoints>(formula_, points);
+      }
+
+    private:
+      class AtPoints : public StrainAtPoints
+      {
+      public:
+        AtPoints(const std::shared_ptr<const Formula> &formula, const std::vector<double> &points)
+          : strain_(formula, points)
+          , rate_(formula, points)
+        {
+        }
+
+        void
+        strain(const double t, const std::span<double> e) override
+        {
+          strain_.values(t, e);
+        }
+        void
+        rate(const double t, const std::span<double> e_t) override
+        {
+          rate_.values(t, e_t);
+        }
+
+      private:
+        FormulaAtPoints strain_;
+        FormulaRateAtPoints rate_;
+      };
+
+      const std::shared_ptr<const Formula> formula_;
+    };
+
+    /// e = mean + amplitude sin( q (s + c t) + phase )
+    struct Wave
+    {
+      double mean, amplitude, q, speed, phase;
+    };
+
+    class WaveAtPoints : public StrainAtPoints
+    {
+    public:
+      WaveAtPoints(const Wave &wave, const std::vector<double> &points)
+        : wave_(wave)
+        , points_(points)
+      {
+      }
+
+      void
+      strain(const double t, const std::span<double> e) override
+      {
+        for (std::size_t i = 0; i < e.size(); ++i)
+          e[i] = wave_.mean + wave_.amplitude * std::sin(phase(points_[i], t));
+      }
+      void
+      rate(const double t, const std::span<double> e_t) override
+      {
+        for (std::size_t i = 0; i < e_t.size(); ++i)
+          e_t[i] = wave_.q * wave_.speed * wave_.amplitude * std::cos(phase(points_[i], t));
+      }
+
+    private:
+      double
+      phase(const double s, const double t) const
+      {
+        return wave_.q * (s + wave_.speed * t) + wave_.phase;
+      }
+
+      const Wave wave_;
+      const std::vector<double> points_;
+    };
+
+    class WaveStrain : public StrainHistory
+    {
+    public:
+      explicit WaveStrain(const Wave &wave)
+        : wave_(wave)
+      {
+      }
+
+      std::unique_ptr<StrainAtPoints>
+      at(const std::vector<double> &points) const override
+      {
+        return std::make_unique<WaveAtPoints>(wave_, points);
+      }
+
+    private:
+      const Wave wave_;
+    };
+
+    /// The stress from the balance of forces, see the class.
+    class StressAtPoints : public ActiveStressAtPoints
+    {
+    public:
+      StressAtPoints(const StrainHistory &history,
+                     const Body &body,
+                     const unsigned int n_panels,
+                     const std::vector<double> &points)
+        : body_(body)
+        , friction_(1., body.friction_exponent())
+        , panels_(0., body.length, n_panels)
+        , inside_(history.at(panels_.points()))
+        , at_points_(history.at(points))
+        , places_(panels_, points)
+        , e_(panels_.points().size())
+        , e_t_(e_.size())
+        , g_(e_.size())
+        , B_t_(e_.size())
+        , elastic_(points.size())
+      {
+      }
+
+      void
+      values(const double t, const std::span<double> m) override
+      {
+        inside_->strain(t, e_);
+        inside_->rate(t, e_t_);
+        panels_.running_integral(e_t_, B_t_);
+        for (double &w : e_)
+          w += 1.;
+        friction_.values(e_, g_);
+        double g_sum = 0., gB_sum = 0.;
+        for (std::size_t i = 0; i < g_.size(); ++i)
+        {
+          g_sum += panels_.weights()[i] * g_[i];
+          gB_sum += panels_.weights()[i] * g_[i] * B_t_[i];
+        }
+        for (std::size_t i = 0; i < g_.size(); ++i)
+          g_[i] *= B_t_[i] - gB_sum / g_sum;
+        places_.running_integral(g_, m);
+        at_points_->strain(t, elastic_);
+        for (std::size_t i = 0; i < m.size(); ++i)
+          m[i] = body_.friction_coefficient * m[i] - body_.elastic_modulus * elastic_[i];
+      }
+
+    private:
+      const Body body_;
+      const PowerFriction friction_;
+      const GaussPanels panels_;
+      const std::unique_ptr<StrainAtPoints> inside_, at_points_;
+      const GaussPanels::Places places_;
+      std::vector<double> e_, e_t_, g_, B_t_, elastic_;
+    };
+
+    std::unique_ptr<const StrainHistory>
+    create_history(const PrescribedStrainParameters &parameters, const double length, const double end_time)
+    {
+      if (parameters.given_by == "wave")
+        return std::make_unique<WaveStrain>(Wave{parameters.mean_strain,
+                                                 parameters.amplitude,
+                                                 2. * std::numbers::pi * parameters.wave_number / length,
+                                                 parameters.wave_speed,
+                                                 parameters.phase});
+      if (parameters.given_by == "table")
+        return std::make_unique<StrainTable>(parameters.file, length, end_time, section + "File");
+      return std::make_unique<FormulaStrain>(
+        read_formula({"strain", parameters.strain, parameters.constants, section + "Strain", section + "Constants"},
+                     length,
+                     end_time));
+    }
+  } // namespace
+
+  void
+  PrescribedStrainParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Prescribed strain");
+    declarations.choice("Given by",
+                        given_by,
+                        {"expression", "wave", "table"},
+                        "What gives the strain e(s,t), the stretch minus 1: a formula, a sine wave, or a table in a "
+                        "file. The nonlinear model starts from rest, so there e(s,0) must be 0.");
+    declarations.text("Strain",
+                      strain,
+                      "a formula of s and t",
+                      "The strain e(s,t) as a formula like that of Active stress/Expression. Used if given by "
+                      "expression.",
+                      "1");
+    declarations.text("Constants",
+                      constants,
+                      "a list name=number, name=number",
+                      "Constants that the formula may use. Used if given by expression.");
+    declarations.number("Mean strain",
+                        mean_strain,
+                        any_number(),
+                        "Mean of the wave: e = mean + amplitude sin(2 pi n (s + c t)/L + phase). Used, as the "
+                        "following entries, if given by wave.",
+                        "1");
+    declarations.number("Amplitude", amplitude, any_number(), "Amplitude of the wave.", "1");
+    declarations.number("Wave number", wave_number, positive(), "Number n of waves per body length.", "1");
+    declarations.number(
+      "Wave speed", wave_speed, any_number(), "Wave speed c; a positive one runs from s = L to s = 0.", "length/time");
+    declarations.number("Phase", phase, any_number(), "Phase of the wave at s = 0, t = 0, in radians.", "1");
+    declarations.text("File",
+                      file,
+                      "the name of a CSV file",
+                      "Table with the header s,t,strain and a row for each point of a full grid over the whole body "
+                      "and duration, in any order; cubic splines in s and t go through them. Used if given by table.");
+    declarations.leave();
+  }
+
+  PrescribedStrain::PrescribedStrain(const PrescribedStrainParameters &parameters,
+                                     const Body &body,
+                                     const double end_time)
+    : body_(body)
+    , given_by_(parameters.given_by)
+    , history_(create_history(parameters, body.length, end_time))
+  {
+    require_admissible_strain(end_time);
+    choose_panels(end_time);
+  }
+
+  void
+  PrescribedStrain::require_admissible_strain(const double end_time)
+  {
+    constexpr unsigned int n = 161;
+    extremes_                = find_extremes(*history_, body_.length, end_time, n, n);
+    const auto &[e, s, t]    = extremes_.smallest;
+    const std::string entry  = section + (given_by_ == "wave" ? "Amplitude" : given_by_ == "table" ? "File" : "Strain");
+    if (!std::isfinite(e))
+      throw InputError(fmt::format("the strain is {} at s = {:.6g}, t = {:.6g}; a finite number is expected", e, s, t),
+                       entry);
+    if (!(1. + e > 0.))
+      throw InputError(
+        fmt::format(
+          "the strain is {:.6g} at s = {:.6g}, t = {:.6g}, but more than -1 is expected: there the body would "
+          "be inverted",
+          e,
+          s,
+          t),
+        entry);
+    const auto &largest = extremes_.largest;
+    if (!(largest.strain <= 1e6))
+      throw InputError(fmt::format("the strain is {:.6g} at s = {:.6g}, t = {:.6g}, but at most 1e6 is expected",
+                                   largest.strain,
+                                   largest.s,
+                                   largest.t),
+                       entry);
+    if (const auto jump = find_jump(*history_, body_.length, end_time))
+      throw InputError(
+        fmt::format("the strain at s = {:.6g} changes by {:.6g} from t = {:.6g} to {:.6g}, but the integral "
+                    "of its rate is {:.6g}; a strain without jumps in time is expected",
+                    jump->s,
+                    jump->change,
+                    jump->from,
+                    jump->to,
+                    jump->integral),
+        entry);
+  }
+
+  /// Doubles the panels until the stress changes by no more than round-off at some times.
+  void
+  PrescribedStrain::choose_panels(const double end_time)
+  {
+    constexpr unsigned int most = 512;
+    constexpr double tolerance  = 1e-13;
+    std::vector<double> points, coarse, fine;
+    for (unsigned int i = 0; i <= 16; ++i)
+      points.push_back(body_.length * i / 16);
+    coarse.resize(points.size());
+    fine.resize(points.size());
+    for (n_panels_ = 2; n_panels_ < most; n_panels_ *= 2)
+    {
+      StressAtPoints now(*history_, body_, n_panels_, points), next(*history_, body_, 2 * n_panels_, points);
+      double change = 0., largest = 0.;
+      for (const double part : {0.03, 0.21, 0.47, 0.71, 0.95})
+      {
+        now.values(part * end_time, coarse);
+        next.values(part * end_time, fine);
+        for (std::size_t i = 0; i < fine.size(); ++i)
+        {
+          change  = std::max(change, std::abs(fine[i] - coarse[i]));
+          largest = std::max(largest, std::abs(fine[i]));
+        }
+      }
+      if (!(change > tolerance * largest))
+        return;
+    }
+  }
+
+  std::unique_ptr<ActiveStressAtPoints>
+  PrescribedStrain::at(const std::vector<double> &points) const
+  {
+    return std::make_unique<StressAtPoints>(*history_, body_, n_panels_, points);
+  }
+
+  void
+  PrescribedStrain::report(std::ostream &out) const
+  {
+    out << fmt::format("Strain given by {}: {:.6g} (s = {:.4g}, t = {:.4g}) to {:.6g} (s = {:.4g}, t = {:.4g})\n",
+                       given_by_,
+                       extremes_.smallest.strain,
+                       extremes_.smallest.s,
+                       extremes_.smallest.t,
+                       extremes_.largest.strain,
+                       extremes_.largest.s,
+                       extremes_.largest.t);
+  }
+} // namespace crawler

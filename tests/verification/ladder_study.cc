@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The errors that the rungs perturbation and kinematic estimate, against those that they have: random optimal waves,
+// computed with the nonlinear model to 1e-6 of the displacement. Prints a table (CSV) and, at its end, how many of the
+// true errors are within the estimates and the median of estimate/true.
+//
+//     build/tests/ladder_study [number of scenes]
+#include "../support/random_waves.h"
+
+#include <crawler/drivers/rung.h>
+#include <crawler/rungs/perturbation.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+using namespace crawler;
+
+int
+main(int argc, char **argv)
+{
+  const unsigned int n = argc > 1 ? static_cast<unsigned int>(std::stoul(argv[1])) : 100;
+  int one              = 1;
+  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  std::cout << "a,chi,c,k,T,displacement,perturbation true,perturbation estimated,kinematic true,kinematic estimated,"
+               "changes\n";
+  unsigned int within[2] = {0, 0}, total = 0, unknown = 0, skipped = 0;
+  std::vector<double> ratios[2];
+  test::RandomWaves waves;
+  while (total + unknown < n)
+  {
+    const auto wave  = waves.next();
+    const auto truth = test::true_displacement(wave.settings);
+    if (!truth)
+    {
+      ++skipped;
+      continue;
+    }
+    const Parameters parameters = test::parameters_with(wave.settings);
+    const Scene scene           = parameters.create_scene();
+    const RungScene rungs(scene);
+    const ModelErrors errors = rungs.model_errors();
+    std::cout << wave.a << ',' << wave.chi << ',' << wave.c << ',' << wave.k << ',' << wave.T << ',' << *truth << ',';
+    if (!errors.known)
+    {
+      ++unknown;
+      std::cout << ",,,,,\n";
+      continue;
+    }
+    ++total;
+    const double series       = Perturbation(*rungs.wave()).displacement(1.);
+    const double motion       = kinematic(rungs.scene(), *rungs.strain(), 1e-8).displacement;
+    const double is[2]        = {std::abs(series - *truth), std::abs(motion - *truth)};
+    const double estimated[2] = {errors.perturbation, errors.kinematic};
+    for (unsigned int i = 0; i < 2; ++i)
+    {
+      within[i] += is[i] <= estimated[i] + 2e-6 * std::abs(*truth); // the error of the truth itself
+      ratios[i].push_back(estimated[i] / is[i]);
+      std::cout << is[i] << ',' << estimated[i] << ',';
+    }
+    std::cout << errors.changes[0] << ' ' << errors.changes[1] << ' ' << errors.changes[2] << '\n';
+  }
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    std::nth_element(ratios[i].begin(), ratios[i].begin() + total / 2, ratios[i].end());
+    std::cout << (i == 0 ? "# perturbation: " : "# kinematic: ") << within[i] << " of " << total
+              << " true errors within the estimate, median of estimate/true " << ratios[i][total / 2] << '\n';
+  }
+  std::cout << "# " << unknown << " estimates unknown, " << skipped << " bodies inverted\n";
+}

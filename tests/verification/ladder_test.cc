@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The rungs of the ladder (doc/theory.md, "The ladder") against each other, and the choice among them.
+#include "../support/run_text.h"
+
+#include <crawler/base/exceptions.h>
+#include <crawler/drivers/model_choice.h>
+#include <crawler/drivers/rung.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  SimulationResult
+  on_rung(const test::Settings &settings, const std::string &model, const double accuracy)
+  {
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    return Rung(scene, model).compute(accuracy, true);
+  }
+
+  test::Settings
+  with(test::Settings settings, const test::Settings &more)
+  {
+    settings.insert(settings.end(), more.begin(), more.end());
+    return settings;
+  }
+
+  ModelChoice
+  choice(const test::Settings &settings)
+  {
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    return choose_model(parameters, scene);
+  }
+
+  std::string
+  complaint(const test::Settings &settings)
+  {
+    try
+    {
+      choice(settings);
+    }
+    catch (const InputError &error)
+    {
+      return error.what();
+    }
+    return "nothing";
+  }
+} // namespace
+
+/// The stress of a prescribed strain, given to the nonlinear model, brings the strain about: displacement, works and
+/// extremes are those of the kinematic rung.
+TEST(Ladder, NonlinearFollowsAPrescribedStrain)
+{
+  for (const double a : {-2.5, -1., 1.5})
+  {
+    const test::Settings settings = {
+      {"Body/Anchoring exponent", test::text(1. - a)},
+      {"Body/Elastic modulus", "0.7"},
+      {"Accuracy", "1e-8"},
+      {"Active stress/Generator", "prescribed strain"},
+      {"Active stress/Prescribed strain/Strain", "0.25*(sin(2*pi*(s+t)) - sin(2*pi*s)) + 0.1*s*t^2"}};
+    const auto full   = test::run_with(settings).result;
+    const auto motion = on_rung(settings, "kinematic", 1e-10);
+    ASSERT_EQ(full.time.status, "finished");
+    ASSERT_EQ(motion.time.status, "finished");
+    EXPECT_NEAR(full.displacement / motion.displacement, 1., 1e-8) << "a = " << a;
+    EXPECT_NEAR(full.ledger->stress_power / motion.ledger->stress_power, 1., 1e-7);
+    EXPECT_NEAR(full.ledger->dissipation / motion.ledger->dissipation, 1., 1e-7);
+    EXPECT_NEAR(full.ledger->paper_energy() / motion.ledger->paper_energy(), 1., 1e-7);
+    EXPECT_NEAR(full.ledger->positive_power / motion.ledger->positive_power, 1., 1e-4); // an integrand with kinks
+    EXPECT_NEAR(full.ledger->elastic_energy / motion.ledger->elastic_energy, 1., 1e-7);
+    EXPECT_NEAR(full.min_stretch.value, motion.min_stretch.value, 1e-4);
+    EXPECT_NEAR(full.max_stretch.value, motion.max_stretch.value, 1e-4);
+  }
+}
+
+/// The wave's series against the body with the same strain, against the full equation: each error within its estimate.
+TEST(Ladder, EachRungAgainstTheOneAbove)
+{
+  for (const double a : {-1., 1., -3., 2.})
+  {
+    auto settings     = test::wave(a, 0.15, a > 0. ? -1. : 1.);
+    const auto series = on_rung(settings, "perturbation", 1e-1), motion = on_rung(settings, "kinematic", 1e-1);
+    settings.emplace_back("Accuracy", "1e-8");
+    const double full = test::run_with(settings).result.displacement;
+    EXPECT_LE(std::abs(series.displacement - motion.displacement),
+              series.error->total + motion.error->total + 1e-15 * full);
+    EXPECT_LE(std::abs(series.displacement - full), series.error->total);
+    EXPECT_LE(std::abs(motion.displacement - full), motion.error->total);
+    EXPECT_GT(series.error->total, 0.);
+    EXPECT_NEAR(series.ledger->stress_power / motion.ledger->stress_power, 1., 0.05);
+    EXPECT_NEAR(series.ledger->paper_energy() / motion.ledger->paper_energy(), 1., 0.05);
+  }
+}
+
+TEST(Ladder, AutomaticChoice)
+{
+  const auto model = [](const test::Settings &settings, const double accuracy)
+  {
+    return choice(with(settings, {{"Model", "auto"}, {"Accuracy", test::text(accuracy)}})).model;
+  };
+  EXPECT_EQ(model(test::wave(-1., 0.05), 1e-2), "perturbation");
+  EXPECT_EQ(model(test::wave(-1., 0.05), 1e-6), "nonlinear");
+  EXPECT_EQ(model(test::wave(-1., 0.4), 1e-2), "nonlinear");
+  EXPECT_EQ(model(test::wave(0., 0.4), 1e-6), "linear");
+  EXPECT_EQ(model({{"Active stress/Generator", "prescribed strain"}}, 1e-10), "kinematic");
+  // A stiff body follows its active stress.
+  const test::Settings stiff = {{"Active stress/Generator", "expression"},
+                                {"Active stress/Expression/Active stress", "2e4*(sin(2*pi*(s+t)) - sin(2*pi*s))"},
+                                {"Body/Elastic modulus", "1e5"}};
+  EXPECT_EQ(model(stiff, 1e-2), "kinematic");
+  EXPECT_EQ(model(stiff, 1e-9), "nonlinear");
+  EXPECT_EQ(choice(with(test::wave(-1., 0.05), {{"Model", "auto"}, {"Accuracy", "1e-2"}})).explanation.substr(0, 44),
+            "Model perturbation: its estimated error 0.00");
+}
+
+TEST(Ladder, ScenesThatDoNotFitAreRefused)
+{
+  const test::Settings expression = {{"Active stress/Generator", "expression"}};
+  EXPECT_EQ(complaint(with(expression, {{"Model", "perturbation"}})).find("Model is perturbation, which is a series"),
+            0u);
+  EXPECT_EQ(complaint(with(test::wave(-1., 0.1), {{"Model", "linear"}})),
+            "Model is linear, but a = 1 - p is -1; a = 0 is expected (Anchoring exponent p = 1)");
+  EXPECT_EQ(complaint(with(test::wave(0., 0.1), {{"Model", "linear"}})), "nothing");
+  EXPECT_EQ(complaint(with(expression, {{"Model", "kinematic"}})), "nothing");
+}
+
+/// A rung that was asked for gives its answer and its error, also if that is too large.
+TEST(Ladder, AccuracyThatIsNotMet)
+{
+  const auto result = on_rung(test::wave(-1., 0.2), "perturbation", 1e-4);
+  EXPECT_EQ(result.time.status, "failed");
+  EXPECT_EQ(result.time.reason, "accuracy_not_met");
+  EXPECT_NEAR(result.displacement, 0.02, 1e-15);
+  EXPECT_GE(result.error->model, 2.04422750e-2 - 2e-2);
+  const auto unknown = on_rung(test::wave(-1., 0.6), "perturbation", 1e-4);
+  EXPECT_EQ(unknown.time.reason, "accuracy_not_met");
+  EXPECT_TRUE(std::isnan(unknown.error->total));
+}
