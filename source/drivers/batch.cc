@@ -18,8 +18,8 @@ namespace crawler
     const Integrator &method  = integrator(name.empty() ? "automatic" : name);
     const bool log_stretch    = numerics.formulation == FormulationChoice::log_stretch;
     const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == "adaptive";
-    if (time.engine != "automatic" || !is_one_of_ours || log_stretch || numerics.mesh.tolerance != 0. ||
-        !fits_fused(scene))
+    if (numerics.linear || time.engine != "automatic" || !is_one_of_ours || log_stretch ||
+        numerics.mesh.tolerance != 0. || !fits_fused(scene))
       return std::nullopt;
     return FusedMethod{numerics.degree, numerics.n_cells, method.n_stages};
   }

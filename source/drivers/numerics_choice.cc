@@ -57,6 +57,18 @@ namespace crawler
       double time;         ///< largest |m| over largest |m_t| [time]
     };
 
+    /// Is this the linear rung, by its own stepper? Where "auto" chooses the rung but other entries ask for what that
+    /// does not have, the stepper of the nonlinear rung computes it.
+    bool
+    uses_linear_stepper(const Parameters &parameters)
+    {
+      const bool fits =
+        parameters.body.friction_exponent() == 0. && parameters.discretization.mesh != "adaptive" &&
+        parameters.discretization.formulation != "log stretch" && parameters.time.engine == "automatic" &&
+        (parameters.time.integrator == "automatic" || integrator(parameters.time.integrator).petsc_type == "radau");
+      return fits && (parameters.model == "linear" || parameters.model == "auto");
+    }
+
     StressScales
     stress_scales(const Scene &scene)
     {
@@ -120,6 +132,7 @@ namespace crawler
         , adaptive_steps_(parameters.time.step_control == "adaptive")
       {
         Numerics &n              = choice_.numerics;
+        n.linear                 = uses_linear_stepper(parameters);
         n.degree                 = parameters.discretization.degree.value_or(automatic_degree);
         n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
         n.largest_step           = scales_.time;
@@ -156,8 +169,9 @@ namespace crawler
         }
         bool enough = false;
         if (mesh != "adaptive")
-          enough = uniform(mesh == "uniform" || user_cells_ ? most_cells : most_uniform_cells);
-        if (mesh == "adaptive" || (mesh == "automatic" && !enough && !user_cells_))
+          enough =
+            uniform(mesh == "uniform" || user_cells_ || choice_.numerics.linear ? most_cells : most_uniform_cells);
+        if (mesh == "adaptive" || (mesh == "automatic" && !enough && !user_cells_ && !choice_.numerics.linear))
           adaptive();
         if (collapses() && choice_.numerics.formulation != FormulationChoice::position && !user_cells_ &&
             !parameters_.discretization.degree)
@@ -221,11 +235,14 @@ namespace crawler
         return pilot_.cycles ? steps * (1. + 1. * pilot_.cycles->extrapolated / pilot_.cycles->computed) : steps;
       }
 
+      /// The size of the displacement, of which Accuracy is a part. The linear model knows it, 0, without any effort;
+      /// there the deformation u counts.
       void
       measure_size()
       {
         const bool finished = pilot_.time.status == "finished";
-        size_ = std::max(finished ? std::abs(pilot_.displacement) : 0., displacement_floor * pilot_.largest_u);
+        size_               = std::max(finished ? std::abs(pilot_.displacement) : 0.,
+                         (choice_.numerics.linear ? 1. : displacement_floor) * pilot_.largest_u);
       }
 
       /// k T/(g L^2) for the largest friction g of the last pilot, which thin layers are a matter of.
@@ -242,7 +259,7 @@ namespace crawler
       uniform(const unsigned int most)
       {
         Numerics &n = choice_.numerics;
-        if (adaptive_steps_)
+        if (adaptive_steps_ || n.linear)
           n.integrator = "radau 5";
         // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
         const unsigned int pilot_degree = std::max(choice_.numerics.degree, 2u);

@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/drivers/parameters.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
 
@@ -24,6 +25,32 @@ namespace crawler
                                      largest,
                                      unit_name),
                          std::string("Time/") + name);
+    }
+
+    /// The linear model has one formulation, one kind of mesh and one family of integrators.
+    void
+    require_linear(const Parameters &p)
+    {
+      const auto require =
+        [](const bool ok, const std::string &entry, const std::string &found, const std::string &expected)
+      {
+        if (!ok)
+          throw InputError(
+            fmt::format(
+              "Model is linear and {} is {}, but {} is expected", entry.substr(entry.find('/') + 1), found, expected),
+            entry);
+      };
+      require(
+        p.discretization.mesh != "adaptive", "Discretization/Mesh", p.discretization.mesh, "automatic or uniform");
+      require(p.discretization.formulation != "log stretch",
+              "Discretization/Formulation",
+              p.discretization.formulation,
+              "automatic or position");
+      require(p.time.integrator == "automatic" || integrator(p.time.integrator).petsc_type == "radau",
+              "Time/Integrator",
+              p.time.integrator,
+              "automatic, radau 5 or radau 9");
+      require(p.time.engine == "automatic", "Time/Engine", p.time.engine, "automatic");
     }
   } // namespace
 
@@ -61,6 +88,8 @@ namespace crawler
   Parameters::create_scene() const
   {
     time.validate();
+    if (model == "linear")
+      require_linear(*this);
     require_computable(time.tolerance, body.length, "Tolerance", "Length");
     require_computable(time.initial_step, time.end_time, "Initial step", "End time");
     if (discretization.smallest_cell && !(*discretization.smallest_cell < body.length))

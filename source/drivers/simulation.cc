@@ -56,7 +56,7 @@ namespace crawler
   {
     time_.end_time = 1.;
     if (time_.integrator == "automatic")
-      time_.integrator = numerics_.integrator.empty() ? "bdf" : numerics_.integrator;
+      time_.integrator = !numerics_.integrator.empty() ? numerics_.integrator : numerics_.linear ? "radau 5" : "bdf";
     build(std::make_unique<Discretization>(communicator, 1., numerics.n_cells, numerics.degree),
           numerics.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
     as_at_start_ = true;
@@ -71,6 +71,7 @@ namespace crawler
     stepper_ = nullptr;
     petsc_stepper_.reset();
     fused_stepper_.reset();
+    linear_stepper_.reset();
     assembler_.reset();
     discretization_ = std::move(discretization);
     assembler_      = create_assembler(formulation, scene_, *discretization_);
@@ -421,11 +422,13 @@ namespace crawler
   }
 
   /// Where friction vanishes (w -> 0 for a > 0) a state alone does not tell the velocity: the error of Newton's method
-  /// would be divided by the friction. The rate of the time stepper has no such error, so it is kept.
+  /// would be divided by the friction. The rate of the time stepper has no such error, so it is kept. That of the
+  /// linear rung is the velocity, exactly.
   bool
   Simulation::keeps_rate() const
   {
-    return scene_.body.friction_exponent() > 0. && assembler_->formulation() == Formulation::position;
+    return numerics_.linear ||
+           (scene_.body.friction_exponent() > 0. && assembler_->formulation() == Formulation::position);
   }
 
   /// Keeps the rate of the latest residual at each of the latest times: those of the stages of a step, and its start.
@@ -463,6 +466,11 @@ namespace crawler
                                     });
     if (!keeps_rate() || known == rates_.end())
       return assembler_->velocity(t, y, v);
+    if (numerics_.linear)
+    {
+      v = known->y_dot;
+      return true;
+    }
     std::vector<double> F(y.size()), correction(y.size());
     const std::vector<double> at_rest(y.size(), 0.); // without a velocity the Jacobian is M/h + K
     if (!assembler_->residual(t, y, known->y_dot, F) || !assembler_->setup_jacobian(t, y, at_rest, 1. / size))

@@ -4,8 +4,10 @@
 #include <crawler/base/communication.h>
 #include <crawler/drivers/batch.h>
 #include <crawler/drivers/simulation.h>
+#include <crawler/time/integrators.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace crawler
 {
@@ -20,6 +22,13 @@ namespace crawler
   void
   Simulation::choose_stepper()
   {
+    if (numerics_.linear)
+    {
+      if (!linear_stepper_)
+        build_linear_stepper();
+      stepper_ = linear_stepper_.get();
+      return;
+    }
     if (!fused_gave_up_ && fused_fits())
     {
       if (!fused_stepper_)
@@ -41,6 +50,20 @@ namespace crawler
     fused_gave_up_ = true;
     y_             = accepted_;
     next_step_     = std::max(std::min(outcome.step_size, numerics_.initial_step), smallest_step);
+  }
+
+  void
+  Simulation::build_linear_stepper()
+  {
+    if (scene_.body.friction_exponent() != 0. || numerics_.mesh.tolerance > 0. ||
+        assembler_->formulation() != Formulation::position || integrator(time_.integrator).petsc_type != "radau")
+      throw std::logic_error("the linear model is for a = 0, the position form, uniform meshes and radau");
+    linear_stepper_ = std::make_unique<LinearStepper>(
+      scene_, *discretization_, integrator(time_.integrator).n_stages, time_.step_control == "adaptive");
+    linear_stepper_->stage_rates = [this](const double t, const std::span<const double> v)
+    {
+      keep_rate(t, v);
+    };
   }
 
   void

@@ -15,6 +15,8 @@
 //   run/pilot/1e-4 ...   What choosing them costs (set-up of all objects included).
 //   case/fig2/1e-6/...   20 strides (T = 20), by petsc, fused and batch.
 //   case/stiff/1e-6/...  The stiff body (a = -1, chi = 0.3, k = 100).
+//   rung/linear/1e-4 ... A body at a = 0 by the linear rung, and rung/nonlinear/... the same by the fused engine, both
+//                        with that tolerance on the same mesh; "error" is that of the work of its actuators.
 //   sweep/1e-4, 1e-6     40 exponents a in [-3, -0.5] times 25 chi in [0.05, 0.45] by run_batch() with one setting for
 //                        each half of the chi: the cheapest with which the largest true error of all its scenes is
 //                        below that. Runs that the batch gives back are computed by a Simulation; the time includes

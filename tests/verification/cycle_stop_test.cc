@@ -82,7 +82,7 @@ TEST(CycleStop, Fig2NeedsThreeOfItsTwentyCycles)
     EXPECT_EQ(result.cycles->computed + result.cycles->extrapolated, 20u);
     EXPECT_EQ(result.time.time, 20.);
     EXPECT_NEAR(result.displacement, 1.801968240, accuracy * 1.8 + 0.6e-9);
-    EXPECT_NEAR(result.ledger->stress_power, 1.674733, accuracy * 1.7 + 0.6e-6);
+    EXPECT_NEAR(result.ledger->stress_power, 1.674733, 5. * accuracy * 1.7 + 0.6e-6); // Accuracy is of the displacement
   }
 }
 

@@ -7,6 +7,7 @@
 #include <crawler/drivers/cycle_stop.h>
 #include <crawler/drivers/displacement_error.h>
 #include <crawler/fused/fused_stepper.h>
+#include <crawler/fused/linear_stepper.h>
 #include <crawler/observers/observer.h>
 #include <crawler/time/time_stepper.h>
 
@@ -37,8 +38,9 @@ namespace crawler
     double initial_step           = 0.;                                      ///< [time]
     double largest_step           = std::numeric_limits<double>::infinity(); ///< [time]
     FormulationChoice formulation = FormulationChoice::automatic;
-    MeshLimits mesh               = {}; ///< of an adaptive mesh
-    std::string integrator        = ""; ///< what an automatic integrator is (time/integrators.h); empty: bdf
+    MeshLimits mesh               = {};    ///< of an adaptive mesh
+    bool linear                   = false; ///< the rung for a = 0: radau, position form, uniform mesh
+    std::string integrator        = "";    ///< what an automatic integrator is (time/integrators.h); empty: bdf
   };
 
   /// What one simulation gives.
@@ -126,6 +128,8 @@ namespace crawler
     void
     choose_stepper();
     void
+    build_linear_stepper();
+    void
     build_fused_stepper();
     void
     build_petsc_stepper();
@@ -194,6 +198,7 @@ namespace crawler
     // Who integrates; built when they are needed.
     std::unique_ptr<TimeStepper> petsc_stepper_;
     std::unique_ptr<FusedStepper> fused_stepper_;
+    std::unique_ptr<LinearStepper> linear_stepper_;
     TimeIntegration *stepper_ = nullptr; ///< one of them
     bool fused_gave_up_       = false;
     bool as_at_start_         = false; ///< mesh and formulation are those of the start
