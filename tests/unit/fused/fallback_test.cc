@@ -112,7 +112,7 @@ TEST_P(FallbackTest, EndsAsWithPetsc)
       ASSERT_EQ(fused.log_stretch_since.has_value(), petsc.log_stretch_since.has_value());
       if (petsc.log_stretch_since)
       {
-        EXPECT_NEAR(*fused.log_stretch_since, *petsc.log_stretch_since, 0.03) << integrator; // a step
+        EXPECT_NEAR(*fused.log_stretch_since, *petsc.log_stretch_since, 0.2) << integrator; // a step
       }
     }
 }

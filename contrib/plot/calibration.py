@@ -1,0 +1,100 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Draws the study of error bars: the error that runs reported over their true error.
+
+    python3 calibration.py TABLE.csv [--output calibration.png]
+
+Reads the table of build/tests/calibration; needs numpy and matplotlib (Debian: python3-matplotlib). Colours are those of
+Okabe and Ito, safe for colour-blind readers; each accuracy has a marker of its own.
+"""
+import argparse
+import csv
+import pathlib
+import sys
+
+STYLES = (("#0072B2", "o"), ("#D55E00", "^"), ("#009E73", "s"), ("#CC79A7", "D"), ("#E69F00", "v"))
+INK = "0.15"
+
+
+class Problem(Exception):
+    """What to tell the user."""
+
+
+def read(path):
+    """The runs with a reported error and a reference that is good enough to judge it."""
+    if not path.is_file():
+        raise Problem(f"{path} does not exist; the table of build/tests/calibration is expected")
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    if not rows or "reported_error" not in rows[0]:
+        raise Problem(f"{path} is not a table of build/tests/calibration")
+    judged = []
+    for row in rows:
+        reported, wanted = float(row["reported_error"]), float(row["wanted_error"])
+        if reported == reported and float(row["reference_bar"]) <= 0.05 * reported and wanted > 0:
+            judged.append((float(row["accuracy"]), float(row["true_error"]), reported, wanted))
+    if not judged:
+        raise Problem(f"{path} has no run that can be judged")
+    return len(rows), judged
+
+
+def draw(table, output):
+    """Left: reported over true error, both relative to the displacement. Right: how the ratio is distributed."""
+    try:
+        import matplotlib
+        import numpy as np
+    except ImportError:
+        raise Problem("matplotlib is missing; install it (Debian: apt install python3-matplotlib)") from None
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    n_runs, judged = read(table)
+    accuracies = sorted({row[0] for row in judged}, reverse=True)
+    plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.linewidth": 0.7, "svg.hashsalt": "crawler"})
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7.5, 3.9), layout="constrained", width_ratios=(1.15, 1))
+    for i, accuracy in enumerate(accuracies):
+        colour, marker = STYLES[i % len(STYLES)]
+        rows = np.array([row[1:] for row in judged if row[0] == accuracy])
+        size = rows[:, 2] / accuracy
+        true, reported = np.maximum(rows[:, 0] / size, 1e-16), rows[:, 1] / size
+        left.scatter(true, reported, s=14, marker=marker, facecolors="none", edgecolors=colour, linewidths=0.8)
+        ratio = np.sort(reported / true)
+        right.step(ratio, np.arange(1, len(ratio) + 1) / len(ratio), where="post", color=colour, linewidth=1.4,
+                   linestyle=("-", "--", ":", "-.")[i % 4],
+                   label=f"Accuracy {accuracy:g}: median {np.median(ratio):.1f}, "
+                         f"{100 * np.mean(ratio >= 1):.1f} % $\\geq$ 1")
+        right.plot([], [])
+        left.scatter([], [], s=20, marker=marker, facecolors="none", edgecolors=colour, label=f"Accuracy {accuracy:g}")
+    low = min(min(row[1] / (row[3] / row[0]) for row in judged), 1e-12)
+    low = max(low, 1e-14)
+    line = np.array([low, 1e-1])
+    left.plot(line, line, color=INK, linewidth=0.9)
+    left.plot(line, 10 * line, color=INK, linewidth=0.7, linestyle=(0, (4, 3)))
+    left.text(2 * low, 2.6 * low, "reported = true", rotation=0, fontsize=8, va="top", ha="left", color=INK)
+    left.set(xscale="log", yscale="log", xlim=(low, 1e-2), ylim=(1e-10, 1e-2),
+             xlabel="true error / displacement", ylabel="reported error / displacement",
+             title=f"{len(judged)} of {n_runs} runs (the reference can judge them)")
+    left.legend(fontsize=8, frameon=False, loc="upper left")
+    right.axvline(1, color=INK, linewidth=0.9)
+    right.axvline(10, color=INK, linewidth=0.7, linestyle=(0, (4, 3)))
+    right.set(xscale="log", xlim=(0.3, 1e3), ylim=(0, 1), xlabel="reported error / true error",
+              ylabel="part of the runs below", title="how sharp the reported error is")
+    right.legend(fontsize=8, frameon=False, loc="lower right")
+    figure.savefig(output, dpi=200)
+
+
+def main():
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("table", type=pathlib.Path, help="table of build/tests/calibration")
+    parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("calibration.png"), help="the picture")
+    options = parser.parse_args()
+    try:
+        draw(options.table, options.output)
+    except (Problem, OSError, ValueError) as problem:
+        sys.exit(f"calibration.py: {problem}")
+    print(f"wrote {options.output}")
+
+
+if __name__ == "__main__":
+    main()
