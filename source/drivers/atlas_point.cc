@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/drivers/atlas_point.h>
 #include <crawler/drivers/compute.h>
+#include <crawler/drivers/error_estimate.h>
 
 #include <fmt/format.h>
 
@@ -72,7 +73,15 @@ namespace crawler
       run.status         = result.time.status;
       run.reason         = result.time.reason;
       run.message        = result.time.message;
-      run.promised_error = computed.choice.promised_error;
+      run.promised_error = result.error && std::isfinite(result.error->total)
+                             ? std::max(result.error->total, computed.choice.promised_error)
+                             : computed.choice.promised_error;
+      // An answer with a large error is an answer: what it claims is that error.
+      if (run.reason == accuracy_not_met && std::isfinite(run.promised_error))
+      {
+        run.status = "finished";
+        run.reason.clear();
+      }
       run.min_stretch    = result.min_stretch.value;
       run.steps          = result.time.steps;
       run.is_log_stretch = computed.choice.numerics.formulation == FormulationChoice::log_stretch;

@@ -146,7 +146,7 @@ namespace crawler
       if (is_good)
         return answer;
       result.time.status = "failed";
-      result.time.reason = "accuracy_not_met";
+      result.time.reason = accuracy_not_met;
       result.time.message =
         std::isnan(total)
           ? "the error of the displacement is not known: a finer run did not finish"

@@ -38,6 +38,9 @@ namespace crawler
 
   constexpr unsigned int most_refinements = 3;
 
+  /// The reason of a run whose displacement is known, but not as accurately as wanted.
+  constexpr const char *accuracy_not_met = "accuracy_not_met";
+
   /**
    * Runs @p simulate with @p choice, estimates the error of the displacement if `Error estimate` is set, and as long
    * as that is more than wanted, tries again with more cells and a smaller tolerance, at most most_refinements times
