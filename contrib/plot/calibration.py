@@ -51,7 +51,7 @@ def draw(table, output):
     n_runs, judged = read(table)
     accuracies = sorted({row[0] for row in judged}, reverse=True)
     plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.linewidth": 0.7, "svg.hashsalt": "crawler"})
-    figure, (left, right) = plt.subplots(1, 2, figsize=(7.5, 3.9), layout="constrained", width_ratios=(1.15, 1))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7.5, 4.4), layout="constrained", width_ratios=(1.15, 1))
     for i, accuracy in enumerate(accuracies):
         colour, marker = STYLES[i % len(STYLES)]
         rows = np.array([row[1:] for row in judged if row[0] == accuracy])
@@ -63,23 +63,22 @@ def draw(table, output):
                    linestyle=("-", "--", ":", "-.")[i % 4],
                    label=f"Accuracy {accuracy:g}: median {np.median(ratio):.1f}, "
                          f"{100 * np.mean(ratio >= 1):.1f} % $\\geq$ 1")
-        right.plot([], [])
         left.scatter([], [], s=20, marker=marker, facecolors="none", edgecolors=colour, label=f"Accuracy {accuracy:g}")
     low = min(min(row[1] / (row[3] / row[0]) for row in judged), 1e-12)
     low = max(low, 1e-14)
     line = np.array([low, 1e-1])
-    left.plot(line, line, color=INK, linewidth=0.9)
-    left.plot(line, 10 * line, color=INK, linewidth=0.7, linestyle=(0, (4, 3)))
-    left.text(2 * low, 2.6 * low, "reported = true", rotation=0, fontsize=8, va="top", ha="left", color=INK)
+    left.plot(line, line, color=INK, linewidth=0.9, label="reported = true")
+    left.plot(line, 10 * line, color=INK, linewidth=0.7, linestyle=(0, (4, 3)), label="reported = 10 true")
     left.set(xscale="log", yscale="log", xlim=(low, 1e-2), ylim=(1e-10, 1e-2),
              xlabel="true error / displacement", ylabel="reported error / displacement",
              title=f"{len(judged)} of {n_runs} runs (the reference can judge them)")
-    left.legend(fontsize=8, frameon=False, loc="upper left")
+    below = dict(fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.17), borderaxespad=0)
+    left.legend(ncols=2, columnspacing=1, **below)
     right.axvline(1, color=INK, linewidth=0.9)
     right.axvline(10, color=INK, linewidth=0.7, linestyle=(0, (4, 3)))
     right.set(xscale="log", xlim=(0.3, 1e3), ylim=(0, 1), xlabel="reported error / true error",
               ylabel="part of the runs below", title="how sharp the reported error is")
-    right.legend(fontsize=8, frameon=False, loc="lower right")
+    right.legend(**below)
     figure.savefig(output, dpi=200)
 
 
