@@ -73,14 +73,15 @@ namespace crawler
       run.status         = result.time.status;
       run.reason         = result.time.reason;
       run.message        = result.time.message;
-      run.promised_error = result.error && std::isfinite(result.error->total)
-                             ? std::max(result.error->total, computed.choice.promised_error)
-                             : computed.choice.promised_error;
+      run.promised_error = computed.choice.promised_error; // not a number if nothing is promised
+      if (result.error && run.promised_error < result.error->total)
+        run.promised_error = result.error->total;
       // An answer with a large error is an answer: what it claims is that error.
       if (run.reason == accuracy_not_met && std::isfinite(run.promised_error))
       {
         run.status = "finished";
         run.reason.clear();
+        run.message.clear();
       }
       run.min_stretch    = result.min_stretch.value;
       run.steps          = result.time.steps;

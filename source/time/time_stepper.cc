@@ -20,8 +20,9 @@ namespace crawler
   {
     /// Remaining error of Newton's method, relative to the admissible error of a step.
     constexpr double newton_fraction = 0.01;
-    /// An estimated error can be small by chance; the next step of a radau method must not be too long for that.
-    constexpr double radau_largest_growth = 3.;
+    /// An estimated error can be small by chance; the next step of a radau method must not be too long for that. More
+    /// than the reverse of what a failure of Newton's method does to a step, or these would shrink to nothing.
+    constexpr double radau_largest_growth = 5.;
     /// The same if it is only predicted, with the constant of an earlier step.
     constexpr double predicted_fraction = 0.1 * newton_fraction;
 

@@ -19,7 +19,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   constexpr unsigned int many_failures = 1000;
   constexpr double large_part          = 0.5;
   /// Step control: the next step is safety * (1/error)^(1/(stages+1)) of this one, within these factors.
-  constexpr double safety = 0.9, after_rejection = 0.5, least_change = 0.1, most_change = 3.;
+  constexpr double safety = 0.9, after_rejection = 0.5, least_change = 0.1, most_change = 5.;
   constexpr double least_step = 1e-12;
   /// A start disturbs stiff components; traces are left after so many steps.
   constexpr unsigned int settling_steps = 3;
@@ -90,12 +90,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         rate       = last_correction > 0. ? correction / last_correction : 0.;
         known_rate = rate < 1e-6 ? 1e-6 : rate > 0.9 ? 0.9 : rate;
       }
-      last_correction     = correction;
-      const double excess = job.tolerance > largest_tolerance ? job.tolerance / largest_tolerance : 1.;
-      const double likely = known_rate < 0.9 ? known_rate : 0.9;
-      const double left   = likely / (1. - likely) * correction * excess;
-      const double floor  = 1e-15 / job.tolerance; // of displacements up to 1: they are sums of such numbers
-      if (left <= newton_fraction || correction <= floor)
+      last_correction        = correction;
+      const double excess    = job.tolerance > largest_tolerance ? job.tolerance / largest_tolerance : 1.;
+      const double likely    = known_rate < 0.9 ? known_rate : 0.9;
+      const double left      = likely / (1. - likely) * correction * excess;
+      const double floor     = 1e-15 / job.tolerance; // of displacements up to 1: they are sums of such numbers
+      const double reachable = 1e-12 / job.tolerance; // in spite of round-off
+      const double loosest   = reachable < 0.01 ? reachable : 0.01;
+      if (left <= (newton_fraction > loosest ? newton_fraction : loosest) || correction <= floor)
         iterating = false;
       else if (it >= 2 && rate > slowest_rate && correction > 10. * floor)
         fail();

@@ -109,6 +109,9 @@ TEST_P(FallbackTest, EndsAsWithPetsc)
       {
         EXPECT_NEAR(fused.displacement, petsc.displacement, run.numerics.tolerance) << integrator;
       }
+      // Whether a step ends in between, before an inversion, is chance.
+      if (petsc.time.status != "finished")
+        continue;
       ASSERT_EQ(fused.log_stretch_since.has_value(), petsc.log_stretch_since.has_value());
       if (petsc.log_stretch_since)
       {
