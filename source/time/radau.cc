@@ -16,8 +16,6 @@ namespace crawler
   {
     /// The same where the Jacobian jumps with the state: there nothing is gained by more.
     constexpr double rough_fraction = 0.01;
-    /// No correction is asked to be smaller than this (in lengths of the body) because of newton_fraction: round-off.
-    constexpr double reachable = 1e-12;
     /// Slower convergence than this factor per iteration asks for new factors.
     constexpr double slow = 0.1;
     /// So many steps are done with the Krylov method after the simplified Newton method failed.
@@ -398,7 +396,7 @@ namespace crawler
         radau.known_rate = std::pow(radau.known_rate, 0.8);
       radau.last_correction = d;
       const double left     = radau.known_rate / (1. - std::min(radau.known_rate, 0.9)) * d;
-      const double enough   = std::max(radau.tableau->newton_fraction, std::min(reachable / ts->atol, rough_fraction));
+      const double enough   = radau.tableau->newton_fraction;
       const bool small      = radau.systems->smooth ? left <= enough : d <= rough_fraction && it >= 2;
       if (small || d <= 1e-15 * scaled_norm(ts, state, ts->vatol, ts->atol))
         *reason = SNES_CONVERGED_SNORM_RELATIVE;

@@ -9,11 +9,13 @@
 /// What is decided for each body alone: convergence of Newton's method and sizes of steps (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  constexpr int most_newton = 8;
+  constexpr int most_newton = 14;
   /// But the equations are solved at least as if the tolerance were this.
   constexpr double largest_tolerance = 1e-3;
   /// Newton's method must converge faster than this per iteration, or the step is made shorter by failure_factor.
   constexpr double slowest_rate = 0.5, failure_factor = 0.25;
+  /// No step is so long that it is likely to converge more slowly than this.
+  constexpr double wanted_rate         = 0.35;
   constexpr unsigned int most_failures = 12;
   /// A body for which it has failed so often, and in so large a part of the steps, is left to who can do more.
   constexpr unsigned int many_failures = 1000;
@@ -90,14 +92,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         rate       = last_correction > 0. ? correction / last_correction : 0.;
         known_rate = rate < 1e-6 ? 1e-6 : rate > 0.9 ? 0.9 : rate;
       }
-      last_correction        = correction;
-      const double excess    = job.tolerance > largest_tolerance ? job.tolerance / largest_tolerance : 1.;
-      const double likely    = known_rate < 0.9 ? known_rate : 0.9;
-      const double left      = likely / (1. - likely) * correction * excess;
-      const double floor     = 1e-15 / job.tolerance; // of displacements up to 1: they are sums of such numbers
-      const double reachable = 1e-12 / job.tolerance; // in spite of round-off
-      const double loosest   = reachable < 0.01 ? reachable : 0.01;
-      if (left <= (newton_fraction > loosest ? newton_fraction : loosest) || correction <= floor)
+      last_correction     = correction;
+      const double excess = job.tolerance > largest_tolerance ? job.tolerance / largest_tolerance : 1.;
+      const double likely = known_rate < 0.9 ? known_rate : 0.9;
+      const double left   = likely / (1. - likely) * correction * excess;
+      const double floor  = 1e-15 / job.tolerance; // of displacements up to 1: they are sums of such numbers
+      if (left <= newton_fraction || correction <= floor)
         iterating = false;
       else if (it >= 2 && rate > slowest_rate && correction > 10. * floor)
         fail();
@@ -136,7 +136,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
       double factor = accepted || !just_rejected ? safety : safety * after_rejection;
       factor *= error > 0. ? ::pow(error, -1. / (n_stages + 1)) : HUGE_VAL;
-      factor        = factor < least_change ? least_change : factor > most_change ? most_change : factor;
+      factor = factor < least_change ? least_change : factor > most_change ? most_change : factor;
+      // Newton's method converges the more slowly the longer the step is, about in proportion.
+      if (rate > 0. && factor * rate > wanted_rate)
+        factor = rate > wanted_rate ? 1. : wanted_rate / rate;
       next          = factor * h;
       just_rejected = !accepted;
       if (accepted)
