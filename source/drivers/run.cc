@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <sstream>
 
 namespace crawler
@@ -246,6 +247,8 @@ namespace crawler
       result.time.message = fmt::format("stopped by a signal at t = {:.6g}", result.time.time);
     }
     check_identities(result, parameters);
+    if (result.time.status == "finished" && parameters.error_estimate && !std::isfinite(result.error->total))
+      log.warn("the error of the displacement is not known: the second run, which measures it, did not finish");
     report_unused_options(log);
 
     on_first_rank(

@@ -121,7 +121,9 @@ namespace crawler
                                 result.solve_seconds + result.output_seconds));
     std::string displacement =
       std::isfinite(result.displacement) ? fmt::format("{:.10g}", result.displacement) : "unknown";
-    if (result.error && std::isfinite(result.error->total))
+    if (result.error && std::isfinite(result.error->total) && !std::isfinite(result.error->space))
+      displacement += fmt::format(" +- {:.2g} (space and time together)", result.error->total);
+    else if (result.error && std::isfinite(result.error->total))
       displacement += fmt::format(" +- {:.2g} (space {:.2g}, time {:.2g}, model {:.2g})",
                                   result.error->total,
                                   result.error->space,

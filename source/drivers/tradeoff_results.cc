@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 namespace crawler
 {
@@ -341,19 +342,26 @@ namespace crawler
     std::vector<std::string> lines;
     const auto &single = results.recommendations;
     // Accuracies with the same setting share a line.
+    std::string accuracies;
     for (std::size_t i = 0; i < single.size(); ++i)
+    {
+      accuracies += fmt::format("{}1e-{}", accuracies.empty() ? "" : " and ", single[i].exponent);
       if (i + 1 == single.size() || single[i + 1].row != single[i].row)
-        lines.push_back(fmt::format("For 1e-{} use {}: {}",
-                                    single[i].exponent,
+        lines.push_back(fmt::format("For {} use {}: {}",
+                                    std::exchange(accuracies, ""),
                                     in_words(results.rows[single[i].row].setting),
                                     costs(results, single[i].row)));
+    }
     const auto &batch = results.batch_recommendations;
     for (std::size_t i = 0; i < batch.size(); ++i)
+    {
+      accuracies += fmt::format("{}1e-{}", accuracies.empty() ? "" : " and ", batch[i].exponent);
       if (i + 1 == batch.size() || batch[i + 1].row != batch[i].row)
-        lines.push_back(fmt::format("Many bodies, for 1e-{}: {}: {}",
-                                    batch[i].exponent,
+        lines.push_back(fmt::format("Many bodies, for {}: {}: {}",
+                                    std::exchange(accuracies, ""),
                                     in_words(results.rows[batch[i].row].setting),
                                     costs(results, batch[i].row)));
+    }
     return lines;
   }
 

@@ -337,7 +337,7 @@ namespace crawler
       return fmt::format("set Model    = {}\nset Accuracy = {}\n", parameters.model, to_text(parameters.accuracy));
     const DiscretizationParameters &d = parameters.discretization;
     const TimeParameters &t           = parameters.time;
-    std::string text                  = fmt::format("set Model = {}\nsubsection Discretization\n"
+    std::string text                  = fmt::format("# with Model = {}\nsubsection Discretization\n"
                                                     "  set Formulation     = {}\n  set Mesh            = {}\n"
                                                     "  set Degree          = {}\n",
                                    parameters.model,
