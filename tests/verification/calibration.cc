@@ -5,7 +5,8 @@
 // Runs so many random scenes (random_scenes.h), or those from one number to another (300-519), at each accuracy as
 // `crawler run` does, and compares them with a far finer run in the log-stretch form, of degree 8, by radau 5 through
 // PETSc; its own error is the difference to bdf. Writes a row for each run and prints a table. Exit status 1 if less
-// than 99 % of the true errors are below the reported ones, or the median of reported over true is above 10.
+// than 99 % of the true errors are below the reported ones (one miss is admitted in any case), one is three times as
+// large, or the median of reported over true is above 10.
 #include "random_scenes.h"
 
 #include <crawler/base/communication.h>
@@ -273,7 +274,11 @@ main(int argc, char **argv)
   for (const auto &[accuracy, count] : counts)
     count.print(fmt::format("{:g}", accuracy));
   total.print("all");
-  const bool kept = total.judged > 0 && total.covered >= 0.99 * total.judged && median(total.ratios) <= 10.;
+  // Of few runs one may miss; none may miss by much.
+  const double least = total.judged > 0 ? *std::min_element(total.ratios.begin(), total.ratios.end()) : 0.;
+  fmt::print("smallest reported over true error: {:.2f}\n", least);
+  const bool kept =
+    total.judged - total.covered <= std::max(1., 0.01 * total.judged) && median(total.ratios) <= 10. && least > 1. / 3.;
   fmt::print("{}\n", kept ? "the promise is kept" : "THE PROMISE IS NOT KEPT");
   return kept ? 0 : 1;
 }
