@@ -79,7 +79,8 @@ namespace crawler
       time.integrator              = "automatic";
       time.engine                  = "automatic";
       time.step_control            = "adaptive";
-      time.petsc_prefix            = "second_"; // options after "--" are for the run itself
+      time.max_steps               = TimeParameters().max_steps; // the limit is for the run itself
+      time.petsc_prefix            = "second_";                  // options after "--" are for the run itself
       const Numerics numerics      = finer(choice, integrator, scene.end_time);
       const auto cycles            = cycle_wish(parameters, scene, 0);
       SimulationResult better;
