@@ -9,6 +9,24 @@ namespace crawler
     return std::nullopt;
   }
 
+  std::vector<double>
+  ActiveStress::breaks_in_space() const
+  {
+    return {};
+  }
+
+  std::vector<double>
+  ActiveStress::breaks_in_time() const
+  {
+    return {};
+  }
+
+  const StretchFeedback *
+  ActiveStress::feedback() const
+  {
+    return nullptr;
+  }
+
   std::unique_ptr<ActiveStressAtPoints>
   ActiveStress::rate_at(const std::vector<double> &) const
   {

@@ -120,6 +120,18 @@ namespace crawler
                     : nullptr;
       }
 
+      std::vector<double>
+      breaks_in_space() const override
+      {
+        return times(stress_.breaks_in_space(), 1. / units_.length);
+      }
+
+      std::vector<double>
+      breaks_in_time() const override
+      {
+        return times(stress_.breaks_in_time(), 1. / units_.time);
+      }
+
       const StrainHistory *
       prescribed_strain() const override
       {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/scene/strain_history.h>
+#include <crawler/scene/stretch_feedback.h>
 
 #include <iosfwd>
 #include <memory>
@@ -43,6 +44,19 @@ namespace crawler
     /// The same for the derivative m_t [force/time]; null if the generator does not know it.
     virtual std::unique_ptr<ActiveStressAtPoints>
     rate_at(const std::vector<double> &points) const;
+
+    /// Places in (0, L), in any order, where m or a derivative of it jumps [length]: cells of the mesh end there.
+    virtual std::vector<double>
+    breaks_in_space() const;
+
+    /// Times in (0, T), in any order, when m or a derivative of it jumps [time]: steps end there. T is the end time
+    /// that the generator was made for. On which side values() is at such a time does not matter.
+    virtual std::vector<double>
+    breaks_in_time() const;
+
+    /// How m depends on the stretch besides place and time; null if it does not. Then values() is m of a body at rest.
+    virtual const StretchFeedback *
+    feedback() const;
 
     /// The strain that this active stress is made to bring about; null if it is not made from a strain.
     virtual const StrainHistory *
