@@ -33,6 +33,7 @@ namespace crawler
       const std::vector<Rule> rules = {
         {"Active stress/Optimal wave/", p.active_stress.generator == "optimal wave", generator},
         {"Active stress/Expression/", p.active_stress.generator == "expression", generator},
+        {"Active stress/Table/", p.active_stress.generator == "table", generator},
         {"Active stress/Prescribed strain/", p.active_stress.generator == "prescribed strain", generator},
         {"Active stress/Prescribed strain/Strain", given_by == "expression", source},
         {"Active stress/Prescribed strain/Constants", given_by == "expression", source},
