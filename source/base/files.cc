@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 
 namespace crawler
 {
@@ -23,5 +24,15 @@ namespace crawler
     std::filesystem::rename(temporary, path, error);
     if (error)
       throw FileError("cannot write \"" + path.string() + "\": " + error.message());
+  }
+
+  std::string
+  read_whole_file(const std::filesystem::path &path)
+  {
+    std::ifstream in(path, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (!in)
+      throw FileError("cannot read \"" + path.string() + "\"");
+    return text;
   }
 } // namespace crawler

@@ -9,12 +9,12 @@ namespace crawler
   {
     const bool first = rank_of(communicator) == 0;
     MPI_Win_allocate(
-      first ? 2 * sizeof(unsigned long) : 0, sizeof(unsigned long), MPI_INFO_NULL, communicator, &counters_, &window_);
+      first ? 3 * sizeof(unsigned long) : 0, sizeof(unsigned long), MPI_INFO_NULL, communicator, &counters_, &window_);
     MPI_Win_lock_all(0, window_);
     if (first)
     {
       const unsigned long zero = 0;
-      for (const int counter : {handed_out, completed})
+      for (const int counter : {handed_out, completed, failures})
         MPI_Accumulate(&zero, 1, MPI_UNSIGNED_LONG, /*rank=*/0, counter, 1, MPI_UNSIGNED_LONG, MPI_REPLACE, window_);
       MPI_Win_flush(/*rank=*/0, window_);
     }
@@ -43,10 +43,11 @@ namespace crawler
     return number < size_ ? std::optional(number) : std::nullopt;
   }
 
-  unsigned long
-  WorkQueue::done()
+  WorkQueue::Done
+  WorkQueue::done(const bool failed)
   {
-    return add(completed, 1) + 1;
+    const unsigned long before = add(completed, 1), failed_before = add(failures, failed ? 1 : 0);
+    return {before + 1, failed_before + (failed ? 1 : 0)};
   }
 
   void

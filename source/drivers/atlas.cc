@@ -199,7 +199,7 @@ namespace crawler
           point.second      = second[point.index % second.size()];
           rows.write(point);
           points.push_back(point);
-          progress.report(queue.done());
+          progress.report(queue.done().done);
         }
       }
       return points;

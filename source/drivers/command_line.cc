@@ -7,6 +7,7 @@
 #include <crawler/drivers/command_line.h>
 #include <crawler/drivers/parameters.h>
 #include <crawler/drivers/run.h>
+#include <crawler/drivers/sweep.h>
 #include <crawler/drivers/tradeoff.h>
 #include <crawler/parameters/declarations.h>
 
@@ -143,7 +144,12 @@ namespace crawler
         app.add_subcommand("tradeoff", "Measures cost against error of many settings on the scene of a parameter file");
       common(tradeoff_command);
       tradeoff_command->add_flag("--resume", options.resume, "Goes on with a tradeoff that was stopped or killed");
-      for (CLI::App *command : {run_command, atlas_command, tradeoff_command})
+      CLI::App *sweep_command =
+        app.add_subcommand("sweep", "Runs all points of section Sweep of a parameter file and makes a table of them");
+      common(sweep_command);
+      sweep_command->add_flag("--resume", options.resume, "Goes on with a sweep that was stopped or killed");
+      sweep_command->add_flag("--strict", options.strict, "Exit code 8 if the row of a point failed");
+      for (CLI::App *command : {run_command, sweep_command, atlas_command, tradeoff_command})
       {
         command->add_flag("--overwrite", options.overwrite, "Replaces the results in the output folder");
         command->add_flag("--quiet", options.quiet, "Prints nothing but errors");
@@ -177,6 +183,8 @@ namespace crawler
         options.overrides.insert(options.overrides.begin(), "Time/Engine=petsc");
       if (*parameter_command)
         return first ? print_parameters(format) : 0;
+      if (*sweep_command)
+        return static_cast<int>(sweep(communicator, options));
       if (*atlas_command)
         return static_cast<int>(atlas(communicator, options));
       if (*tradeoff_command)

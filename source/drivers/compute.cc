@@ -93,18 +93,6 @@ namespace crawler
       return !task.error && task.computed.result.time.status.empty();
     }
 
-    /// Side by side a run is this much cheaper than alone, where it can end when its cycles repeat.
-    constexpr double batch_gain = 6.;
-    /// After so many cycles it usually does.
-    constexpr double few_cycles = 3.;
-
-    bool
-    is_faster_alone(const Task &task)
-    {
-      const auto cycles = cycle_wish(task.parameters, *task.scene, 0);
-      return cycles && task.scene->end_time / cycles->period > batch_gain * few_cycles;
-    }
-
     /// Runs that fit, side by side.
     void
     compute_batches(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)
@@ -164,6 +152,15 @@ namespace crawler
       task.computed = {std::move(answer.result), std::move(answer.choice)};
     }
   } // namespace
+
+  bool
+  is_faster_alone(const Task &task)
+  {
+    // Side by side a run is this much cheaper, and after so many cycles it usually ends.
+    constexpr double batch_gain = 6., few_cycles = 3.;
+    const auto cycles = cycle_wish(task.parameters, *task.scene, 0);
+    return cycles && task.scene->end_time / cycles->period > batch_gain * few_cycles;
+  }
 
   void
   compute_all(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)

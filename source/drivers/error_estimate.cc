@@ -74,15 +74,9 @@ namespace crawler
                             const SimulationResult &result,
                             const std::function<bool()> &keep_going)
     {
-      TimeParameters time          = parameters.time;
-      const std::string integrator = time.integrator == "automatic" ? choice.numerics.integrator : time.integrator;
-      time.integrator              = "automatic";
-      time.engine                  = "automatic";
-      time.step_control            = "adaptive";
-      time.max_steps               = TimeParameters().max_steps; // the limit is for the run itself
-      time.petsc_prefix            = "second_";                  // options after "--" are for the run itself
-      const Numerics numerics      = finer(choice, integrator, scene.end_time);
-      const auto cycles            = cycle_wish(parameters, scene, 0);
+      const TimeParameters time = time_of_finer_run(parameters.time);
+      const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene.end_time);
+      const auto cycles         = cycle_wish(parameters, scene, 0);
       SimulationResult better;
       // Most runs fit the fused engine; then nothing else has to be built.
       if (!cycles && size_of(communicator) == 1 && fused_method(scene, time, numerics))
@@ -100,6 +94,51 @@ namespace crawler
     }
   } // namespace
 
+  TimeParameters
+  time_of_finer_run(const TimeParameters &run)
+  {
+    TimeParameters time = run;
+    time.integrator     = "automatic";
+    time.engine         = "automatic";
+    time.step_control   = "adaptive";
+    time.max_steps      = TimeParameters().max_steps; // the limit is for the run itself
+    time.petsc_prefix   = "second_";                  // options after "--" are for the run itself
+    return time;
+  }
+
+  Numerics
+  numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, const double end_time)
+  {
+    return finer(choice, time.integrator == "automatic" ? choice.numerics.integrator : time.integrator, end_time);
+  }
+
+  DisplacementError
+  error_from_difference(const NumericsChoice &choice,
+                        const SimulationResult &result,
+                        const double difference,
+                        const double length)
+  {
+    DisplacementError error;
+    double total = choice.promised_error;
+    if (choice.numerics.linear) // the centre of mass stays where it is, whatever the other errors are
+      total = 0.;
+    else if (!choice.is_collapse)
+    {
+      const double part = choice.numerics.mesh.tolerance > 0. ? promised_part_if_adaptive : promised_part;
+      total = std::isfinite(choice.promised_error) ? measured_factor * difference + part * choice.promised_error
+                                                   : factor_without_promise * difference;
+    }
+    if (!std::isfinite(total))
+      return error;
+    const double cycles = result.cycles ? result.cycles->bound : 0.;
+    const double rest   = std::max(total, round_off * length);
+    error.total         = rest + cycles;
+    error.space         = choice.numerics.linear ? 0. : choice.space_share * rest;
+    error.time          = error.total - error.space;
+    error.model         = 0.;
+    return error;
+  }
+
   DisplacementError
   estimate_error(MPI_Comm communicator,
                  const Parameters &parameters,
@@ -108,28 +147,12 @@ namespace crawler
                  const SimulationResult &result,
                  const std::function<bool()> &keep_going)
   {
-    DisplacementError error;
     if (result.time.status != "finished")
-      return error;
-    double total = choice.promised_error;
-    if (choice.numerics.linear) // the centre of mass stays where it is, whatever the other errors are
-      total = 0.;
-    else if (!choice.is_collapse)
-    {
-      const double part = choice.numerics.mesh.tolerance > 0. ? promised_part_if_adaptive : promised_part;
-      const double x    = difference_to_finer_run(communicator, parameters, scene, choice, result, keep_going);
-      total             = std::isfinite(choice.promised_error) ? measured_factor * x + part * choice.promised_error
-                                                               : factor_without_promise * x;
-    }
-    if (!std::isfinite(total))
-      return error;
-    const double cycles = result.cycles ? result.cycles->bound : 0.;
-    const double rest   = std::max(total, round_off * scene.body.length);
-    error.total         = rest + cycles;
-    error.space         = choice.numerics.linear ? 0. : choice.space_share * rest;
-    error.time          = error.total - error.space;
-    error.model         = 0.;
-    return error;
+      return DisplacementError();
+    const bool is_measured = !choice.numerics.linear && !choice.is_collapse;
+    const double x =
+      is_measured ? difference_to_finer_run(communicator, parameters, scene, choice, result, keep_going) : 0.;
+    return error_from_difference(choice, result, x, scene.body.length);
   }
 
   Answer

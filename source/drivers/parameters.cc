@@ -80,6 +80,7 @@ namespace crawler
     discretization.add_parameters(declarations);
     time.add_parameters(declarations);
     output.add_parameters(declarations);
+    sweep.add_parameters(declarations);
     atlas.add_parameters(declarations);
     tradeoff.add_parameters(declarations);
   }

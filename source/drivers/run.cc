@@ -14,6 +14,7 @@
 #include <crawler/drivers/self_check.h>
 #include <crawler/drivers/simulation.h>
 #include <crawler/drivers/summary.h>
+#include <crawler/drivers/sweep.h>
 #include <crawler/observers/kymograph_writer.h>
 #include <crawler/observers/statistics_writer.h>
 #include <crawler/observers/vtu_writer.h>
@@ -120,6 +121,8 @@ namespace crawler
   check(MPI_Comm communicator, const CommandOptions &options)
   {
     Log log(rank_of(communicator) == 0, /*quiet=*/false);
+    if (check_sweep(communicator, options, log))
+      return ExitCode::finished;
     const Input input       = read_input(communicator, options.file, options.overrides);
     const ModelChoice model = choose_model(input);
     if (!model.needs_mesh())
@@ -252,15 +255,17 @@ namespace crawler
       log.warn("the error of the displacement is not known: the second run, which measures it, did not finish");
     report_unused_options(log);
 
-    on_first_rank(
-      communicator,
-      [&]()
-      {
-        write_file(
-          folder / "summary.json",
-          summary_json(result, parameters, &simulation->discretization(), size_of(communicator), options.command_line));
-        return "";
-      });
+    on_first_rank(communicator,
+                  [&]()
+                  {
+                    write_file(folder / "summary.json",
+                               summary_json(result,
+                                            parameters,
+                                            SummaryMesh::of(simulation->discretization()),
+                                            size_of(communicator),
+                                            options.command_line));
+                    return "";
+                  });
     for (const std::string &line : summary_lines(result, parameters))
       log.line(line);
     if (result.time.status != "finished")

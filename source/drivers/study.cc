@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/process.h>
 #include <crawler/base/versions.h>
+#include <crawler/drivers/parameters.h>
 #include <crawler/drivers/study.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/parameters/parameter_file.h>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -59,6 +63,30 @@ namespace crawler
     for (const auto &[name, version] : versions())
       attributes["version of " + name] = version;
     return attributes;
+  }
+
+  std::vector<std::string>
+  differences(const std::string &before, const std::string &after, const std::vector<std::string> &others)
+  {
+    const auto values = [](const std::string &text)
+    {
+      Parameters parameters;
+      Declarations declarations;
+      parameters.add_parameters(declarations);
+      ParameterFile::from_text(text, "parameters.prm").apply(declarations);
+      std::vector<std::pair<std::string, std::string>> list;
+      for (unsigned int i = 0; i < declarations.entries().size(); ++i)
+        list.emplace_back(declarations.entries()[i].path, declarations.value(i));
+      return list;
+    };
+    const auto old_values = values(before), new_values = values(after);
+    std::vector<std::string> list;
+    for (std::size_t i = 0; i < old_values.size(); ++i)
+      if (old_values[i].second != new_values[i].second &&
+          std::find(others.begin(), others.end(), old_values[i].first) == others.end())
+        list.push_back(
+          fmt::format("{} was \"{}\" and is \"{}\"", old_values[i].first, old_values[i].second, new_values[i].second));
+    return list;
   }
 
   void

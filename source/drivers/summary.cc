@@ -136,10 +136,19 @@ namespace crawler
     }
   } // namespace
 
+  SummaryMesh
+  SummaryMesh::of(const Discretization &discretization)
+  {
+    return {discretization.n_cells(),
+            discretization.element().degree,
+            discretization.n_unknowns(),
+            discretization.n_ranks() > 1};
+  }
+
   std::string
   summary_json(const SimulationResult &result,
                const Parameters &parameters,
-               const Discretization *discretization,
+               const std::optional<SummaryMesh> &mesh,
                const unsigned int n_ranks,
                const std::string &command_line)
   {
@@ -198,16 +207,16 @@ namespace crawler
     json["gait"]               = gait_numbers(result);
     json["log_stretch_since"]  = result.log_stretch_since ? Json(*result.log_stretch_since) : Json(nullptr);
     json["mesh_changes"]       = result.mesh_changes;
-    json["most_cells"]         = std::max(result.most_cells, discretization ? discretization->n_cells() : 0);
+    json["most_cells"]         = std::max(result.most_cells, mesh ? mesh->n_cells : 0);
     json["inversion"]          = result.inversion ? extreme(*result.inversion) : Json(nullptr);
-    json["cells"]              = discretization ? discretization->n_cells() : 0;
-    json["degree"]             = discretization ? Json(discretization->element().degree) : Json(nullptr);
-    json["degrees_of_freedom"] = discretization ? discretization->n_unknowns() : 0;
+    json["cells"]              = mesh ? mesh->n_cells : 0;
+    json["degree"]             = mesh ? Json(mesh->degree) : Json(nullptr);
+    json["degrees_of_freedom"] = mesh ? mesh->n_unknowns : 0;
     json["steps"]              = result.time.steps;
     json["rejected_steps"]     = result.time.rejected_steps;
     json["newton_iterations"]  = result.time.newton_iterations;
     json["ranks"]              = n_ranks;
-    json["cells_shared"]       = discretization && discretization->n_ranks() > 1;
+    json["cells_shared"]       = mesh && mesh->is_shared;
     json["refinements"]        = result.refinements;
     json["integrator"]         = result.integrator.empty() ? Json(nullptr) : Json(result.integrator);
     json["engine"]             = result.engine.empty() ? Json(nullptr) : Json(result.engine);

@@ -27,40 +27,6 @@ namespace crawler
   {
     namespace fs = std::filesystem;
 
-    std::string
-    text_of(const fs::path &path)
-    {
-      std::ifstream in(path, std::ios::binary);
-      std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-      if (!in)
-        throw FileError("cannot read \"" + path.string() + "\"");
-      return text;
-    }
-
-    /// Entries that differ between two parameter files, as "Body/Length was 1, is 2"; but for the time limit.
-    std::vector<std::string>
-    differences(const std::string &before, const std::string &after)
-    {
-      const auto values = [](const std::string &text)
-      {
-        Parameters parameters;
-        Declarations declarations;
-        parameters.add_parameters(declarations);
-        ParameterFile::from_text(text, "parameters.prm").apply(declarations);
-        std::vector<std::pair<std::string, std::string>> list;
-        for (unsigned int i = 0; i < declarations.entries().size(); ++i)
-          list.emplace_back(declarations.entries()[i].path, declarations.value(i));
-        return list;
-      };
-      const auto old_values = values(before), new_values = values(after);
-      std::vector<std::string> list;
-      for (std::size_t i = 0; i < old_values.size(); ++i)
-        if (old_values[i].second != new_values[i].second && old_values[i].first != "Tradeoff/Time limit")
-          list.push_back(fmt::format(
-            "{} was \"{}\" and is \"{}\"", old_values[i].first, old_values[i].second, new_values[i].second));
-      return list;
-    }
-
     enum class Start
     {
       anew,
@@ -86,7 +52,7 @@ namespace crawler
         throw InputError("\"" + folder.string() +
                          "\" has no tradeoff that could be resumed; another folder is expected "
                          "for --output, or --overwrite");
-      const auto changes = differences(text_of(folder / "parameters.prm"), effective);
+      const auto changes = differences(read_whole_file(folder / "parameters.prm"), effective, {"Tradeoff/Time limit"});
       if (!changes.empty())
         throw InputError(
           fmt::format("the tradeoff in \"{}\" was made with other parameters: {}; it can be resumed with "
@@ -165,7 +131,7 @@ namespace crawler
           rows.push_back(*row);
           own.push_back(*row);
         }
-        progress.report(queue.done(), fmt::format(" ({} settings on this rank)", own.size()));
+        progress.report(queue.done().done, fmt::format(" ({} settings on this rank)", own.size()));
       }
       return own;
     }
@@ -322,7 +288,7 @@ namespace crawler
                                         {
                                           log.open(folder / "log.txt", /*append=*/true);
                                           kept = recover_rows(folder);
-                                          return fs::exists(reference_file) ? text_of(reference_file) : "";
+                                          return fs::exists(reference_file) ? read_whole_file(reference_file) : "";
                                         }
                                         prepare(folder);
                                         fs::remove_all(folder / "rows"); // of a study that was killed

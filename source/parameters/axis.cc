@@ -103,14 +103,14 @@ namespace crawler
   } // namespace
 
   std::vector<std::string>
-  parse_values(const std::string &text, const std::string &name)
+  parse_values(const std::string &text, const std::string &name, const bool distinct)
   {
     const auto values = text.find('(') == std::string::npos ? listed(text, name) : evenly_spaced(text, name);
     std::set<std::string> seen;
     for (const std::string &value : values)
     {
       const auto number = to_number(value);
-      if (!seen.insert(number ? to_text(*number) : value).second)
+      if (distinct && !seen.insert(number ? to_text(*number) : value).second)
         throw InputError(fmt::format("\"{}\": the value {} occurs twice, but different ones are expected", name, value),
                          name);
     }

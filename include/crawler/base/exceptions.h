@@ -15,7 +15,8 @@ namespace crawler
     inverted          = 4,
     stopped           = 5,
     file_error        = 6,
-    self_check_failed = 7
+    self_check_failed = 7,
+    rows_failed       = 8 ///< of a sweep with --strict
   };
 
   /**

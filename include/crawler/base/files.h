@@ -10,4 +10,8 @@ namespace crawler
   /// complete. Throws FileError.
   void
   write_file(const std::filesystem::path &path, const std::string &content);
+
+  /// The whole text of a file. Throws FileError.
+  std::string
+  read_whole_file(const std::filesystem::path &path);
 } // namespace crawler

@@ -23,9 +23,15 @@ namespace crawler
     std::optional<unsigned long>
     next();
 
-    /// Says that a number that next() gave is done; returns how many all ranks together have done.
-    unsigned long
-    done();
+    /// What all ranks together have done.
+    struct Done
+    {
+      unsigned long done, failed; ///< failed: those that were said to be so
+    };
+
+    /// Says that something is done, usually a number that next() gave, and whether it failed.
+    Done
+    done(bool failed = false);
 
     /// Nobody gets a number any more.
     void
@@ -35,7 +41,8 @@ namespace crawler
     enum Counter
     {
       handed_out = 0,
-      completed  = 1
+      completed  = 1,
+      failures   = 2
     };
     /// Adds to a counter and returns its value before.
     unsigned long

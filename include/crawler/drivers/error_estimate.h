@@ -28,6 +28,18 @@ namespace crawler
                  const SimulationResult &result,
                  const std::function<bool()> &keep_going = {});
 
+  /// The finer run that measures the error of a run with @p choice: what it does with entries of section Time, and its
+  /// numerics.
+  TimeParameters
+  time_of_finer_run(const TimeParameters &time);
+  Numerics
+  numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, double end_time);
+
+  /// The error of a finished result from its @p difference to the finer run (not a number: unknown); @p length is that
+  /// of the body.
+  DisplacementError
+  error_from_difference(const NumericsChoice &choice, const SimulationResult &result, double difference, double length);
+
   /// A run with its error, and how it was found.
   struct Answer
   {

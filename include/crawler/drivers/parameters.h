@@ -3,6 +3,7 @@
 
 #include <crawler/discretization/discretization_parameters.h>
 #include <crawler/drivers/atlas_parameters.h>
+#include <crawler/drivers/sweep_parameters.h>
 #include <crawler/drivers/tradeoff_parameters.h>
 #include <crawler/observers/output_parameters.h>
 #include <crawler/scene/active_stress_library.h>
@@ -26,6 +27,7 @@ namespace crawler
     DiscretizationParameters discretization;
     TimeParameters time;
     OutputParameters output;
+    SweepParameters sweep;
     AtlasParameters atlas;
     TradeoffParameters tradeoff;
 

@@ -18,6 +18,7 @@ namespace crawler
     std::string output;
     bool overwrite = false;
     bool resume    = false;
+    bool strict    = false;
     bool quiet     = false;
     std::string command_line;
   };

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace crawler
 {
@@ -43,6 +44,10 @@ namespace crawler
   /// Where the effective parameters, versions and command come from: attributes of the HDF5 file.
   std::map<std::string, std::string>
   provenance(const std::string &effective, const std::string &command_line);
+
+  /// Entries that differ between two parameter files (their texts), as "Body/Length was 1, is 2"; but for @p others.
+  std::vector<std::string>
+  differences(const std::string &before, const std::string &after, const std::vector<std::string> &others);
 
   /// Draws the picture of @p folder with the script of this name in contrib/plot, or says how to.
   void

@@ -9,12 +9,23 @@
 
 namespace crawler
 {
+  /// The last mesh of a run.
+  struct SummaryMesh
+  {
+    unsigned int n_cells, degree;
+    std::size_t n_unknowns;
+    bool is_shared; ///< by several ranks
+
+    static SummaryMesh
+    of(const Discretization &discretization);
+  };
+
   /// The text of summary.json. Its keys are a contract (doc/user_guide.md); what is not known is null. @p
-  /// discretization is the last mesh, null if there was none.
+  /// mesh: nothing if there was none.
   std::string
   summary_json(const SimulationResult &result,
                const Parameters &parameters,
-               const Discretization *discretization,
+               const std::optional<SummaryMesh> &mesh,
                unsigned int n_ranks,
                const std::string &command_line);
 

@@ -15,10 +15,10 @@ namespace crawler
     std::vector<std::string> values; ///< as they stand in a parameter file, no two alike
   };
 
-  /// Reads VALUES as parse_axis() does, as they stand in a parameter file, no two alike. Throws InputError in the name
-  /// of the entry @p name.
+  /// Reads VALUES as parse_axis() does, as they stand in a parameter file, no two alike if they must be @p distinct.
+  /// Throws InputError in the name of the entry @p name.
   std::vector<std::string>
-  parse_values(const std::string &text, const std::string &name);
+  parse_values(const std::string &text, const std::string &name, bool distinct = true);
 
   /// What parse_axis() reads, in words.
   extern const std::string axis_syntax;

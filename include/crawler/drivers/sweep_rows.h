@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/row_file.h>
+#include <crawler/drivers/compute.h>
+#include <crawler/drivers/sweep_design.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// The columns of results.h5 (a contract, doc/user_guide.md, "Sweep"): index, the axes, the numbers of summary.json
+  /// with dots for nesting, seconds, reason, message, and status, which is written last.
+  std::vector<RowFile::Column>
+  sweep_columns(const SweepDesign &design, const Declarations &declarations);
+
+  /// The row of a point that has been computed. @p seconds [s]: what it took.
+  RowFile::Row
+  sweep_row(const std::vector<RowFile::Column> &columns,
+            const SweepDesign &design,
+            unsigned long point,
+            const Task &task);
+
+  /// What has become of a point, in a word, and why.
+  struct PointStatus
+  {
+    std::string status, reason, message;
+  };
+  PointStatus
+  status_of(const Task &task);
+} // namespace crawler

@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/hdf5_handle.h>
+#include <crawler/base/row_file.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace crawler
+{
+  namespace
+  {
+    template <typename Result>
+    Result
+    checked(const Result result, const std::filesystem::path &path, const char *what)
+    {
+      if (result < 0)
+        throw FileError(fmt::format("cannot {} \"{}\" (is the disk full?)", what, path.string()));
+      return result;
+    }
+
+    /// HDF5 keeps "/" for groups.
+    std::string
+    dataset_name(std::string name)
+    {
+      std::replace(name.begin(), name.end(), '/', '.');
+      return name;
+    }
+
+    hid_t
+    text_type(const std::size_t width)
+    {
+      const hid_t type = H5Tcopy(H5T_C_S1);
+      H5Tset_size(type, width);
+      H5Tset_strpad(type, H5T_STR_NULLPAD);
+      H5Tset_cset(type, H5T_CSET_UTF8);
+      return type;
+    }
+
+    hid_t
+    type_of(const RowFile::Column &column)
+    {
+      return column.width == 0 ? H5Tcopy(H5T_IEEE_F64LE) : text_type(column.width);
+    }
+
+    void
+    write_attribute(const hid_t object,
+                    const std::string &name,
+                    const std::string &text,
+                    const std::filesystem::path &path)
+    {
+      const Hdf5Handle type(text_type(std::max<std::size_t>(text.size(), 1)), H5Tclose),
+        space(H5Screate(H5S_SCALAR), H5Sclose);
+      const Hdf5Handle attribute(H5Acreate(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+      const std::string value = text.empty() ? std::string(1, '\0') : text;
+      checked(attribute < 0 ? -1 : H5Awrite(attribute, type, value.data()), path, "write");
+    }
+
+    std::string
+    read_attribute_of(const hid_t object, const std::string &name, const std::filesystem::path &path)
+    {
+      const Hdf5Handle attribute(checked(H5Aopen(object, name.c_str(), H5P_DEFAULT), path, "read an attribute of"),
+                                 H5Aclose);
+      const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
+      std::string text(H5Tget_size(type), '\0');
+      checked(H5Aread(attribute, type, text.data()), path, "read");
+      return text.substr(0, text.find('\0'));
+    }
+
+    /// Not in the middle of a character.
+    std::size_t
+    cut(const std::string &text, const std::size_t width)
+    {
+      std::size_t size = std::min(text.size(), width);
+      if (size < text.size())
+        while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80)
+          --size;
+      return size;
+    }
+
+    struct OpenFile
+    {
+      Hdf5Handle file, group;
+    };
+
+    Hdf5Handle
+    open_to_read(const std::filesystem::path &path)
+    {
+      H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
+      return {checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), path, "open"), H5Fclose};
+    }
+
+    std::vector<std::string>
+    texts_of(const hid_t dataset, const hid_t type, const std::size_t n, const std::filesystem::path &path)
+    {
+      const std::size_t width = H5Tget_size(type);
+      std::vector<char> data(n * width);
+      if (n > 0)
+        checked(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()), path, "read");
+      std::vector<std::string> texts;
+      for (std::size_t i = 0; i < n; ++i)
+        texts.emplace_back(&data[i * width], strnlen(&data[i * width], width));
+      return texts;
+    }
+
+    std::size_t
+    length_of(const hid_t dataset)
+    {
+      const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+      hsize_t n = 0;
+      H5Sget_simple_extent_dims(space, &n, nullptr);
+      return n;
+    }
+  } // namespace
+
+  void
+  RowFile::create(const std::filesystem::path &path,
+                  const std::string &group_name,
+                  const std::vector<Column> &columns,
+                  const unsigned long n_rows,
+                  const std::map<std::string, std::string> &attributes)
+  {
+    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
+    const std::filesystem::path temporary = path.string() + ".part";
+    {
+      const Hdf5Handle file(
+        checked(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), path, "create"), H5Fclose);
+      const Hdf5Handle order(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+      H5Pset_link_creation_order(order, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+      const Hdf5Handle group(H5Gcreate(file, group_name.c_str(), H5P_DEFAULT, order, H5P_DEFAULT), H5Gclose);
+      checked(static_cast<hid_t>(group), path, "write");
+      for (const auto &[name, text] : attributes)
+        write_attribute(group, name, text, path);
+      const hsize_t size = n_rows;
+      const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+      for (const Column &column : columns)
+      {
+        const Hdf5Handle type(type_of(column), H5Tclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+        H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
+        H5Pset_fill_time(creation, H5D_FILL_TIME_ALLOC);
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        if (column.width == 0)
+          H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &nan);
+        const Hdf5Handle dataset(
+          checked(H5Dcreate(group, dataset_name(column.name).c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+                  path,
+                  "write"),
+          H5Dclose);
+        write_attribute(dataset, "name", column.name, path);
+        write_attribute(dataset, "unit", column.unit, path);
+        write_attribute(dataset, "description", column.description, path);
+      }
+      checked(H5Fflush(file, H5F_SCOPE_GLOBAL), path, "write");
+    }
+    std::error_code error;
+    std::filesystem::rename(temporary, path, error);
+    if (error)
+      throw FileError("cannot write \"" + path.string() + "\": " + error.message());
+  }
+
+  struct RowFile::Handles
+  {
+    Hdf5Handle file, transfer;
+    std::vector<std::unique_ptr<Hdf5Handle>> datasets, types;
+  };
+
+  RowFile::RowFile(MPI_Comm communicator,
+                   const std::filesystem::path &path,
+                   const std::string &group,
+                   std::vector<Column> columns)
+    : path_(path)
+    , columns_(std::move(columns))
+  {
+    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
+    handles_.reset(new Handles{{checked(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), path, "open"), H5Fclose},
+                               {H5Pcreate(H5P_DATASET_XFER), H5Pclose},
+                               {},
+                               {}});
+    H5Pset_dxpl_mpio(handles_->transfer, H5FD_MPIO_INDEPENDENT);
+    for (const Column &column : columns_)
+    {
+      const std::string name = "/" + group + "/" + dataset_name(column.name);
+      handles_->datasets.push_back(std::make_unique<Hdf5Handle>(
+        checked(H5Dopen(handles_->file, name.c_str(), H5P_DEFAULT), path, "open"), H5Dclose));
+      handles_->types.push_back(std::make_unique<Hdf5Handle>(
+        column.width == 0 ? H5Tcopy(H5T_NATIVE_DOUBLE) : text_type(column.width), H5Tclose));
+    }
+  }
+
+  RowFile::~RowFile() = default;
+
+  void
+  RowFile::write(const unsigned long first, const std::span<const Row> rows)
+  {
+    if (rows.empty())
+      return;
+    const hsize_t start = first, count = rows.size();
+    const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
+    std::vector<double> numbers(rows.size());
+    std::vector<char> texts;
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+    {
+      const Hdf5Handle space(H5Dget_space(*handles_->datasets[i]), H5Sclose);
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
+      const void *data = numbers.data();
+      if (const unsigned int width = columns_[i].width; width == 0)
+        for (std::size_t row = 0; row < rows.size(); ++row)
+          numbers[row] = std::get<double>(rows[row][i]);
+      else
+      {
+        texts.assign(rows.size() * width, '\0');
+        for (std::size_t row = 0; row < rows.size(); ++row)
+        {
+          const std::string &text = std::get<std::string>(rows[row][i]);
+          std::copy_n(text.begin(), cut(text, width), texts.begin() + static_cast<std::ptrdiff_t>(row * width));
+        }
+        data = texts.data();
+      }
+      checked(
+        H5Dwrite(*handles_->datasets[i], *handles_->types[i], memory, space, handles_->transfer, data), path_, "write");
+    }
+  }
+
+  Table
+  read_table(const std::filesystem::path &path, const std::string &group_name)
+  {
+    const Hdf5Handle file = open_to_read(path);
+    const Hdf5Handle group(checked(H5Gopen(file, group_name.c_str(), H5P_DEFAULT), path, "read"), H5Gclose);
+    H5G_info_t info;
+    H5Gget_info(group, &info);
+    Table table;
+    for (hsize_t i = 0; i < info.nlinks; ++i)
+    {
+      char name[1024];
+      checked(H5Lget_name_by_idx(group, ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, name, sizeof(name), H5P_DEFAULT),
+              path,
+              "read");
+      const Hdf5Handle dataset(H5Dopen(group, name, H5P_DEFAULT), H5Dclose), type(H5Dget_type(dataset), H5Tclose);
+      const std::size_t n = length_of(dataset);
+      Column column{read_attribute_of(dataset, "name", path),
+                    read_attribute_of(dataset, "unit", path),
+                    read_attribute_of(dataset, "description", path),
+                    {}};
+      if (H5Tget_class(type) == H5T_STRING)
+        column.values = texts_of(dataset, type, n, path);
+      else
+      {
+        std::vector<double> numbers(n);
+        if (n > 0)
+          checked(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), path, "read");
+        column.values = std::move(numbers);
+      }
+      table.push_back(std::move(column));
+    }
+    return table;
+  }
+
+  std::vector<std::string>
+  read_texts(const std::filesystem::path &path, const std::string &group, const std::string &column)
+  {
+    const Hdf5Handle file  = open_to_read(path);
+    const std::string name = "/" + group + "/" + dataset_name(column);
+    const Hdf5Handle dataset(checked(H5Dopen(file, name.c_str(), H5P_DEFAULT), path, "read"), H5Dclose);
+    const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
+    if (H5Tget_class(type) != H5T_STRING)
+      throw FileError("\"" + path.string() + "\" has no texts in \"" + name + "\"");
+    return texts_of(dataset, type, length_of(dataset), path);
+  }
+
+  std::string
+  read_attribute(const std::filesystem::path &path, const std::string &group_name, const std::string &name)
+  {
+    const Hdf5Handle file = open_to_read(path);
+    const Hdf5Handle group(checked(H5Gopen(file, group_name.c_str(), H5P_DEFAULT), path, "read"), H5Gclose);
+    return read_attribute_of(group, name, path);
+  }
+} // namespace crawler

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/drivers/input.h>
+#include <crawler/drivers/sweep_points.h>
+#include <crawler/parameters/axis.h>
+#include <crawler/parameters/declarations.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    const std::string axes_entry = "Sweep/Axes";
+  }
+
+  struct SweepPoints::Form
+  {
+    Form(const ParameterFile &file, const std::vector<Assignment> &scene)
+    {
+      parameters.add_parameters(declarations);
+      file.apply(declarations);
+      for (const Assignment &assignment : scene)
+        try
+        {
+          declarations.set(assignment.path, assignment.value);
+        }
+        catch (const InputError &error)
+        {
+          throw InputError(assignment.place + ": " + error.what());
+        }
+      for (const Assignment &assignment : file.assignments())
+        if (assignment.place == "--set") // stronger than all files
+          declarations.set(assignment.path, assignment.value);
+    }
+    Form(const Form &) = delete;
+
+    Parameters parameters;
+    Declarations declarations; ///< its entries are the members of parameters
+  };
+
+  SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file)
+    : file_(file)
+  {
+    auto base = std::make_unique<Form>(file, std::vector<Assignment>());
+    sweep_    = base->parameters.sweep;
+    std::ostringstream text;
+    base->declarations.print_prm(text);
+    effective_ = text.str();
+    try
+    {
+      design_    = std::make_unique<SweepDesign>(sweep_);
+      file_axis_ = design_->axes().size();
+      for (std::size_t i = 0; i < design_->axes().size(); ++i)
+        if (design_->axes()[i].is_file())
+          file_axis_ = i;
+      if (file_axis_ < design_->axes().size())
+        for (const std::string &name : design_->axes()[file_axis_].admissible)
+          if (scenes_.count(name) == 0)
+            scenes_[name] = read_file(communicator, name, {}).assignments();
+      forms_[""] = std::move(base);
+      for (const auto &[name, scene] : scenes_)
+      {
+        for (const Assignment &assignment : scene)
+          if (assignment.path.starts_with("Sweep/"))
+            throw InputError(fmt::format("{}: \"{}\" stands in a file of a sweep, but section Sweep belongs to {}",
+                                         assignment.place,
+                                         assignment.path,
+                                         file.name()));
+        forms_[name] = std::make_unique<Form>(file, scene);
+      }
+      require_admissible_values();
+      require_scene();
+      kept_points();
+    }
+    catch (const InputError &error)
+    {
+      throw file.with_place(error);
+    }
+  }
+
+  SweepPoints::~SweepPoints() = default;
+
+  const Declarations &
+  SweepPoints::declarations() const
+  {
+    return forms_.at("")->declarations;
+  }
+
+  void
+  SweepPoints::require_admissible_values()
+  {
+    for (const SweepAxis &axis : design_->axes())
+    {
+      if (axis.is_file())
+        continue;
+      for (const char *section : {"Sweep/", "Atlas/", "Tradeoff/"})
+        if (axis.entry.starts_with(section))
+          throw InputError(
+            fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),
+            axes_entry);
+      Form scratch(file_, {});
+      require_valid({axis.entry, axis.admissible}, axes_entry, scratch.declarations);
+    }
+  }
+
+  /// Values that do not fit together at one point are a row that failed; if they do so at the first, the middle and
+  /// the last point the file itself is wrong.
+  void
+  SweepPoints::require_scene()
+  {
+    std::optional<InputError> wrong;
+    for (const unsigned long point : {0ul, design_->n_points() / 2, design_->n_points() - 1})
+      try
+      {
+        parameters(point).create_scene();
+        return;
+      }
+      catch (const InputError &error)
+      {
+        if (!wrong)
+          wrong.emplace(error);
+      }
+    throw InputError(*wrong);
+  }
+
+  const Parameters &
+  SweepPoints::parameters(const unsigned long point)
+  {
+    const auto &axes = design_->axes();
+    Form &form       = *forms_.at(file_axis_ < axes.size() ? design_->value(file_axis_, point) : "");
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      if (i != file_axis_)
+        form.declarations.set(axes[i].entry, design_->value(i, point));
+    return form.parameters;
+  }
+
+  std::vector<std::string>
+  SweepPoints::overrides(const SweepDesign &design, const unsigned long point) const
+  {
+    std::vector<std::string> list;
+    const auto &axes = design.axes();
+    if (file_axis_ < axes.size())
+      for (const Assignment &assignment : scenes_.at(design.value(file_axis_, point)))
+        list.push_back(assignment.path + "=" + assignment.value);
+    list.insert(list.end(), file_.overrides().begin(), file_.overrides().end());
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      if (i != file_axis_)
+        list.push_back(axes[i].entry + "=" + design.value(i, point));
+    return list;
+  }
+
+  std::vector<unsigned long>
+  SweepPoints::kept_points() const
+  {
+    const std::string entry = "Sweep/Keep fields";
+    std::vector<unsigned long> list;
+    if (sweep_.keep_fields.empty())
+      return list;
+    for (const std::string &text : parse_values(sweep_.keep_fields, entry))
+    {
+      const auto number = to_number(text);
+      if (!number || *number != std::floor(*number) || *number < 0. ||
+          *number >= static_cast<double>(design_->n_points()))
+        throw InputError(fmt::format("\"{}\": found \"{}\", but the number of a point, from 0 to {}, is expected",
+                                     entry,
+                                     text,
+                                     design_->n_points() - 1),
+                         entry);
+      list.push_back(static_cast<unsigned long>(*number));
+    }
+    return list;
+  }
+} // namespace crawler

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/drivers/summary.h>
+#include <crawler/drivers/sweep_rows.h>
+#include <crawler/parameters/declarations.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <map>
+
+namespace crawler
+{
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+
+    constexpr unsigned int word_width = 24, reason_width = 32, message_width = 192, most_axis_width = 256;
+
+    /// What is said of the process, not of the point, or has a column of its own.
+    bool
+    is_left_out(const std::string &key)
+    {
+      for (const char *other :
+           {"status", "reason", "message", "seconds", "versions", "command_line", "ranks", "cells_shared"})
+        if (key == other)
+          return true;
+      return false;
+    }
+
+    /// Calls @p see with each value that has no parts and its name, dots for nesting.
+    template <typename Function>
+    void
+    for_each_value(const Json &json, const std::string &prefix, const Function &see)
+    {
+      for (const auto &[key, value] : json.items())
+      {
+        if (prefix.empty() && is_left_out(key))
+          continue;
+        const std::string name = prefix.empty() ? key : prefix + "." + key;
+        if (value.is_object())
+          for_each_value(value, name, see);
+        else
+          see(name, value);
+      }
+    }
+
+    /// A summary in which everything is known.
+    Json
+    full_summary()
+    {
+      SimulationResult result;
+      result.displacement      = 0.;
+      result.integrator        = "radau 9";
+      result.engine            = "fused";
+      result.error             = DisplacementError{0., 0., 0., 0.};
+      result.ledger            = Ledger{};
+      result.inversion         = SimulationResult::Extreme{};
+      result.cycles            = Cycles{1., 1, 1, 0.};
+      result.gait              = Gait{1., true, 1., 1., StretchWave{1., 1.}, Ledger{}};
+      result.gait_efficiency   = 1.;
+      result.log_stretch_since = 0.;
+      return Json::parse(summary_json(result, Parameters(), SummaryMesh{1, 1, 1, false}, 1, ""));
+    }
+
+    /// Units of the keys, as in doc/user_guide.md.
+    std::string
+    unit_of_key(const std::string &key)
+    {
+      static const std::map<std::string, std::string> units = {{"displacement", "length"},
+                                                               {"displacement_error.total", "length"},
+                                                               {"displacement_error.space", "length"},
+                                                               {"displacement_error.time", "length"},
+                                                               {"displacement_error.model", "length"},
+                                                               {"end_time", "time"},
+                                                               {"cycles.period", "time"},
+                                                               {"cycles.error", "length"},
+                                                               {"stress_power", "force length"},
+                                                               {"dissipation", "force length"},
+                                                               {"elastic_energy", "force length"},
+                                                               {"paper_energy", "force length"},
+                                                               {"positive_power", "force length"},
+                                                               {"log_stretch_since", "time"},
+                                                               {"gait.period", "time"},
+                                                               {"gait.frequency", "1/time"},
+                                                               {"gait.displacement", "length"},
+                                                               {"gait.speed", "length/time"},
+                                                               {"gait.cost_of_transport.stress_power", "force"},
+                                                               {"gait.cost_of_transport.positive_power", "force"},
+                                                               {"gait.cost_of_transport.paper_energy", "force"},
+                                                               {"gait.cost_of_transport.dissipation", "force"},
+                                                               {"gait.wave.speed", "length/time"}};
+      if (key.ends_with(".s"))
+        return "length";
+      if (key.ends_with(".t"))
+        return "time";
+      const auto found = units.find(key);
+      return found == units.end() ? "1" : found->second;
+    }
+
+    RowFile::Value
+    value_of(const Json &json, const bool is_text)
+    {
+      if (is_text)
+        return json.is_string() ? json.get<std::string>() : std::string();
+      if (json.is_boolean())
+        return json.get<bool>() ? 1. : 0.;
+      return json.is_number() ? json.get<double>() : std::numeric_limits<double>::quiet_NaN();
+    }
+  } // namespace
+
+  std::vector<RowFile::Column>
+  sweep_columns(const SweepDesign &design, const Declarations &declarations)
+  {
+    std::vector<RowFile::Column> columns = {{"index", "1", "number of the point", 0}};
+    for (const SweepAxis &axis : design.axes())
+    {
+      std::string unit;
+      for (const EntryInfo &entry : declarations.entries())
+        if (entry.path == axis.entry)
+          unit = entry.unit;
+      bool is_number     = true;
+      std::size_t widest = 1;
+      for (const std::string &value : axis.values)
+      {
+        is_number = is_number && to_number(value).has_value();
+        widest    = std::max(widest, value.size());
+      }
+      columns.push_back({axis.entry,
+                         unit,
+                         "axis of the sweep",
+                         is_number ? 0 : std::min(static_cast<unsigned int>(widest), most_axis_width)});
+    }
+    for_each_value(
+      full_summary(),
+      "",
+      [&](const std::string &key, const Json &value)
+      {
+        const bool is_text = value.is_string();
+        columns.push_back({key, is_text ? "" : unit_of_key(key), "as in summary.json", is_text ? word_width : 0});
+      });
+    columns.push_back(
+      {"seconds", "s", "wall time of the point; points that were computed side by side share theirs", 0});
+    columns.push_back({"reason", "", "name of what went wrong", reason_width});
+    columns.push_back({"message", "", "what went wrong, in a sentence", message_width});
+    columns.push_back({"status", "", "finished, inverted, failed or stopped; empty: not computed yet", word_width});
+    return columns;
+  }
+
+  PointStatus
+  status_of(const Task &task)
+  {
+    if (task.error)
+      try
+      {
+        std::rethrow_exception(task.error);
+      }
+      catch (const InputError &error)
+      {
+        return {"failed", "refused", error.what()};
+      }
+      catch (const FileError &)
+      {
+        throw;
+      }
+      catch (const std::exception &error)
+      {
+        return {"failed", "exception", error.what()};
+      }
+    if (task.is_out_of_time)
+      return {"stopped", "time_limit", "it took longer than Sweep/Time limit per point"};
+    const TimeOutcome &time = task.computed.result.time;
+    return time.status == "finished" ? PointStatus{time.status, "", ""}
+                                     : PointStatus{time.status, time.reason, time.message};
+  }
+
+  RowFile::Row
+  sweep_row(const std::vector<RowFile::Column> &columns,
+            const SweepDesign &design,
+            const unsigned long point,
+            const Task &task)
+  {
+    std::map<std::string, Json> values;
+    const PointStatus status = status_of(task);
+    const bool is_known      = !task.error && !task.computed.result.time.status.empty();
+    if (is_known)
+    {
+      const Numerics &n = task.computed.choice.numerics;
+      const auto mesh =
+        n.n_cells > 0 ? std::optional(SummaryMesh{n.n_cells, n.degree, n.n_cells * n.degree + 1, false}) : std::nullopt;
+      SimulationResult result = task.computed.result;
+      result.time.status      = status.status;
+      for_each_value(Json::parse(summary_json(result, task.parameters, mesh, 1, "")),
+                     "",
+                     [&](const std::string &key, const Json &value)
+                     {
+                       values.emplace(key, value);
+                     });
+    }
+    RowFile::Row row;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+    {
+      const RowFile::Column &column = columns[i];
+      if (i == 0)
+        row.emplace_back(static_cast<double>(point));
+      else if (i <= design.axes().size())
+      {
+        const std::string &text = design.value(i - 1, point);
+        if (column.width > 0)
+          row.emplace_back(text);
+        else
+          row.emplace_back(*to_number(text));
+      }
+      else if (column.name == "seconds")
+        row.emplace_back(task.seconds);
+      else if (column.name == "status")
+        row.emplace_back(status.status);
+      else if (column.name == "reason")
+        row.emplace_back(status.reason);
+      else if (column.name == "message")
+        row.emplace_back(status.message);
+      else
+      {
+        const auto found = values.find(column.name);
+        row.push_back(value_of(found == values.end() ? Json(nullptr) : found->second, column.width > 0));
+      }
+    }
+    return row;
+  }
+} // namespace crawler
