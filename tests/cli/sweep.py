@@ -1,0 +1,267 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""crawler sweep: designs, its table in h5py and pandas, resume after kill -9 at random moments, limits and bad input.
+
+    python3 sweep.py PATH_TO_CRAWLER MPIRUN
+"""
+import csv
+import json
+import math
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+import numpy as np
+
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
+                   OPENBLAS_NUM_THREADS="1")
+CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
+BASE = """
+set Accuracy = 1e-4
+subsection Active stress
+  subsection Optimal wave
+    set Choose wave by = wave speed
+  end
+end
+"""
+KILLS = 20
+failures = 0
+
+
+def check(condition, what):
+    """Prints what was checked and counts failures."""
+    global failures
+    failures += not condition
+    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
+
+
+def write(folder, axes, more="", name="sweep.prm"):
+    """A parameter file with these axes."""
+    text = BASE + f"subsection Sweep\n  set Axes = {axes}\n  {more}\nend\n"
+    pathlib.Path(folder, name).write_text(text, encoding="utf-8")
+
+
+def call(program, folder, *arguments, command=()):
+    """Runs the program in the folder."""
+    return subprocess.run([*command, program, *arguments], cwd=folder, env=ENVIRONMENT, capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, timeout=300, check=False)
+
+
+def table(folder):
+    """All columns of results.h5."""
+    with h5py.File(folder / "results.h5", "r") as file:
+        return {bytes(data.attrs["name"]).decode(): (data.asstr()[:] if data.dtype.kind == "S" else data[:])
+                for data in file["results"].values()}
+
+
+def same(one, other, but=("seconds",)):
+    """Whether two tables are the same bit for bit, times aside."""
+    return one.keys() == other.keys() and all(
+        one[name].tobytes() == other[name].tobytes() if one[name].dtype.kind == "f" else list(one[name]) == list(other[name])
+        for name in one if name not in but)
+
+
+def test_grid(program, mpirun, folder):
+    """Values, order, error bars, CSV, pandas."""
+    write(folder, f"{P} : 0, 2, 3; {CHI} : 0.1, 0.4")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "grid")
+    check(result.returncode == 0, f"a grid finishes with 0 ({result.returncode}) {result.stderr.strip()}")
+    rows = table(folder / "grid")
+    check(list(rows[P]) == [0, 0, 2, 2, 3, 3] and list(rows[CHI]) == [0.1, 0.4] * 3, "the last axis varies fastest")
+    check(all(rows["status"] == "finished"), "every point has a row")
+    check(abs(rows["displacement"][3] - 9.0072529800e-2) <= rows["displacement_error.total"][3] <= 1e-4 * 0.0901,
+          "Fig. S1 is within its error bar, and the bar within Accuracy")
+    with open(folder / "grid" / "results.csv", newline="", encoding="utf-8") as file:
+        lines = list(csv.DictReader(file))
+    check(len(lines) == 6 and all(float(line["displacement"]) == value
+                                  for line, value in zip(lines, rows["displacement"])), "results.csv has the same")
+    check(list(lines[0])[:3] == ["index", P, CHI], "columns start with index and axes")
+    try:
+        import pandas
+        frame = pandas.read_csv(folder / "grid" / "results.csv")
+        from_h5 = pandas.DataFrame(rows)
+        check(np.array_equal(frame["displacement"], from_h5["displacement"]) and len(frame.columns) == len(from_h5.columns),
+              "pandas reads both files")
+    except ImportError:
+        print("skip   pandas is not installed")
+    single = call(program, folder, "run", "sweep.prm", "--set", f"{P}=3", "--set", f"{CHI}=0.4", "--output", "single", "--set",
+                  "Output/Number of snapshots=0")
+    summary = json.loads((folder / "single" / "summary.json").read_text(encoding="utf-8"))
+    check(single.returncode == 0 and abs(summary["displacement"] - rows["displacement"][5])
+          <= summary["displacement_error"]["total"] + rows["displacement_error.total"][5],
+          "a point agrees with crawler run within the error bars")
+    two = call(program, folder, "sweep", "sweep.prm", "--output", "two", command=(mpirun, "--oversubscribe", "-n", "2"))
+    check(two.returncode == 0 and same(rows, table(folder / "two")), "two ranks give the same table, bit for bit")
+    many = call(program, folder, "sweep", "sweep.prm", "--output", "many", command=(mpirun, "--oversubscribe", "-n", "8"))
+    check(many.returncode == 0 and same(rows, table(folder / "many")), "so do more ranks than points")
+
+
+def test_designs(program, folder):
+    """zip, random, Latin hypercube, column of a file, files as an axis."""
+    (folder / "values.csv").write_text("name,p,chi\na,2,0.1\nb,3,0.2\n", encoding="utf-8")
+    write(folder, f"{P} : column(values.csv, p); {CHI} : column(values.csv, chi)", "set Design = zip")
+    call(program, folder, "sweep", "sweep.prm", "--output", "zip")
+    rows = table(folder / "zip")
+    check(list(rows[P]) == [2, 3] and list(rows[CHI]) == [0.1, 0.2], "zip takes the rows of a CSV file")
+    for design in ("random", "latin hypercube"):
+        write(folder, f"{P} : uniform(1.5, 4); {CHI} : loguniform(0.01, 0.4)",
+              f"set Design = {design}\n set Number of points = 20\n set Seed = 3")
+        call(program, folder, "sweep", "sweep.prm", "--output", design[:5], "--overwrite")
+        rows = table(folder / design[:5])
+        strata = np.sort(np.floor((rows[P] - 1.5) / 2.5 * 20))
+        inside = rows[P].min() >= 1.5 and rows[P].max() < 4 and rows[CHI].min() >= 0.01 and rows[CHI].max() < 0.4
+        check(inside and len(set(rows[P])) == 20 and (design == "random" or list(strata) == list(range(20))),
+              f"{design}: 20 points within the ranges{'' if design == 'random' else ', one in each part of an axis'}")
+        call(program, folder, "sweep", "sweep.prm", "--output", "again", "--overwrite")
+        check(same(rows, table(folder / "again")), f"{design}: the same seed gives the same table")
+    (folder / "soft.prm").write_text("subsection Body\n  set Elastic modulus = 1\nend\n", encoding="utf-8")
+    (folder / "stiff.prm").write_text("subsection Body\n  set Elastic modulus = 10\nend\n", encoding="utf-8")
+    write(folder, f"File : soft.prm, stiff.prm; {CHI} : 0.3")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "files")
+    rows = table(folder / "files")
+    check(result.returncode == 0 and abs(rows["displacement"][0] - 4.764510e-2) < 1e-5 and
+          abs(rows["displacement"][1] - 4.8552305987e-2) < 1e-5, "parameter files are an axis")
+
+
+def test_rows_that_fail(program, folder):
+    """Inverted, refused and slow points are rows; --strict says so; fields are kept."""
+    write(folder, f"{P} : 0; Active stress/Optimal wave/Wave speed : -1, 1; {CHI} : 0.6, 0.1", "set Keep fields = 1")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "some")
+    rows = table(folder / "some")
+    check(result.returncode == 0 and rows["status"][0] == "inverted" and rows["reason"][0] != "" and rows["status"][1] == "finished",
+          "a body that inverts is a row")
+    check(math.isfinite(rows["inversion.t"][0]) and math.isnan(rows["inversion.t"][1]), "with the time of the inversion")
+    check((folder / "some" / "points" / "1" / "solution.pvd").is_file(), "the fields of a point are kept")
+    strict = call(program, folder, "sweep", "sweep.prm", "--output", "strict", "--strict")
+    check(strict.returncode == 8, f"--strict: exit code 8 ({strict.returncode})")
+    write(folder, f"{P} : 2; {CHI} : 0.1, 0.7", "set Time limit per point = 0.05\n set Design = grid")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "slow", "--set", "Accuracy=1e-7")
+    rows = table(folder / "slow")
+    check(result.returncode == 0 and rows["status"][1] == "stopped" and rows["reason"][1] == "time_limit",
+          f"a point that takes too long is a row ({rows['status'][1]}, {rows['reason'][1]})")
+
+
+def test_kills(program, mpirun, folder):
+    """kill -9 of a rank or of mpirun at random moments; SIGTERM; nothing is lost, nothing computed twice."""
+    write(folder, f"{P} : linspace(1.5, 4, 16); {CHI} : linspace(0.05, 0.5, 48)")
+    whole = call(program, folder, "sweep", "sweep.prm", "--output", "whole")
+    check(whole.returncode == 0, "an unbroken sweep")
+    reference = table(folder / "whole")
+    start = time.time()
+    call(program, folder, "sweep", "sweep.prm", "--output", "timed", command=(mpirun, "--oversubscribe", "-n", "2"))
+    duration = time.time() - start
+    generator, order, lost = random.Random(7), 0, 0
+    shutil.rmtree(folder / "killed", ignore_errors=True)
+    before, n_killed = {}, 0
+    for attempt in range(KILLS):
+        victim = generator.choice(("mpirun", "rank", "term"))
+        process = subprocess.Popen([mpirun, "--oversubscribe", "-n", "2", program, "sweep", "sweep.prm", "--output", "killed",
+                                    "--resume"], cwd=folder, env=ENVIRONMENT, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL, start_new_session=True)
+        time.sleep(generator.uniform(0.1, 0.5 * duration))
+        ranks = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=False).stdout.split()
+        if process.poll() is None:
+            n_killed += 1
+            if victim == "rank" and ranks:
+                os.kill(int(generator.choice(ranks)), signal.SIGKILL)
+            elif victim == "term":
+                process.terminate()
+            else:
+                process.kill()
+        process.wait(timeout=60)
+        for rank in ranks:  # orphans of a killed mpirun end by themselves; do not wait for them
+            try:
+                os.kill(int(rank), signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        time.sleep(0.2)
+        if not (folder / "killed" / "results.h5").is_file():
+            shutil.rmtree(folder / "killed", ignore_errors=True)
+            continue
+        now = table(folder / "killed")
+        done = now["status"] != ""
+        order += not all(done[i] for i in before)
+        lost += any(now["seconds"][i] != seconds for i, seconds in before.items())
+        before = {i: now["seconds"][i] for i in np.flatnonzero(done)}
+    check(n_killed >= KILLS // 3, f"{n_killed} of {KILLS} runs were killed or stopped under way")
+    check(order == 0 and lost == 0, "after each kill the file is valid, and no row is lost or computed again")
+    last = call(program, folder, "sweep", "sweep.prm", "--output", "killed", "--resume",
+                command=(mpirun, "--oversubscribe", "-n", "2"))
+    check(last.returncode == 0 and same(reference, table(folder / "killed")),
+          "the table in the end is that of the unbroken sweep, bit for bit")
+    before = table(folder / "killed")
+    again = call(program, folder, "sweep", "sweep.prm", "--output", "killed", "--resume")
+    check(again.returncode == 0 and same(before, table(folder / "killed"), but=()), "a sweep that is finished stays as it is")
+    changed = call(program, folder, "sweep", "sweep.prm", "--output", "killed", "--resume", "--set", "Body/Length=2")
+    check(changed.returncode == 2 and 'Body/Length was "1" and is "2"' in changed.stderr,
+          "a changed parameter is refused, with the difference")
+
+
+def test_limits(program, folder):
+    """A time limit and a full disk end a sweep in order."""
+    write(folder, f"{P} : linspace(1.5, 4, 40); {CHI} : linspace(0.05, 0.5, 40)", "set Time limit = 0.3")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "limit")
+    rows = table(folder / "limit")
+    check(result.returncode == 5 and 0 < np.count_nonzero(rows["status"] != "") < 1600,
+          f"the time limit ends it with exit code 5 ({result.returncode}), with rows")
+    disk = folder / "disk"
+    disk.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "tmpfs", disk], capture_output=True, check=False).returncode:
+        print("skip   a full disk: only root can make a small one")
+        return
+    try:
+        full = call(program, folder, "sweep", "sweep.prm", "--output", "disk/full")
+        check(full.returncode == 6 and "full" in full.stderr,
+              f"a full disk is a file error ({full.returncode}): {full.stderr.strip()[:120]}")
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+def test_bad_input(program, folder):
+    """Wrong names and values are found before the first solve."""
+    cases = {
+        "": "",
+        "Body/Anchoring exponnt : 1, 2": "Anchoring exponent",
+        f"{P} : 1, two": "two",
+        f"{P} : linspace(1, 2)": "linspace",
+        f"{P} : uniform(1, 2)": "random",
+        f"{P} : column(nothing.csv, p)": "nothing.csv",
+        f"{P} : 1, 2; {P} : 3, 4": "twice",
+        "Body/Length : 1, -1": "-1",
+        "Sweep/Seed : 1, 2": "cannot vary",
+        f"{P} 1, 2": "VALUES",
+        "File : missing.prm": "missing.prm",
+    }
+    for axes, word in cases.items():
+        write(folder, axes)
+        result = call(program, folder, "sweep", "sweep.prm", "--output", "bad")
+        lines = [line for line in result.stderr.splitlines() if line.strip()]
+        check(result.returncode in (2, 6) and len(lines) == 1 and word in lines[0] and not (folder / "bad").exists(),
+              f"\"{axes}\": {result.returncode}, {lines[0] if lines else 'no message'}")
+
+
+def main():
+    """All tests in a folder of their own."""
+    program, mpirun = str(pathlib.Path(sys.argv[1]).resolve()), sys.argv[2]
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        test_bad_input(program, folder)
+        test_grid(program, mpirun, folder)
+        test_designs(program, folder)
+        test_rows_that_fail(program, folder)
+        test_limits(program, folder)
+        if "--quick" in sys.argv:
+            sys.exit(failures > 0)
+        test_kills(program, mpirun, folder)
+    sys.exit(failures > 0)
+
+
+if __name__ == "__main__":
+    main()
