@@ -124,6 +124,19 @@ namespace crawler
                   const std::map<std::string, std::string> &attributes)
   {
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
+    // HDF5 cannot close a file that it could not write (it crashes at the end of the process), so first see if it can.
+    double bytes = 4e3 * static_cast<double>(columns.size());
+    for (const Column &column : columns)
+      bytes += static_cast<double>(n_rows) * (column.width == 0 ? sizeof(double) : column.width);
+    for (const auto &[name, text] : attributes)
+      bytes += static_cast<double>(text.size());
+    std::error_code no_space;
+    const auto left = std::filesystem::space(std::filesystem::absolute(path).parent_path(), no_space).available;
+    if (!no_space && static_cast<double>(left) < bytes)
+      throw FileError(fmt::format("\"{}\" needs {:.3g} MB, but only {:.3g} MB are left: the disk is full",
+                                  path.string(),
+                                  bytes / 1e6,
+                                  static_cast<double>(left) / 1e6));
     const std::filesystem::path temporary = path.string() + ".part";
     {
       const Hdf5Handle file(
