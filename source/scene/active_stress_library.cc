@@ -62,6 +62,12 @@ namespace crawler
          {
            return std::make_unique<PrescribedStrain>(parameters.prescribed_strain, body, end_time);
          }},
+        {"segments",
+         Segments::description,
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
+           return std::make_unique<Segments>(parameters.segments, body.length, end_time);
+         }},
         {"table",
          ActiveStressTable::description,
          [](const auto &parameters, const Body &body, const double end_time)
@@ -89,6 +95,7 @@ namespace crawler
     travelling_wave.add_parameters(declarations);
     standing_wave.add_parameters(declarations);
     pulse.add_parameters(declarations);
+    segments.add_parameters(declarations);
     expression.add_parameters(declarations);
     prescribed_strain.add_parameters(declarations);
     table.add_parameters(declarations);

@@ -6,6 +6,7 @@
 #include <crawler/scene/active_stress/optimal_wave.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
 #include <crawler/scene/active_stress/pulse.h>
+#include <crawler/scene/active_stress/segments.h>
 #include <crawler/scene/active_stress/standing_wave.h>
 #include <crawler/scene/active_stress/table.h>
 #include <crawler/scene/active_stress/travelling_wave.h>
@@ -20,6 +21,7 @@ namespace crawler
     TravellingWaveParameters travelling_wave;
     StandingWaveParameters standing_wave;
     PulseParameters pulse;
+    SegmentsParameters segments;
     ExpressionParameters expression;
     PrescribedStrainParameters prescribed_strain;
     TableParameters table;
