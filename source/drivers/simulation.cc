@@ -43,13 +43,24 @@ namespace crawler
     }
   } // namespace
 
+  std::vector<double>
+  first_cell_ends(const Scene &scene, const Numerics &numerics)
+  {
+    const double L             = scene.body.length;
+    std::vector<double> breaks = breaks_in_space(*scene.active_stress, L);
+    for (double &s : breaks)
+      s /= L;
+    return cell_ends(numerics.n_cells, breaks, numerics.grading);
+  }
+
   Simulation::Simulation(MPI_Comm communicator,
                          const Scene &scene,
                          const TimeParameters &time,
                          const Numerics &numerics)
     : physical_scene_(scene)
     , units_(natural_units(scene))
-    , scene_(crawler::in_units(scene, units_))
+    , pieces_(*scene.active_stress, scene.end_time)
+    , scene_(crawler::in_units(scene, units_, &pieces_))
     , numerics_(in_units(numerics, units_))
     , time_(time)
     , communicator_(communicator)
@@ -57,12 +68,21 @@ namespace crawler
     time_.end_time = 1.;
     if (time_.integrator == "automatic")
       time_.integrator = !numerics_.integrator.empty() ? numerics_.integrator : numerics_.linear ? "radau 5" : "bdf";
-    build(std::make_unique<Discretization>(communicator, 1., numerics.n_cells, numerics.degree),
-          numerics.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
-    as_at_start_ = true;
+    build_first();
   }
 
   Simulation::~Simulation() = default;
+
+  /// Mesh and formulation of the start.
+  void
+  Simulation::build_first()
+  {
+    std::vector<double> ends = first_cell_ends(scene_, numerics_);
+    build(ends.empty() ? std::make_unique<Discretization>(communicator_, 1., numerics_.n_cells, numerics_.degree)
+                       : std::make_unique<Discretization>(communicator_, std::move(ends), numerics_.degree),
+          numerics_.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
+    as_at_start_ = true;
+  }
 
   /// The equation on a mesh.
   void
@@ -91,12 +111,10 @@ namespace crawler
                   const std::function<bool()> &keep_going)
   {
     const double start = now();
+    pieces_.restart();
     if (!as_at_start_)
-    {
-      build(std::make_unique<Discretization>(communicator_, 1., numerics_.n_cells, numerics_.degree),
-            numerics_.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
-      as_at_start_ = true;
-    }
+      build_first();
+    assembler_->forget_stresses(); // of the last piece
     options_              = options;
     has_observers_        = !observers.empty();
     result_               = {};
@@ -182,7 +200,13 @@ namespace crawler
       request_     = Request::none;
       bool resumed = started_;
       choose_stepper();
-      stepper_->monitor = [&](const Step &part, const std::span<const double> y)
+      if (!pieces_.is_last() && accepted_time_ >= pieces_.end())
+        begin_piece();
+      if (diagnosis_)
+        return before_;
+      const std::vector<double> ends = frames_of_piece();
+      const bool ends_at_frame       = ends_at_frame_;
+      stepper_->monitor              = [&](const Step &part, const std::span<const double> y)
       {
         if (resumed) // the state from which this part starts has been seen already
         {
@@ -193,6 +217,8 @@ namespace crawler
         step.number += before_.steps;
         step.rejected += before_.rejected_steps;
         step.newton_iterations += before_.newton_iterations;
+        const bool at_break = !pieces_.is_last() && part.time == pieces_.end();
+        step.is_frame       = part.is_frame && (!at_break || ends_at_frame);
         if (!examine(step, y))
           return false; // an inverted state is not shown to anybody
         const double before = now();
@@ -210,14 +236,12 @@ namespace crawler
           return false;
         }
         look_for_coarser_mesh(step);
+        if (at_break && request_ == Request::none)
+          request_ = Request::restart;
         return request_ == Request::none;
       };
-      std::vector<double> rest;
-      for (std::size_t i = next_frame_; i < frames_.size(); ++i)
-        rest.push_back(i + 1 == frames_.size() && frames_[i] == physical_scene_.end_time ? 1.
-                                                                                         : frames_[i] / units_.time);
       TimeOutcome outcome =
-        stepper_->solve(y_, rest, numerics_.tolerance, next_step_, numerics_.largest_step, accepted_time_);
+        stepper_->solve(y_, ends, numerics_.tolerance, next_step_, numerics_.largest_step, accepted_time_);
       stepper_->monitor = nullptr;
       outcome.steps += before_.steps;
       outcome.rejected_steps += before_.rejected_steps;
@@ -241,8 +265,51 @@ namespace crawler
       next_step_ = std::min(outcome.step_size, numerics_.largest_step);
       if (time_.integrator == "bdf") // starts anew with order 1
         next_step_ = std::min(next_step_, numerics_.initial_step);
-      change();
+      if (request_ != Request::restart)
+        change();
     }
+  }
+
+  /// The frames from now to the end of the present piece, which is the last of them if another piece follows.
+  std::vector<double>
+  Simulation::frames_of_piece()
+  {
+    const double reach = pieces_.is_last() ? HUGE_VAL : pieces_.end() - least_time_between_breaks;
+    std::vector<double> result;
+    std::size_t i         = next_frame_;
+    const auto frame_time = [&]()
+    {
+      return i + 1 == frames_.size() && frames_[i] == physical_scene_.end_time ? 1. : frames_[i] / units_.time;
+    };
+    for (; i < frames_.size() && frame_time() < reach; ++i)
+      result.push_back(frame_time());
+    ends_at_frame_ = i < frames_.size() && frame_time() <= pieces_.end() + least_time_between_breaks;
+    if (!pieces_.is_last())
+      result.push_back(pieces_.end());
+    return result;
+  }
+
+  /// The active stress has jumped, so velocities and all derivatives jump: from the last accepted state starts a run of
+  /// its own.
+  void
+  Simulation::begin_piece()
+  {
+    pieces_.go_on();
+    assembler_->forget_stresses();
+    rates_.assign(rates_.size(), {});
+    quadrature_ = {};
+    min_history_.interrupt();
+    max_history_.interrupt();
+    next_step_ = numerics_.initial_step;
+    if (end_inverts(accepted_time_, accepted_time_))
+      return;
+    y_ = accepted_;
+    assembler_->make_consistent(accepted_time_, y_);
+    accepted_ = y_;
+    if (!options_.ledger || !stepper_->quadrature().empty())
+      return;
+    if (velocity(accepted_time_, 0., y_, v_))
+      quadrature_.advance(accepted_time_, rates(accepted_time_, assembler_->integrals(accepted_time_, y_, v_), v_));
   }
 
   /// Keeps the counts of a part of the run that has ended.
@@ -300,8 +367,8 @@ namespace crawler
     constexpr unsigned int most_corrections = 10;
     const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
     const double t                          = accepted_time_ + size;
-    const double next_frame = next_frame_ < frames_.size() ? std::min(frames_[next_frame_] / units_.time, 1.) : 1.;
-    if (t > next_frame - size)
+    const double next_frame                 = next_frame_ < frames_.size() ? frames_[next_frame_] / units_.time : 1.;
+    if (t > std::min(next_frame, pieces_.end()) - size)
       return;
     std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
     for (unsigned int i = 0; i < most_corrections; ++i)

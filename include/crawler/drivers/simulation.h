@@ -3,6 +3,7 @@
 
 #include <crawler/base/extreme_history.h>
 #include <crawler/discretization/assembler.h>
+#include <crawler/discretization/graded_mesh.h>
 #include <crawler/discretization/mesh_marking.h>
 #include <crawler/drivers/cycle_stop.h>
 #include <crawler/drivers/displacement_error.h>
@@ -41,7 +42,13 @@ namespace crawler
     MeshLimits mesh               = {};    ///< of an adaptive mesh
     bool linear                   = false; ///< the rung for a = 0: radau, position form, uniform mesh
     std::string integrator        = "";    ///< what an automatic integrator is (time/integrators.h); empty: bdf
+    Grading grading               = {};    ///< of the first mesh, which has n_cells cells without it
   };
+
+  /// The ends of the cells of the first mesh, for a body of length 1: at the breaks in space, and graded as wished.
+  /// Empty if they are n_cells of one size.
+  std::vector<double>
+  first_cell_ends(const Scene &scene, const Numerics &numerics);
 
   /// What one simulation gives.
   struct SimulationResult
@@ -118,9 +125,12 @@ namespace crawler
     {
       none,
       log_stretch, ///< change the formulation
-      mesh         ///< change the mesh by changes_
+      mesh,        ///< change the mesh by changes_
+      restart      ///< the active stress jumps
     };
 
+    void
+    build_first();
     void
     build(std::unique_ptr<Discretization> discretization, Formulation formulation);
     bool
@@ -137,6 +147,10 @@ namespace crawler
     go_on_with_petsc(const TimeOutcome &outcome);
     void
     count_part(const TimeOutcome &outcome);
+    void
+    begin_piece();
+    std::vector<double>
+    frames_of_piece();
     void
     change();
     void
@@ -188,6 +202,7 @@ namespace crawler
 
     const Scene &physical_scene_;
     const Units units_;
+    TimePieces pieces_;
     const Scene scene_;       ///< in natural units
     const Numerics numerics_; ///< in natural units
     TimeParameters time_;     ///< in natural units
@@ -236,6 +251,7 @@ namespace crawler
     TimeOutcome before_;         ///< counts of the parts of the run before the last change of mesh or formulation
     std::vector<double> frames_; ///< in physical units
     std::size_t next_frame_ = 0;
+    bool ends_at_frame_     = false; ///< does the present piece?
     std::optional<CycleStop> cycle_stop_;
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
     bool started_ = false; ///< a state has been accepted
