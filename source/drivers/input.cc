@@ -42,6 +42,7 @@ namespace crawler
         {"Active stress/Standing wave/", p.active_stress.generator == "standing wave", generator},
         {"Active stress/Pulse/", p.active_stress.generator == "pulse", generator},
         {"Active stress/Expression/", p.active_stress.generator == "expression", generator},
+        {"Active stress/Table/", p.active_stress.generator == "table", generator},
         {"Active stress/Prescribed strain/", p.active_stress.generator == "prescribed strain", generator},
         {"Active stress/Prescribed strain/Strain", given_by == "expression", source},
         {"Active stress/Prescribed strain/Constants", given_by == "expression", source},

@@ -63,6 +63,12 @@ namespace crawler
          {
            return std::make_unique<PrescribedStrain>(parameters.prescribed_strain, body, end_time);
          }},
+        {"table",
+         ActiveStressTable::description,
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
+           return std::make_unique<ActiveStressTable>(parameters.table, body.length, end_time);
+         }},
       };
       return list;
     }
@@ -86,6 +92,7 @@ namespace crawler
     pulse.add_parameters(declarations);
     expression.add_parameters(declarations);
     prescribed_strain.add_parameters(declarations);
+    table.add_parameters(declarations);
     declarations.leave();
   }
 

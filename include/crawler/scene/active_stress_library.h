@@ -7,6 +7,7 @@
 #include <crawler/scene/active_stress/prescribed_strain.h>
 #include <crawler/scene/active_stress/pulse.h>
 #include <crawler/scene/active_stress/standing_wave.h>
+#include <crawler/scene/active_stress/table.h>
 #include <crawler/scene/active_stress/travelling_wave.h>
 
 namespace crawler
@@ -21,6 +22,7 @@ namespace crawler
     PulseParameters pulse;
     ExpressionParameters expression;
     PrescribedStrainParameters prescribed_strain;
+    TableParameters table;
 
     void
     add_parameters(Declarations &declarations);
