@@ -13,10 +13,10 @@
 namespace crawler::test
 {
   /// The active stress of a scene, by full names of entries.
-  inline std::unique_ptr<ActiveStress>
+  inline std::unique_ptr<const ActiveStress>
   stress_with(const Settings &settings)
   {
-    return std::unique_ptr<ActiveStress>(std::move(parameters_with(settings).create_scene().active_stress));
+    return std::move(parameters_with(settings).create_scene().active_stress);
   }
 
   inline std::vector<double>

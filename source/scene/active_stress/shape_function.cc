@@ -15,6 +15,7 @@ namespace crawler
   {
     constexpr unsigned int high_degree = 15, low_degree = 3;
     constexpr double smallest = 1e-10;              ///< panel, of the length of a panel in the beginning
+    constexpr double tiny     = 1e-6;               ///< the same, of panels that only a kink makes
     constexpr double accuracy = 1e-13, jump = 1e-3; ///< of the largest |V|
     constexpr std::size_t most_panels = 1000000;
 
@@ -101,6 +102,7 @@ namespace crawler
         largest = std::max(largest, std::abs(values[j]));
       }
     }
+    double kink_panel = 0.;     // the smallest at the last kink
     std::vector<double> rights; // of panels to do, the leftmost last
     for (std::size_t i = n_panels; i > 0; --i)
       rights.push_back(end_of(i));
@@ -130,12 +132,16 @@ namespace crawler
                            entry);
         continue;
       }
-      if (is_smallest)
+      if (is_smallest && variation > jump * largest)
+        throw InputError(fmt::format("the shape jumps at x = {:g}; a continuous function is expected", left), entry);
+      if (right - left <= tiny * size) // as only those are that have a kink in them or near
       {
-        if (variation > jump * largest)
-          throw InputError(fmt::format("the shape jumps at x = {:g}; a continuous function is expected", left), entry);
-        if (kinks_.empty() || left > kinks_.back() + 1e-6 * size)
+        const bool is_next = !kinks_.empty() && left - kinks_.back() <= 10. * tiny * size;
+        if (!is_next)
           kinks_.push_back(0.5 * (left + right));
+        else if (right - left < kink_panel)
+          kinks_.back() = 0.5 * (left + right);
+        kink_panel = is_next ? std::min(kink_panel, right - left) : right - left;
       }
       add_panel(right, c);
       rights.pop_back();

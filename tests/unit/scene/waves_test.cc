@@ -123,9 +123,9 @@ TEST(TravellingWave, SquareIsTheFormula)
                              {"Phase", "0.1"},
                              {"Offset", "0.05"}}),
                  "0.05 + 0.1*" + smoothed("(s + t + 0.05/pi)", "0.3", "0.2"));
-  const auto stress   = stress_with(travelling({{"Profile", "smoothed square"}, {"Front width", "0.25"}}));
-  const auto points   = test::places(1., 16);
-  const auto m        = values(*stress, points, 2.);
+  const auto stress = stress_with(travelling({{"Profile", "smoothed square"}, {"Front width", "0.25"}}));
+  const auto points = test::places(1., 16);
+  const auto m      = values(*stress, points, 2.);
   EXPECT_NEAR(m[0], 0., 1e-15);
   EXPECT_NEAR(
     m[1], 0.1 * (2. / (1. + std::exp(1. / 0.75 - 4.)) - 1.), 1e-14); // a quarter of the front after its middle
