@@ -116,8 +116,8 @@ def draw(folder, picture, with_stress):
         axes.locator_params(steps=(1, 2, 5, 10))
     below.grid(color="0.85", linewidth=0.6)
     try:
-        figure.savefig(picture, dpi=160)
-        if picture.suffix == ".png":  # 256 colours: less than half the size
+        figure.savefig(picture, dpi=120 if with_stress else 160)
+        if picture.suffix == ".png" and not with_stress:  # 256 colours: less than half the size
             from PIL import Image  # comes with matplotlib
             Image.open(picture).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(picture, optimize=True)
     except (OSError, ValueError) as error:
