@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/none.h>
+#include <crawler/scene/active_stress/shaped_wave.h>
 #include <crawler/scene/active_stress_library.h>
 
 #include <functional>
@@ -30,7 +31,7 @@ namespace crawler
          OptimalWave::description,
          [](const auto &parameters, const Body &body, const double end_time)
          {
-           return std::make_unique<OptimalWave>(parameters.optimal_wave, body, end_time);
+           return create_optimal_wave(parameters.optimal_wave, body, end_time);
          }},
         {"travelling wave",
          TravellingWave::description,

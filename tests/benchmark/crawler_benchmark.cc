@@ -28,7 +28,9 @@
 //   kernel/...           Residual, Jacobian, elimination and velocity on a mesh of n cells.
 //   kernel/expression/... The active stress as a formula: "bulk" evaluates it at the Gauss points of n cells of degree
 //                        4 (items are points), "construction" prepares it for a mesh.
-//   scale/...            One Newton step (residual, Jacobian, elimination, solution) against the number of unknowns.
+//   kernel/*/values      The same for other generators; formula_of_shaped_wave is what shaped_wave would be as a
+//   formula. scale/...            One Newton step (residual, Jacobian, elimination, solution) against the number of
+//   unknowns.
 #include "benchmarks.h"
 
 #include <deal.II/base/mpi.h>
