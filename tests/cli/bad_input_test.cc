@@ -50,6 +50,24 @@ namespace
     return {name, in_section("Active stress/Optimal wave", lines), message};
   }
 
+  /// Actuators of robots, and measurements.
+  std::vector<BadInput>
+  generators()
+  {
+    return {
+      {"SegmentsAmplitudes",
+       in_section("Active stress", "set Generator = segments") +
+         in_section("Active stress/Segments", "set Amplitude = 1, 2"),
+       {"bad.prm, line 6", "Active stress/Segments/Amplitude", "2 numbers are found", "1 or 8"}},
+      {"TableFile",
+       in_section("Active stress", "set Generator = table") + in_section("Active stress/Table", "set File = none.csv"),
+       {"bad.prm, line 6", "Active stress/Table/File", "cannot read \"none.csv\"", "header s,t,m"}},
+      {"TableHeader",
+       in_section("Active stress", "set Generator = table") + in_section("Active stress/Table", "set File = bad.prm"),
+       {"the first row of \"bad.prm\" is \"subsection Active stress\"", "header s,t,m is expected"}},
+    };
+  }
+
   std::vector<BadInput>
   names()
   {
@@ -504,6 +522,7 @@ INSTANTIATE_TEST_SUITE_P(Names, BadInputTest, testing::ValuesIn(names()), name_o
 INSTANTIATE_TEST_SUITE_P(Values, BadInputTest, testing::ValuesIn(values()), name_of);
 INSTANTIATE_TEST_SUITE_P(Formulas, BadInputTest, testing::ValuesIn(formulas()), name_of);
 INSTANTIATE_TEST_SUITE_P(Waves, BadInputTest, testing::ValuesIn(waves()), name_of);
+INSTANTIATE_TEST_SUITE_P(Generators, BadInputTest, testing::ValuesIn(generators()), name_of);
 INSTANTIATE_TEST_SUITE_P(Atlases, BadInputTest, testing::ValuesIn(atlases()), name_of);
 INSTANTIATE_TEST_SUITE_P(Tradeoffs, BadInputTest, testing::ValuesIn(tradeoffs()), name_of);
 INSTANTIATE_TEST_SUITE_P(Files, BadInputTest, testing::ValuesIn(files()), name_of);

@@ -222,11 +222,13 @@ namespace crawler
     declarations.number(
       "Wave speed", wave_speed, any_number(), "Wave speed c; a positive one runs from s = L to s = 0.", "length/time");
     declarations.number("Phase", phase, any_number(), "Phase of the wave at s = 0, t = 0, in radians.", "1");
-    declarations.text("File",
-                      file,
-                      "the name of a CSV file",
-                      "Table with the header s,t,strain and a row for each point of a full grid over the whole body "
-                      "and duration, in any order; cubic splines in s and t go through them. Used if given by table.");
+    declarations.text(
+      "File",
+      file,
+      "the name of a CSV or HDF5 file",
+      "Table: CSV with the header s,t,strain and a row for each point of a full grid over the whole body "
+      "and duration, in any order, or HDF5 with s[ns], t[nt] and strain[nt,ns]; cubic splines in s and t go through "
+      "them. Used if given by table.");
     declarations.leave();
   }
 

@@ -319,6 +319,38 @@ TEST(Segments, MirroredGaitMovesTheOtherWay)
   EXPECT_NEAR(to_head / to_tail, -1., 4e-3);
 }
 
+/// Each entry has its range; the message names the entry and what is expected.
+TEST(Segments, EntriesHaveRanges)
+{
+  struct Bad
+  {
+    std::string entry, value, expected;
+  };
+  for (const auto &[entry, value, expected] : std::vector<Bad>{{"Number of segments", "0", "from 1 to 1000"},
+                                                               {"Amplitude", "0.1, x", "number"},
+                                                               {"Frequency", "0", "above 0"},
+                                                               {"Phase lag", "1.5", "1"},
+                                                               {"Direction", "up", "from head to tail"},
+                                                               {"Duty cycle", "1", "below 1"},
+                                                               {"Switching", "fast", "square"},
+                                                               {"Front width", "0.6", "0.5"},
+                                                               {"Phase", "much", "number"},
+                                                               {"Gap", "-1", "0"},
+                                                               {"Saturation", "0", "automatic"},
+                                                               {"Rate limit", "-2", "automatic"},
+                                                               {"Ramp duration", "-1", "0"}})
+    try
+    {
+      test::parameters_with({{"Active stress/Segments/" + entry, value}});
+      ADD_FAILURE() << entry << " = " << value;
+    }
+    catch (const InputError &error)
+    {
+      EXPECT_EQ(error.entry, "Active stress/Segments/" + entry);
+      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+    }
+}
+
 TEST(Segments, SaysWhatIsWrong)
 {
   EXPECT_EQ(complaint({}, ""), "nothing");
