@@ -328,17 +328,17 @@ TEST(Segments, EntriesHaveRanges)
   };
   for (const auto &[entry, value, expected] : std::vector<Bad>{{"Number of segments", "0", "from 1 to 1000"},
                                                                {"Amplitude", "0.1, x", "number"},
-                                                               {"Frequency", "0", "above 0"},
-                                                               {"Phase lag", "1.5", "1"},
+                                                               {"Frequency", "0", "positive"},
+                                                               {"Phase lag", "1.5", "from 0 to 1"},
                                                                {"Direction", "up", "from head to tail"},
                                                                {"Duty cycle", "1", "below 1"},
                                                                {"Switching", "fast", "square"},
                                                                {"Front width", "0.6", "0.5"},
                                                                {"Phase", "much", "number"},
-                                                               {"Gap", "-1", "0"},
+                                                               {"Gap", "-1", "not negative"},
                                                                {"Saturation", "0", "automatic"},
                                                                {"Rate limit", "-2", "automatic"},
-                                                               {"Ramp duration", "-1", "0"}})
+                                                               {"Ramp duration", "-1", "not negative"}})
     try
     {
       test::parameters_with({{"Active stress/Segments/" + entry, value}});

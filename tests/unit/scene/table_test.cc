@@ -228,8 +228,8 @@ TEST(Table, EntriesHaveRanges)
   for (const auto &[entry, value, expected] : std::vector<Bad>{{"Interpolation", "spline", "cubic"},
                                                                {"Outside", "zero", "periodic"},
                                                                {"Outside in s", "periodic", "hold"},
-                                                               {"Unit of s", "0", "above 0"},
-                                                               {"Unit of t", "-1", "above 0"},
+                                                               {"Unit of s", "0", "positive"},
+                                                               {"Unit of t", "-1", "positive"},
                                                                {"Unit of m", "mN", "number"}})
     try
     {
