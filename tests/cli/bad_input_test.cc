@@ -58,10 +58,10 @@ namespace
       {"SegmentsAmplitudes",
        in_section("Active stress", "set Generator = segments") +
          in_section("Active stress/Segments", "set Amplitude = 1, 2"),
-       {"bad.prm, line 6", "Active stress/Segments/Amplitude", "2 numbers are found", "1 or 8"}},
+       {"bad.prm, line 6", "the list of amplitudes has 2 numbers", "1 or 8"}},
       {"TableFile",
        in_section("Active stress", "set Generator = table") + in_section("Active stress/Table", "set File = none.csv"),
-       {"bad.prm, line 6", "Active stress/Table/File", "cannot read \"none.csv\"", "header s,t,m"}},
+       {"bad.prm, line 6", "cannot read \"none.csv\"", "header s,t,m"}},
       {"TableHeader",
        in_section("Active stress", "set Generator = table") + in_section("Active stress/Table", "set File = bad.prm"),
        {"the first row of \"bad.prm\" is \"subsection Active stress\"", "header s,t,m is expected"}},

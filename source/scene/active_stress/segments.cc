@@ -114,7 +114,9 @@ namespace crawler
     const bool head = sign_of(p.direction) < 0.; // begins there
     if (p.amplitude.size() != 1 && p.amplitude.size() != n)
       throw InputError(
-        fmt::format("{} numbers are found, but 1 or {}, one for each segment, are expected", p.amplitude.size(), n),
+        fmt::format("the list of amplitudes has {} numbers, but 1 or {}, one for each segment, are expected",
+                    p.amplitude.size(),
+                    n),
         section + "Amplitude");
     if (p.switching == "smooth")
     {

@@ -298,7 +298,7 @@ TEST(Segments, ManyAreATravellingWave)
     }
 }
 
-/// Rotating all amplitudes' signs turns contraction into expansion; the mirrored gait moves the body the other way.
+/// The mirrored gait moves the body the other way.
 TEST(Segments, MirroredGaitMovesTheOtherWay)
 {
   const auto displacement = [](const std::string &direction)
@@ -355,9 +355,9 @@ TEST(Segments, SaysWhatIsWrong)
 {
   EXPECT_EQ(complaint({}, ""), "nothing");
   EXPECT_EQ(complaint({.amplitude = {1., 2., 3.}}, "Amplitude"),
-            "3 numbers are found, but 1 or 8, one for each segment, are expected");
+            "the list of amplitudes has 3 numbers, but 1 or 8, one for each segment, are expected");
   EXPECT_EQ(complaint({.amplitude = {}}, "Amplitude"),
-            "0 numbers are found, but 1 or 8, one for each segment, are expected");
+            "the list of amplitudes has 0 numbers, but 1 or 8, one for each segment, are expected");
   EXPECT_EQ(complaint({.duty_cycle = 0.1, .switching = "smooth", .front_width = 0.2}, "Front width"),
             "the fronts are 0.2 of a period wide, but at most 0.1 is expected for the duty cycle 0.1");
   EXPECT_EQ(complaint({.amplitude = {0.5}, .switching = "smooth", .front_width = 0.1, .rate_limit = 5.}, "Rate limit"),
