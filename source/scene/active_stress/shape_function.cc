@@ -204,23 +204,44 @@ namespace crawler
   }
 
   void
-  ShapeFunction::value_and_integral(const double x, std::size_t &panel, double &value, double &integral) const
+  ShapeFunction::values_and_integrals(const std::span<const double> x,
+                                      std::size_t &panel,
+                                      const std::span<double> values,
+                                      const std::span<double> integrals) const
   {
-    panel          = find(x, panel);
-    const double u = local(x, panel), *c = value_.data() + panel * (degree_ + 1),
-                 *d = integral_.data() + panel * (degree_ + 2);
-    double T = 1., T_next = u;
-    value    = c[0];
-    integral = d[0];
-    for (unsigned int k = 1; k <= degree_; ++k)
+    // The recurrence of one place waits for each of its results; those of four do not wait for each other.
+    constexpr std::size_t n = 4;
+    for (std::size_t first = 0; first < x.size(); first += n)
     {
-      value += c[k] * T_next;
-      integral += d[k] * T_next;
-      const double T_new = 2. * u * T_next - T;
-      T                  = T_next;
-      T_next             = T_new;
+      const double *c[n], *d[n];
+      double u[n], T[n], T_next[n], value[n], integral[n];
+      for (std::size_t j = 0; j < n; ++j)
+      {
+        const double place = x[std::min(first + j, x.size() - 1)];
+        panel              = find(place, panel);
+        u[j]               = local(place, panel);
+        c[j]               = value_.data() + panel * (degree_ + 1);
+        d[j]               = integral_.data() + panel * (degree_ + 2);
+        T[j]               = 1.;
+        T_next[j]          = u[j];
+        value[j]           = c[j][0];
+        integral[j]        = d[j][0];
+      }
+      for (unsigned int k = 1; k <= degree_; ++k)
+        for (std::size_t j = 0; j < n; ++j)
+        {
+          value[j] += c[j][k] * T_next[j];
+          integral[j] += d[j][k] * T_next[j];
+          const double T_new = 2. * u[j] * T_next[j] - T[j];
+          T[j]               = T_next[j];
+          T_next[j]          = T_new;
+        }
+      for (std::size_t j = 0; j < n && first + j < x.size(); ++j)
+      {
+        values[first + j]    = value[j];
+        integrals[first + j] = integral[j] + d[j][degree_ + 1] * T_next[j];
+      }
     }
-    integral += d[degree_ + 1] * T_next;
   }
 
   double

@@ -32,6 +32,9 @@ namespace crawler
       AtPoints(const ShapedWave::Settings &wave, const std::vector<double> &points)
         : wave_(wave)
         , points_(points)
+        , x_(points.size())
+        , V_(points.size())
+        , F_(points.size())
       {
         std::size_t panel = 0;
         for (const double s : points)
@@ -47,17 +50,17 @@ namespace crawler
         const double tail = wave_.shape.integral(ct, panel_), head = wave_.shape.integral(L + ct, panel_);
         const double mean = (head - tail) / L;
         for (std::size_t i = 0; i < m.size(); ++i)
-        {
-          double V, F;
-          wave_.shape.value_and_integral(points_[i] + ct, panel_, V, F);
-          m[i] = friction * (F - tail - points_[i] * mean) - elastic * (V - start_[i]);
-        }
+          x_[i] = points_[i] + ct;
+        wave_.shape.values_and_integrals(x_, panel_, V_, F_);
+        for (std::size_t i = 0; i < m.size(); ++i)
+          m[i] = friction * (F_[i] - tail - points_[i] * mean) - elastic * (V_[i] - start_[i]);
       }
 
     private:
       const ShapedWave::Settings &wave_;
       const std::vector<double> points_;
-      std::vector<double> start_; ///< V(s)
+      std::vector<double> start_;     ///< V(s)
+      std::vector<double> x_, V_, F_; ///< at one time: x = s + ct, V(x) and its integral
       std::size_t panel_ = 0;
     };
 

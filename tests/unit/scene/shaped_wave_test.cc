@@ -210,20 +210,27 @@ TEST(ShapedWave, PanelsAreRefinedWhereItIsNeeded)
       f[i] = std::cos(x[i]) + std::exp(-std::pow((x[i] - 0.31) / 0.01, 2));
   };
   const ShapeFunction shape(function, 0., 50., 1. / 16., "entry");
-  std::size_t panel = 0, wandering = 0;
-  for (int i = 0; i <= 1000; ++i)
+  const auto peak = [](const double x)
   {
-    const double x = 0.05 * i, peak = std::exp(-std::pow((x - 0.31) / 0.01, 2));
-    double value, integral;
-    shape.value_and_integral(x, panel, value, integral);
-    const double expected =
-      std::sin(x) + 0.005 * std::sqrt(pi) * (std::erf((x - 0.31) / 0.01) - std::erf(-0.31 / 0.01));
-    EXPECT_NEAR(value, std::cos(x) + peak, 1e-13);
-    EXPECT_NEAR(integral, expected, 1e-13);
-    EXPECT_NEAR(shape.derivative(x, panel), -std::sin(x) - 2. * (x - 0.31) / 1e-4 * peak, 1e-9);
-    const double far = std::fmod(37.3 * i, 50.); // in no order
-    EXPECT_NEAR(shape.value(far, wandering), std::cos(far) + std::exp(-std::pow((far - 0.31) / 0.01, 2)), 1e-13);
-    EXPECT_NEAR(shape.integral(x, wandering), expected, 1e-13);
+    return std::exp(-std::pow((x - 0.31) / 0.01, 2));
+  };
+  const auto integral = [](const double x)
+  {
+    return std::sin(x) + 0.005 * std::sqrt(pi) * (std::erf((x - 0.31) / 0.01) - std::erf(-0.31 / 0.01));
+  };
+  std::vector<double> x;
+  for (int i = 0; i <= 1000; ++i)
+    x.push_back(i % 2 == 0 ? 0.05 * i : std::fmod(37.3 * i, 50.)); // every second in no order
+  std::vector<double> values(x.size()), integrals(x.size());
+  std::size_t panel = 0;
+  shape.values_and_integrals(x, panel, values, integrals);
+  for (std::size_t i = 0; i < x.size(); ++i)
+  {
+    EXPECT_NEAR(values[i], std::cos(x[i]) + peak(x[i]), 1e-13);
+    EXPECT_NEAR(integrals[i], integral(x[i]), 1e-13);
+    EXPECT_NEAR(shape.value(x[i], panel), std::cos(x[i]) + peak(x[i]), 1e-13);
+    EXPECT_NEAR(shape.integral(x[i], panel), integral(x[i]), 1e-13);
+    EXPECT_NEAR(shape.derivative(x[i], panel), -std::sin(x[i]) - 2. * (x[i] - 0.31) / 1e-4 * peak(x[i]), 1e-9);
   }
 }
 

@@ -51,9 +51,12 @@ namespace crawler
     double
     derivative(double x, std::size_t &panel) const;
 
-    /// V and its integral at once.
+    /// V and its integral at many places at once, faster than one by one; all lists are of one length.
     void
-    value_and_integral(double x, std::size_t &panel, double &value, double &integral) const;
+    values_and_integrals(std::span<const double> x,
+                         std::size_t &panel,
+                         std::span<double> values,
+                         std::span<double> integrals) const;
 
     /// Where V' jumps.
     const std::vector<double> &
