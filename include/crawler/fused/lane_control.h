@@ -163,6 +163,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       next          = job.initial_step;
       has_old       = false;
       just_rejected = false;
+      known_rate    = 1.;
       first_step    = steps;
     }
 
