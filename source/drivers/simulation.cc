@@ -151,6 +151,11 @@ namespace crawler
         frames_.push_back(time * units_.time);
     }
 
+    gait_meter_.reset();
+    hidden_frame_.reset();
+    if (options.gait)
+      prepare_gait();
+
     result_.time           = integrate(observers, keep_going);
     const bool ended_early = cycle_stop_ && cycle_stop_->repeats();
     if (ended_early)
@@ -181,6 +186,9 @@ namespace crawler
       result_.displacement = assembler_->integrals(accepted_time_, y_, v_).displacement;
     if (ended_early)
       result_.cycles = cycle_stop_->extrapolate(result_.displacement, result_.ledger ? &*result_.ledger : nullptr);
+
+    if (gait_meter_ && result_.time.status == "finished")
+      result_.gait = gait_meter_->gait();
 
     for (const auto &observer : observers)
       observer->end();
@@ -228,6 +236,8 @@ namespace crawler
           ++next_frame_;
         if (keep_going && !keep_going())
           return false;
+        if (gait_meter_)
+          watch_gait(step, y);
         if (cycle_stop_ && cycle_repeats(step, y))
           return false;
         if (step.number >= time_.max_steps && step.time < 1.)
@@ -660,6 +670,45 @@ namespace crawler
     return is_end && see(y);
   }
 
+  /// A step shall end where the last stride starts, so that what it costs is known.
+  void
+  Simulation::prepare_gait()
+  {
+    const auto period = scene_.active_stress->period();
+    gait_meter_.emplace(period && *period <= 1. + 1e-9 ? period : std::nullopt, cycle_stop_.has_value());
+    const auto start = gait_meter_->stride_start();
+    if (!start)
+      return;
+    const double time = *start * units_.time;
+    const auto place  = std::lower_bound(frames_.begin(), frames_.end(), time - 1e-12 * units_.time);
+    if (place != frames_.end() && *place <= time + 1e-12 * units_.time)
+      return;
+    hidden_frame_ = time;
+    frames_.insert(place, time);
+  }
+
+  /// Shows the gait's samples that a step has passed.
+  void
+  Simulation::watch_gait(const Step &step, const std::span<const double> y)
+  {
+    const auto see = [&](const std::span<const double> state)
+    {
+      const auto u = assembler_->displacement_at(GaitMeter::n_pieces, state);
+      gait_meter_->see(u, assembler_->integrals(step.time, state, v_).displacement);
+    };
+    y_inside_.resize(y_.size());
+    for (double time = gait_meter_->next_time(); time <= step.time; time = gait_meter_->next_time())
+      if (time >= step.time - 1e-12 || step.size == 0.)
+        see(y);
+      else
+      {
+        stepper_->interpolate(time, y_inside_);
+        see(y_inside_);
+      }
+    gait_meter_->see_step(
+      step.time, assembler_->integrals(step.time, y, v_).displacement, result_.ledger ? &*result_.ledger : nullptr);
+  }
+
   /// Displacement, and if wanted the ledger, at an accepted state.
   bool
   Simulation::compute_integrals(const Step &step, const std::span<const double> y)
@@ -733,7 +782,7 @@ namespace crawler
     const Ledger ledger = result_.ledger ? result_.ledger->scaled(energy) : Ledger();
     for (const auto &observer : observers)
       observer->observe({physical,
-                         step.number == 0 || step.is_frame,
+                         step.number == 0 || (step.is_frame && physical.time != hidden_frame_),
                          *assembler_,
                          mesh_number_,
                          units_,
@@ -771,6 +820,10 @@ namespace crawler
       result.cycles->period *= units_.time;
       result.cycles->bound *= units_.length;
     }
+    if (result.time.status == "finished" && result.ledger)
+      result.gait_efficiency = gait_efficiency(physical_scene_, result);
+    if (result.gait)
+      result.gait = result.gait->in_units(units_);
     if (result.log_stretch_since)
       *result.log_stretch_since *= units_.time;
     return result;

@@ -7,6 +7,7 @@
 #include <crawler/discretization/mesh_marking.h>
 #include <crawler/drivers/cycle_stop.h>
 #include <crawler/drivers/displacement_error.h>
+#include <crawler/drivers/gait.h>
 #include <crawler/fused/fused_stepper.h>
 #include <crawler/fused/linear_stepper.h>
 #include <crawler/observers/observer.h>
@@ -70,7 +71,9 @@ namespace crawler
     Extreme min_stretch, max_stretch;
     std::optional<Extreme> inversion; ///< where and when the body inverted; value is the stretch there
 
-    std::optional<Cycles> cycles; ///< if the run ended because they repeat; all above is that of the end time
+    std::optional<Gait> gait;              ///< the last stride, if that is looked at and there is one
+    std::optional<double> gait_efficiency; ///< of the whole run (gait.h), if it is known [1]
+    std::optional<Cycles> cycles;          ///< if the run ended because they repeat; all above is that of the end time
 
     std::optional<double> log_stretch_since;       ///< time from which on the log-stretch form was used [time]
     unsigned int mesh_changes = 0, most_cells = 0; ///< of an adaptive mesh
@@ -94,6 +97,7 @@ namespace crawler
       bool ledger                     = false; ///< works, energies, net friction
       bool resolution                 = false; ///< SimulationResult::unresolved
       std::optional<CycleWish> cycles = {};    ///< end the run when its cycles repeat; not with frames
+      bool gait                       = false; ///< SimulationResult::gait
     };
 
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);
@@ -169,6 +173,10 @@ namespace crawler
     mesh_is_good(const Step &step, std::span<const double> y);
     bool
     cycle_repeats(const Step &step, std::span<const double> y);
+    void
+    prepare_gait();
+    void
+    watch_gait(const Step &step, std::span<const double> y);
     bool
     compute_integrals(const Step &step, std::span<const double> y);
     RateQuadrature::Rates
@@ -253,6 +261,8 @@ namespace crawler
     std::size_t next_frame_ = 0;
     bool ends_at_frame_     = false; ///< does the present piece?
     std::optional<CycleStop> cycle_stop_;
+    std::optional<GaitMeter> gait_meter_;
+    std::optional<double> hidden_frame_; ///< one of frames_ that nobody has asked for
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
     bool started_ = false; ///< a state has been accepted
   };
