@@ -47,6 +47,8 @@ namespace crawler
     constexpr double sudden_part         = 0.1;
     constexpr unsigned int graded_degree = 6, accurate_graded_degree = 8;
     constexpr double accurate_graded = 1e-5;
+    /// More breaks would make graded meshes too large, or too many starts where nothing happens suddenly.
+    constexpr std::size_t most_graded_places = 24, most_gentle_breaks = 200;
     /// First tolerances on graded meshes, relative to the wanted error.
     constexpr double graded_radau_5 = 2., graded_radau_9 = 10., graded_others = 0.1;
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
@@ -231,8 +233,10 @@ namespace crawler
       bool
       starts_or_jumps() const
       {
-        return scales_.sudden > sudden_part * std::sqrt(accuracy_) && !user_cells_ && !choice_.numerics.linear &&
-               adaptive_steps_ && !parameters_.discretization.mesh_tolerance;
+        const double sudden = sudden_part * std::sqrt(accuracy_);
+        return scales_.sudden > sudden && scales_.in_space <= most_graded_places &&
+               (scales_.sudden_later > sudden || scales_.in_time <= most_gentle_breaks) && !user_cells_ &&
+               !choice_.numerics.linear && adaptive_steps_ && !parameters_.discretization.mesh_tolerance;
       }
 
       /// A mesh that is graded towards the ends and breaks in space; returns whether there is one that is enough.

@@ -16,8 +16,13 @@ namespace crawler
       return next != breaks.end() && *next <= to;
     }
 
-    /// The largest sudden change of m at the ends and of its jumps at the breaks in space.
-    double
+    struct SuddenChange
+    {
+      double at_start, later;
+    };
+
+    /// The largest sudden changes of m at the ends and of its jumps at the breaks in space.
+    SuddenChange
     largest_sudden_change(const Scene &scene, const std::vector<double> &in_space)
     {
       const double L = scene.body.length, T = scene.end_time, beside = 2. * least_space_between_breaks * L;
@@ -28,7 +33,7 @@ namespace crawler
       std::vector<double> m(points.size());
       const std::size_t n = 2 + in_space.size();
       std::vector<double> before(n, 0.), now(n);
-      double largest  = 0.;
+      SuddenChange largest{0., 0.};
       const auto look = [&](const double t)
       {
         stress->values(t * T, m);
@@ -42,7 +47,10 @@ namespace crawler
       {
         look(pieces.inside(start));
         for (std::size_t i = 0; i < n; ++i)
-          largest = std::max(largest, std::abs(now[i] - before[i]));
+        {
+          double &known = start == 0. ? largest.at_start : largest.later;
+          known         = std::max(known, std::abs(now[i] - before[i]));
+        }
         if (pieces.is_last())
           return largest;
         start = pieces.end();
@@ -83,9 +91,14 @@ namespace crawler
     };
     look(fine, coarse);
     look(coarse, fine);
+    const SuddenChange change = largest > 0. ? largest_sudden_change(scene, in_space) : SuddenChange{0., 0.};
+    const double unit         = largest > 0. ? largest : 1.;
     return {std::min(largest * L / scene.body.elastic_modulus, largest * T / (L * scene.body.friction_coefficient)),
             along > 0. ? largest / along : L,
             over > 0. ? largest / over : T,
-            largest > 0. ? largest_sudden_change(scene, in_space) / largest : 0.};
+            std::max(change.at_start, change.later) / unit,
+            change.later / unit,
+            in_space.size(),
+            in_time.size()};
   }
 } // namespace crawler

@@ -3,6 +3,8 @@
 
 #include <crawler/scene/scene.h>
 
+#include <cstddef>
+
 namespace crawler
 {
   /// What a look at the active stress alone tells: pilots cannot miss what this has seen.
@@ -14,6 +16,8 @@ namespace crawler
     /// The largest sudden change of what makes layers, relative to the largest |m|: of m at the ends of the body and of
     /// its jumps in space, at the start and at the breaks in time [1].
     double sudden;
+    double sudden_later;           ///< the same at the breaks in time alone [1]
+    std::size_t in_space, in_time; ///< numbers of breaks
   };
 
   StressScales

@@ -31,7 +31,9 @@ TEST(GradedMesh, PutsCellsInProportionBetweenTheBreaks)
       largest = std::max(largest, ends[i] - ends[i - 1]);
     }
     if (n >= 10)
+    {
       EXPECT_LT(largest, 1.6 * smallest) << n;
+    }
   }
 }
 

@@ -48,9 +48,10 @@ TEST(Breaks, AreSortedDistinctAndInside)
 TEST(Breaks, PiecesAreEvaluatedInside)
 {
   Scene scene;
-  scene.friction      = std::make_unique<PowerFriction>(1., 0.);
-  scene.end_time      = 2.;
-  scene.active_stress = std::make_unique<test::WithBreaks>(with({}, {0.5, 1.}));
+  scene.friction = std::make_unique<PowerFriction>(1., 0.);
+  scene.end_time = 2.;
+  scene.active_stress =
+    std::make_unique<test::WithBreaks>(std::make_unique<Clock>(), std::vector<double>(), std::vector<double>{0.5, 1.});
   TimePieces pieces(*scene.active_stress, 2.);
   const Units units{1., 2., 1.};
   const Scene scaled = in_units(scene, units, &pieces);
