@@ -2,6 +2,7 @@
 #include <crawler/base/communication.h>
 #include <crawler/drivers/batch.h>
 #include <crawler/drivers/error_estimate.h>
+#include <crawler/drivers/graded_choice.h>
 #include <crawler/drivers/self_check.h>
 
 #include <fmt/format.h>
@@ -35,7 +36,7 @@ namespace crawler
     constexpr double round_off = 1e-15;
 
     Numerics
-    finer(const NumericsChoice &choice, const std::string &integrator, const double end_time)
+    finer(const NumericsChoice &choice, const std::string &integrator, const Scene &scene)
     {
       Numerics n          = choice.numerics;
       const bool promised = std::isfinite(choice.promised_error);
@@ -47,13 +48,15 @@ namespace crawler
       n.tolerance *= !promised                       ? finer_tolerance_without_promise
                      : integrator == best_integrator ? finer_tolerance
                                                      : finer_tolerance_than_others;
-      n.integrator   = best_integrator;
-      n.initial_step = std::max(n.initial_step, first_step * end_time);
+      n.integrator = best_integrator;
+      if (n.grading.levels > 0)
+        return with_finer_grading(scene, n);
+      n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
       return n;
     }
 
     NumericsChoice
-    refined(const NumericsChoice &choice)
+    refined(const NumericsChoice &choice, const Scene &scene)
     {
       NumericsChoice next = choice;
       Numerics &n         = next.numerics;
@@ -62,6 +65,8 @@ namespace crawler
       else
         n.n_cells = static_cast<unsigned int>(std::ceil(refined_cells * n.n_cells));
       n.tolerance *= refined_tolerance;
+      if (n.grading.levels > 0)
+        n = with_finer_grading(scene, n);
       return next;
     }
 
@@ -81,7 +86,7 @@ namespace crawler
       time.step_control            = "adaptive";
       time.max_steps               = TimeParameters().max_steps; // the limit is for the run itself
       time.petsc_prefix            = "second_";                  // options after "--" are for the run itself
-      const Numerics numerics      = finer(choice, integrator, scene.end_time);
+      const Numerics numerics      = finer(choice, integrator, scene);
       const auto cycles            = cycle_wish(parameters, scene, 0);
       SimulationResult better;
       // Most runs fit the fused engine; then nothing else has to be built.
@@ -146,7 +151,7 @@ namespace crawler
     const double wanted = choice.wanted_error;
     // What has been measured on one mesh after the other is not tried again.
     const bool may_refine = !choice.is_collapse && choice.promised_error < hopeless * wanted;
-    for (;; ++answer.refinements, answer.choice = refined(answer.choice))
+    for (;; ++answer.refinements, answer.choice = refined(answer.choice, scene))
     {
       answer.result            = simulate(answer.choice);
       SimulationResult &result = answer.result;

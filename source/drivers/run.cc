@@ -47,10 +47,12 @@ namespace crawler
       const std::string integrator = time.integrator != "automatic" ? time.integrator
                                      : n.integrator.empty()         ? "bdf"
                                                                     : n.integrator;
+      const std::size_t ends       = first_cell_ends(input.scene, n).size();
+      const std::size_t cells      = ends > 0 ? ends - 1 : n.n_cells;
       return fmt::format("Mesh: {} cells of degree {}, {} unknowns. Time: {}{}, tolerance {:.3g}.",
-                         n.n_cells,
+                         cells,
                          n.degree,
-                         static_cast<std::size_t>(n.n_cells) * n.degree + 1,
+                         cells * n.degree + 1,
                          integrator,
                          integrator == "bdf"                  ? fmt::format(" of order {}", time.order)
                          : fused_method(input.scene, time, n) ? " (fused engine)"
