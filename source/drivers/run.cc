@@ -100,6 +100,8 @@ namespace crawler
       log.line("  " + line);
     for (const std::string &note : input.notes)
       log.line(note);
+    if (const auto *failures = input.scene.active_stress->failures(); failures != nullptr && failures->count > 0)
+      log.warn("warning: " + failures->latest);
   }
 
   ExitCode

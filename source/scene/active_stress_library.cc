@@ -44,6 +44,12 @@ namespace crawler
          {
            return std::make_unique<PrescribedStrain>(parameters.prescribed_strain, body, end_time);
          }},
+        {"library",
+         Library::description,
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
+           return std::make_unique<Library>(parameters.library, body, end_time);
+         }},
       };
       return list;
     }
@@ -64,6 +70,7 @@ namespace crawler
     optimal_wave.add_parameters(declarations);
     expression.add_parameters(declarations);
     prescribed_strain.add_parameters(declarations);
+    library.add_parameters(declarations);
     declarations.leave();
   }
 

@@ -142,6 +142,8 @@ namespace crawler
     void
     settle();
     bool
+    stress_failed();
+    bool
     examine(const Step &step, std::span<const double> y);
     bool
     may_change_form() const;
@@ -238,6 +240,7 @@ namespace crawler
     std::size_t next_frame_ = 0;
     std::optional<CycleStop> cycle_stop_;
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
-    bool started_ = false; ///< a state has been accepted
+    unsigned long n_failures_ = 0;     ///< of the active stress before this run
+    bool started_             = false; ///< a state has been accepted
   };
 } // namespace crawler

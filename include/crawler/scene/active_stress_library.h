@@ -3,6 +3,7 @@
 
 #include <crawler/scene/active_stress.h>
 #include <crawler/scene/active_stress/expression.h>
+#include <crawler/scene/active_stress/library.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
 
@@ -15,6 +16,7 @@ namespace crawler
     OptimalWaveParameters optimal_wave;
     ExpressionParameters expression;
     PrescribedStrainParameters prescribed_strain;
+    LibraryParameters library;
 
     void
     add_parameters(Declarations &declarations);
