@@ -17,18 +17,22 @@ namespace crawler
     class ScaledAtPoints : public ActiveStressAtPoints
     {
     public:
-      /// @p unit is that of the values.
-      ScaledAtPoints(std::unique_ptr<ActiveStressAtPoints> stress, const double time_unit, const double unit)
+      /// @p unit is that of the values; @p pieces may be null.
+      ScaledAtPoints(std::unique_ptr<ActiveStressAtPoints> stress,
+                     const double time_unit,
+                     const double unit,
+                     const TimePieces *pieces)
         : stress_(std::move(stress))
         , time_unit_(time_unit)
         , unit_(unit)
+        , pieces_(pieces)
       {
       }
 
       void
       values(const double t, const std::span<double> m) override
       {
-        stress_->values(t * time_unit_, m);
+        stress_->values((pieces_ != nullptr ? pieces_->inside(t) : t) * time_unit_, m);
         for (double &value : m)
           value /= unit_;
       }
@@ -36,6 +40,7 @@ namespace crawler
     private:
       const std::unique_ptr<ActiveStressAtPoints> stress_;
       const double time_unit_, unit_;
+      const TimePieces *pieces_;
     };
 
     class ScaledStrainAtPoints : public StrainAtPoints
@@ -98,9 +103,10 @@ namespace crawler
     class ScaledActiveStress : public ActiveStress
     {
     public:
-      ScaledActiveStress(const ActiveStress &stress, const Units &units)
+      ScaledActiveStress(const ActiveStress &stress, const Units &units, const TimePieces *pieces)
         : stress_(stress)
         , units_(units)
+        , pieces_(pieces)
       {
         if (stress.prescribed_strain() != nullptr)
           strain_.emplace(*stress.prescribed_strain(), units);
@@ -109,15 +115,17 @@ namespace crawler
       std::unique_ptr<ActiveStressAtPoints>
       at(const std::vector<double> &points) const override
       {
-        return std::make_unique<ScaledAtPoints>(stress_.at(times(points, units_.length)), units_.time, units_.force);
+        return std::make_unique<ScaledAtPoints>(
+          stress_.at(times(points, units_.length)), units_.time, units_.force, pieces_);
       }
 
       std::unique_ptr<ActiveStressAtPoints>
       rate_at(const std::vector<double> &points) const override
       {
         auto rate = stress_.rate_at(times(points, units_.length));
-        return rate ? std::make_unique<ScaledAtPoints>(std::move(rate), units_.time, units_.force / units_.time)
-                    : nullptr;
+        return rate
+                 ? std::make_unique<ScaledAtPoints>(std::move(rate), units_.time, units_.force / units_.time, pieces_)
+                 : nullptr;
       }
 
       std::vector<double>
@@ -160,6 +168,7 @@ namespace crawler
     private:
       const ActiveStress &stress_;
       const Units units_;
+      const TimePieces *pieces_;
       std::optional<ScaledStrainHistory> strain_;
     };
   } // namespace
@@ -238,7 +247,7 @@ namespace crawler
   }
 
   Scene
-  in_units(const Scene &scene, const Units &units)
+  in_units(const Scene &scene, const Units &units, const TimePieces *pieces)
   {
     Scene scaled;
     const double friction            = units.force * units.time / units.length / units.length;
@@ -247,7 +256,7 @@ namespace crawler
     scaled.body.elastic_modulus      = scene.body.elastic_modulus / units.force;
     scaled.body.friction_coefficient = scene.body.friction_coefficient / friction;
     scaled.friction                  = scene.friction->scaled(1. / friction);
-    scaled.active_stress             = std::make_unique<ScaledActiveStress>(*scene.active_stress, units);
+    scaled.active_stress             = std::make_unique<ScaledActiveStress>(*scene.active_stress, units, pieces);
     scaled.end_time                  = scene.end_time / units.time;
     return scaled;
   }

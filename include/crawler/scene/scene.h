@@ -3,6 +3,7 @@
 
 #include <crawler/scene/active_stress.h>
 #include <crawler/scene/body.h>
+#include <crawler/scene/breaks.h>
 #include <crawler/scene/friction_law.h>
 #include <crawler/scene/units.h>
 
@@ -32,7 +33,8 @@ namespace crawler
   void
   require_computable_stress(const Scene &scene);
 
-  /// The same problem in other units. It refers to @p scene, which must outlive it.
+  /// The same problem in other units. It refers to @p scene, which must outlive it. If @p pieces are given, which must
+  /// outlive it too, the active stress is that of the piece that is the present one when it is evaluated.
   Scene
-  in_units(const Scene &scene, const Units &units);
+  in_units(const Scene &scene, const Units &units, const TimePieces *pieces = nullptr);
 } // namespace crawler
