@@ -212,10 +212,7 @@ namespace crawler
       request_     = Request::none;
       bool resumed = started_;
       choose_stepper();
-<<<<<<< HEAD
       Step latest{};
-      stepper_->monitor = [&](const Step &part, const std::span<const double> y)
-=======
       if (!pieces_.is_last() && accepted_time_ >= pieces_.end())
         begin_piece();
       if (diagnosis_)
@@ -223,7 +220,6 @@ namespace crawler
       const std::vector<double> ends = frames_of_piece();
       const bool ends_at_frame       = ends_at_frame_;
       stepper_->monitor              = [&](const Step &part, const std::span<const double> y)
->>>>>>> b8ed23c288214b4dbd59fc98d084fe0e9bdc8f1a
       {
         latest = part;
         if (resumed) // the state from which this part starts has been seen already
@@ -260,15 +256,10 @@ namespace crawler
           request_ = Request::restart;
         return request_ == Request::none;
       };
-<<<<<<< HEAD
-      std::vector<double> rest;
-      for (std::size_t i = next_frame_; i < frames_.size(); ++i)
-        rest.push_back(i + 1 == frames_.size() && frames_[i] == physical_scene_.end_time ? 1.
-                                                                                         : frames_[i] / units_.time);
       TimeOutcome outcome;
       try
       {
-        outcome = stepper_->solve(y_, rest, numerics_.tolerance, next_step_, numerics_.largest_step, accepted_time_);
+        outcome = stepper_->solve(y_, ends, numerics_.tolerance, next_step_, numerics_.largest_step, accepted_time_);
       }
       catch (const NonfiniteStress &error) // of an observer
       {
@@ -281,10 +272,6 @@ namespace crawler
         if (!stress_failed())
           diagnosis_ = {"failed", "nonfinite", error.what()};
       }
-=======
-      TimeOutcome outcome =
-        stepper_->solve(y_, ends, numerics_.tolerance, next_step_, numerics_.largest_step, accepted_time_);
->>>>>>> b8ed23c288214b4dbd59fc98d084fe0e9bdc8f1a
       stepper_->monitor = nullptr;
       outcome.steps += before_.steps;
       outcome.rejected_steps += before_.rejected_steps;
