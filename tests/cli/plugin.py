@@ -7,6 +7,7 @@ import csv
 import glob
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -104,9 +105,9 @@ with tempfile.TemporaryDirectory() as folder:
 
     # The example, out of tree.
     shutil.copytree(PLUGIN_SOURCE, "source")
-    command(CMAKE, "-S", "source", "-B", "build", f"-DCMAKE_PREFIX_PATH={folder}/installed")
-    command(CMAKE, "--build", "build")
-    good = {"File": "build/libperistalsis.so", "Parameters": "height=0.4, waves=1, frequency=1, start=0.2"}
+    command(CMAKE, "-S", "source", "-B", "source/build", f"-DCMAKE_PREFIX_PATH={folder}/installed")
+    command(CMAKE, "--build", "source/build")
+    good = {"File": "source/build/libperistalsis.so", "Parameters": "height=0.4, waves=1, frequency=1, start=0.2"}
     formula = {"Active stress": "height*(1-cos(2*pi*(s+t)))/2*(1-exp(-t/start))", "Constants": "height=0.4, start=0.2"}
     for accuracy in ("1e-4", "1e-8"):
         code, err, out = run("plugin", "library", good, f"set Accuracy = {accuracy}")
@@ -123,13 +124,33 @@ with tempfile.TemporaryDirectory() as folder:
         error = abs(summary("adaptive")["displacement"] / b["displacement"] - 1)
         expect(code == 0 and error <= 2e-6, f"adaptive mesh, engine {engine}: {err}, error {error}")
 
+    # Its own parameter file, from its folder, and the number that this promises.
+    with open("source/peristalsis.prm") as file:
+        expected, tolerance = re.search(r"# Expect: displacement (\S+), tolerance (\S+)", file.read()).groups()
+    result = subprocess.run([PROGRAM, "run", "peristalsis.prm", "--output", "../peristalsis"], cwd="source", env=ENVIRONMENT,
+                            capture_output=True, text=True)
+    expect(result.returncode == 0, f"peristalsis.prm: {result.stderr}")
+    displacement = summary("peristalsis")["displacement"]
+    expect(abs(displacement / float(expected) - 1) <= float(tolerance), f"peristalsis.prm: displacement {displacement}")
+
+    # The installed program finds the installed plot scripts: this one says that it is the one.
+    share = os.path.join("installed", "share", "crawler")
+    expect(os.path.exists(os.path.join(share, "prm", "examples", "earthworm.prm")), "no parameter files")
+    with open(os.path.join(share, "plot", "atlas.py"), "w") as file:
+        file.write("import sys, pathlib\n(pathlib.Path(sys.argv[1]) / 'installed_script').touch()\n")
+    with open("small.prm", "w") as file:
+        file.write("subsection Atlas\nset First axis = Body/Anchoring exponent : 2, 3\n"
+                   "set Second axis = Body/Elastic modulus : 1, 2\nend\n")
+    result = subprocess.run([PROGRAM, "atlas", "small.prm", "--output", "atlas"], env=ENVIRONMENT, capture_output=True, text=True)
+    expect(result.returncode == 0 and os.path.exists("atlas/installed_script"), f"atlas: {result.stdout} {result.stderr}")
+
     # What does not even start.
     FAULTY = os.path.join(folder, "faulty.so")
     include = f"-I{folder}/installed/include"
     compiler = os.environ.get("CXX", "c++")
     command(compiler, "-std=c++20", "-shared", "-fPIC", include, os.path.join(HERE, "faulty_plugin.cc"), "-o", FAULTY)
     refused("missing", {"File": "no.so"}, "there is no file", f"{folder}/no.so", "missing.prm, line ")
-    refused("folder", {"File": "build"}, "is not a shared object")
+    refused("folder", {"File": "source"}, "is not a shared object")
     refused("text", {"File": "text.prm"}, "is not a shared object")
     refused("empty", {"File": ""}, "name of the shared object is missing")
     with open("other.c", "w") as file:

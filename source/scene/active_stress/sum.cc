@@ -207,7 +207,7 @@ namespace crawler
       void
       values(const double t, const StretchSeen &seen, const FeedbackStress &m) override
       {
-        const std::array<std::span<double>, n_directions> wanted = {m.m_w, m.m_rate, m.m_near};
+        const std::array<std::span<double>, n_directions> wanted = {{m.m_w, m.m_rate, m.m_near}};
         all_.start();
         for (Part &part : parts_)
         {
@@ -249,7 +249,7 @@ namespace crawler
           part.stress->values(t, part.g);
         else
         {
-          const std::array<std::span<const double>, n_seen> all = {seen.stretch, seen.rate, seen.near, seen.delayed};
+          const std::array<std::span<const double>, n_seen> all = {{seen.stretch, seen.rate, seen.near, seen.delayed}};
           for (std::size_t k = 0; k < n_seen; ++k)
           {
             part.seen[k].resize(all[k].empty() ? 0 : n);
