@@ -102,7 +102,8 @@ TEST(GeneratedStrain, RefusesGeneratorsWithoutRateAndJumps)
 {
   auto square = wave;
   square.emplace_back("Active stress/Travelling wave/Profile", "square");
-  EXPECT_NE(complaint(strain_by("travelling wave", square)).find("without jumps"), std::string::npos);
+  EXPECT_NE(complaint(strain_by("travelling wave", square)).find("does not know its rate of change"),
+            std::string::npos);
   const std::string term = "Active stress/Sum/Term 1/";
   const Settings cut     = {{term + "Expression/Active stress", "0.1*sin(t)*cos(s)"}, {term + "Window in t", "0.3, 2"}};
   EXPECT_EQ(
