@@ -124,6 +124,32 @@ with tempfile.TemporaryDirectory() as folder:
         error = abs(summary("adaptive")["displacement"] / b["displacement"] - 1)
         expect(code == 0 and error <= 2e-6, f"adaptive mesh, engine {engine}: {err}, error {error}")
 
+    # Its values as a strain, which is not 0 at an end: the formula, and the table that both write.
+    library = "\n".join(f"set {entry} = {value}" for entry, value in good.items())
+    more = f"""subsection Active stress
+subsection Library
+{library}
+end
+end
+subsection Output
+set Active stress table = 9, 5
+end
+"""
+    for model, error in (("kinematic", 1e-12), ("nonlinear", 1e-6)):
+        model = f"set Model = {model}\n"
+        code, err, _ = run("strain", "prescribed strain", {"Given by": "library"}, model + more)
+        expect(code == 0, f"the example as a strain: {err}")
+        code, err, _ = run("strain_formula", "prescribed strain",
+                           {"Strain": formula["Active stress"], "Constants": formula["Constants"]}, model + more)
+        expect(code == 0, f"the formula as a strain: {err}")
+        a, b = summary("strain")["displacement"], summary("strain_formula")["displacement"]
+        expect(abs(a / b - 1) <= error, f"{model}: plug-in and formula differ as strains: {a}, {b}")
+        with open("strain/active_stress.csv") as one, open("strain_formula/active_stress.csv") as other:
+            rows, others = list(csv.reader(one)), list(csv.reader(other))
+        expect(rows[0] == ["s", "t", "m"] and len(rows) == 1 + 9 * 5, f"active_stress.csv has {len(rows)} rows")
+        m, n = np.array(rows[1:], dtype=float), np.array(others[1:], dtype=float)
+        expect(np.abs(m - n).max() < 1e-12 and np.abs(m[:, 2]).max() > 0.1, "the recovered stresses differ")
+
     # Its own parameter file, from its folder, and the number that this promises.
     with open("source/peristalsis.prm") as file:
         expected, tolerance = re.search(r"# Expect: displacement (\S+), tolerance (\S+)", file.read()).groups()
@@ -207,6 +233,23 @@ with tempfile.TemporaryDirectory() as folder:
           before=(MPIRUN, "--oversubscribe", "-n", "2"), more="subsection Discretization\nset Number of cells = 300\nset Degree = 2\nset Share cells = yes\nend")
     fails("shared_place", "kind=nan at place, s=0.5, t=0.35", ["gave nan in values() at s = 0.5, t = 0.35"], 0.36, 7,
           before=(MPIRUN, "--oversubscribe", "-n", "2"), more="subsection Discretization\nset Number of cells = 300\nset Degree = 2\nset Share cells = yes\nend")
+    code, err, _ = run("term", "sum", {}, f"""subsection Active stress
+subsection Sum
+subsection Term 1
+set Generator = library
+set Factor = 0.5
+subsection Library
+set File = {FAULTY}
+set Parameters = {half}
+end
+end
+subsection Term 2
+set Factor = 0.1
+end
+end
+end
+""")
+    expect(code == 3 and "nonfinite: the " + throws in err and summary("term")["status"] == "failed", f"a term that throws: {code} {err}")
     code, err, out = run("warned", "library", {"File": FAULTY, "Parameters": "kind=throw, t=0.7"}, command="check")
     expect(code == 0 and "warning: the plug-in" in err, f"check does not warn: {code} {err}")
     os.chdir("/")
