@@ -27,6 +27,7 @@ namespace crawler
     public:
       explicit Form(const ParameterFile &file)
       {
+        parameters_.count_terms(file);
         parameters_.add_parameters(declarations_);
         file.apply(declarations_);
       }

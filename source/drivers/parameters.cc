@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/drivers/parameters.h>
+#include <crawler/observers/active_stress_table.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/parameters/parameter_file.h>
 #include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
@@ -53,6 +55,35 @@ namespace crawler
       require(p.time.engine == "automatic", "Time/Engine", p.time.engine, "automatic");
     }
   } // namespace
+
+  void
+  Parameters::count_terms(const ParameterFile &file)
+  {
+    const std::string sum = "Active stress/Sum", term = "Term ";
+    const auto names = file.subsections(sum);
+    std::size_t n    = 0;
+    while (names.contains(term + std::to_string(n + 1)))
+      ++n;
+    for (const std::string &name : names)
+    {
+      const bool is_number = name.size() > term.size() && name.starts_with(term) &&
+                             name.find_first_not_of("0123456789", term.size()) == std::string::npos;
+      if (is_number && name[term.size()] != '0' &&
+          (name.size() > term.size() + 6 || std::stoul(name.substr(term.size())) > n))
+        throw InputError(
+          fmt::format("{}: the section \"{}/{}\" is found, but \"{}{}\" is not; terms are expected to be "
+                      "numbered without a gap, from Term 1 on",
+                      file.name(),
+                      sum,
+                      name,
+                      term,
+                      n + 1));
+    }
+    // With none, the names of the first are known all the same where the file has a slip in them.
+    active_stress.sum.terms.assign(names.empty() ? 0 : std::max<std::size_t>(n, 1), {});
+    for (TermParameters &parameters : active_stress.sum.terms)
+      parameters.stress.generator = "expression";
+  }
 
   void
   Parameters::add_parameters(Declarations &declarations)
@@ -110,6 +141,7 @@ namespace crawler
     natural_units(scene); // first, since nothing else is prepared for numbers that it refuses
     scene.active_stress = create_active_stress(active_stress, body, time.end_time);
     require_computable_stress(scene);
+    require_table_fits(output.active_stress_table, *scene.active_stress);
     return scene;
   }
 } // namespace crawler

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/discretization/mesh_transfer.h>
 #include <crawler/drivers/simulation.h>
 #include <crawler/time/integrators.h>
@@ -126,6 +127,7 @@ namespace crawler
     next_frame_           = 0;
     tiny_steps_           = 0;
     started_              = false;
+    n_failures_           = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0;
     fused_gave_up_        = false;
     integrals_            = {};
     largest_friction_     = 0.;
@@ -176,6 +178,8 @@ namespace crawler
                     "no cell may be divided further; a smaller Discretization/Smallest cell is needed",
                     result_.largest_indicator * units_.length,
                     numerics_.mesh.tolerance * units_.length)};
+    if (diagnosis_ && diagnosis_->reason == "nonfinite")
+      stress_failed(); // knows better why
     if (diagnosis_)
     {
       result_.time.status  = diagnosis_->status;
@@ -208,6 +212,7 @@ namespace crawler
       request_     = Request::none;
       bool resumed = started_;
       choose_stepper();
+      Step latest{};
       if (!pieces_.is_last() && accepted_time_ >= pieces_.end())
         begin_piece();
       if (diagnosis_)
@@ -216,6 +221,7 @@ namespace crawler
       const bool ends_at_frame       = ends_at_frame_;
       stepper_->monitor              = [&](const Step &part, const std::span<const double> y)
       {
+        latest = part;
         if (resumed) // the state from which this part starts has been seen already
         {
           resumed = false;
@@ -250,8 +256,22 @@ namespace crawler
           request_ = Request::restart;
         return request_ == Request::none;
       };
-      TimeOutcome outcome =
-        stepper_->solve(y_, ends, numerics_.tolerance, next_step_, numerics_.largest_step, accepted_time_);
+      TimeOutcome outcome;
+      try
+      {
+        outcome = stepper_->solve(y_, ends, numerics_.tolerance, next_step_, numerics_.largest_step, accepted_time_);
+      }
+      catch (const NonfiniteStress &error) // of an observer
+      {
+        outcome.status            = "failed";
+        outcome.time              = latest.time;
+        outcome.step_size         = latest.size;
+        outcome.steps             = latest.number;
+        outcome.rejected_steps    = latest.rejected;
+        outcome.newton_iterations = latest.newton_iterations;
+        if (!stress_failed())
+          diagnosis_ = {"failed", "nonfinite", error.what()};
+      }
       stepper_->monitor = nullptr;
       outcome.steps += before_.steps;
       outcome.rejected_steps += before_.rejected_steps;
@@ -409,6 +429,8 @@ namespace crawler
   bool
   Simulation::examine(const Step &step, const std::span<const double> y)
   {
+    if (stress_failed())
+      return false;
     stretch_            = assembler_->stretch_range(y);
     const double before = step.time - step.size;
     const bool finite   = std::isfinite(stretch_.min.value) && std::isfinite(stretch_.max.value);

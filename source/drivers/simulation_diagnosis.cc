@@ -2,6 +2,7 @@
 //
 // The part of Simulation that gives a lost stretch and a failed time step their names (doc/numerics.md, "Failures and
 // inversions").
+#include <crawler/base/communication.h>
 #include <crawler/drivers/simulation.h>
 
 #include <boost/math/tools/toms748_solve.hpp>
@@ -112,10 +113,35 @@ namespace crawler
       inverted_inside(stretch_.min.value, smallest.s, t);
   }
 
+  /// Has the active stress failed since the run began, on any rank (collective)? Then the diagnosis says how.
+  bool
+  Simulation::stress_failed()
+  {
+    const StressFailures *failures = scene_.active_stress->failures();
+    if (failures == nullptr) // the same on all ranks
+      return false;
+    const int rank = static_cast<int>(rank_of(communicator_)), n_ranks = static_cast<int>(size_of(communicator_));
+    int first = failures->count > n_failures_ ? rank : n_ranks;
+    if (n_ranks > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, communicator_);
+    if (first == n_ranks)
+      return false;
+    std::string message = failures->latest;
+    if (n_ranks > 1)
+    {
+      const std::vector<std::string> all = gather(message, communicator_);
+      message = broadcast(rank == 0 ? all[static_cast<std::size_t>(first)] : "", communicator_);
+    }
+    diagnosis_ = {"failed", "nonfinite", message};
+    return true;
+  }
+
   /// What a failure of the time stepper means.
   void
   Simulation::explain_failure()
   {
+    if (stress_failed())
+      return;
     TimeOutcome &outcome = result_.time;
     const double t       = accepted_time_;
     // Very small steps may be the end of the model.

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/model/crawler_equation.h>
 #include <crawler/observers/field_sampler.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace crawler
 {
@@ -13,6 +19,23 @@ namespace crawler
       for (const auto &point : points)
         x.push_back(point.x);
       return x;
+    }
+
+    /// Throws NonfiniteStress on all ranks if one of them has something else than finite numbers.
+    void
+    require_finite(const std::vector<double> &m, const double t, const Discretization &discretization)
+    {
+      int bad = std::all_of(m.begin(),
+                            m.end(),
+                            [](const double value)
+                            {
+                              return std::isfinite(value);
+                            })
+                  ? 0
+                  : 1;
+      MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_MAX, discretization.communicator());
+      if (bad != 0)
+        throw NonfiniteStress(fmt::format("the active stress at t = {:.9g} is not a finite number everywhere", t));
     }
   } // namespace
 
@@ -67,6 +90,7 @@ namespace crawler
         units_.force * equation::body_force(stretch_.strain(u_local, log_w, cell, d.cell_size()[cell], place), 0., k);
     }
     stress_->values(t, fields_.active_stress);
+    require_finite(fields_.active_stress, t * units_.time, d);
     assembler_.scene().friction->values(fields_.stretch, fields_.friction_force);
     for (std::size_t p = 0; p < points_.size(); ++p)
     {

@@ -146,6 +146,12 @@ namespace crawler
         return strain_ ? &*strain_ : nullptr;
       }
 
+      const StressFailures *
+      failures() const override
+      {
+        return stress_.failures();
+      }
+
       std::optional<double>
       period() const override
       {
@@ -181,7 +187,8 @@ namespace crawler
                                      most));
     }
 
-    /// Looked for at some points and times; infinite if it is not a finite number at one of them.
+    /// Looked for at some points and times; infinite if it is not a finite number at one of them. What a generator
+    /// itself calls a failure is left out: the run ends there, if it comes so far.
     double
     largest_active_stress(const Scene &scene)
     {
@@ -193,7 +200,12 @@ namespace crawler
       double largest    = 0.;
       for (unsigned int j = 0; j <= n; ++j)
       {
+        const auto *failures         = scene.active_stress->failures();
+        const unsigned long n_before = failures != nullptr ? failures->count : 0;
         stress->values(scene.end_time * j / n, m);
+        failures = scene.active_stress->failures();
+        if (failures != nullptr && failures->count > n_before)
+          continue;
         for (const double value : m)
           largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : std::numeric_limits<double>::infinity();
       }

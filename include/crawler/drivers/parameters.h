@@ -14,6 +14,7 @@
 namespace crawler
 {
   class Declarations;
+  class ParameterFile;
 
   /// All sections of the parameter file, in file order.
   struct Parameters
@@ -28,6 +29,10 @@ namespace crawler
     OutputParameters output;
     AtlasParameters atlas;
     TradeoffParameters tradeoff;
+
+    /// Makes as many terms of a sum as @p file has; before add_parameters(). Throws InputError if a number is left out.
+    void
+    count_terms(const ParameterFile &file);
 
     void
     add_parameters(Declarations &declarations);

@@ -160,6 +160,8 @@ namespace crawler
     void
     settle();
     bool
+    stress_failed();
+    bool
     examine(const Step &step, std::span<const double> y);
     bool
     may_change_form() const;
@@ -264,6 +266,7 @@ namespace crawler
     std::optional<GaitMeter> gait_meter_;
     std::optional<double> hidden_frame_; ///< one of frames_ that nobody has asked for
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
-    bool started_ = false; ///< a state has been accepted
+    unsigned long n_failures_ = 0;     ///< of the active stress before this run
+    bool started_             = false; ///< a state has been accepted
   };
 } // namespace crawler

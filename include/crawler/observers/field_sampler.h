@@ -23,7 +23,7 @@ namespace crawler
 
     FieldSampler(const Assembler &assembler, const Units &units, std::vector<Point> points);
 
-    /// The fields of the state @p y with the velocity @p v (collective).
+    /// The fields of the state @p y with the velocity @p v (collective). Throws NonfiniteStress.
     const Fields &
     sample(double t, std::span<const double> y, std::span<const double> v);
 
