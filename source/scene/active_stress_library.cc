@@ -44,6 +44,12 @@ namespace crawler
          {
            return std::make_unique<PrescribedStrain>(parameters.prescribed_strain, body, end_time);
          }},
+        {"strain feedback",
+         StrainFeedback::description,
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
+           return std::make_unique<StrainFeedback>(parameters.strain_feedback, body.length, end_time);
+         }},
       };
       return list;
     }
@@ -64,6 +70,7 @@ namespace crawler
     optimal_wave.add_parameters(declarations);
     expression.add_parameters(declarations);
     prescribed_strain.add_parameters(declarations);
+    strain_feedback.add_parameters(declarations);
     declarations.leave();
   }
 

@@ -5,6 +5,7 @@
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
+#include <crawler/scene/active_stress/strain_feedback.h>
 
 namespace crawler
 {
@@ -15,6 +16,7 @@ namespace crawler
     OptimalWaveParameters optimal_wave;
     ExpressionParameters expression;
     PrescribedStrainParameters prescribed_strain;
+    StrainFeedbackParameters strain_feedback;
 
     void
     add_parameters(Declarations &declarations);
