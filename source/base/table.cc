@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/hdf5_handle.h>
 #include <crawler/base/table.h>
 
 #include <fmt/format.h>
-#include <hdf5.h>
 
 #include <algorithm>
 #include <cmath>
@@ -56,28 +56,14 @@ namespace crawler
       return result;
     }
 
-    /// An object of HDF5 that is closed at the end of its life.
-    class Handle
+    /// An object that must have been opened.
+    class Handle : public Hdf5Handle
     {
     public:
       Handle(const hid_t id, herr_t (*close)(hid_t))
-        : id_(hdf5(id))
-        , close_(close)
+        : Hdf5Handle(hdf5(id), close)
       {
       }
-      Handle(const Handle &) = delete;
-      ~Handle()
-      {
-        close_(id_);
-      }
-      operator hid_t() const
-      {
-        return id_;
-      }
-
-    private:
-      const hid_t id_;
-      herr_t (*const close_)(hid_t);
     };
 
     /// Texts of any length in UTF-8: what h5py calls str.

@@ -120,6 +120,13 @@ namespace crawler
     oldest_stress_ = 0;
   }
 
+  void
+  Assembler::forget_stresses()
+  {
+    for (StressAtTime &stress : stresses_)
+      stress.time = std::numeric_limits<double>::quiet_NaN();
+  }
+
   CellInput
   Assembler::geometry() const
   {

@@ -37,7 +37,18 @@ namespace crawler
       };
       triangulation->signals.create.connect(assign); // the first mesh does not count as a refinement
       triangulation->signals.post_refinement.connect(assign);
-      dealii::GridGenerator::subdivided_hyper_cube(*triangulation, n_coarse_cells, 0., length);
+      if (ends.empty())
+        dealii::GridGenerator::subdivided_hyper_cube(*triangulation, n_coarse_cells, 0., length);
+      else
+      {
+        std::vector<dealii::Point<1>> vertices;
+        for (const double s : ends)
+          vertices.emplace_back(s);
+        std::vector<dealii::CellData<1>> coarse(n_coarse_cells);
+        for (unsigned int c = 0; c < n_coarse_cells; ++c)
+          coarse[c].vertices = {c, c + 1};
+        triangulation->create_triangulation(vertices, coarse, {});
+      }
     }
 
     using Triangulation = dealii::parallel::shared::Triangulation<1>;
@@ -73,24 +84,38 @@ namespace crawler
     std::vector<Cell>
     cells() const
     {
-      const double coarse_size = length / n_coarse_cells;
       std::vector<Cell> result;
       if (!triangulation)
       {
         result.reserve(n_coarse_cells);
         for (unsigned int c = 0; c < n_coarse_cells; ++c)
-          result.push_back({c * coarse_size, coarse_size, 0});
+          result.push_back({ends.empty() ? c * coarse_size(c) : ends[c], coarse_size(c), 0, false});
         return result;
       }
       result.reserve(triangulation->n_active_cells());
       for (const auto &cell : cells_along_the_body())
-        result.push_back(
-          {cell->vertex(0)[0], std::ldexp(coarse_size, -cell->level()), static_cast<unsigned int>(cell->level())});
+      {
+        auto coarse = dealii::Triangulation<1>::cell_iterator(cell);
+        while (coarse->level() > 0)
+          coarse = coarse->parent();
+        const bool is_left_half = cell->level() > 0 && cell->parent()->child_index(0) == cell->index();
+        result.push_back({cell->vertex(0)[0],
+                          std::ldexp(coarse_size(static_cast<unsigned int>(coarse->index())), -cell->level()),
+                          static_cast<unsigned int>(cell->level()),
+                          is_left_half});
+      }
       return result;
+    }
+
+    double
+    coarse_size(const unsigned int c) const
+    {
+      return ends.empty() ? length / n_coarse_cells : ends[c + 1] - ends[c];
     }
 
     const double length;
     const unsigned int n_ranks, n_coarse_cells;
+    const std::vector<double> ends               = {};      ///< of the coarse cells; empty if they have one size
     std::unique_ptr<Triangulation> triangulation = nullptr; ///< once the mesh is adapted
   };
 
@@ -102,6 +127,17 @@ namespace crawler
                      length,
                      degree,
                      std::make_shared<Mesh>(length, dealii::Utilities::MPI::n_mpi_processes(communicator), n_cells))
+  {
+  }
+
+  Discretization::Discretization(MPI_Comm communicator, std::vector<double> cell_ends, const unsigned int degree)
+    : Discretization(communicator,
+                     cell_ends.back(),
+                     degree,
+                     std::make_shared<Mesh>(cell_ends.back(),
+                                            dealii::Utilities::MPI::n_mpi_processes(communicator),
+                                            static_cast<unsigned int>(cell_ends.size() - 1),
+                                            cell_ends))
   {
   }
 
@@ -151,9 +187,7 @@ namespace crawler
     for (unsigned int c = 0; c < n; ++c)
       if (changes[c] == CellChange::join)
       {
-        const auto place     = static_cast<std::uint64_t>(std::llround(cells_[c].left / cells_[c].size));
-        const bool left_half = place % 2 == 0;
-        const bool is_pair = cells_[c].level > 0 && left_half && c + 1 < n && cells_[c + 1].level == cells_[c].level &&
+        const bool is_pair = cells_[c].is_left_half && c + 1 < n && cells_[c + 1].level == cells_[c].level &&
                              changes[c + 1] == CellChange::join;
         if (is_pair)
           ++c;
@@ -168,9 +202,8 @@ namespace crawler
     const auto keep = [&](const unsigned int c)
     {
       // The other half cannot be joined alone.
-      const auto place = static_cast<std::uint64_t>(std::llround(cells_[c].left / cells_[c].size));
-      changes[c]       = CellChange::keep;
-      changes[place % 2 == 0 ? c + 1 : c - 1] = CellChange::keep;
+      changes[c]                                      = CellChange::keep;
+      changes[cells_[c].is_left_half ? c + 1 : c - 1] = CellChange::keep;
     };
     for (bool changed = true; changed;)
     {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace crawler
 {
@@ -75,7 +74,6 @@ namespace crawler
     : k(profile_at(scene.profiles.elastic_modulus, points))
     , N(points.size())
     , m(points.size())
-    , time_(std::numeric_limits<double>::quiet_NaN())
   {
     for (double &value : k)
       value *= scene.body.elastic_modulus;
@@ -94,7 +92,10 @@ namespace crawler
   }
 
   void
-  BodyForceAtPoints::evaluate(const double t, const std::span<const double> e, const StretchSeen &seen)
+  BodyForceAtPoints::evaluate(const double t,
+                              const std::span<const double> e,
+                              const StretchSeen &seen,
+                              const double *known_m)
   {
     if (feedback_)
     {
@@ -102,11 +103,10 @@ namespace crawler
       for (std::size_t i = 0; i < k.size(); ++i)
         by_w[i] += k[i];
     }
-    else if (time_ != t)
-    {
+    else if (known_m != nullptr)
+      std::copy_n(known_m, m.size(), m.begin());
+    else
       stress_->values(t, m);
-      time_ = t;
-    }
     for (std::size_t i = 0; i < k.size(); ++i)
       N[i] = equation::body_force(e[i], m[i], k[i]);
   }

@@ -46,7 +46,7 @@ namespace crawler
     }
     kernels_.friction(in, g_.data(), w_dg_.data());
     elsewhere_.evaluate(t, log_stretch(y), /*is_log=*/true, history_);
-    force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed});
+    force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed}, in.cells.m);
     const long bad = sliding_.evaluate(u_, v_);
     for (std::size_t i = 0; i < g_.size(); ++i)
     {

@@ -45,7 +45,7 @@ namespace crawler
     elsewhere_.evaluate(t, stretch_coefficients(u), /*is_log=*/false, history_);
     if (bad >= 0)
       return bad;
-    force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed});
+    force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed}, in.m);
     scene_.friction->values_and_log_derivatives(w_, g_, w_dg_);
     bad = sliding_.evaluate(u_, v_);
     if (bad >= 0)

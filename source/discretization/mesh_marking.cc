@@ -72,8 +72,7 @@ namespace crawler
     for (unsigned int c = 0; c + 1 < n; ++c)
     {
       const auto &cell = mesh.cells()[c];
-      const bool pair =
-        cell.level > 0 && cell.level == mesh.cells()[c + 1].level && std::llround(cell.left / cell.size) % 2 == 0;
+      const bool pair  = cell.is_left_half && cell.level == mesh.cells()[c + 1].level;
       if (!pair || (indicators[c] + indicators[c + 1]) * growth > share * limits.tolerance / n)
         continue;
       changes[c] = changes[c + 1] = CellChange::join;

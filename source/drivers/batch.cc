@@ -21,7 +21,10 @@ namespace crawler
     if (numerics.linear || time.engine != "automatic" || !is_one_of_ours || log_stretch ||
         numerics.mesh.tolerance != 0. || !fits_fused(scene))
       return std::nullopt;
-    return FusedMethod{numerics.degree, numerics.n_cells, method.n_stages};
+    FusedMethod result = {numerics.degree, numerics.n_cells, method.n_stages, first_cell_ends(scene, numerics)};
+    if (!result.cell_ends.empty())
+      result.n_cells = static_cast<unsigned int>(result.cell_ends.size() - 1);
+    return result;
   }
 
   namespace
@@ -41,7 +44,8 @@ namespace crawler
             const Simulation::Options &options,
             const std::function<bool()> &keep_going,
             Results &results)
-        : tables_(fused_tables(method))
+        : tables_owner_(fused_tables(method))
+        , tables_(*tables_owner_)
         , tableau_(radau_tableau(method.n_stages))
         , runs_(runs)
         , members_(members)
@@ -71,6 +75,8 @@ namespace crawler
         double largest_friction = 0., largest_net_friction = 0.;
         double k = 0.; ///< in natural units
         Units units;
+        TimePieces pieces;
+        std::vector<double> frames;                   ///< ends of the pieces
         std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
         std::unique_ptr<ActiveStressAtPoints> ends;   ///< at the ends alone
         std::vector<double> m;
@@ -101,11 +107,13 @@ namespace crawler
       void
       start(Lane &lane, LaneJob &job) const
       {
-        static constexpr double end = 1.;
-        const Numerics &numerics    = *runs_[lane.run].numerics;
-        const Scene &scene          = *runs_[lane.run].scene;
-        lane.units                  = natural_units(scene);
-        std::vector<double> points  = tables_.points;
+        const Numerics &numerics = *runs_[lane.run].numerics;
+        const Scene &scene       = *runs_[lane.run].scene;
+        lane.units               = natural_units(scene);
+        lane.pieces              = TimePieces(*scene.active_stress, scene.end_time);
+        lane.frames              = lane.pieces.breaks();
+        lane.frames.push_back(1.);
+        std::vector<double> points = tables_.points;
         for (double &s : points)
           s *= lane.units.length;
         points.push_back(0.);
@@ -132,18 +140,19 @@ namespace crawler
                .least_stretch = small_stretch,
                .start_time    = 0.,
                .start         = nullptr,
-               .frames        = &end,
-               .n_frames      = 1};
+               .frames        = lane.frames.data(),
+               .n_frames      = static_cast<unsigned int>(lane.frames.size()),
+               .restarts      = true};
       }
 
-      /// The engine asks for m at the start of a run, and then in all stages of each step that it tries.
+      /// The engine asks for m at the start of a run or piece, and then in all stages of each step that it tries.
       static void
       stress(void *context, const unsigned int l, const double t, double *m)
       {
         Batch &batch        = self(context);
         Lane &lane          = batch.lanes_[l];
         const std::size_t n = batch.tables_.points.size(), stages = batch.tableau_.n;
-        lane.stress->values(t * lane.units.time, lane.m);
+        lane.stress->values(lane.pieces.inside(t) * lane.units.time, lane.m);
         if (lane.units.force != 1.)
           for (double &value : lane.m)
             value /= lane.units.force;
@@ -177,7 +186,7 @@ namespace crawler
         std::array<double, 2> m{};
         for (int i = 1; i < parts; ++i)
         {
-          lane.ends->values((step.time - step.size * (parts - i) / parts) * lane.units.time, m);
+          lane.ends->values(lane.pieces.inside(step.time - step.size * (parts - i) / parts) * lane.units.time, m);
           for (double &value : m)
             value /= lane.units.force;
           if (!(end_stretch(lane, m) > 0.))
@@ -216,6 +225,13 @@ namespace crawler
         }
         if (lane.result.ledger)
           lane.result.ledger->elastic_energy = step.elastic_energy;
+        if (step.is_frame && !lane.pieces.is_last())
+        {
+          lane.pieces.go_on();
+          lane.least.interrupt();
+          lane.most.interrupt();
+          lane.n_stress_calls = 0;
+        }
         return true;
       }
 
@@ -256,7 +272,7 @@ namespace crawler
                              step.z[(i * unknowns + d) * step.stride];
             sum += setup.sample_derivatives[p * n + j] * u;
           }
-          return 1. + setup.n_cells * sum;
+          return 1. + sum / setup.sizes[cell];
         };
         const auto [s, value] = parabola_vertex(tables_.place_of_sample(sample - 1),
                                                 stretch_at(place - 1),
@@ -323,6 +339,7 @@ namespace crawler
         return result;
       }
 
+      const std::shared_ptr<const FusedTables> tables_owner_;
       const FusedTables &tables_;
       const RadauTableau &tableau_;
       const std::span<const BatchRun> runs_;

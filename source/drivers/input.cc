@@ -24,15 +24,25 @@ namespace crawler
         bool used;
         std::string because;
       };
-      const auto &wave              = p.active_stress.optimal_wave;
-      const std::string generator   = "Generator = " + p.active_stress.generator,
-                        choice      = "Choose wave by = " + wave.choose_wave_by;
-      const auto &given_by          = p.active_stress.prescribed_strain.given_by;
-      const std::string source      = "Given by = " + given_by;
+      const auto &wave            = p.active_stress.optimal_wave;
+      const std::string generator = "Generator = " + p.active_stress.generator,
+                        choice    = "Choose wave by = " + wave.choose_wave_by;
+      const auto &given_by        = p.active_stress.prescribed_strain.given_by;
+      const std::string source    = "Given by = " + given_by;
+      const auto &travelling      = p.active_stress.travelling_wave;
+      const auto &standing        = p.active_stress.standing_wave;
+      const auto smoothed         = [](const WaveProfileParameters &profile)
+      {
+        return profile.profile == "smoothed square";
+      };
       const bool by_energy          = wave.choose_wave_by == "energy";
       const std::vector<Rule> rules = {
         {"Active stress/Optimal wave/", p.active_stress.generator == "optimal wave", generator},
+        {"Active stress/Travelling wave/", p.active_stress.generator == "travelling wave", generator},
+        {"Active stress/Standing wave/", p.active_stress.generator == "standing wave", generator},
+        {"Active stress/Pulse/", p.active_stress.generator == "pulse", generator},
         {"Active stress/Expression/", p.active_stress.generator == "expression", generator},
+        {"Active stress/Table/", p.active_stress.generator == "table", generator},
         {"Active stress/Prescribed strain/", p.active_stress.generator == "prescribed strain", generator},
         {"Active stress/Prescribed strain/Strain", given_by == "expression", source},
         {"Active stress/Prescribed strain/Constants", given_by == "expression", source},
@@ -46,6 +56,20 @@ namespace crawler
         {"Active stress/Optimal wave/Energy", by_energy, choice},
         {"Active stress/Optimal wave/Root", by_energy, choice},
         {"Active stress/Optimal wave/Root index", wave.root == "index", "Root = " + wave.root},
+        {"Active stress/Travelling wave/Frequency",
+         travelling.given_by == "frequency",
+         "Given by = " + travelling.given_by},
+        {"Active stress/Travelling wave/Wave speed",
+         travelling.given_by == "wave speed",
+         "Given by = " + travelling.given_by},
+        {"Active stress/Travelling wave/Duty cycle", travelling.profile.profile != "sine", "Profile = sine"},
+        {"Active stress/Travelling wave/Front width",
+         smoothed(travelling.profile),
+         "Profile = " + travelling.profile.profile},
+        {"Active stress/Standing wave/Duty cycle", standing.profile.profile != "sine", "Profile = sine"},
+        {"Active stress/Standing wave/Front width",
+         smoothed(standing.profile),
+         "Profile = " + standing.profile.profile},
         {"Time/Order",
          p.time.integrator == "bdf" || p.time.integrator == "automatic",
          "Integrator = " + p.time.integrator},

@@ -232,7 +232,8 @@ namespace crawler
       return simulation->run(frame_times(output.n_snapshots, parameters.time.end_time),
                              {.ledger     = output.ledger,
                               .resolution = false,
-                              .cycles     = cycle_wish(parameters, input.scene, output.n_snapshots)},
+                              .cycles     = cycle_wish(parameters, input.scene, output.n_snapshots),
+                              .gait       = true},
                              create_observers(),
                              keep_going);
     };

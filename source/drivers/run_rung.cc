@@ -147,6 +147,10 @@ namespace crawler
                                                              return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
                                                            });
                     result.setup_seconds    = setup;
+                    if (result.time.status == "finished")
+                      result.gait = rung.gait();
+                    if (result.time.status == "finished" && result.ledger)
+                      result.gait_efficiency = gait_efficiency(input.scene, result);
                     if (std::isfinite(result.net_friction)) // the series has no balance to check
                       check_identities(result, parameters);
                     log.line(rung.description());

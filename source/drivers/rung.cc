@@ -206,6 +206,29 @@ namespace crawler
     }
   }
 
+  std::optional<Gait>
+  Rung::gait() const
+  {
+    const auto period = rungs_.scene().active_stress->period();
+    if (!period)
+      return std::nullopt;
+    GaitMeter meter(*period, false);
+    std::vector<double> ends;
+    for (unsigned int i = 0; i <= GaitMeter::n_pieces; ++i)
+      ends.push_back(static_cast<double>(i) / GaitMeter::n_pieces);
+    replay(meter.times(),
+           ends,
+           [&](const double t, const State &state)
+           {
+             meter.see(state.fields.displacement, state.displacement);
+             const Ledger ledger = ledger_of(state.energies);
+             meter.see_step(t, state.displacement, &ledger);
+             return true;
+           });
+    auto gait = meter.gait();
+    return gait ? std::optional(gait->in_units(rungs_.units())) : std::nullopt;
+  }
+
   std::string
   Rung::description() const
   {

@@ -43,13 +43,24 @@ namespace crawler
     }
   } // namespace
 
+  std::vector<double>
+  first_cell_ends(const Scene &scene, const Numerics &numerics)
+  {
+    const double L             = scene.body.length;
+    std::vector<double> breaks = scene.breaks_in_space();
+    for (double &s : breaks)
+      s /= L;
+    return cell_ends(numerics.n_cells, breaks, numerics.grading);
+  }
+
   Simulation::Simulation(MPI_Comm communicator,
                          const Scene &scene,
                          const TimeParameters &time,
                          const Numerics &numerics)
     : physical_scene_(scene)
     , units_(natural_units(scene))
-    , scene_(crawler::in_units(scene, units_))
+    , pieces_(*scene.active_stress, scene.end_time)
+    , scene_(crawler::in_units(scene, units_, &pieces_))
     , numerics_(in_units(numerics, units_))
     , time_(time)
     , communicator_(communicator)
@@ -59,12 +70,21 @@ namespace crawler
       delay_ = scene_.active_stress->feedback()->delay();
     if (time_.integrator == "automatic")
       time_.integrator = !numerics_.integrator.empty() ? numerics_.integrator : numerics_.linear ? "radau 5" : "bdf";
-    build(std::make_unique<Discretization>(communicator, 1., numerics.n_cells, numerics.degree),
-          numerics.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
-    as_at_start_ = true;
+    build_first();
   }
 
   Simulation::~Simulation() = default;
+
+  /// Mesh and formulation of the start.
+  void
+  Simulation::build_first()
+  {
+    std::vector<double> ends = first_cell_ends(scene_, numerics_);
+    build(ends.empty() ? std::make_unique<Discretization>(communicator_, 1., numerics_.n_cells, numerics_.degree)
+                       : std::make_unique<Discretization>(communicator_, std::move(ends), numerics_.degree),
+          numerics_.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
+    as_at_start_ = true;
+  }
 
   /// The equation on a mesh.
   void
@@ -98,12 +118,10 @@ namespace crawler
                   const std::function<bool()> &keep_going)
   {
     const double start = now();
+    pieces_.restart();
     if (!as_at_start_)
-    {
-      build(std::make_unique<Discretization>(communicator_, 1., numerics_.n_cells, numerics_.degree),
-            numerics_.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
-      as_at_start_ = true;
-    }
+      build_first();
+    assembler_->forget_stresses(); // of the last piece
     options_              = options;
     has_observers_        = !observers.empty();
     result_               = {};
@@ -141,6 +159,11 @@ namespace crawler
         frames_.push_back(time * units_.time);
     }
 
+    gait_meter_.reset();
+    hidden_frame_.reset();
+    if (options.gait)
+      prepare_gait();
+
     result_.time           = integrate(observers, keep_going);
     const bool ended_early = cycle_stop_ && cycle_stop_->repeats();
     if (ended_early)
@@ -172,6 +195,9 @@ namespace crawler
     if (ended_early)
       result_.cycles = cycle_stop_->extrapolate(result_.displacement, result_.ledger ? &*result_.ledger : nullptr);
 
+    if (gait_meter_ && result_.time.status == "finished")
+      result_.gait = gait_meter_->gait();
+
     for (const auto &observer : observers)
       observer->end();
     result_.integrator    = time_.integrator;
@@ -190,7 +216,13 @@ namespace crawler
       request_     = Request::none;
       bool resumed = started_;
       choose_stepper();
-      stepper_->monitor = [&](const Step &part, const std::span<const double> y)
+      if (!pieces_.is_last() && accepted_time_ >= pieces_.end())
+        begin_piece();
+      if (diagnosis_)
+        return before_;
+      const std::vector<double> ends = frames_of_piece();
+      const bool ends_at_frame       = ends_at_frame_;
+      stepper_->monitor              = [&](const Step &part, const std::span<const double> y)
       {
         if (resumed) // the state from which this part starts has been seen already
         {
@@ -201,6 +233,8 @@ namespace crawler
         step.number += before_.steps;
         step.rejected += before_.rejected_steps;
         step.newton_iterations += before_.newton_iterations;
+        const bool at_break = !pieces_.is_last() && part.time == pieces_.end();
+        step.is_frame       = part.is_frame && (!at_break || ends_at_frame);
         if (!examine(step, y))
           return false; // an inverted state is not shown to anybody
         const double before = now();
@@ -210,6 +244,8 @@ namespace crawler
           ++next_frame_;
         if (keep_going && !keep_going())
           return false;
+        if (gait_meter_)
+          watch_gait(step, y);
         if (cycle_stop_ && cycle_repeats(step, y))
           return false;
         if (step.number >= time_.max_steps && step.time < 1.)
@@ -218,15 +254,13 @@ namespace crawler
           return false;
         }
         look_for_coarser_mesh(step);
+        if (at_break && request_ == Request::none)
+          request_ = Request::restart;
         return request_ == Request::none;
       };
-      std::vector<double> rest;
-      for (std::size_t i = next_frame_; i < frames_.size(); ++i)
-        rest.push_back(i + 1 == frames_.size() && frames_[i] == physical_scene_.end_time ? 1.
-                                                                                         : frames_[i] / units_.time);
       TimeOutcome outcome =
         stepper_->solve(y_,
-                        rest,
+                        ends,
                         numerics_.tolerance,
                         next_step_,
                         delay_ > 0. ? std::min(delay_, numerics_.largest_step) : numerics_.largest_step,
@@ -254,8 +288,51 @@ namespace crawler
       next_step_ = std::min(outcome.step_size, numerics_.largest_step);
       if (time_.integrator == "bdf") // starts anew with order 1
         next_step_ = std::min(next_step_, numerics_.initial_step);
-      change();
+      if (request_ != Request::restart)
+        change();
     }
+  }
+
+  /// The frames from now to the end of the present piece, which is the last of them if another piece follows.
+  std::vector<double>
+  Simulation::frames_of_piece()
+  {
+    const double reach = pieces_.is_last() ? HUGE_VAL : pieces_.end() - least_time_between_breaks;
+    std::vector<double> result;
+    std::size_t i         = next_frame_;
+    const auto frame_time = [&]()
+    {
+      return i + 1 == frames_.size() && frames_[i] == physical_scene_.end_time ? 1. : frames_[i] / units_.time;
+    };
+    for (; i < frames_.size() && frame_time() < reach; ++i)
+      result.push_back(frame_time());
+    ends_at_frame_ = i < frames_.size() && frame_time() <= pieces_.end() + least_time_between_breaks;
+    if (!pieces_.is_last())
+      result.push_back(pieces_.end());
+    return result;
+  }
+
+  /// The active stress has jumped, so velocities and all derivatives jump: from the last accepted state starts a run of
+  /// its own.
+  void
+  Simulation::begin_piece()
+  {
+    pieces_.go_on();
+    assembler_->forget_stresses();
+    rates_.assign(rates_.size(), {});
+    quadrature_ = {};
+    min_history_.interrupt();
+    max_history_.interrupt();
+    next_step_ = numerics_.initial_step;
+    if (end_inverts(accepted_time_, accepted_time_))
+      return;
+    y_ = accepted_;
+    assembler_->make_consistent(accepted_time_, y_);
+    accepted_ = y_;
+    if (!options_.ledger || !stepper_->quadrature().empty())
+      return;
+    if (velocity(accepted_time_, 0., y_, v_))
+      quadrature_.advance(accepted_time_, rates(accepted_time_, assembler_->integrals(accepted_time_, y_, v_), y_, v_));
   }
 
   /// Keeps the counts of a part of the run that has ended.
@@ -315,8 +392,8 @@ namespace crawler
     constexpr unsigned int most_corrections = 10;
     const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
     const double t                          = accepted_time_ + size;
-    const double next_frame = next_frame_ < frames_.size() ? std::min(frames_[next_frame_] / units_.time, 1.) : 1.;
-    if (t > next_frame - size)
+    const double next_frame                 = next_frame_ < frames_.size() ? frames_[next_frame_] / units_.time : 1.;
+    if (t > std::min(next_frame, pieces_.end()) - size)
       return;
     std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
     for (unsigned int i = 0; i < most_corrections; ++i)
@@ -636,6 +713,45 @@ namespace crawler
     return is_end && see(y);
   }
 
+  /// A step shall end where the last stride starts, so that what it costs is known.
+  void
+  Simulation::prepare_gait()
+  {
+    const auto period = scene_.active_stress->period();
+    gait_meter_.emplace(period && *period <= 1. + 1e-9 ? period : std::nullopt, cycle_stop_.has_value());
+    const auto start = gait_meter_->stride_start();
+    if (!start)
+      return;
+    const double time = *start * units_.time;
+    const auto place  = std::lower_bound(frames_.begin(), frames_.end(), time - 1e-12 * units_.time);
+    if (place != frames_.end() && *place <= time + 1e-12 * units_.time)
+      return;
+    hidden_frame_ = time;
+    frames_.insert(place, time);
+  }
+
+  /// Shows the gait's samples that a step has passed.
+  void
+  Simulation::watch_gait(const Step &step, const std::span<const double> y)
+  {
+    const auto see = [&](const std::span<const double> state)
+    {
+      const auto u = assembler_->displacement_at(GaitMeter::n_pieces, state);
+      gait_meter_->see(u, assembler_->integrals(step.time, state, v_).displacement);
+    };
+    y_inside_.resize(y_.size());
+    for (double time = gait_meter_->next_time(); time <= step.time; time = gait_meter_->next_time())
+      if (time >= step.time - 1e-12 || step.size == 0.)
+        see(y);
+      else
+      {
+        stepper_->interpolate(time, y_inside_);
+        see(y_inside_);
+      }
+    gait_meter_->see_step(
+      step.time, assembler_->integrals(step.time, y, v_).displacement, result_.ledger ? &*result_.ledger : nullptr);
+  }
+
   /// Displacement, and if wanted the ledger, at an accepted state.
   bool
   Simulation::compute_integrals(const Step &step, const std::span<const double> y)
@@ -711,7 +827,7 @@ namespace crawler
     const Ledger ledger = result_.ledger ? result_.ledger->scaled(energy) : Ledger();
     for (const auto &observer : observers)
       observer->observe({physical,
-                         step.number == 0 || step.is_frame,
+                         step.number == 0 || (step.is_frame && physical.time != hidden_frame_),
                          *assembler_,
                          mesh_number_,
                          units_,
@@ -749,6 +865,10 @@ namespace crawler
       result.cycles->period *= units_.time;
       result.cycles->bound *= units_.length;
     }
+    if (result.time.status == "finished" && result.ledger)
+      result.gait_efficiency = gait_efficiency(physical_scene_, result);
+    if (result.gait)
+      result.gait = result.gait->in_units(units_);
     if (result.log_stretch_since)
       *result.log_stretch_since *= units_.time;
     return result;

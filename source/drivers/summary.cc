@@ -19,6 +19,121 @@ namespace crawler
     {
       return {{"value", e.value}, {"s", e.s}, {"t", e.t}};
     }
+
+    Json
+    number(const std::optional<double> value)
+    {
+      return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+    }
+
+    /// The last stride; every key is there, and null where it is not known.
+    Json
+    gait_numbers(const SimulationResult &result)
+    {
+      const auto of_gait = [&](auto value) -> std::optional<double>
+      {
+        return result.gait ? std::optional<double>(value(*result.gait)) : std::nullopt;
+      };
+      const auto cost = [&](auto energy) -> Json
+      {
+        if (!result.gait || !result.gait->ledger)
+          return nullptr;
+        return number(result.gait->cost_of_transport(energy(*result.gait->ledger)));
+      };
+      const bool has_wave = result.gait && result.gait->wave;
+      Json json;
+      json["period"]       = number(of_gait(
+        [](const Gait &g)
+        {
+          return g.period;
+        }));
+      json["frequency"]    = number(of_gait(
+        [](const Gait &g)
+        {
+          return 1. / g.period;
+        }));
+      json["period_from"]  = result.gait ? Json(result.gait->is_declared ? "active stress" : "stretch") : Json(nullptr);
+      json["strides"]      = number(of_gait(
+        [](const Gait &g)
+        {
+          return g.n_strides;
+        }));
+      json["displacement"] = number(of_gait(
+        [](const Gait &g)
+        {
+          return g.displacement;
+        }));
+      json["body_lengths"] = number(of_gait(
+        [](const Gait &g)
+        {
+          return g.body_lengths();
+        }));
+      json["speed"]        = number(of_gait(
+        [](const Gait &g)
+        {
+          return g.speed();
+        }));
+      json["cost_of_transport"] = {{"stress_power",
+                                    cost(
+                                      [](const Ledger &l)
+                                      {
+                                        return l.stress_power;
+                                      })},
+                                   {"positive_power",
+                                    cost(
+                                      [](const Ledger &l)
+                                      {
+                                        return l.positive_power;
+                                      })},
+                                   {"paper_energy",
+                                    cost(
+                                      [](const Ledger &l)
+                                      {
+                                        return l.paper_energy();
+                                      })},
+                                   {"dissipation",
+                                    cost(
+                                      [](const Ledger &l)
+                                      {
+                                        return l.dissipation;
+                                      })}};
+      json["slip"]              = result.gait ? number(result.gait->slip()) : Json(nullptr);
+      json["wave"]              = {{"direction", result.gait ? Json(result.gait->direction()) : Json(nullptr)},
+                                   {"speed", has_wave ? Json(result.gait->wave->speed) : Json(nullptr)},
+                                   {"coherence", has_wave ? Json(result.gait->wave->coherence) : Json(nullptr)}};
+      json["efficiency"]        = number(result.gait_efficiency);
+      return json;
+    }
+
+    void
+    add_gait_lines(const SimulationResult &result, std::vector<std::string> &lines)
+    {
+      if (!result.gait)
+        return;
+      const Gait &gait = *result.gait;
+      lines.push_back(
+        fmt::format("  stride            period {:.6g}{}, displacement {:.6g} ({:.4g} body lengths), speed {:.4g}",
+                    gait.period,
+                    gait.is_declared ? "" : " (found in the stretch)",
+                    gait.displacement,
+                    gait.body_lengths(),
+                    gait.speed()));
+      if (gait.wave)
+        lines.push_back(fmt::format("  wave              {}, speed {:.4g}, coherence {:.3g}{}",
+                                    gait.direction(),
+                                    gait.wave->speed,
+                                    gait.wave->coherence,
+                                    gait.slip() ? fmt::format(", slip {:.4g}", *gait.slip()) : ""));
+      if (!gait.ledger)
+        return;
+      const auto cost = gait.cost_of_transport(gait.ledger->stress_power);
+      if (!cost)
+        return;
+      const auto positive = gait.cost_of_transport(gait.ledger->positive_power);
+      lines.push_back(fmt::format("  cost of transport {:.4g} (work per distance{})",
+                                  *cost,
+                                  positive ? fmt::format("; {:.4g} if it cannot be recovered", *positive) : ""));
+    }
   } // namespace
 
   std::string
@@ -80,6 +195,7 @@ namespace crawler
     json["net_friction"]       = result.ledger ? Json(result.net_friction) : Json(nullptr);
     json["min_stretch"]        = extreme(result.min_stretch);
     json["max_stretch"]        = extreme(result.max_stretch);
+    json["gait"]               = gait_numbers(result);
     json["log_stretch_since"]  = result.log_stretch_since ? Json(*result.log_stretch_since) : Json(nullptr);
     json["mesh_changes"]       = result.mesh_changes;
     json["most_cells"]         = std::max(result.most_cells, discretization ? discretization->n_cells() : 0);
@@ -155,6 +271,7 @@ namespace crawler
                   result.max_stretch.value,
                   result.max_stretch.s,
                   result.max_stretch.t));
+    add_gait_lines(result, lines);
     return lines;
   }
 } // namespace crawler

@@ -9,7 +9,8 @@ namespace crawler
 {
   FusedStepper::FusedStepper(const Scene &scene, const FusedMethod &method)
     : scene_(scene)
-    , tables_(fused_tables(method))
+    , tables_owner_(fused_tables(method))
+    , tables_(*tables_owner_)
     , tableau_(radau_tableau(method.n_stages))
     , stress_(scene.active_stress->at(tables_.points))
     , memory_(fused_memory(single_engine().memory(tables_.setup)))
@@ -40,7 +41,8 @@ namespace crawler
                 .start_time    = start_time,
                 .start         = y.data(),
                 .frames        = frames_.data(),
-                .n_frames      = static_cast<unsigned int>(frames_.size())};
+                .n_frames      = static_cast<unsigned int>(frames_.size()),
+                .restarts      = false}; // a solve for each piece
     started_ = false;
     y_       = &y;
     outcome_ = {};

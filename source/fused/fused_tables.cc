@@ -37,12 +37,17 @@ namespace crawler
     eigenvalues_                = interleaved(tableau.eigenvalues);
     vectors_                    = interleaved(tableau.vectors);
     rows_                       = interleaved(tableau.rows);
+    const bool uniform          = method.cell_ends.empty();
     for (unsigned int c = 0; c < method.n_cells; ++c)
+    {
+      sizes_.push_back(uniform ? 1. / method.n_cells : method.cell_ends[c + 1] - method.cell_ends[c]);
       for (const double place : element_.points)
-        points.push_back((c + place) / method.n_cells);
+        points.push_back(uniform ? (c + place) / method.n_cells : method.cell_ends[c] + place * sizes_[c]);
+    }
     setup = {method.degree,
              method.n_cells,
              method.n_stages,
+             sizes_.data(),
              element_.values.data(),
              element_.derivatives.data(),
              element_.weights.data(),
@@ -62,17 +67,23 @@ namespace crawler
   double
   FusedTables::place_of_sample(const unsigned int number) const
   {
-    return (number / setup.n_samples + sample_places_[number % setup.n_samples]) / method_.n_cells;
+    const unsigned int cell = number / setup.n_samples;
+    const double place      = sample_places_[number % setup.n_samples];
+    return method_.cell_ends.empty() ? (cell + place) / method_.n_cells
+                                     : method_.cell_ends[cell] + place * sizes_[cell];
   }
 
-  const FusedTables &
+  std::shared_ptr<const FusedTables>
   fused_tables(const FusedMethod &method)
   {
-    static std::map<FusedMethod, std::unique_ptr<FusedTables>> known;
-    auto &tables = known[method];
-    if (!tables)
-      tables = std::make_unique<FusedTables>(method);
-    return *tables;
+    constexpr std::size_t most_kept = 1000; // a sweep may have a mesh of its own at each point
+    static std::map<FusedMethod, std::shared_ptr<const FusedTables>> known;
+    const auto found = known.find(method);
+    if (found != known.end())
+      return found->second;
+    if (known.size() == most_kept)
+      known.clear();
+    return known[method] = std::make_shared<FusedTables>(method);
   }
 
   void

@@ -32,6 +32,24 @@ namespace crawler
          {
            return std::make_unique<OptimalWave>(parameters.optimal_wave, body, end_time);
          }},
+        {"travelling wave",
+         TravellingWave::description,
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
+           return std::make_unique<TravellingWave>(parameters.travelling_wave, body.length, end_time);
+         }},
+        {"standing wave",
+         StandingWave::description,
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
+           return std::make_unique<StandingWave>(parameters.standing_wave, body.length, end_time);
+         }},
+        {"pulse",
+         Pulse::description,
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
+           return std::make_unique<Pulse>(parameters.pulse, body.length, end_time);
+         }},
         {"expression",
          Expression::description,
          [](const auto &parameters, const Body &body, const double end_time)
@@ -49,6 +67,12 @@ namespace crawler
          [](const auto &parameters, const Body &body, const double end_time)
          {
            return std::make_unique<StrainFeedback>(parameters.strain_feedback, body.length, end_time);
+         }},
+        {"table",
+         ActiveStressTable::description,
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
+           return std::make_unique<ActiveStressTable>(parameters.table, body.length, end_time);
          }},
       };
       return list;
@@ -68,9 +92,13 @@ namespace crawler
     declarations.enter("Active stress");
     declarations.choice("Generator", generator, names, documentation + ".");
     optimal_wave.add_parameters(declarations);
+    travelling_wave.add_parameters(declarations);
+    standing_wave.add_parameters(declarations);
+    pulse.add_parameters(declarations);
     expression.add_parameters(declarations);
     prescribed_strain.add_parameters(declarations);
     strain_feedback.add_parameters(declarations);
+    table.add_parameters(declarations);
     declarations.leave();
   }
 

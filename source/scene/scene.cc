@@ -17,18 +17,22 @@ namespace crawler
     class ScaledAtPoints : public ActiveStressAtPoints
     {
     public:
-      /// @p unit is that of the values.
-      ScaledAtPoints(std::unique_ptr<ActiveStressAtPoints> stress, const double time_unit, const double unit)
+      /// @p unit is that of the values; @p pieces may be null.
+      ScaledAtPoints(std::unique_ptr<ActiveStressAtPoints> stress,
+                     const double time_unit,
+                     const double unit,
+                     const TimePieces *pieces)
         : stress_(std::move(stress))
         , time_unit_(time_unit)
         , unit_(unit)
+        , pieces_(pieces)
       {
       }
 
       void
       values(const double t, const std::span<double> m) override
       {
-        stress_->values(t * time_unit_, m);
+        stress_->values((pieces_ != nullptr ? pieces_->inside(t) : t) * time_unit_, m);
         for (double &value : m)
           value /= unit_;
       }
@@ -36,6 +40,7 @@ namespace crawler
     private:
       const std::unique_ptr<ActiveStressAtPoints> stress_;
       const double time_unit_, unit_;
+      const TimePieces *pieces_;
     };
 
     class ScaledStrainAtPoints : public StrainAtPoints
@@ -97,9 +102,10 @@ namespace crawler
     class ScaledFeedbackAtPoints : public FeedbackAtPoints
     {
     public:
-      ScaledFeedbackAtPoints(std::unique_ptr<FeedbackAtPoints> feedback, const Units &units)
+      ScaledFeedbackAtPoints(std::unique_ptr<FeedbackAtPoints> feedback, const Units &units, const TimePieces *pieces)
         : feedback_(std::move(feedback))
         , units_(units)
+        , pieces_(pieces)
       {
       }
 
@@ -109,7 +115,9 @@ namespace crawler
         rate_.assign(seen.rate.begin(), seen.rate.end());
         for (double &value : rate_)
           value /= units_.time;
-        feedback_->values(t * units_.time, {seen.stretch, rate_, seen.near, seen.delayed}, m);
+        feedback_->values((pieces_ != nullptr ? pieces_->inside(t) : t) * units_.time,
+                          {seen.stretch, rate_, seen.near, seen.delayed},
+                          m);
         for (const auto &part : {m.m, m.m_w, m.m_near})
           for (double &value : part)
             value /= units_.force;
@@ -120,22 +128,24 @@ namespace crawler
     private:
       const std::unique_ptr<FeedbackAtPoints> feedback_;
       const Units units_;
+      const TimePieces *pieces_;
       std::vector<double> rate_;
     };
 
     class ScaledFeedback : public StretchFeedback
     {
     public:
-      ScaledFeedback(const StretchFeedback &feedback, const Units &units)
+      ScaledFeedback(const StretchFeedback &feedback, const Units &units, const TimePieces *pieces)
         : feedback_(feedback)
         , units_(units)
+        , pieces_(pieces)
       {
       }
 
       std::unique_ptr<FeedbackAtPoints>
       at(const std::vector<double> &points) const override
       {
-        return std::make_unique<ScaledFeedbackAtPoints>(feedback_.at(times(points, units_.length)), units_);
+        return std::make_unique<ScaledFeedbackAtPoints>(feedback_.at(times(points, units_.length)), units_, pieces_);
       }
       bool
       uses_rate() const override
@@ -156,34 +166,38 @@ namespace crawler
     private:
       const StretchFeedback &feedback_;
       const Units units_;
+      const TimePieces *pieces_;
     };
 
     /// An active stress in other units.
     class ScaledActiveStress : public ActiveStress
     {
     public:
-      ScaledActiveStress(const ActiveStress &stress, const Units &units)
+      ScaledActiveStress(const ActiveStress &stress, const Units &units, const TimePieces *pieces)
         : stress_(stress)
         , units_(units)
+        , pieces_(pieces)
       {
         if (stress.prescribed_strain() != nullptr)
           strain_.emplace(*stress.prescribed_strain(), units);
         if (stress.feedback() != nullptr)
-          feedback_.emplace(*stress.feedback(), units);
+          feedback_.emplace(*stress.feedback(), units, pieces);
       }
 
       std::unique_ptr<ActiveStressAtPoints>
       at(const std::vector<double> &points) const override
       {
-        return std::make_unique<ScaledAtPoints>(stress_.at(times(points, units_.length)), units_.time, units_.force);
+        return std::make_unique<ScaledAtPoints>(
+          stress_.at(times(points, units_.length)), units_.time, units_.force, pieces_);
       }
 
       std::unique_ptr<ActiveStressAtPoints>
       rate_at(const std::vector<double> &points) const override
       {
         auto rate = stress_.rate_at(times(points, units_.length));
-        return rate ? std::make_unique<ScaledAtPoints>(std::move(rate), units_.time, units_.force / units_.time)
-                    : nullptr;
+        return rate
+                 ? std::make_unique<ScaledAtPoints>(std::move(rate), units_.time, units_.force / units_.time, pieces_)
+                 : nullptr;
       }
 
       std::vector<double>
@@ -226,6 +240,7 @@ namespace crawler
     private:
       const ActiveStress &stress_;
       const Units units_;
+      const TimePieces *pieces_;
       std::optional<ScaledStrainHistory> strain_;
       std::optional<ScaledFeedback> feedback_;
     };
@@ -314,10 +329,11 @@ namespace crawler
     std::vector<double> places = active_stress->breaks_in_space();
     for (const auto &profile : {profiles.elastic_modulus, profiles.friction, profiles.initial_stretch})
       if (profile)
-        for (const double s : profile->breaks())
-          if (s > 0. && s < body.length)
-            places.push_back(s);
-    return places;
+      {
+        const auto more = profile->breaks();
+        places.insert(places.end(), more.begin(), more.end());
+      }
+    return distinct_breaks_in_space(std::move(places), body.length);
   }
 
   Units
@@ -354,7 +370,7 @@ namespace crawler
   }
 
   Scene
-  in_units(const Scene &scene, const Units &units)
+  in_units(const Scene &scene, const Units &units, const TimePieces *pieces)
   {
     Scene scaled;
     const double friction            = units.force * units.time / units.length / units.length;
@@ -363,7 +379,7 @@ namespace crawler
     scaled.body.elastic_modulus      = scene.body.elastic_modulus / units.force;
     scaled.body.friction_coefficient = scene.body.friction_coefficient / friction;
     scaled.friction                  = scene.friction->scaled(1. / friction);
-    scaled.active_stress             = std::make_unique<ScaledActiveStress>(*scene.active_stress, units);
+    scaled.active_stress             = std::make_unique<ScaledActiveStress>(*scene.active_stress, units, pieces);
     scaled.end_time                  = scene.end_time / units.time;
     for (const auto member : {&BodyProfiles::elastic_modulus, &BodyProfiles::friction, &BodyProfiles::initial_stretch})
       scaled.profiles.*member = in_units(scene.profiles.*member, units.length);

@@ -6,8 +6,15 @@
 
 #include <crawler/discretization/position_form.h>
 #include <crawler/scene/active_stress/expression.h>
+#include <crawler/scene/active_stress/table.h>
 
 #include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <unistd.h>
 
 namespace crawler::test
 {
@@ -80,6 +87,77 @@ namespace crawler::test
       state.SetItemsProcessed(state.iterations());
     }
 
+    /// A CSV file with n_s x n_t samples of a wave, for the life of this object.
+    class TableFile
+    {
+    public:
+      TableFile(const unsigned int n_s, const unsigned int n_t)
+        : name_(
+            (std::filesystem::temp_directory_path() / fmt::format("crawler_{}_{}_{}.csv", getpid(), n_s, n_t)).string())
+      {
+        std::ofstream out(name_);
+        out << "s,t,m\n";
+        for (unsigned int j = 0; j < n_t; ++j)
+          for (unsigned int i = 0; i < n_s; ++i)
+          {
+            const double s = i / (n_s - 1.), t = j / (n_t - 1.);
+            out << fmt::format("{},{},{}\n", s, t, 0.1 * std::sin(2. * std::numbers::pi * (s + t)));
+          }
+      }
+      TableFile(const TableFile &) = delete;
+      ~TableFile()
+      {
+        std::filesystem::remove(name_);
+      }
+
+      ActiveStressTable
+      read(const std::string &interpolation) const
+      {
+        return {{.file = name_, .interpolation = interpolation}, 1., 1.};
+      }
+
+    private:
+      const std::string name_;
+    };
+
+    /// Rows of 1000 x 1000 samples in a second.
+    void
+    table_reading(benchmark::State &state)
+    {
+      const TableFile file(1000, 1000);
+      for (auto _ : state)
+        benchmark::DoNotOptimize(file.read("cubic"));
+      state.SetItemsProcessed(state.iterations() * 1000000);
+    }
+
+    /// Values of a table with 65 x 129 samples, to be compared with kernel/expression/bulk.
+    void
+    table_values(benchmark::State &state, const std::string &interpolation)
+    {
+      const auto points    = stress_points(static_cast<std::size_t>(state.range(0)));
+      const auto table     = TableFile(65, 129).read(interpolation);
+      const auto at_points = table.at(points);
+      std::vector<double> m(points.size());
+      double t = 0.;
+      for (auto _ : state)
+      {
+        at_points->values(t += 1e-3, m);
+        t = t > 1. ? 0. : t;
+        benchmark::DoNotOptimize(m.data());
+      }
+      state.SetItemsProcessed(state.iterations() * state.range(0) * 5);
+    }
+
+    void
+    table_construction(benchmark::State &state)
+    {
+      const auto points = stress_points(static_cast<std::size_t>(state.range(0)));
+      const auto table  = TableFile(65, 129).read("cubic");
+      for (auto _ : state)
+        benchmark::DoNotOptimize(table.at(points));
+      state.SetItemsProcessed(state.iterations());
+    }
+
     void
     newton_step(benchmark::State &state)
     {
@@ -134,6 +212,10 @@ namespace crawler::test
                });
     benchmark::RegisterBenchmark("kernel/expression/bulk", expression_bulk)->Arg(12)->Arg(1200);
     benchmark::RegisterBenchmark("kernel/expression/construction", expression_construction)->Arg(12)->Arg(1200);
+    benchmark::RegisterBenchmark("kernel/table/cubic", table_values, "cubic")->Arg(12)->Arg(1200);
+    benchmark::RegisterBenchmark("kernel/table/linear", table_values, "linear")->Arg(12)->Arg(1200);
+    benchmark::RegisterBenchmark("kernel/table/construction", table_construction)->Arg(12)->Arg(1200);
+    benchmark::RegisterBenchmark("kernel/table/reading", table_reading)->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark("scale/newton_step", newton_step)
       ->RangeMultiplier(10)
       ->Range(10, 100000)

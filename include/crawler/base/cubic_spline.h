@@ -8,18 +8,30 @@
 namespace crawler
 {
   /**
-   * Interpolation by cubic splines over @p knots (at least 4, increasing), with the not-a-knot condition at both ends:
-   * the third derivative is continuous at the second knot and at the last but one, so that cubic polynomials are
-   * reproduced. The error is O(h^4), that of the derivative O(h^3).
+   * Interpolation by cubic splines over @p knots (at least 4, increasing). The error is O(h^4), that of the derivative
+   * O(h^3). At the ends either
+   *  - not-a-knot: the third derivative is continuous at the second knot and at the last but one, so that cubic
+   *    polynomials are reproduced; or
+   *  - periodic: the period is the distance of the outermost knots, whose values must be equal.
    */
   class CubicSpline
   {
   public:
-    explicit CubicSpline(std::vector<double> knots);
+    enum class Ends
+    {
+      not_a_knot,
+      periodic
+    };
+
+    explicit CubicSpline(std::vector<double> knots, Ends ends = Ends::not_a_knot);
 
     /// The second derivatives at the knots of the spline through @p values (as long as the knots).
     std::vector<double>
     curvatures(std::span<const double> values) const;
+
+    /// The same for many splines at a time: @p values and the result are [knot][spline].
+    std::vector<double>
+    curvatures(std::span<const double> values, std::size_t n_splines) const;
 
     /// A place between the knots: value = a y_i + b y_(i+1) + c M_i + d M_(i+1), with the values y and curvatures M;
     /// and the same for the derivative.
@@ -42,5 +54,10 @@ namespace crawler
 
   private:
     const std::vector<double> knots_;
+    const Ends ends_;
+    std::vector<double> h_;                      ///< knot i+1 - knot i
+    std::vector<double> factor_, pivot_, upper_; ///< the triangular factors of the equations of the inner knots
+    std::vector<double> coupling_;               ///< periodic: how the inner curvatures depend on that of the ends
+    double end_pivot_ = 1.;                      ///< periodic
   };
 } // namespace crawler

@@ -51,6 +51,13 @@ namespace crawler
       }
     }
 
+    /// What comes does not go on smoothly from what was.
+    void
+    interrupt()
+    {
+      last_.fill(last_[2]);
+    }
+
     const Extreme &
     extreme() const
     {

@@ -114,6 +114,10 @@ namespace crawler
     void
     keep_stresses(unsigned int n_times);
 
+    /// The active stress is another one from now on, at the same times, too.
+    void
+    forget_stresses();
+
     /// v = u' at the nodes [length/time], from the balance of forces. Returns false if it cannot be computed.
     virtual bool
     velocity(double t, ConstVector y, Vector v) = 0;

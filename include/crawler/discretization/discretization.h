@@ -16,6 +16,7 @@ namespace crawler
   {
     double left, size;  ///< [length]
     unsigned int level; ///< how often one of the cells of the first mesh was halved
+    bool is_left_half;  ///< of the cell of which it is a half
   };
 
   /// What is to become of a cell; two halves of a former cell are joined if both are marked.
@@ -38,7 +39,11 @@ namespace crawler
   class Discretization
   {
   public:
+    /// Cells of one size.
     Discretization(MPI_Comm communicator, double length, unsigned int n_cells, unsigned int degree);
+
+    /// Cells between neighbours of @p cell_ends [length], which start with 0 and end with the length.
+    Discretization(MPI_Comm communicator, std::vector<double> cell_ends, unsigned int degree);
     ~Discretization();
 
     /// This mesh with cells divided and joined as @p changes says for all cells (the same on all ranks); neighbours

@@ -55,9 +55,10 @@ namespace crawler
   public:
     BodyForceAtPoints(const Scene &scene, const std::vector<double> &points);
 
-    /// @p e is the strain; @p seen what the feedback sees (without effect if there is none).
+    /// @p e is the strain; @p seen what the feedback sees (without effect if there is none); @p known_m is m where it
+    /// depends on time and place only and somebody knows it.
     void
-    evaluate(double t, std::span<const double> e, const StretchSeen &seen);
+    evaluate(double t, std::span<const double> e, const StretchSeen &seen, const double *known_m = nullptr);
 
     std::vector<double> k;       ///< [force]
     std::vector<double> N;       ///< [force]
@@ -69,7 +70,6 @@ namespace crawler
   private:
     std::unique_ptr<ActiveStressAtPoints> stress_;
     std::unique_ptr<FeedbackAtPoints> feedback_;
-    double time_; ///< of m, if that depends on time only
   };
 
   /// The stretch at another place or time, at fixed points of this rank (collective).

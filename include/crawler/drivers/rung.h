@@ -45,6 +45,10 @@ namespace crawler
            const std::vector<double> &points,
            const std::function<bool(double time, const State &state)> &see) const;
 
+    /// After compute(): the last stride, in the user's units; nothing if the active stress declares no period.
+    std::optional<Gait>
+    gait() const;
+
     const RungScene &
     rungs() const
     {

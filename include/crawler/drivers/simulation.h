@@ -3,9 +3,11 @@
 
 #include <crawler/base/extreme_history.h>
 #include <crawler/discretization/assembler.h>
+#include <crawler/discretization/graded_mesh.h>
 #include <crawler/discretization/mesh_marking.h>
 #include <crawler/drivers/cycle_stop.h>
 #include <crawler/drivers/displacement_error.h>
+#include <crawler/drivers/gait.h>
 #include <crawler/fused/fused_stepper.h>
 #include <crawler/fused/linear_stepper.h>
 #include <crawler/observers/observer.h>
@@ -41,7 +43,13 @@ namespace crawler
     MeshLimits mesh               = {};    ///< of an adaptive mesh
     bool linear                   = false; ///< the rung for a = 0: radau, position form, uniform mesh
     std::string integrator        = "";    ///< what an automatic integrator is (time/integrators.h); empty: bdf
+    Grading grading               = {};    ///< of the first mesh, which has n_cells cells without it
   };
+
+  /// The ends of the cells of the first mesh, for a body of length 1: at the breaks in space, and graded as wished.
+  /// Empty if they are n_cells of one size.
+  std::vector<double>
+  first_cell_ends(const Scene &scene, const Numerics &numerics);
 
   /// What one simulation gives.
   struct SimulationResult
@@ -63,7 +71,9 @@ namespace crawler
     Extreme min_stretch, max_stretch;
     std::optional<Extreme> inversion; ///< where and when the body inverted; value is the stretch there
 
-    std::optional<Cycles> cycles; ///< if the run ended because they repeat; all above is that of the end time
+    std::optional<Gait> gait;              ///< the last stride, if that is looked at and there is one
+    std::optional<double> gait_efficiency; ///< of the whole run (gait.h), if it is known [1]
+    std::optional<Cycles> cycles;          ///< if the run ended because they repeat; all above is that of the end time
 
     std::optional<double> log_stretch_since;       ///< time from which on the log-stretch form was used [time]
     unsigned int mesh_changes = 0, most_cells = 0; ///< of an adaptive mesh
@@ -87,6 +97,7 @@ namespace crawler
       bool ledger                     = false; ///< works, energies, net friction
       bool resolution                 = false; ///< SimulationResult::unresolved
       std::optional<CycleWish> cycles = {};    ///< end the run when its cycles repeat; not with frames
+      bool gait                       = false; ///< SimulationResult::gait
     };
 
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);
@@ -118,9 +129,12 @@ namespace crawler
     {
       none,
       log_stretch, ///< change the formulation
-      mesh         ///< change the mesh by changes_
+      mesh,        ///< change the mesh by changes_
+      restart      ///< the active stress jumps
     };
 
+    void
+    build_first();
     void
     build(std::unique_ptr<Discretization> discretization, Formulation formulation);
     bool
@@ -137,6 +151,10 @@ namespace crawler
     go_on_with_petsc(const TimeOutcome &outcome);
     void
     count_part(const TimeOutcome &outcome);
+    void
+    begin_piece();
+    std::vector<double>
+    frames_of_piece();
     void
     change();
     void
@@ -155,6 +173,10 @@ namespace crawler
     mesh_is_good(const Step &step, std::span<const double> y);
     bool
     cycle_repeats(const Step &step, std::span<const double> y);
+    void
+    prepare_gait();
+    void
+    watch_gait(const Step &step, std::span<const double> y);
     bool
     compute_integrals(const Step &step, std::span<const double> y);
     RateQuadrature::Rates
@@ -192,6 +214,7 @@ namespace crawler
 
     const Scene &physical_scene_;
     const Units units_;
+    TimePieces pieces_;
     const Scene scene_;       ///< in natural units
     const Numerics numerics_; ///< in natural units
     TimeParameters time_;     ///< in natural units
@@ -243,7 +266,10 @@ namespace crawler
     TimeOutcome before_;         ///< counts of the parts of the run before the last change of mesh or formulation
     std::vector<double> frames_; ///< in physical units
     std::size_t next_frame_ = 0;
+    bool ends_at_frame_     = false; ///< does the present piece?
     std::optional<CycleStop> cycle_stop_;
+    std::optional<GaitMeter> gait_meter_;
+    std::optional<double> hidden_frame_; ///< one of frames_ that nobody has asked for
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
     bool started_ = false; ///< a state has been accepted
   };

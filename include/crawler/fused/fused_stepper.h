@@ -50,6 +50,7 @@ namespace crawler
     show_rates();
 
     const Scene &scene_;
+    const std::shared_ptr<const FusedTables> tables_owner_;
     const FusedTables &tables_;
     const RadauTableau &tableau_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;

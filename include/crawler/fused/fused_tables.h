@@ -14,6 +14,7 @@ namespace crawler
   struct FusedMethod
   {
     unsigned int degree, n_cells, n_stages;
+    std::vector<double> cell_ends = {}; ///< of a body of length 1 (discretization/graded_mesh.h)
 
     auto
     operator<=>(const FusedMethod &) const = default;
@@ -39,11 +40,11 @@ namespace crawler
   private:
     const FusedMethod method_;
     const ReferenceElement element_;
-    std::vector<double> sample_places_, samples_, eigenvalues_, vectors_, rows_;
+    std::vector<double> sizes_, sample_places_, samples_, eigenvalues_, vectors_, rows_;
   };
 
-  /// Kept from call to call.
-  const FusedTables &
+  /// The latest are kept from call to call.
+  std::shared_ptr<const FusedTables>
   fused_tables(const FusedMethod &method);
 
   /// Scratch memory of the engine: so many doubles, aligned to its packs, all 0.

@@ -36,7 +36,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     double error = 0.; ///< of the step, relative to the tolerance
     double rate = 0., known_rate = 1., last_correction = 0.;
     unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, frame = 0;
-    unsigned long newton = 0;
+    unsigned int first_step = 0; ///< steps before the last start
+    unsigned long newton    = 0;
 
     /// The size wanted, but steps end at frames.
     void
@@ -107,7 +108,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     bool
     is_settling() const
     {
-      return error >= 1. && steps < settling_steps;
+      return error >= 1. && steps - first_step < settling_steps;
     }
 
     /// An error that had to be filtered twice: the step must not grow.
@@ -153,6 +154,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       return failures > most_failures || next < least_step ||
              (all_failures > many_failures && all_failures > large_part * steps);
+    }
+
+    /// From here on the past is no guide.
+    void
+    start_anew()
+    {
+      next          = job.initial_step;
+      has_old       = false;
+      just_rejected = false;
+      first_step    = steps;
     }
 
     /// Goes to the end of the step; is it a frame?

@@ -4,10 +4,11 @@
 #include <cstddef>
 
 /**
- * Kernels and time integration of the position form in one piece, for uniform meshes and the p-model of friction: Radau
- * IIA with the simplified Newton method, as in time/radau.h, without an object of PETSc. Several bodies are computed
- * side by side in the lanes of vector registers, each with its own parameters and its own steps; a lane that is done
- * takes the next body. No operation mixes lanes, so an answer does not depend on which bodies share a batch.
+ * Kernels and time integration of the position form in one piece, for meshes that do not change and the p-model of
+ * friction: Radau IIA with the simplified Newton method, as in time/radau.h, without an object of PETSc. Several bodies
+ * are computed side by side in the lanes of vector registers, each with its own parameters and its own steps; a lane
+ * that is done takes the next body. No operation mixes lanes, so an answer does not depend on which bodies share a
+ * batch.
  *
  * Only plain data here: this header is included by code for instruction sets that the processor may not have.
  * Everything is in natural units (scene/scene.h).
@@ -19,6 +20,7 @@ namespace crawler
   struct LaneSetup
   {
     unsigned int degree, n_cells, n_stages;
+    const double *sizes;                                      ///< [n_cells] of the cells
     const double *values, *derivatives, *weights, *stiffness; ///< of the element
     unsigned int n_samples;                                   ///< per cell, where the stretch is looked at
     const double *sample_derivatives;                         ///< [n_samples][degree+1]
@@ -42,6 +44,7 @@ namespace crawler
     const double *start;  ///< [unknowns] displacement at start_time; null: rest
     const double *frames; ///< ascending times after start_time where steps must end; the run ends with the last
     unsigned int n_frames;
+    bool restarts; ///< all frames but the last are times when the active stress jumps: the body starts anew there
   };
 
   /// Of a stage of an accepted step (the last one is its end).
@@ -89,7 +92,8 @@ namespace crawler
     void *context;
     /// The next body for a lane; false if there is none.
     bool (*next)(void *context, unsigned int lane, LaneJob &job);
-    /// m at all quadrature points [cell][point].
+    /// m at all quadrature points [cell][point]. Asked for at the start, in all stages of each step that is tried, and
+    /// after a step to a time when it jumps there once more, for what comes then.
     void (*stress)(void *context, unsigned int lane, double t, double *m);
     /// Sees each accepted step; false stops the lane. May be null.
     bool (*accepted)(void *context, unsigned int lane, const LaneStep &step);

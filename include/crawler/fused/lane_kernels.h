@@ -5,7 +5,7 @@
 #include <crawler/discretization/chain_loops.h>
 #include <crawler/fused/pack.h>
 
-/// The loops over all cells of a uniform mesh, for a pack of bodies and one degree q (included by radau_lanes.h).
+/// The loops over all cells, for a pack of bodies and one degree q (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   /// The p-model of friction with gamma = 1, g = w^a: by products where a is a small whole number. Each lane is
@@ -71,6 +71,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   struct LaneMesh
   {
     int n_cells;
+    const double *sizes; ///< [n_cells]
     ElementTables tables;
     Pack k;
     LaneFriction<Pack> friction;
@@ -123,14 +124,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static Pack
     residual(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, Pack *F)
     {
-      const double h = 1. / mesh.n_cells;
-      Pack least     = broadcast<Pack>(HUGE_VAL);
+      Pack least = broadcast<Pack>(HUGE_VAL);
       const CellFriction friction{mesh.friction};
       for (int c = 0; c < mesh.n_cells; ++c)
       {
         Pack w[n];
         set_to_zero(c, F);
-        cell_residual<n>(mesh.tables, h, mesh.k, u + c * q, v + c * q, m + c * n, friction, w, F + c * q);
+        cell_residual<n>(mesh.tables, mesh.sizes[c], mesh.k, u + c * q, v + c * q, m + c * n, friction, w, F + c * q);
         for (int p = 0; p < n; ++p)
           least = smaller(w[p], least); // a stretch that is not a number makes F one, too
       }
@@ -141,15 +141,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static void
     balance(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *m, Pack *F, Pack *blocks, Pack *schur)
     {
-      const double h = 1. / mesh.n_cells;
       const CellFriction friction{mesh.friction};
       for (int c = 0; c < mesh.n_cells; ++c)
       {
         Pack w[n];
         set_to_zero(c, F);
-        cell_residual<n>(
-          mesh.tables, h, mesh.k, u + c * q, static_cast<const Pack *>(nullptr), m + c * n, friction, w, F + c * q);
-        cell_mass<n>(mesh.tables, h, u + c * q, friction, blocks + c * n * n);
+        cell_residual<n>(mesh.tables,
+                         mesh.sizes[c],
+                         mesh.k,
+                         u + c * q,
+                         static_cast<const Pack *>(nullptr),
+                         m + c * n,
+                         friction,
+                         w,
+                         F + c * q);
+        cell_mass<n>(mesh.tables, mesh.sizes[c], u + c * q, friction, blocks + c * n * n);
         condense_cell<q>(blocks + c * n * n, schur + 4 * c, [](const auto &) {});
       }
       for (int i = 0; i <= mesh.n_cells * q; ++i)
@@ -169,13 +175,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
               Complex<Pack> *complex_blocks,
               Complex<Pack> *complex_schur)
     {
-      const double h = 1. / mesh.n_cells;
       const CellFriction friction{mesh.friction};
       const auto any_pivot = [](const auto &) {}; // what is not finite is seen in the solution
       for (int c = 0; c < mesh.n_cells; ++c)
       {
         Pack K[n * n], M[n * n];
-        cell_jacobians<n>(mesh.tables, h, mesh.k, u + c * q, v + c * q, friction, K, M);
+        cell_jacobians<n>(mesh.tables, mesh.sizes[c], mesh.k, u + c * q, v + c * q, friction, K, M);
         Pack *A = blocks + c * n * n;
         for (int i = 0; i < n * n; ++i)
           A[i] = K[i] + real * M[i];
@@ -209,10 +214,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static void
     integrals(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, LaneIntegrals<Pack> &sum)
     {
-      const double h = 1. / mesh.n_cells;
       const CellFriction friction{mesh.friction};
       for (int c = 0; c < mesh.n_cells; ++c)
-        cell_integrals<n>(mesh.tables, h, mesh.k, u + c * q, v + c * q, m + c * n, friction, sum);
+        cell_integrals<n>(mesh.tables, mesh.sizes[c], mesh.k, u + c * q, v + c * q, m + c * n, friction, sum);
     }
 
     /// int u ds.
@@ -225,9 +229,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         Pack at[n];
         evaluate<n>(mesh.tables.values, u + c * q, 1., 0., at);
         for (int p = 0; p < n; ++p)
-          sum += mesh.tables.weights[p] * at[p];
+          sum += mesh.sizes[c] * mesh.tables.weights[p] * at[p];
       }
-      return sum * (1. / mesh.n_cells);
+      return sum;
     }
 
     /// Smallest and largest stretch among the samples of all cells.
@@ -245,6 +249,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       *most     = broadcast<Pack>(-HUGE_VAL);
       *least_at = *most_at = Pack{};
       for (int c = 0; c < mesh.n_cells; ++c)
+      {
+        const double inverse_size = 1. / mesh.sizes[c];
         for (int i = 0; i < n_samples; ++i)
         {
           Pack w;
@@ -252,12 +258,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           w                = Pack{};
           for (int j = 0; j < n; ++j)
             w += sample_derivatives[i * n + j] * u[c * q + j];
-          w         = 1. + mesh.n_cells * w;
+          w         = 1. + inverse_size * w;
           *least_at = w < *least ? place : *least_at;
           *least    = smaller(w, *least);
           *most_at  = w > *most ? place : *most_at;
           *most     = w > *most ? w : *most;
         }
+      }
     }
   };
 

@@ -35,6 +35,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       , systems_(setup, mesh_)
     {
       mesh_.n_cells = static_cast<int>(setup.n_cells);
+      mesh_.sizes   = setup.sizes;
       mesh_.tables  = {setup.values, setup.derivatives, setup.weights, setup.stiffness};
       lay_out();
     }
@@ -100,7 +101,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       lane       = Lane();
       lane.busy  = host_.next(host_.context, static_cast<unsigned int>(l), lane.job);
       if (!lane.busy)
-        lane.job = {1., 0., 1., 1., 1., 0, 0., 0., nullptr, nullptr, 0};
+        lane.job = {1., 0., 1., 1., 1., 0, 0., 0., nullptr, nullptr, 0, false};
       lane.t    = lane.job.start_time;
       lane.next = lane.job.initial_step;
       set_lane(mesh_.k, l, lane.job.k);
@@ -353,6 +354,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         end(l, LaneOutcome::finished);
       else if (!go_on || lane.steps >= lane.job.most_steps)
         end(l, LaneOutcome::stopped);
+      else if (is_frame && lane.job.restarts)
+      {
+        lane.start_anew();
+        stress(l, lane.t, m_start_);
+      }
     }
 
     void

@@ -18,6 +18,19 @@ namespace crawler
     double transfer_loss  = 0.; ///< elastic energy lost by changes of mesh and formulation [energy]
     double initial_energy = 0.; ///< elastic energy at t = 0, of a body that does not start unstretched [energy]
 
+    /// All of these, for what is done to each.
+    static constexpr std::array<double Ledger::*, 7>
+    energies()
+    {
+      return {{&Ledger::stress_power,
+               &Ledger::dissipation,
+               &Ledger::positive_power,
+               &Ledger::exchanged,
+               &Ledger::end_work,
+               &Ledger::elastic_energy,
+               &Ledger::transfer_loss}};
+    }
+
     /// All energies times @p unit.
     Ledger
     scaled(double unit) const;

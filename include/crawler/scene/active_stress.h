@@ -49,8 +49,9 @@ namespace crawler
     virtual std::vector<double>
     breaks_in_space() const;
 
-    /// Times in (0, T), in any order, when m or a derivative of it jumps [time]: steps end there. T is the end time
-    /// that the generator was made for. On which side values() is at such a time does not matter.
+    /// Times, in any order, when m or a derivative of it jumps [time]: steps end at those in (0, T). T is the end time
+    /// that the generator was made for. On which side values() is at such a time does not matter, nor at 0 and at T if
+    /// they are listed too, as they should be if m jumps there (breaks.h).
     virtual std::vector<double>
     breaks_in_time() const;
 

@@ -5,7 +5,11 @@
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
+#include <crawler/scene/active_stress/pulse.h>
+#include <crawler/scene/active_stress/standing_wave.h>
 #include <crawler/scene/active_stress/strain_feedback.h>
+#include <crawler/scene/active_stress/table.h>
+#include <crawler/scene/active_stress/travelling_wave.h>
 
 namespace crawler
 {
@@ -14,9 +18,13 @@ namespace crawler
   {
     std::string generator = "optimal wave";
     OptimalWaveParameters optimal_wave;
+    TravellingWaveParameters travelling_wave;
+    StandingWaveParameters standing_wave;
+    PulseParameters pulse;
     ExpressionParameters expression;
     PrescribedStrainParameters prescribed_strain;
     StrainFeedbackParameters strain_feedback;
+    TableParameters table;
 
     void
     add_parameters(Declarations &declarations);

@@ -3,6 +3,7 @@
 
 #include <crawler/scene/active_stress.h>
 #include <crawler/scene/body.h>
+#include <crawler/scene/breaks.h>
 #include <crawler/scene/friction_law.h>
 #include <crawler/scene/ground.h>
 #include <crawler/scene/units.h>
@@ -41,7 +42,8 @@ namespace crawler
     std::pair<double, double>
     end_moduli() const;
 
-    /// Places in (0, L) where the active stress or a profile of the body has a jump or a kink [length].
+    /// Places in (0, L) where the active stress or a profile of the body has a jump or a kink, ascending, each once
+    /// [length].
     std::vector<double>
     breaks_in_space() const;
   };
@@ -59,7 +61,8 @@ namespace crawler
   void
   require_computable_stress(const Scene &scene);
 
-  /// The same problem in other units. It refers to @p scene, which must outlive it.
+  /// The same problem in other units. It refers to @p scene, which must outlive it. If @p pieces are given, which must
+  /// outlive it too, the active stress is that of the piece that is the present one when it is evaluated.
   Scene
-  in_units(const Scene &scene, const Units &units);
+  in_units(const Scene &scene, const Units &units, const TimePieces *pieces = nullptr);
 } // namespace crawler

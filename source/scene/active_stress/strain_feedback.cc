@@ -140,7 +140,8 @@ namespace crawler
   }
 
   StrainFeedback::StrainFeedback(const StrainFeedbackParameters &parameters, const double length, const double end_time)
-    : end_time_(end_time)
+    : length_(length)
+    , end_time_(end_time)
   {
     auto formula = read_formula(
       {"active stress", parameters.active_stress, parameters.constants, formula_entry, section + "Constants", names},
@@ -188,6 +189,17 @@ namespace crawler
   StrainFeedback::at(const std::vector<double> &points) const
   {
     return std::make_unique<AtRest>(feedback_->at(points), points.size());
+  }
+
+  std::vector<double>
+  StrainFeedback::breaks_in_space() const
+  {
+    constexpr int most    = 20;
+    const double distance = feedback_->distance();
+    std::vector<double> places;
+    for (int i = 1; i <= most && std::abs(i * distance) < length_ && distance != 0.; ++i)
+      places.push_back(distance > 0. ? length_ - i * distance : -i * distance);
+    return places;
   }
 
   std::vector<double>

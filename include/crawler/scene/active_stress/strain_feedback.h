@@ -42,6 +42,10 @@ namespace crawler
 
     ~StrainFeedback() override;
 
+    /// Where the place of w_near reaches the end of the body, and where that is seen from in turn.
+    std::vector<double>
+    breaks_in_space() const override;
+
     /// The past begins at t = 0: what follows from it has kinks at the first multiples of the delay.
     std::vector<double>
     breaks_in_time() const override;
@@ -52,7 +56,7 @@ namespace crawler
   private:
     class Feedback;
 
-    const double end_time_;
+    const double length_, end_time_;
     std::shared_ptr<const Feedback> feedback_;
   };
 } // namespace crawler

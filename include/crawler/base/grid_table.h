@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// Samples of a function at all points of a grid over s and t.
+  struct GridTable
+  {
+    std::vector<double> s, t;   ///< increasing
+    std::vector<double> values; ///< [t][s]
+  };
+
+  /**
+   * Reads the samples of the function @p name ("m") from a file of one of two kinds, which its first bytes tell apart:
+   *  - CSV: the header s,t,NAME and one row a sample of a full grid, in any order. A byte order mark, carriage returns,
+   *    blanks and empty rows do not matter; values of s (or t) that differ by round-off only (1e-12 of their range) are
+   *    the same.
+   *  - HDF5: datasets s[ns], t[nt], both increasing, and NAME[nt,ns] in the root group, of any type of numbers.
+   * Throws InputError for @p entry, with numbers of rows (the header is row 1) or indices (from 0), if there is no such
+   * file, if it has not this form, if something is not a finite number, or if a point is missing or given twice.
+   */
+  GridTable
+  read_grid_table(const std::string &file, const std::string &name, const std::string &entry);
+
+  /// Throws InputError for @p entry unless @p values of @p name ("s") are at least @p least ones.
+  void
+  require_number_of_values(const std::vector<double> &values,
+                           std::size_t least,
+                           const std::string &name,
+                           const std::string &file,
+                           const std::string &entry);
+
+  /// Throws InputError for @p entry unless @p values of @p name reach from 0 to @p end, the whole of @p what ("body").
+  void
+  require_reach(const std::vector<double> &values,
+                double end,
+                const std::string &name,
+                const std::string &what,
+                const std::string &file,
+                const std::string &entry);
+} // namespace crawler

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <vector>
+
+namespace crawler
+{
+  /// How the cells become smaller towards the ends of the body and both sides of each break in space.
+  struct Grading
+  {
+    unsigned int levels = 0;    ///< cells that are added at each of these places; 0: none
+    double ratio        = 0.25; ///< of the sizes of neighbours among them [1], in (0, 1)
+  };
+
+  /**
+   * The ends of the cells of a body of length 1, from 0 to 1; empty if all cells have one size, 1/n_cells. @p breaks
+   * (ascending, in (0, 1)) are ends of cells. The pieces between them get at least one cell each, and cells of one size
+   * in proportion to their lengths as far as whole numbers allow: @p n_cells altogether, or one for each piece if that
+   * is more. Then the cell at each end of a piece is divided at ratio^levels, ..., ratio^2, ratio of its size, seen
+   * from that end (half of it, if it is the only cell of its piece).
+   */
+  std::vector<double>
+  cell_ends(unsigned int n_cells, const std::vector<double> &breaks, const Grading &grading);
+} // namespace crawler

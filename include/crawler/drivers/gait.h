@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/observers/ledger.h>
+#include <crawler/scene/units.h>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace crawler
+{
+  struct Scene;
+  struct SimulationResult;
+
+  /// A wave of stretch along the body, e(s - c t) as far as it is one; what does not change in time is no part of it.
+  struct StretchWave
+  {
+    double speed;     ///< c, positive towards s = L [length/time]
+    double coherence; ///< 1: all of it travels with this speed; 0: as much goes one way as the other
+  };
+
+  /// The last stride of a run (doc/theory.md, "Gait numbers").
+  struct Gait
+  {
+    double period;                     ///< [time]
+    bool is_declared;                  ///< by the active stress; otherwise it was found in the stretch
+    double n_strides;                  ///< so many fit into the run
+    double displacement;               ///< of the centre of mass in this stride [length]
+    std::optional<StretchWave> wave;   ///< nothing if the stretch hardly changes
+    std::optional<Ledger> ledger = {}; ///< works of this stride [energy], if there is a ledger
+
+    /// From natural units to the user's.
+    Gait
+    in_units(const Units &units) const;
+
+    double length = 1.; ///< of the body [length]
+
+    double
+    speed() const
+    {
+      return displacement / period;
+    }
+    double
+    body_lengths() const ///< of displacement in a stride [1]
+    {
+      return displacement / length;
+    }
+    /// Energy per distance [force]; nothing if the body does not move.
+    std::optional<double>
+    cost_of_transport(double energy) const;
+    /// Nothing if no wave travels: 1 - (speed of the body)/(speed of the wave) [1].
+    std::optional<double>
+    slip() const;
+    /// "prograde" if the wave travels as the body does, "retrograde" if against it, "standing" if neither; "none" if
+    /// the stretch hardly changes or the body does not move.
+    const char *
+    direction() const;
+  };
+
+  /**
+   * The wave in the samples @p stretch [phase][piece] of one period, equally spaced in time and along the body. With
+   * the least-squares speed c = - <e_t e_s>/<e_s^2> and the coherence |<e_t e_s>|/sqrt(<e_t^2><e_s^2>), <.> the mean
+   * over body and period, and e the stretch without its mean over time; differences of fourth order.
+   */
+  std::optional<StretchWave>
+  measure_wave(std::vector<std::vector<double>> stretch, double period, double length);
+
+  /**
+   * The part of the largest displacement that any gait with these extreme stretches and this work can reach, at most 1:
+   * D/(F sqrt(W T/(gamma L))), F = |w_min^(-a/2) - w_max^(-a/2)| (doc/theory.md, "How good any gait can be"). For the
+   * p-model of friction and a run from rest. Nothing if it is not defined: no work, no strain or no resistance
+   * that depends on it.
+   */
+  std::optional<double>
+  gait_efficiency(const Scene &scene, const SimulationResult &result);
+
+  /**
+   * Watches a run over (0, 1] and describes its last stride. A period that is known (of the active stress, or of what
+   * it becomes) is used as it is; otherwise one is looked for in the stretch in the second half of the run: the
+   * smallest shift by which the stretch repeats, of which there must be two. All lengths are in units of the body's.
+   */
+  class GaitMeter
+  {
+  public:
+    static constexpr unsigned int n_pieces = 64, n_phases = 32;
+
+    /// @p period: in units of the duration; one longer than that is none. @p ends_early: the run may end with any of
+    /// the strides that end at 1 - j P.
+    GaitMeter(std::optional<double> period, bool ends_early);
+
+    /// When the next state is wanted, infinite if none is; dense output is good enough.
+    double
+    next_time() const;
+
+    /// All times when a state is wanted.
+    std::vector<double>
+    times() const;
+
+    /// When a step should end, so that the ledger is known there; nothing if that is open.
+    std::optional<double>
+    stride_start() const;
+
+    /// Sees that state: @p u is the displacement at the ends of all pieces, @p displacement its mean.
+    void
+    see(std::span<const double> u, double displacement);
+
+    /// Sees the end of a step; @p ledger may be null.
+    void
+    see_step(double time, double displacement, const Ledger *ledger);
+
+    /// The last stride, in natural units; nothing if there was none.
+    std::optional<Gait>
+    gait() const;
+
+  private:
+    struct Sample
+    {
+      double time, displacement;
+      std::vector<double> stretch;
+    };
+    struct StepEnd
+    {
+      double time, displacement;
+      std::optional<Ledger> ledger;
+    };
+
+    double
+    time_of(unsigned long number) const;
+    std::optional<Gait>
+    declared_gait() const;
+    std::optional<Gait>
+    found_gait() const;
+    std::optional<double>
+    find_period() const;
+
+    const std::optional<double> period_;
+    const bool ends_early_;
+    unsigned long n_samples_ = 0, next_ = 0; ///< of all samples, and the next one
+    std::vector<Sample> samples_;            ///< a known period: of the last n_phases; otherwise all
+    std::vector<StepEnd> steps_;             ///< a known period: ends of strides; otherwise all of the second half
+  };
+} // namespace crawler

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <vector>
+
+namespace crawler
+{
+  /// The smooth step S: 0 for x <= 0, 1 for x >= 1, between them S(x) = 1/(1 + exp(1/x - 1/(1-x))). All its derivatives
+  /// are continuous, S(x) + S(1-x) = 1, and its largest slope is S'(1/2) = 2.
+  double
+  smooth_step(double x);
+
+  /// Its derivative S'(x) = S (1-S) (1/x^2 + 1/(1-x)^2).
+  double
+  smooth_step_rate(double x);
+
+  /**
+   * What is switched on and off once a period. The argument x counts periods: on for the share `duty` of each, from
+   * x = 0 to x = duty, with fronts (smooth steps) of width `front` about both instants, so that the mean over a period
+   * is `duty` whatever the front. With front = 0 the switch jumps.
+   */
+  class Switching
+  {
+  public:
+    /// @p duty [1] is between 0 and 1; @p front [1] is from 0 to the smaller of duty and 1 - duty (to round-off).
+    /// Throws std::logic_error otherwise: entries are to be looked at before.
+    Switching(double duty, double front);
+
+    /// How far it is on, from 0 to 1.
+    double
+    value(double x) const;
+
+    /// The derivative of value() [1/period]; without fronts 0, except for the jumps.
+    double
+    rate(double x) const;
+
+    bool
+    jumps() const
+    {
+      return front_ == 0.;
+    }
+
+    /// The places in (from, to), increasing, where it jumps; none with a front.
+    std::vector<double>
+    breaks(double from, double to) const;
+
+  private:
+    const double duty_, front_;
+  };
+} // namespace crawler

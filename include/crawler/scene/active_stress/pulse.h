@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/active_stress.h>
+#include <crawler/scene/active_stress/envelope.h>
+
+#include <string>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// Section "Active stress/Pulse".
+  struct PulseParameters
+  {
+    std::string shape = "gaussian";
+    double amplitude  = 0.3;              ///< [force]
+    double width      = 0.1;              ///< [length]
+    std::optional<double> start_position; ///< [length]; nothing: just outside of the body
+    std::string direction    = "from tail to head";
+    double speed             = 1.; ///< [length/time]
+    double repetition_period = 0.; ///< [time]; 0: a single pulse
+    EnvelopeParameters envelope;
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /**
+   * A bump of active stress that runs along the body, once or again and again:
+   *
+   *   m = window(s) ramp(t) A sum_j b( (s - x_j(t))/width ),   x_j(t) = x_0 + sigma v (t - j P),
+   *
+   * with b(z) = exp(-z^2) (gaussian) or exp(1 - 1/(1-z^2)) for |z| < 1 (compact). The sum is over all whole numbers j:
+   * pulses follow each other at the distance v P, and those that are ahead of the first are on the body at t = 0 if it
+   * is longer than that. Its period is P; with a ramp, or a single pulse, it has none.
+   */
+  class Pulse : public ActiveStress
+  {
+  public:
+    static constexpr const char *description = "a bump that runs along the body, once or repeatedly";
+
+    /// Throws InputError if the window does not fit, if the pulses are closer than their width, or if the pulse does
+    /// not come to the body before the end time.
+    Pulse(const PulseParameters &parameters, double length, double end_time);
+
+    std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &points) const override;
+    std::unique_ptr<ActiveStressAtPoints>
+    rate_at(const std::vector<double> &points) const override;
+    std::optional<double>
+    period() const override;
+    std::vector<double>
+    breaks_in_space() const override;
+
+    /// Where the pulse is in the beginning.
+    void
+    report(std::ostream &out) const override;
+
+    struct Settings
+    {
+      bool compact;
+      double amplitude, width;
+      double start, velocity, period; ///< x_0, sigma v, P
+      double reach;                   ///< beyond this distance from its centre a pulse is 0 [length]
+      double length;                  ///< of the body
+      Envelope envelope;
+    };
+
+  private:
+    const Settings settings_;
+  };
+} // namespace crawler

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/grid_interpolation.h>
+#include <crawler/scene/active_stress.h>
+
+#include <string>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// Section "Active stress/Table".
+  struct TableParameters
+  {
+    std::string file          = "actuation.csv";
+    std::string interpolation = "cubic"; ///< | linear
+    std::string outside       = "error"; ///< | hold | periodic, in t
+    std::string outside_in_s  = "error"; ///< | hold
+    double unit_of_s = 1., unit_of_t = 1., unit_of_m = 1.;
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /**
+   * An active stress through samples m(s_i, t_j), as measured (doc/generators/table.md): linear between them, or by
+   * cubic splines in s and t (tensor product).
+   */
+  class ActiveStressTable : public ActiveStress
+  {
+  public:
+    static constexpr const char *description = "samples over s and t in a CSV or HDF5 file";
+
+    /**
+     * Reads the file (base/grid_table.h). Throws InputError if it cannot be read, if there are not enough values of s
+     * or t (cubic: 4, linear: 2), if the samples do not reach from 0 to @p length and from 0 to @p end_time and nothing
+     * else is declared, if they do not even overlap with that, or if they are declared periodic and the first and the
+     * last time have different values.
+     */
+    ActiveStressTable(const TableParameters &parameters, double length, double end_time);
+
+    std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &points) const override;
+    std::unique_ptr<ActiveStressAtPoints>
+    rate_at(const std::vector<double> &points) const override;
+
+    /// If it is periodic, that of the table, or a whole part of it after which equally spaced samples repeat.
+    std::optional<double>
+    period() const override;
+
+    /// Linear: the samples, unless there are more than 256 in (0, L). Where a table that is held begins and ends.
+    std::vector<double>
+    breaks_in_space() const override;
+    /// The same in time, but at most 4096 samples.
+    std::vector<double>
+    breaks_in_time() const override;
+
+    void
+    report(std::ostream &out) const override;
+
+  private:
+    const TableParameters parameters_;
+    const double length_, end_time_;
+    const GridInterpolation table_;
+  };
+} // namespace crawler

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+namespace crawler
+{
+  class ActiveStress;
+
+  /// Breaks closer than this part of the duration, or of the length, are one.
+  constexpr double least_time_between_breaks = 1e-12, least_space_between_breaks = 1e-9;
+
+  /// The breaks of an active stress in (0, @p length), ascending, each once [length]; an end of the body is none.
+  std::vector<double>
+  breaks_in_space(const ActiveStress &stress, double length);
+  /// The same for any list of places.
+  std::vector<double>
+  distinct_breaks_in_space(std::vector<double> places, double length);
+
+  /**
+   * The pieces of [0, T] between the times when the active stress, or a derivative of it, jumps. Within a piece from
+   * t_b to t_c it is evaluated at times in [t_b + 2 d, t_c - d], d = 1e-12 T: what a generator answers at the very time
+   * of a break does not matter. Time here is in units of T.
+   */
+  class TimePieces
+  {
+  public:
+    /// One piece, without breaks: any time is as good as another.
+    TimePieces() = default;
+
+    /// @p end_time is T [time]. Breaks at 0 and T, or beyond, may be among those of the stress.
+    TimePieces(const ActiveStress &stress, double end_time);
+
+    /// The times in (0, 1) where pieces meet.
+    const std::vector<double> &
+    breaks() const
+    {
+      return breaks_;
+    }
+
+    /// Goes to the first piece.
+    void
+    restart();
+
+    /// Goes to the next piece, which must be there.
+    void
+    go_on();
+
+    bool
+    is_last() const
+    {
+      return piece_ == breaks_.size();
+    }
+
+    /// The end of the present piece.
+    double
+    end() const
+    {
+      return is_last() ? 1. : breaks_[piece_];
+    }
+
+    /// The time of the present piece, away from its ends, that stands for @p t.
+    double
+    inside(const double t) const
+    {
+      return std::clamp(t, from_, to_);
+    }
+
+  private:
+    void
+    set_limits();
+
+    std::vector<double> breaks_;
+    std::size_t piece_ = 0;
+    bool clamps_       = false;
+    double from_ = -std::numeric_limits<double>::infinity(), to_ = std::numeric_limits<double>::infinity();
+  };
+} // namespace crawler

@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/grid_table.h>
+#include <crawler/base/hdf5_handle.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+namespace crawler
+{
+  namespace
+  {
+    constexpr double round_off = 1e-12;
+
+    /// Where a table comes from, for messages.
+    struct Source
+    {
+      std::string file, name, entry;
+
+      [[noreturn]] void
+      refuse(const std::string &message) const
+      {
+        throw InputError(message, entry);
+      }
+    };
+
+    std::string_view
+    without_blanks(std::string_view text)
+    {
+      constexpr const char *blanks = " \t\r\n";
+      const auto first             = text.find_first_not_of(blanks);
+      return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+    }
+
+    /// A finite number if the whole text is one.
+    std::optional<double>
+    number_in(std::string_view text)
+    {
+      text = without_blanks(text);
+      if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+        text.remove_prefix(1);
+      double value             = 0.;
+      const auto [end, result] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (result == std::errc::invalid_argument || end != text.data() + text.size())
+        return std::nullopt;
+      if (result == std::errc::result_out_of_range) // smaller or larger than any double
+        value = std::strtod(std::string(text).c_str(), nullptr);
+      return std::isfinite(value) ? std::optional(value) : std::nullopt;
+    }
+
+    /// The next part of @p text before @p separator, which is taken away from it.
+    std::string_view
+    next_part(std::string_view &text, const char separator)
+    {
+      const auto end  = text.find(separator);
+      const auto part = text.substr(0, end);
+      text            = end == text.npos ? std::string_view() : text.substr(end + 1);
+      return part;
+    }
+
+    /// Mistakes of one kind: the sentence about the first, and the rows of the others.
+    class Mistakes
+    {
+    public:
+      bool
+      is_first()
+      {
+        return n_++ == 0;
+      }
+      void
+      say(const std::string &sentence)
+      {
+        sentence_ = sentence;
+      }
+      void
+      add_row(const std::size_t row)
+      {
+        constexpr std::size_t most = 4;
+        if (rows_.size() < most)
+          rows_.push_back(row);
+      }
+      /// Throws InputError if there are any.
+      void
+      refuse(const Source &source) const
+      {
+        if (n_ == 0)
+          return;
+        const std::size_t others = n_ - 1, unnamed = others - rows_.size();
+        if (others == 0)
+          source.refuse(sentence_);
+        source.refuse(fmt::format("{}; {} more {} like it: {}{}",
+                                  sentence_,
+                                  others,
+                                  others == 1 ? "row is" : "rows are",
+                                  fmt::join(rows_, ", "),
+                                  unnamed > 0 ? ", ..." : ""));
+      }
+
+    private:
+      std::size_t n_ = 0;
+      std::string sentence_;
+      std::vector<std::size_t> rows_;
+    };
+
+    struct Rows
+    {
+      std::vector<double> s, t, values;
+      std::vector<std::size_t> number; ///< in the file, the header being row 1
+    };
+
+    Rows
+    read_rows(std::string_view text, const Source &source)
+    {
+      const std::string header = "s,t," + source.name;
+      if (text.starts_with("\xEF\xBB\xBF")) // the byte order mark of UTF-8
+        text.remove_prefix(3);
+      const std::string_view first = without_blanks(next_part(text, '\n'));
+      std::string words;
+      for (std::string_view rest = first; !rest.empty();)
+        words += (words.empty() ? "" : ",") + std::string(without_blanks(next_part(rest, ',')));
+      if (words != header)
+        source.refuse(fmt::format("the first row of \"{}\" is \"{}\", but the header {} is expected",
+                                  source.file,
+                                  first.substr(0, 80),
+                                  header));
+      Rows rows;
+      Mistakes mistakes;
+      for (std::size_t number = 2; !text.empty(); ++number)
+      {
+        const std::string_view line = without_blanks(next_part(text, '\n'));
+        if (line.empty())
+          continue;
+        std::string_view rest = line;
+        const auto s = number_in(next_part(rest, ',')), t = number_in(next_part(rest, ',')), value = number_in(rest);
+        if (s && t && value)
+        {
+          rows.s.push_back(*s);
+          rows.t.push_back(*t);
+          rows.values.push_back(*value);
+          rows.number.push_back(number);
+        }
+        else if (mistakes.is_first())
+          mistakes.say(fmt::format("row {} of \"{}\" is \"{}\", but three numbers {} are expected",
+                                   number,
+                                   source.file,
+                                   line.substr(0, 80),
+                                   header));
+        else
+          mistakes.add_row(number);
+      }
+      mistakes.refuse(source);
+      return rows;
+    }
+
+    /// The different values, sorted; values that differ by round-off only are the same.
+    std::vector<double>
+    distinct(std::vector<double> values)
+    {
+      // The slower of two columns repeats a number many times in succession.
+      values.erase(std::unique(values.begin(), values.end()), values.end());
+      std::sort(values.begin(), values.end());
+      if (!values.empty())
+      {
+        const double same = round_off * (values.back() - values.front());
+        values.erase(std::unique(values.begin(),
+                                 values.end(),
+                                 [same](const double a, const double b)
+                                 {
+                                   return b - a <= same;
+                                 }),
+                     values.end());
+      }
+      return values;
+    }
+
+    /// The index of a value of distinct(); @p guess is looked at first.
+    std::size_t
+    index_of(const std::vector<double> &values, const double value, const std::size_t guess)
+    {
+      if (guess < values.size() && values[guess] == value)
+        return guess;
+      const double same = round_off * (values.back() - values.front());
+      const auto above  = std::upper_bound(values.begin() + 1, values.end(), value + same);
+      return static_cast<std::size_t>(above - values.begin()) - 1;
+    }
+
+    GridTable
+    read_csv(const std::string &text, const Source &source)
+    {
+      const Rows rows = read_rows(text, source);
+      GridTable grid;
+      grid.s                = distinct(rows.s);
+      grid.t                = distinct(rows.t);
+      const std::size_t n_s = grid.s.size(), n_t = grid.t.size(), n = rows.values.size();
+      constexpr std::size_t most_gaps = 100; // points for each row: rather no grid than one with gaps
+      if (n_s * n_t > most_gaps * n)
+        source.refuse(
+          fmt::format("\"{}\" has {} rows after the header with {} different values of s and {} of t, but a "
+                      "full grid, a row for each of them with each, is expected",
+                      source.file,
+                      n,
+                      n_s,
+                      n_t));
+      grid.values.resize(n_s * n_t);
+      std::vector<std::size_t> seen(n_s * n_t, 0); // the number of the row
+      Mistakes repetitions;
+      for (std::size_t r = 0, i = 0, j = 0; r < n; ++r)
+      {
+        // Next to the one before, in a file that is sorted by t, or by s.
+        j                       = index_of(grid.t, rows.t[r], i + 1 < n_s ? j : j + 1);
+        i                       = index_of(grid.s, rows.s[r], i + 1 < n_s ? i + 1 : 0);
+        const std::size_t point = j * n_s + i;
+        if (seen[point] == 0)
+        {
+          seen[point]        = rows.number[r];
+          grid.values[point] = rows.values[r];
+        }
+        else if (repetitions.is_first())
+          repetitions.say(fmt::format("row {} of \"{}\" gives s = {:g}, t = {:g} a second time, after row {}",
+                                      rows.number[r],
+                                      source.file,
+                                      rows.s[r],
+                                      rows.t[r],
+                                      seen[point]));
+        else
+          repetitions.add_row(rows.number[r]);
+      }
+      repetitions.refuse(source);
+      const auto n_gaps = std::count(seen.begin(), seen.end(), 0u);
+      if (n_gaps > 0)
+      {
+        std::string first;
+        auto gap = seen.begin();
+        for (unsigned int named = 0; named < 3 && gap != seen.end(); ++named, ++gap)
+          if (gap = std::find(gap, seen.end(), 0u); gap != seen.end())
+          {
+            const auto missing = static_cast<std::size_t>(gap - seen.begin());
+            first += fmt::format(
+              "{}s = {:g}, t = {:g}", first.empty() ? "" : "; ", grid.s[missing % n_s], grid.t[missing / n_s]);
+          }
+        source.refuse(
+          fmt::format("\"{}\" has {} rows after the header, but {} are expected, each of {} values of s with "
+                      "each of {} values of t; the first that {} missing {} {}",
+                      source.file,
+                      n,
+                      n_s * n_t,
+                      n_s,
+                      n_t,
+                      n_gaps == 1 ? "is" : "are",
+                      n_gaps == 1 ? "is" : "are",
+                      first));
+      }
+      return grid;
+    }
+
+    /// All numbers of a dataset, and its extents.
+    struct Dataset
+    {
+      std::vector<double> values;
+      std::vector<hsize_t> extents;
+    };
+
+    Dataset
+    read_dataset(const hid_t file, const std::string &name, const std::string &form, const Source &source)
+    {
+      const auto wrong = [&](const std::string &what)
+      {
+        source.refuse(fmt::format(
+          "\"{}\" {}, but the datasets s[ns], t[nt] and {}[nt,ns] are expected", source.file, what, source.name));
+      };
+      const Hdf5Handle dataset(H5Dopen(file, name.c_str(), H5P_DEFAULT), H5Dclose);
+      if (dataset < 0)
+        wrong("has no dataset " + name);
+      const Hdf5Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
+      const H5T_class_t kind = H5Tget_class(type);
+      if (kind != H5T_FLOAT && kind != H5T_INTEGER)
+        wrong("has a dataset " + name + " of something that is not a number");
+      const auto wanted = static_cast<std::size_t>(1 + std::count(form.begin(), form.end(), ','));
+      Dataset result;
+      const int rank = H5Sget_simple_extent_ndims(space);
+      if (rank < 0 || static_cast<std::size_t>(rank) != wanted)
+        wrong(fmt::format("has a dataset {} with {} dimensions", name, rank));
+      result.extents.resize(wanted);
+      H5Sget_simple_extent_dims(space, result.extents.data(), nullptr);
+      std::size_t n = 1;
+      for (const hsize_t extent : result.extents)
+        n *= extent;
+      result.values.resize(n);
+      if (n > 0 && H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.values.data()) < 0)
+        wrong("has a dataset " + name + " that cannot be read");
+      return result;
+    }
+
+    /// Throws InputError unless the numbers of a dataset are finite and increase.
+    void
+    require_increasing(const std::vector<double> &values, const std::string &name, const Source &source)
+    {
+      for (std::size_t i = 0; i < values.size(); ++i)
+        if (!std::isfinite(values[i]))
+          source.refuse(
+            fmt::format("{}[{}] in \"{}\" is {}, but a finite number is expected", name, i, source.file, values[i]));
+      for (std::size_t i = 1; i < values.size(); ++i)
+        if (!(values[i] - values[i - 1] > round_off * std::abs(values.back() - values.front())))
+          source.refuse(fmt::format("{0}[{1}] = {2:g} follows {0}[{3}] = {4:g} in \"{5}\", but increasing values are "
+                                    "expected",
+                                    name,
+                                    i,
+                                    values[i],
+                                    i - 1,
+                                    values[i - 1],
+                                    source.file));
+    }
+
+    GridTable
+    read_hdf5(const Source &source)
+    {
+      H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
+      const Hdf5Handle file(H5Fopen(source.file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+      if (file < 0)
+        source.refuse("\"" + source.file + "\" begins as an HDF5 file does, but HDF5 cannot open it");
+      GridTable grid;
+      grid.s                = read_dataset(file, "s", "ns", source).values;
+      grid.t                = read_dataset(file, "t", "nt", source).values;
+      const Dataset value   = read_dataset(file, source.name, "nt,ns", source);
+      const std::size_t n_s = grid.s.size(), n_t = grid.t.size();
+      if (value.extents != std::vector<hsize_t>{n_t, n_s})
+        source.refuse(fmt::format("{0}[{1},{2}] in \"{3}\" does not fit to s[{4}] and t[{5}]; {0}[{5},{4}] is expected",
+                                  source.name,
+                                  value.extents[0],
+                                  value.extents[1],
+                                  source.file,
+                                  n_s,
+                                  n_t));
+      require_increasing(grid.s, "s", source);
+      require_increasing(grid.t, "t", source);
+      grid.values = value.values;
+      for (std::size_t i = 0; i < grid.values.size(); ++i)
+        if (!std::isfinite(grid.values[i]))
+          source.refuse(fmt::format("{}[{},{}] in \"{}\" (s = {:g}, t = {:g}) is {}, but a finite number is expected",
+                                    source.name,
+                                    i / n_s,
+                                    i % n_s,
+                                    source.file,
+                                    grid.s[i % n_s],
+                                    grid.t[i / n_s],
+                                    grid.values[i]));
+      return grid;
+    }
+  } // namespace
+
+  GridTable
+  read_grid_table(const std::string &file, const std::string &name, const std::string &entry)
+  {
+    const Source source{file, name, entry};
+    std::ostringstream content;
+    std::ifstream in(file, std::ios::binary);
+    if (!in || in.peek() == std::ifstream::traits_type::eof() || !(content << in.rdbuf()))
+      source.refuse(
+        fmt::format("cannot read \"{}\", or it is empty; the name of a CSV file with the header s,t,{} or of "
+                    "an HDF5 file is expected",
+                    file,
+                    name));
+    const std::string text = std::move(content).str();
+    return text.starts_with("\x89HDF\r\n\x1a\n") ? read_hdf5(source) : read_csv(text, source);
+  }
+
+  void
+  require_number_of_values(const std::vector<double> &values,
+                           const std::size_t least,
+                           const std::string &name,
+                           const std::string &file,
+                           const std::string &entry)
+  {
+    if (values.size() < least)
+      throw InputError(
+        fmt::format(
+          "\"{}\" has {} different values of {}, but at least {} are expected", file, values.size(), name, least),
+        entry);
+  }
+
+  void
+  require_reach(const std::vector<double> &values,
+                const double end,
+                const std::string &name,
+                const std::string &what,
+                const std::string &file,
+                const std::string &entry)
+  {
+    if (values.front() > round_off * end || values.back() < end * (1. - round_off))
+      throw InputError(fmt::format("\"{}\" has {} from {:g} to {:g}, but the whole {}, from 0 to {:g}, is expected",
+                                   file,
+                                   name,
+                                   values.front(),
+                                   values.back(),
+                                   what,
+                                   end),
+                       entry);
+  }
+} // namespace crawler

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/cubic_spline.h>
+#include <crawler/base/parabola.h>
+#include <crawler/drivers/gait.h>
+#include <crawler/drivers/simulation.h>
+#include <crawler/scene/scene.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /// A displacement or a change of the strain that is smaller than this is none.
+    constexpr double nothing = 1e-12;
+    /// A wave of less coherence is a standing one.
+    constexpr double least_coherence = 0.1;
+    /// Samples of a run whose period is not known, and those of them that are searched for one.
+    constexpr unsigned int n_unknown = 1024, n_searched = n_unknown / 2;
+    /// The stretch repeats if the mean square of its change is below this part of the largest such.
+    constexpr double repeats = 1e-3;
+
+    double
+    square(const double x)
+    {
+      return x * x;
+    }
+
+    Ledger
+    difference(const Ledger &later, const Ledger &earlier)
+    {
+      Ledger result = later;
+      for (double Ledger::*energy : Ledger::energies())
+        result.*energy -= earlier.*energy;
+      return result;
+    }
+  } // namespace
+
+  Gait
+  Gait::in_units(const Units &units) const
+  {
+    Gait gait = *this;
+    gait.period *= units.time;
+    gait.displacement *= units.length;
+    gait.length *= units.length;
+    if (gait.wave)
+      gait.wave->speed *= units.velocity();
+    if (gait.ledger)
+      gait.ledger = gait.ledger->scaled(units.energy());
+    return gait;
+  }
+
+  std::optional<double>
+  Gait::slip() const
+  {
+    if (!wave || wave->coherence < least_coherence)
+      return std::nullopt;
+    return 1. - std::abs(speed() / wave->speed);
+  }
+
+  std::optional<double>
+  Gait::cost_of_transport(const double energy) const
+  {
+    return std::abs(body_lengths()) > nothing && std::isfinite(energy) ? std::optional(energy / std::abs(displacement))
+                                                                       : std::nullopt;
+  }
+
+  const char *
+  Gait::direction() const
+  {
+    if (!wave || std::abs(body_lengths()) <= nothing)
+      return "none";
+    if (wave->coherence < least_coherence)
+      return "standing";
+    return wave->speed * displacement > 0. ? "prograde" : "retrograde";
+  }
+
+  std::optional<StretchWave>
+  measure_wave(std::vector<std::vector<double>> stretch, const double period, const double length)
+  {
+    const std::size_t n_t = stretch.size(), n_s = stretch.front().size();
+    for (std::size_t i = 0; i < n_s; ++i)
+    {
+      double mean = 0.;
+      for (const auto &e : stretch)
+        mean += e[i] / static_cast<double>(n_t);
+      for (auto &e : stretch)
+        e[i] -= mean;
+    }
+    const double ds = length / static_cast<double>(n_s), dt = period / static_cast<double>(n_t);
+    const auto slope = [](const double m2, const double m1, const double p1, const double p2, const double step)
+    {
+      return (8. * (p1 - m1) - (p2 - m2)) / (12. * step);
+    };
+    double tt = 0., ts = 0., ss = 0., largest = 0.;
+    for (std::size_t j = 0; j < n_t; ++j)
+    {
+      const auto &e      = stretch[j];
+      const auto at_time = [&](const std::size_t shift, const std::size_t i)
+      {
+        return stretch[(j + n_t + shift - 2) % n_t][i];
+      };
+      for (std::size_t i = 2; i + 2 < n_s; ++i)
+      {
+        const double e_s = slope(e[i - 2], e[i - 1], e[i + 1], e[i + 2], ds);
+        const double e_t = slope(at_time(0, i), at_time(1, i), at_time(3, i), at_time(4, i), dt);
+        tt += e_t * e_t;
+        ts += e_t * e_s;
+        ss += e_s * e_s;
+        largest = std::max(largest, std::abs(e[i]));
+      }
+    }
+    if (largest <= nothing || ss == 0. || tt == 0.)
+      return std::nullopt;
+    return StretchWave{-ts / ss, std::abs(ts) / std::sqrt(tt * ss)};
+  }
+
+  std::optional<double>
+  gait_efficiency(const Scene &scene, const SimulationResult &result)
+  {
+    if (!result.ledger || !scene.is_plain()) // the bound is for plain bodies and grounds
+      return std::nullopt;
+    const double min_stretch = result.min_stretch.value, max_stretch = result.max_stretch.value;
+    const double work = result.ledger->stress_power, a = scene.body.friction_exponent();
+    const double F     = std::abs(std::pow(min_stretch, -a / 2.) - std::pow(max_stretch, -a / 2.));
+    const double bound = F * std::sqrt(work * scene.end_time / (scene.body.friction_coefficient * scene.body.length));
+    return min_stretch > 0. && bound > 0. && std::isfinite(bound) ? std::optional(std::abs(result.displacement) / bound)
+                                                                  : std::nullopt;
+  }
+
+  GaitMeter::GaitMeter(const std::optional<double> period, const bool ends_early)
+    : period_(period)
+    , ends_early_(ends_early)
+  {
+    if (!period_)
+      n_samples_ = n_unknown;
+    else
+    {
+      const double strides = std::floor(1. / *period_ * (1. + 1e-9));
+      n_samples_           = n_phases * static_cast<unsigned long>(ends_early ? strides : std::min(strides, 1.));
+    }
+  }
+
+  double
+  GaitMeter::time_of(const unsigned long number) const
+  {
+    const double back = static_cast<double>(n_samples_ - number);
+    return period_ ? std::max(1. - back * *period_ / n_phases, 0.) : 1. - back / static_cast<double>(n_unknown);
+  }
+
+  double
+  GaitMeter::next_time() const
+  {
+    return n_samples_ == 0 || next_ > n_samples_ ? HUGE_VAL : time_of(next_);
+  }
+
+  std::vector<double>
+  GaitMeter::times() const
+  {
+    std::vector<double> all;
+    for (unsigned long i = 0; n_samples_ > 0 && i <= n_samples_; ++i)
+      all.push_back(time_of(i));
+    return all;
+  }
+
+  std::optional<double>
+  GaitMeter::stride_start() const
+  {
+    if (!period_ || ends_early_ || n_samples_ == 0 || time_of(0) == 0.)
+      return std::nullopt;
+    return time_of(0);
+  }
+
+  void
+  GaitMeter::see(const std::span<const double> u, const double displacement)
+  {
+    Sample sample{next_time(), displacement, std::vector<double>(n_pieces)};
+    for (unsigned int i = 0; i < n_pieces; ++i)
+      sample.stretch[i] = 1. + (u[i + 1] - u[i]) * n_pieces;
+    ++next_;
+    if (period_ && samples_.size() > n_phases)
+      samples_.erase(samples_.begin());
+    samples_.push_back(std::move(sample));
+  }
+
+  void
+  GaitMeter::see_step(const double time, const double displacement, const Ledger *ledger)
+  {
+    bool is_kept = time >= 0.4;
+    if (period_)
+    {
+      const double strides = (1. - time) / *period_;
+      is_kept              = std::abs(strides - std::round(strides)) <= 1e-9;
+    }
+    if (!is_kept || (!steps_.empty() && steps_.back().time == time))
+      return;
+    if (period_ && steps_.size() >= 2)
+      steps_.erase(steps_.begin());
+    steps_.push_back({time, displacement, ledger ? std::optional(*ledger) : std::nullopt});
+  }
+
+  std::optional<Gait>
+  GaitMeter::gait() const
+  {
+    return period_ ? declared_gait() : found_gait();
+  }
+
+  std::optional<Gait>
+  GaitMeter::declared_gait() const
+  {
+    if (samples_.size() <= n_phases || steps_.size() < 2)
+      return std::nullopt;
+    const StepEnd &from = steps_[steps_.size() - 2], &to = steps_.back();
+    if (std::abs(to.time - from.time - *period_) > 1e-9 || std::abs(samples_.back().time - to.time) > 1e-9)
+      return std::nullopt;
+    std::vector<std::vector<double>> stretch;
+    for (unsigned int j = 1; j <= n_phases; ++j)
+      stretch.push_back(samples_[j].stretch);
+    Gait gait{*period_, true, 1. / *period_, to.displacement - from.displacement, measure_wave(stretch, *period_, 1.)};
+    if (from.ledger && to.ledger)
+      gait.ledger = difference(*to.ledger, *from.ledger);
+    return gait;
+  }
+
+  /// In steps of the samples: the first shift at which the stretch repeats better than at its neighbours.
+  std::optional<double>
+  GaitMeter::find_period() const
+  {
+    const std::size_t first = samples_.size() - n_searched;
+    std::vector<double> change(n_searched / 2 + 1, 0.);
+    for (std::size_t shift = 1; shift < change.size(); ++shift)
+    {
+      for (std::size_t j = first; j + shift < samples_.size(); ++j)
+        for (unsigned int i = 0; i < n_pieces; ++i)
+          change[shift] += square(samples_[j + shift].stretch[i] - samples_[j].stretch[i]);
+      change[shift] /= static_cast<double>(samples_.size() - shift - first) * n_pieces;
+    }
+    const double largest = *std::max_element(change.begin(), change.end());
+    if (!(largest > square(1e-6)))
+      return std::nullopt;
+    for (std::size_t j = 2; j + 1 < change.size(); ++j)
+      if (change[j] <= change[j - 1] && change[j] <= change[j + 1] && change[j] < repeats * largest)
+      {
+        const auto x = static_cast<double>(j);
+        return parabola_vertex(x - 1., change[j - 1], x, change[j], x + 1., change[j + 1]).first;
+      }
+    return std::nullopt;
+  }
+
+  std::optional<Gait>
+  GaitMeter::found_gait() const
+  {
+    if (next_ <= n_samples_ || samples_.size() < n_unknown)
+      return std::nullopt;
+    const auto shift = find_period();
+    if (!shift)
+      return std::nullopt;
+    const double period = *shift / n_unknown, start = 1. - period;
+
+    std::vector<double> times, values;
+    for (std::size_t j = samples_.size() - n_searched; j < samples_.size(); ++j)
+      times.push_back(samples_[j].time);
+    const CubicSpline in_time(times);
+    const auto interpolate = [&](const CubicSpline &spline, const auto &of, const double t)
+    {
+      values.clear();
+      for (std::size_t j = 0; j < spline.size(); ++j)
+        values.push_back(of(j));
+      const auto M     = spline.curvatures(values);
+      const auto place = spline.place(t);
+      return place.a * values[place.i] + place.b * values[place.i + 1] + place.c * M[place.i] +
+             place.d * M[place.i + 1];
+    };
+    const std::size_t first = samples_.size() - n_searched;
+    const double moved      = samples_.back().displacement - interpolate(
+                                                          in_time,
+                                                          [&](const std::size_t j)
+                                                          {
+                                                            return samples_[first + j].displacement;
+                                                          },
+                                                          start);
+    std::vector<std::vector<double>> stretch(n_phases, std::vector<double>(n_pieces));
+    for (unsigned int i = 0; i < n_pieces; ++i)
+    {
+      values.clear();
+      for (std::size_t j = first; j < samples_.size(); ++j)
+        values.push_back(samples_[j].stretch[i]);
+      const auto M = in_time.curvatures(values);
+      for (unsigned int phase = 0; phase < n_phases; ++phase)
+      {
+        const auto place = in_time.place(start + period * (phase + 1) / n_phases);
+        stretch[phase][i] =
+          place.a * values[place.i] + place.b * values[place.i + 1] + place.c * M[place.i] + place.d * M[place.i + 1];
+      }
+    }
+    Gait gait{period, false, 1. / period, moved, measure_wave(stretch, period, 1.)};
+    if (steps_.size() >= 4 && steps_.front().time < start && steps_.back().ledger)
+    {
+      times.clear();
+      for (const StepEnd &step : steps_)
+        times.push_back(step.time);
+      const CubicSpline at_steps(times);
+      Ledger before;
+      for (double Ledger::*energy : Ledger::energies())
+        before.*energy = interpolate(
+          at_steps,
+          [&](const std::size_t j)
+          {
+            return (*steps_[j].ledger).*energy;
+          },
+          start);
+      gait.ledger = difference(*steps_.back().ledger, before);
+    }
+    return gait;
+  }
+} // namespace crawler

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/table.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+namespace crawler
+{
+  namespace
+  {
+    const std::string section = "Active stress/Table/", file_entry = section + "File";
+
+    class ValuesAtPoints : public ActiveStressAtPoints
+    {
+    public:
+      explicit ValuesAtPoints(std::unique_ptr<GridInterpolation::AtPoints> table)
+        : table_(std::move(table))
+      {
+      }
+
+      void
+      values(const double t, const std::span<double> m) override
+      {
+        table_->values(t, m);
+      }
+
+    private:
+      const std::unique_ptr<GridInterpolation::AtPoints> table_;
+    };
+
+    class RatesAtPoints : public ActiveStressAtPoints
+    {
+    public:
+      explicit RatesAtPoints(std::unique_ptr<GridInterpolation::AtPoints> table)
+        : table_(std::move(table))
+      {
+      }
+
+      void
+      values(const double t, const std::span<double> m_t) override
+      {
+        table_->rates(t, m_t);
+      }
+
+    private:
+      const std::unique_ptr<GridInterpolation::AtPoints> table_;
+    };
+
+    double
+    largest(const std::vector<double> &values)
+    {
+      double result = 0.;
+      for (const double value : values)
+        result = std::max(result, std::abs(value));
+      return result;
+    }
+
+    /// Samples that are held must say something about the scene.
+    void
+    require_overlap(const std::vector<double> &values, const double end, const char *name, const std::string &file)
+    {
+      if (values.front() >= end || values.back() <= 0.)
+        throw InputError(fmt::format("\"{0}\" has {1} from {2:g} to {3:g}, none of it between 0 and {4:g}, where it is "
+                                     "needed; check \"{5}Unit of {1}\"",
+                                     file,
+                                     name,
+                                     values.front(),
+                                     values.back(),
+                                     end,
+                                     section),
+                         file_entry);
+    }
+
+    /// The last samples in time become the first ones, from which they may differ by round-off.
+    void
+    close_period(GridTable &grid, const std::string &file)
+    {
+      constexpr double round_off = 1e-9;
+      const std::size_t n = grid.s.size(), last = grid.values.size() - n;
+      const double most = round_off * largest(grid.values);
+      for (std::size_t i = 0; i < n; ++i)
+      {
+        if (std::abs(grid.values[i] - grid.values[last + i]) > most)
+          throw InputError(
+            fmt::format("\"{}\" has m = {:g} at s = {:g}, t = {:g} but m = {:g} at its last time, t = {:g}; "
+                        "equal values are expected, the period being the difference of these times",
+                        file,
+                        grid.values[i],
+                        grid.s[i],
+                        grid.t.front(),
+                        grid.values[last + i],
+                        grid.t.back()),
+            section + "Outside");
+        grid.values[last + i] = grid.values[i];
+      }
+    }
+
+    GridTable
+    read(const TableParameters &p, const double length, const double end_time)
+    {
+      GridTable grid          = read_grid_table(p.file, "m", file_entry);
+      const std::size_t least = p.interpolation == "cubic" ? 4 : 2;
+      require_number_of_values(grid.s, least, "s", p.file, file_entry);
+      require_number_of_values(grid.t, least, "t", p.file, file_entry);
+      for (double &s : grid.s)
+        s *= p.unit_of_s;
+      for (double &t : grid.t)
+        t *= p.unit_of_t;
+      for (double &m : grid.values)
+        m *= p.unit_of_m;
+      if (p.outside_in_s == "error")
+        require_reach(grid.s, length, "s", "body", p.file, section + "Outside in s");
+      else
+        require_overlap(grid.s, length, "s", p.file);
+      if (p.outside == "error")
+        require_reach(grid.t, end_time, "t", "duration", p.file, section + "Outside");
+      else if (p.outside == "hold")
+        require_overlap(grid.t, end_time, "t", p.file);
+      else
+        close_period(grid, p.file);
+      return grid;
+    }
+
+    GridInterpolation::Outside
+    outside_in_t(const TableParameters &p)
+    {
+      if (p.outside == "periodic")
+        return GridInterpolation::Outside::periodic;
+      return p.outside == "hold" ? GridInterpolation::Outside::hold : GridInterpolation::Outside::go_on;
+    }
+
+    /// The numbers between 0 and @p end, without both.
+    std::vector<double>
+    inside(const std::vector<double> &values, const double end)
+    {
+      constexpr double round_off = 1e-12;
+      std::vector<double> result;
+      for (const double value : values)
+        if (value > round_off * end && value < (1. - round_off) * end)
+          result.push_back(value);
+      return result;
+    }
+  } // namespace
+
+  void
+  TableParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Table");
+    declarations.text("File",
+                      file,
+                      "the name of a CSV or HDF5 file",
+                      "CSV with the header s,t,m and a row for each point of a full grid, in any order; or HDF5 with "
+                      "the datasets s[ns], t[nt] and m[nt,ns], s and t increasing.");
+    declarations.choice("Interpolation",
+                        interpolation,
+                        {"cubic", "linear"},
+                        "Cubic splines through the samples, in s and t; or linear between them.");
+    declarations.choice("Outside",
+                        outside,
+                        {"error", "hold", "periodic"},
+                        "What m is before the first and after the last time of the table: an error if they are needed; "
+                        "the values at these times; or a repetition, with equal values at both times.");
+    declarations.choice("Outside in s",
+                        outside_in_s,
+                        {"error", "hold"},
+                        "The same along the body, if the table does not reach both ends.");
+    declarations.number(
+      "Unit of s", unit_of_s, positive(), "Factor that turns s of the table into a length.", "length");
+    declarations.number("Unit of t", unit_of_t, positive(), "Factor that turns t of the table into a time.", "time");
+    declarations.number("Unit of m",
+                        unit_of_m,
+                        any_number(),
+                        "Factor that turns m of the table into an active stress; a negative one if the table has "
+                        "contractions as positive numbers.",
+                        "force");
+    declarations.leave();
+  }
+
+  ActiveStressTable::ActiveStressTable(const TableParameters &parameters, const double length, const double end_time)
+    : parameters_(parameters)
+    , length_(length)
+    , end_time_(end_time)
+    , table_(read(parameters, length, end_time),
+             parameters.interpolation == "cubic" ? GridInterpolation::Method::cubic : GridInterpolation::Method::linear,
+             outside_in_t(parameters))
+  {
+  }
+
+  std::unique_ptr<ActiveStressAtPoints>
+  ActiveStressTable::at(const std::vector<double> &points) const
+  {
+    return std::make_unique<ValuesAtPoints>(table_.at(points));
+  }
+
+  std::unique_ptr<ActiveStressAtPoints>
+  ActiveStressTable::rate_at(const std::vector<double> &points) const
+  {
+    return std::make_unique<RatesAtPoints>(table_.at(points));
+  }
+
+  std::optional<double>
+  ActiveStressTable::period() const
+  {
+    if (parameters_.outside != "periodic")
+      return std::nullopt;
+    const GridTable &grid = table_.grid();
+    const std::size_t n = grid.t.size() - 1, n_s = grid.s.size();
+    const double whole         = grid.t.back() - grid.t.front();
+    constexpr double same_step = 1e-9, same_value = 1e-10;
+    for (std::size_t j = 0; j < n; ++j)
+      if (std::abs(grid.t[j + 1] - grid.t[j] - whole / static_cast<double>(n)) > same_step * whole)
+        return whole;
+    const double most        = same_value * largest(grid.values);
+    const auto repeats_after = [&](const std::size_t steps)
+    {
+      for (std::size_t i = 0; i + steps * n_s < grid.values.size(); ++i)
+        if (std::abs(grid.values[i + steps * n_s] - grid.values[i]) > most)
+          return false;
+      return true;
+    };
+    for (std::size_t steps = 2; steps < n; ++steps) // one step would mean that m is steady
+      if (n % steps == 0 && repeats_after(steps))
+        return whole * static_cast<double>(steps) / static_cast<double>(n);
+    return whole;
+  }
+
+  std::vector<double>
+  ActiveStressTable::breaks_in_space() const
+  {
+    constexpr std::size_t most = 256;
+    const auto &s              = table_.grid().s;
+    const auto knots           = inside(s, length_);
+    if (parameters_.interpolation == "linear" && knots.size() <= most)
+      return knots;
+    return inside({s.front(), s.back()}, length_); // where it is held
+  }
+
+  std::vector<double>
+  ActiveStressTable::breaks_in_time() const
+  {
+    constexpr std::size_t most = 4096;
+    const auto &t              = table_.grid().t;
+    const bool linear = parameters_.interpolation == "linear", periodic = parameters_.outside == "periodic";
+    if (linear && !periodic)
+      if (const auto knots = inside(t, end_time_); knots.size() <= most)
+        return knots;
+    if (linear && periodic)
+    {
+      const double P = t.back() - t.front();
+      std::vector<double> knots;
+      for (double n = -std::ceil(t.back() / P); t.front() + n * P < end_time_ && knots.size() <= 2 * most; ++n)
+        for (std::size_t j = 0; j + 1 < t.size(); ++j)
+          knots.push_back(t[j] + n * P);
+      if (knots = inside(knots, end_time_); knots.size() <= most)
+        return knots;
+    }
+    return periodic ? std::vector<double>() : inside({t.front(), t.back()}, end_time_);
+  }
+
+  void
+  ActiveStressTable::report(std::ostream &out) const
+  {
+    const GridTable &grid        = table_.grid();
+    const auto [least, greatest] = std::minmax_element(grid.values.begin(), grid.values.end());
+    out << fmt::format(
+      "Table \"{}\": {} x {} samples, s from {:g} to {:g}, t from {:g} to {:g}{}, m from {:.6g} to {:.6g}, "
+      "{}\n",
+      parameters_.file,
+      grid.s.size(),
+      grid.t.size(),
+      grid.s.front(),
+      grid.s.back(),
+      grid.t.front(),
+      grid.t.back(),
+      parameters_.outside == "periodic" ? " and again" : "",
+      *least,
+      *greatest,
+      parameters_.interpolation);
+  }
+} // namespace crawler

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/wave_entries.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace crawler
+{
+  void
+  WaveProfileParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.choice("Profile",
+                        profile,
+                        {"sine", "square", "smoothed square"},
+                        "How the stress changes within a period: as a sine, or between +1 and -1 times the amplitude, "
+                        "by jumps or by smooth fronts.");
+    declarations.number("Duty cycle",
+                        duty_cycle,
+                        {.lower = 0., .upper = 1.},
+                        "Share of the period in which a square profile is +1. Not used by the sine.",
+                        "1");
+    declarations.number("Front width",
+                        front_width,
+                        {.lower = 0., .upper = 0.5, .upper_included = true},
+                        "Width of each front of the smoothed square as a share of the period.",
+                        "1");
+  }
+
+  WaveProfile::WaveProfile(const WaveProfileParameters &parameters, const std::string &section)
+  {
+    if (parameters.profile == "sine")
+      return;
+    const double duty = parameters.duty_cycle, most = std::min(duty, 1. - duty);
+    const double front = parameters.profile == "square" ? 0. : parameters.front_width;
+    if (front > most * (1. + 1e-12))
+      throw InputError(fmt::format("the fronts are {:g} of a period wide, but at most {:g} is expected for the duty "
+                                   "cycle {:g}",
+                                   front,
+                                   most,
+                                   duty),
+                       section + "Front width");
+    switching_.emplace(duty, front);
+  }
+
+  double
+  WaveProfile::value(const double x) const
+  {
+    return switching_ ? 2. * switching_->value(x) - 1. : std::sin(2. * std::numbers::pi * x);
+  }
+
+  double
+  WaveProfile::rate(const double x) const
+  {
+    constexpr double q = 2. * std::numbers::pi;
+    return switching_ ? 2. * switching_->rate(x) : q * std::cos(q * x);
+  }
+
+  namespace
+  {
+    const std::string to_head = "from tail to head";
+  }
+
+  void
+  declare_direction(std::string &direction, Declarations &declarations)
+  {
+    declarations.choice("Direction",
+                        direction,
+                        {"from head to tail", to_head},
+                        "Where it runs; the head is at s = L, the tail at s = 0.");
+  }
+
+  double
+  sign_of(const std::string &direction)
+  {
+    return direction == to_head ? 1. : -1.;
+  }
+
+  void
+  require_countable_periods(const double frequency, const double end_time, const bool jumps, const std::string &entry)
+  {
+    const double most = jumps ? 1e6 : 1e8;
+    if (!(frequency * end_time <= most))
+      throw InputError(fmt::format("the stress has {:.3g} periods until the end time, but at most {:g} are expected{}",
+                                   frequency * end_time,
+                                   most,
+                                   jumps ? " if it jumps in each of them" : ""),
+                       entry);
+  }
+
+  std::vector<double>
+  times_of_jumps(const WaveProfile &profile, const double frequency, const double start, const double end_time)
+  {
+    std::vector<double> times;
+    if (frequency > 0.)
+      for (const double x : profile.breaks(start, start + frequency * end_time))
+      {
+        const double t = (x - start) / frequency;
+        if (t > 0. && t < end_time)
+          times.push_back(t);
+      }
+    return times;
+  }
+} // namespace crawler

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/scene/active_stress.h>
+#include <crawler/scene/breaks.h>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Those in (0, @p size), in units of @p size, ascending and at least @p gap apart.
+    std::vector<double>
+    distinct(std::vector<double> breaks, const double size, const double gap)
+    {
+      std::sort(breaks.begin(), breaks.end());
+      std::vector<double> result;
+      for (const double place : breaks)
+      {
+        const double x = place / size;
+        if (x > gap && x < 1. - gap && (result.empty() || x > result.back() + gap))
+          result.push_back(x);
+      }
+      return result;
+    }
+  } // namespace
+
+  std::vector<double>
+  breaks_in_space(const ActiveStress &stress, const double length)
+  {
+    return distinct_breaks_in_space(stress.breaks_in_space(), length);
+  }
+
+  std::vector<double>
+  distinct_breaks_in_space(std::vector<double> places, const double length)
+  {
+    std::vector<double> breaks = distinct(std::move(places), length, least_space_between_breaks);
+    for (double &s : breaks)
+      s *= length;
+    return breaks;
+  }
+
+  TimePieces::TimePieces(const ActiveStress &stress, const double end_time)
+  {
+    std::vector<double> breaks = stress.breaks_in_time();
+    clamps_                    = !breaks.empty();
+    breaks_                    = distinct(std::move(breaks), end_time, least_time_between_breaks);
+    set_limits();
+  }
+
+  void
+  TimePieces::restart()
+  {
+    piece_ = 0;
+    set_limits();
+  }
+
+  void
+  TimePieces::go_on()
+  {
+    ++piece_;
+    set_limits();
+  }
+
+  /// Breaks that count as one with those kept are at most d later.
+  void
+  TimePieces::set_limits()
+  {
+    if (!clamps_)
+      return;
+    from_ = (piece_ == 0 ? 0. : breaks_[piece_ - 1]) + 2. * least_time_between_breaks;
+    to_   = std::max(from_, end() - least_time_between_breaks);
+  }
+} // namespace crawler
