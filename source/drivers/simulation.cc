@@ -655,7 +655,8 @@ namespace crawler
   {
     if (delay_ == 0. || step.size == 0.)
       return;
-    StretchHistory::Step record{step.time - step.size,
+    // The step starts from the last accepted state, of which the integrator may know less than of what is inside.
+    StretchHistory::Step record{accepted_time_,
                                 step.time,
                                 history_cells_,
                                 &discretization_->element(),
@@ -664,11 +665,14 @@ namespace crawler
     std::vector<double> inside(y.size());
     for (std::size_t i = 0; i < record.coefficients.size(); ++i)
     {
-      const double place = StretchHistory::places()[i];
-      if (place < 1.)
-        stepper_->interpolate(record.from + place * step.size, inside);
-      record.coefficients[i] =
-        discretization_->gather(assembler_->stretch_coefficients(place < 1. ? std::span<const double>(inside) : y));
+      const double place            = StretchHistory::places()[i];
+      std::span<const double> state = place == 0. ? std::span<const double>(accepted_) : y;
+      if (place > 0. && place < 1.)
+      {
+        stepper_->interpolate(record.from + place * (record.to - record.from), inside);
+        state = inside;
+      }
+      record.coefficients[i] = discretization_->gather(assembler_->stretch_coefficients(state));
     }
     history_.add(std::move(record), step.time - 2. * delay_);
   }

@@ -194,10 +194,12 @@ namespace crawler
   std::vector<double>
   StrainFeedback::breaks_in_space() const
   {
-    constexpr int most    = 20;
+    constexpr int most    = 20; // more are not worth a cell each
     const double distance = feedback_->distance();
     std::vector<double> places;
-    for (int i = 1; i <= most && std::abs(i * distance) < length_ && distance != 0.; ++i)
+    if (distance == 0. || std::abs(distance) * most < length_)
+      return places;
+    for (int i = 1; std::abs(i * distance) < length_; ++i)
       places.push_back(distance > 0. ? length_ - i * distance : -i * distance);
     return places;
   }
