@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <typeinfo>
 
 namespace crawler
 {
@@ -280,11 +281,21 @@ namespace crawler
     }
   } // namespace
 
+  namespace
+  {
+    /// Asked for in every residual, and a comparison of types is faster than dynamic_cast.
+    bool
+    has_power_law(const Scene &scene)
+    {
+      const FrictionLaw &law = *scene.friction;
+      return typeid(law) == typeid(PowerFriction);
+    }
+  } // namespace
+
   bool
   Scene::is_plain() const
   {
-    return profiles.is_plain() && ground.is_plain() && active_stress->feedback() == nullptr &&
-           dynamic_cast<const PowerFriction *>(friction.get()) != nullptr;
+    return profiles.is_plain() && ground.is_plain() && active_stress->feedback() == nullptr && has_power_law(*this);
   }
 
   std::string
@@ -300,7 +311,7 @@ namespace crawler
     add(profiles.friction != nullptr, "Body/Friction profile");
     add(profiles.initial_stretch != nullptr, "Body/Initial stretch");
     add(ground.profile != nullptr, "Ground/Profile");
-    add(dynamic_cast<const PowerFriction *>(friction.get()) == nullptr, "Ground/Friction law");
+    add(!has_power_law(*this), "Ground/Friction law");
     add(ground.direction.ratio != 1., "Ground/Backward ratio");
     add(active_stress && active_stress->feedback() != nullptr, "an active stress with feedback");
     return names;
@@ -310,8 +321,7 @@ namespace crawler
   Scene::friction_exponent() const
   {
     constexpr double small = 1e-3;
-    return dynamic_cast<const PowerFriction *>(friction.get()) != nullptr ? body.friction_exponent()
-                                                                          : friction->exponent(small);
+    return friction->exponent(small);
   }
 
   std::pair<double, double>
