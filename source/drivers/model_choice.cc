@@ -133,6 +133,10 @@ namespace crawler
         "Model");
     if (parameters.model != "linear" && parameters.model != "nonlinear")
     {
+      if (!scene.is_plain())
+        return {"nonlinear",
+                "Model nonlinear: simpler ones are for plain bodies and grounds, and here is " +
+                  scene.general_features()};
       const RungScene rungs(scene);
       if (parameters.model == "auto")
         choice = choose_by_error(rungs, parameters.accuracy);

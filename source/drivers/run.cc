@@ -95,6 +95,8 @@ namespace crawler
                          p.body.anchoring_exponent,
                          p.body.friction_exponent(),
                          p.time.end_time));
+    if (!input.scene.is_plain())
+      log.line("Besides: " + input.scene.general_features());
     std::ostringstream wave;
     input.scene.active_stress->report(wave);
     std::istringstream lines(wave.str());

@@ -49,7 +49,15 @@ namespace crawler
     const Discretization &d = assembler.discretization();
     for (const Point &point : points_)
       coordinates_.push_back(d.cell_left()[point.cell] + point.x * d.cell_size()[point.cell]);
-    stress_ = assembler.scene().active_stress->at(coordinates_);
+    if (assembler.scene().is_plain())
+      stress_ = assembler.scene().active_stress->at(coordinates_);
+    else
+    {
+      std::vector<GeneralSampler::Place> general;
+      for (const Point &point : points_)
+        general.push_back({point.cell, point.x});
+      general_ = std::make_unique<GeneralSampler>(assembler, general);
+    }
     for (double &s : coordinates_)
       s *= units.length;
     for (auto *field : {&fields_.position,
@@ -89,13 +97,26 @@ namespace crawler
       fields_.elastic_stress[p] =
         units_.force * equation::body_force(stretch_.strain(u_local, log_w, cell, d.cell_size()[cell], place), 0., k);
     }
-    stress_->values(t, fields_.active_stress);
+    if (general_)
+    {
+      general_->sample(t, y, v);
+      const BodyForceAtPoints &force = general_->force();
+      fields_.active_stress          = force.m;
+      fields_.friction_force         = general_->friction();
+      for (std::size_t p = 0; p < points_.size(); ++p)
+        fields_.elastic_stress[p] = units_.force * (force.N[p] - force.m[p]);
+    }
+    else
+    {
+      stress_->values(t, fields_.active_stress);
+      assembler_.scene().friction->values(fields_.stretch, fields_.friction_force);
+      for (std::size_t p = 0; p < points_.size(); ++p)
+        fields_.friction_force[p] = equation::friction_force(fields_.friction_force[p], fields_.velocity[p]);
+    }
     require_finite(fields_.active_stress, t * units_.time, d);
-    assembler_.scene().friction->values(fields_.stretch, fields_.friction_force);
     for (std::size_t p = 0; p < points_.size(); ++p)
     {
-      fields_.friction_force[p] =
-        equation::friction_force(fields_.friction_force[p], fields_.velocity[p]) * units_.force / units_.length;
+      fields_.friction_force[p] *= units_.force / units_.length;
       fields_.active_stress[p] *= units_.force;
       fields_.velocity[p] *= units_.velocity();
     }

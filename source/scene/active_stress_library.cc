@@ -131,6 +131,12 @@ namespace crawler
          {
            return std::make_unique<Segments>(parameters.segments, body.length, end_time);
          }},
+        {"strain feedback",
+         StrainFeedback::description,
+         [](const auto &parameters, const Body &body, const double end_time)
+         {
+           return std::make_unique<StrainFeedback>(parameters.strain_feedback, body.length, end_time);
+         }},
         {"table",
          ActiveStressTable::description,
          [](const auto &parameters, const Body &body, const double end_time)
@@ -195,6 +201,7 @@ namespace crawler
     expression.add_parameters(declarations);
     prescribed_strain.add_parameters(declarations, of_strain);
     library.add_parameters(declarations);
+    strain_feedback.add_parameters(declarations);
     table.add_parameters(declarations);
   }
 

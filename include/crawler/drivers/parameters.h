@@ -23,6 +23,7 @@ namespace crawler
     double accuracy     = 1e-6;
     bool error_estimate = true;
     Body body;
+    GroundParameters ground;
     ActiveStressParameters active_stress;
     DiscretizationParameters discretization;
     TimeParameters time;

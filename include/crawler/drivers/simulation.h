@@ -182,9 +182,11 @@ namespace crawler
     bool
     compute_integrals(const Step &step, std::span<const double> y);
     RateQuadrature::Rates
-    rates(double t, const CellIntegrals &sums, std::span<const double> v);
+    rates(double t, const CellIntegrals &sums, std::span<const double> y, std::span<const double> v);
     RateQuadrature::Rates
     integrate_step(const Step &step, const RateQuadrature::Rates &at_end);
+    void
+    keep_history(const Step &step, std::span<const double> y);
     void
     look_at_extremes(double t, const StretchRange &range, bool is_first);
     void
@@ -197,6 +199,8 @@ namespace crawler
     locate_inversion(const Step &step);
     void
     explain_failure();
+    void
+    inverted_at_end(double s, double t, const std::string &reason);
     void
     inverted_inside(double value, double s, double t);
     void
@@ -255,6 +259,9 @@ namespace crawler
       std::vector<double> y_dot;
     };
     std::vector<Rate> rates_; ///< of the latest residuals, where they are kept
+    double delay_ = 0.;       ///< of the feedback [natural units]; 0: nobody asks for the past
+    StretchHistory history_;
+    std::shared_ptr<const std::vector<Cell>> history_cells_; ///< of the present mesh
     // The last state that was accepted, to which a change of mesh or formulation may go back.
     std::vector<double> accepted_;
     double accepted_time_ = 0., next_step_ = 0.;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/discretization/assembler.h>
+#include <crawler/discretization/general_sampler.h>
 
 namespace crawler
 {
@@ -42,6 +43,7 @@ namespace crawler
     std::vector<double> values_;   ///< [point][node] shape functions
     const StretchSampler stretch_; ///< at the x of the points
     std::unique_ptr<ActiveStressAtPoints> stress_;
+    std::unique_ptr<GeneralSampler> general_; ///< of a general scene
     std::vector<double> u_local_, v_local_;
     Fields fields_;
   };

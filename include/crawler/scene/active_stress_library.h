@@ -9,6 +9,7 @@
 #include <crawler/scene/active_stress/pulse.h>
 #include <crawler/scene/active_stress/segments.h>
 #include <crawler/scene/active_stress/standing_wave.h>
+#include <crawler/scene/active_stress/strain_feedback.h>
 #include <crawler/scene/active_stress/sum.h>
 #include <crawler/scene/active_stress/table.h>
 #include <crawler/scene/active_stress/travelling_wave.h>
@@ -36,6 +37,7 @@ namespace crawler
     ExpressionParameters expression;
     PrescribedStrainParameters prescribed_strain;
     LibraryParameters library;
+    StrainFeedbackParameters strain_feedback;
     TableParameters table;
     SumParameters sum;
 
