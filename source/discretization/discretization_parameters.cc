@@ -20,7 +20,8 @@ namespace crawler
       mesh,
       {"uniform", "adaptive", "automatic"},
       "Whether the cells have one size, or are divided and joined during the run where an error indicator asks for it. "
-      "Automatic: adaptive if a uniform mesh would need more than 64 cells.");
+      "Automatic: with cells that become smaller towards the ends and the jumps if the active stress starts or jumps "
+      "suddenly, else adaptive if a uniform mesh would need more than 256 cells.");
     declarations.number(
       "Mesh tolerance",
       mesh_tolerance,

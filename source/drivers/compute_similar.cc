@@ -137,7 +137,7 @@ namespace crawler
             fused_method(*tasks[i].scene, tasks[i].parameters.time, shared->numerics))
         {
           members.push_back({i,
-                             numerics_of_finer_run(*shared, tasks[i].parameters.time, tasks[i].scene->end_time),
+                             numerics_of_finer_run(*shared, tasks[i].parameters.time, *tasks[i].scene),
                              time_of_finer_run(tasks[i].parameters.time)});
           runs.push_back({&*tasks[i].scene, &tasks[i].parameters.time, &shared->numerics});
         }

@@ -2,6 +2,7 @@
 #include <crawler/base/communication.h>
 #include <crawler/drivers/batch.h>
 #include <crawler/drivers/error_estimate.h>
+#include <crawler/drivers/graded_choice.h>
 #include <crawler/drivers/self_check.h>
 
 #include <fmt/format.h>
@@ -34,26 +35,42 @@ namespace crawler
     /// No displacement is more accurate than this part of the body length.
     constexpr double round_off = 1e-15;
 
+    /// Is the error known beforehand? The rule of the numerics does not know what a point value of the stretch, seen
+    /// from elsewhere, does.
+    bool
+    is_promised(const NumericsChoice &choice, const Scene &scene)
+    {
+      const StretchFeedback *feedback = scene.active_stress->feedback();
+      return std::isfinite(choice.promised_error) && (feedback == nullptr || feedback->distance() == 0.);
+    }
+
     Numerics
-    finer(const NumericsChoice &choice, const std::string &integrator, const double end_time)
+    finer(const NumericsChoice &choice, const std::string &integrator, const Scene &scene)
     {
       Numerics n          = choice.numerics;
-      const bool promised = std::isfinite(choice.promised_error);
+      const bool promised = is_promised(choice, scene);
       if (n.mesh.tolerance > 0.)
         n.mesh.tolerance *= finer_mesh_tolerance;
       else
-        n.n_cells =
-          static_cast<unsigned int>(std::ceil((promised ? more_cells : more_cells_without_promise) * n.n_cells));
+      {
+        const double factor = promised ? more_cells : more_cells_without_promise;
+        // A piece between breaks may have one cell only, and must get another.
+        const auto n_breaks   = static_cast<unsigned int>(scene.breaks_in_space().size());
+        const unsigned int by = n_breaks > 0 ? n_breaks + 1 : 0;
+        n.n_cells             = std::max(static_cast<unsigned int>(std::ceil(factor * n.n_cells)), n.n_cells + by);
+      }
       n.tolerance *= !promised                       ? finer_tolerance_without_promise
                      : integrator == best_integrator ? finer_tolerance
                                                      : finer_tolerance_than_others;
-      n.integrator   = best_integrator;
-      n.initial_step = std::max(n.initial_step, first_step * end_time);
+      n.integrator = best_integrator;
+      if (n.grading.levels > 0)
+        return with_finer_grading(scene, n);
+      n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
       return n;
     }
 
     NumericsChoice
-    refined(const NumericsChoice &choice)
+    refined(const NumericsChoice &choice, const Scene &scene)
     {
       NumericsChoice next = choice;
       Numerics &n         = next.numerics;
@@ -62,6 +79,8 @@ namespace crawler
       else
         n.n_cells = static_cast<unsigned int>(std::ceil(refined_cells * n.n_cells));
       n.tolerance *= refined_tolerance;
+      if (n.grading.levels > 0)
+        n = with_finer_grading(scene, n);
       return next;
     }
 
@@ -75,7 +94,7 @@ namespace crawler
                             const std::function<bool()> &keep_going)
     {
       const TimeParameters time = time_of_finer_run(parameters.time);
-      const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene.end_time);
+      const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene);
       const auto cycles         = cycle_wish(parameters, scene, 0);
       SimulationResult better;
       // Most runs fit the fused engine; then nothing else has to be built.
@@ -107,16 +126,16 @@ namespace crawler
   }
 
   Numerics
-  numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, const double end_time)
+  numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, const Scene &scene)
   {
-    return finer(choice, time.integrator == "automatic" ? choice.numerics.integrator : time.integrator, end_time);
+    return finer(choice, time.integrator == "automatic" ? choice.numerics.integrator : time.integrator, scene);
   }
 
   DisplacementError
   error_from_difference(const NumericsChoice &choice,
                         const SimulationResult &result,
                         const double difference,
-                        const double length)
+                        const Scene &scene)
   {
     DisplacementError error;
     double total = choice.promised_error;
@@ -125,13 +144,13 @@ namespace crawler
     else if (!choice.is_collapse)
     {
       const double part = choice.numerics.mesh.tolerance > 0. ? promised_part_if_adaptive : promised_part;
-      total = std::isfinite(choice.promised_error) ? measured_factor * difference + part * choice.promised_error
-                                                   : factor_without_promise * difference;
+      total             = is_promised(choice, scene) ? measured_factor * difference + part * choice.promised_error
+                                                     : factor_without_promise * difference;
     }
     if (!std::isfinite(total))
       return error;
     const double cycles = result.cycles ? result.cycles->bound : 0.;
-    const double rest   = std::max(total, round_off * length);
+    const double rest   = std::max(total, round_off * scene.body.length);
     error.total         = rest + cycles;
     error.space         = choice.numerics.linear ? 0. : choice.space_share * rest;
     error.time          = error.total - error.space;
@@ -152,7 +171,7 @@ namespace crawler
     const bool is_measured = !choice.numerics.linear && !choice.is_collapse;
     const double x =
       is_measured ? difference_to_finer_run(communicator, parameters, scene, choice, result, keep_going) : 0.;
-    return error_from_difference(choice, result, x, scene.body.length);
+    return error_from_difference(choice, result, x, scene);
   }
 
   Answer
@@ -169,7 +188,7 @@ namespace crawler
     const double wanted = choice.wanted_error;
     // What has been measured on one mesh after the other is not tried again.
     const bool may_refine = !choice.is_collapse && choice.promised_error < hopeless * wanted;
-    for (;; ++answer.refinements, answer.choice = refined(answer.choice))
+    for (;; ++answer.refinements, answer.choice = refined(answer.choice, scene))
     {
       answer.result            = simulate(answer.choice);
       SimulationResult &result = answer.result;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/drivers/graded_choice.h>
 #include <crawler/drivers/numerics_choice.h>
+#include <crawler/drivers/stress_scales.h>
 #include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
@@ -40,6 +42,15 @@ namespace crawler
     constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
     /// On uniform meshes runs for a smaller Accuracy than this are by radau 9, others by radau 5.
     constexpr double radau_9_accuracy = 1.1e-4;
+    /// A stress that starts or jumps by more than this times the root of Accuracy, relative to the largest, makes
+    /// layers that count. Graded meshes have this degree, the higher one for a smaller Accuracy than that.
+    constexpr double sudden_part         = 0.1;
+    constexpr unsigned int graded_degree = 6, accurate_graded_degree = 8;
+    constexpr double accurate_graded = 1e-5;
+    /// More breaks would make graded meshes too large, or too many starts where nothing happens suddenly.
+    constexpr std::size_t most_graded_places = 24, most_gentle_breaks = 200;
+    /// First tolerances on graded meshes, relative to the wanted error.
+    constexpr double graded_radau_5 = 2., graded_radau_9 = 10., graded_others = 0.1;
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
     /// On adaptive meshes the error of bodies softer than this, in natural units, is up to soft_factor times Accuracy,
@@ -49,57 +60,16 @@ namespace crawler
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;
 
-    /// What a look at the active stress alone tells: pilots cannot miss what this has seen.
-    struct StressScales
-    {
-      double displacement; ///< of the stiff body, or of the one that is held by friction [length]
-      double length;       ///< largest |m| over largest |m_s| [length]
-      double time;         ///< largest |m| over largest |m_t| [time]
-    };
-
     /// Is this the linear rung, by its own stepper? Where "auto" chooses the rung but other entries ask for what that
     /// does not have, the stepper of the nonlinear rung computes it.
     bool
-    uses_linear_stepper(const Parameters &parameters)
+    uses_linear_stepper(const Parameters &parameters, const Scene &scene)
     {
       const bool fits =
-        parameters.body.friction_exponent() == 0. && parameters.discretization.mesh != "adaptive" &&
+        parameters.body.friction_exponent() == 0. && scene.is_plain() && parameters.discretization.mesh != "adaptive" &&
         parameters.discretization.formulation != "log stretch" && parameters.time.engine == "automatic" &&
         (parameters.time.integrator == "automatic" || integrator(parameters.time.integrator).petsc_type == "radau");
       return fits && (parameters.model == "linear" || parameters.model == "auto");
-    }
-
-    StressScales
-    stress_scales(const Scene &scene)
-    {
-      constexpr unsigned int fine = 512, coarse = 16;
-      const double L = scene.body.length, T = scene.end_time;
-      double largest = 0., along = 0., over = 0.;
-      const auto look = [&](const unsigned int n_points, const unsigned int n_times)
-      {
-        std::vector<double> points(n_points + 1), m(n_points + 1), before;
-        for (unsigned int i = 0; i <= n_points; ++i)
-          points[i] = L * i / n_points;
-        const auto stress = scene.active_stress->at(points);
-        for (unsigned int j = 0; j <= n_times; ++j)
-        {
-          before = m;
-          stress->values(T * j / n_times, m);
-          for (unsigned int i = 0; i <= n_points; ++i)
-          {
-            largest = std::max(largest, std::abs(m[i]));
-            if (i > 0)
-              along = std::max(along, std::abs(m[i] - m[i - 1]) / (points[i] - points[i - 1]));
-            if (j > 0)
-              over = std::max(over, std::abs(m[i] - before[i]) * n_times / T);
-          }
-        }
-      };
-      look(fine, coarse);
-      look(coarse, fine);
-      return {std::min(largest * L / scene.body.elastic_modulus, largest * T / (L * scene.body.friction_coefficient)),
-              along > 0. ? largest / along : L,
-              over > 0. ? largest / over : T};
     }
   } // namespace
 
@@ -132,7 +102,7 @@ namespace crawler
         , adaptive_steps_(parameters.time.step_control == "adaptive")
       {
         Numerics &n              = choice_.numerics;
-        n.linear                 = uses_linear_stepper(parameters);
+        n.linear                 = uses_linear_stepper(parameters, scene);
         n.degree                 = parameters.discretization.degree.value_or(automatic_degree);
         n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
         n.largest_step           = scales_.time;
@@ -165,6 +135,11 @@ namespace crawler
           choice_.numerics.n_cells   = *user_cells_;
           choice_.numerics.tolerance = user_tolerance_.value_or(1e-10 * L_); // of Newton's method only
           choice_.explanation        = "cells and time steps as set by the user";
+          return choice_;
+        }
+        if (mesh == "automatic" && starts_or_jumps() && graded())
+        {
+          finish(fixed);
           return choice_;
         }
         bool enough = false;
@@ -224,7 +199,7 @@ namespace crawler
       collapses() const
       {
         return pilot_.time.status != "finished" && pilot_.time.reason != "inverted_at_end" &&
-               pilot_.min_stretch.value < emptied && scene_.body.friction_exponent() < 0.;
+               pilot_.min_stretch.value < emptied && scene_.friction_exponent() < 0.;
       }
 
       /// Of the last pilot, whether it went there or its cycles were extrapolated.
@@ -249,9 +224,69 @@ namespace crawler
       double
       stiffness_over_friction() const
       {
-        const double a       = scene_.body.friction_exponent();
+        const double a       = scene_.friction_exponent();
         const double largest = std::max(std::pow(pilot_.min_stretch.value, a), std::pow(pilot_.max_stretch.value, a));
         return scene_.body.elastic_modulus / natural_units(scene_).force / largest;
+      }
+
+      /// Does the active stress make layers suddenly, and may a graded mesh be chosen for that?
+      bool
+      starts_or_jumps() const
+      {
+        const double sudden = sudden_part * std::sqrt(accuracy_);
+        return scales_.sudden > sudden && scales_.in_space <= most_graded_places &&
+               (scales_.sudden_later > sudden || scales_.in_time <= most_gentle_breaks) && !user_cells_ &&
+               !choice_.numerics.linear && adaptive_steps_ && !parameters_.discretization.mesh_tolerance;
+      }
+
+      /// A mesh that is graded towards the ends and breaks in space; returns whether there is one that is enough.
+      bool
+      graded()
+      {
+        Numerics start = choice_.numerics;
+        start.degree   = parameters_.discretization.degree.value_or(accuracy_ < accurate_graded ? accurate_graded_degree
+                                                                                              : graded_degree);
+        start.n_cells  = static_cast<unsigned int>(
+          std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 1. * most_cells));
+        const std::string &own = parameters_.time.integrator;
+        start.integrator       = accuracy_ < radau_9_accuracy ? "radau 9" : "radau 5";
+        const std::string name = own == "automatic" ? start.integrator : own;
+        start.tolerance        = user_tolerance_.value_or(0.);
+        const auto cycles      = cycles_;
+        if (cycles_)
+          cycles_->accuracy = accuracy_; // the displacements are compared here
+        const auto found = find_graded_mesh({.scene             = scene_,
+                                             .start             = start,
+                                             .accuracy          = accuracy_,
+                                             .scale             = scale_,
+                                             .choose_tolerance  = !user_tolerance_,
+                                             .choose_first_step = !parameters_.time.initial_step,
+                                             .tolerance_factor  = name == "radau 9"   ? graded_radau_9
+                                                                  : name == "radau 5" ? graded_radau_5
+                                                                                      : graded_others,
+                                             .run =
+                                               [this](const Numerics &numerics)
+                                             {
+                                               return pilot(numerics);
+                                             },
+                                             .size =
+                                               [this](const SimulationResult &result)
+                                             {
+                                               pilot_ = result;
+                                               measure_size();
+                                               return size_;
+                                             }});
+        cycles_          = cycles;
+        if (!found)
+        {
+          size_ = 0.;
+          return false;
+        }
+        choice_.numerics = found->numerics;
+        pilot_           = found->result;
+        space_over_time_ = found->space_over_time;
+        measure_size();
+        return true;
       }
 
       /// A uniform mesh with up to @p most cells; returns whether that is enough.
@@ -484,9 +519,10 @@ namespace crawler
         const bool predicts = pilot_.time.status == "finished";
         if (size_ == 0.)
           size_ = scale_;
+        const bool is_graded = n.grading.levels > 0; // then all is chosen already
         if (n.integrator == "radau 5" && n.mesh.tolerance == 0. && accuracy_ < radau_9_accuracy)
           n.integrator = "radau 9";
-        if (!parameters_.time.initial_step)
+        if (!parameters_.time.initial_step && !is_graded)
           n.initial_step = first_step(parameters_.time);
         // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
         // size.
@@ -494,7 +530,7 @@ namespace crawler
         const double wanted  = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
         const double by_rule = std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
                                         std::max(1e-15 * scale_, smallest()));
-        n.tolerance          = user_tolerance_.value_or(is_collapse_ ? tolerance_ : by_rule);
+        n.tolerance          = user_tolerance_.value_or(is_collapse_ ? tolerance_ : is_graded ? n.tolerance : by_rule);
         if (predicts && !is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
@@ -506,11 +542,13 @@ namespace crawler
         }
         if (is_collapse_ && predicts)
           choice_.wanted_error = accuracy_ * size_;
-        const double seconds   = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        const std::string kind = is_collapse_ ? "the stretch collapses: log stretch with degree 1, "
-                                 : n.mesh.tolerance > 0.
-                                   ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
-                                   : "";
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const std::string kind =
+          is_collapse_ ? "the stretch collapses: log stretch with degree 1, "
+          : is_graded
+            ? fmt::format("sudden stress, {} levels of cells smaller by {:g} each, ", n.grading.levels, n.grading.ratio)
+          : n.mesh.tolerance > 0. ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
+                                  : "";
         choice_.explanation =
           predicts ? fmt::format("for Accuracy {:g}: {}from {} pilot runs in {:.2g} s: displacement about {:.3g}",
                                  accuracy_,

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <sstream>
 
 namespace crawler
 {
@@ -59,7 +60,13 @@ namespace crawler
   std::map<std::string, std::string>
   provenance(const std::string &effective, const std::string &command_line)
   {
-    std::map<std::string, std::string> attributes = {{"parameters.prm", effective}, {"command line", command_line}};
+    // Without comments: HDF5 allows an attribute 64 KB.
+    std::string bare;
+    std::istringstream lines(effective);
+    for (std::string line; std::getline(lines, line);)
+      if (const std::string text = trimmed(line); !text.empty() && text[0] != '#')
+        bare += line + "\n";
+    std::map<std::string, std::string> attributes = {{"parameters.prm", bare}, {"command line", command_line}};
     for (const auto &[name, version] : versions())
       attributes["version of " + name] = version;
     return attributes;
@@ -72,34 +79,52 @@ namespace crawler
     {
       Parameters parameters;
       Declarations declarations;
+      const ParameterFile file = ParameterFile::from_text(text, "parameters.prm");
+      parameters.count_terms(file);
       parameters.add_parameters(declarations);
-      ParameterFile::from_text(text, "parameters.prm").apply(declarations);
-      std::vector<std::pair<std::string, std::string>> list;
+      file.apply(declarations);
+      std::map<std::string, std::string> list;
       for (unsigned int i = 0; i < declarations.entries().size(); ++i)
-        list.emplace_back(declarations.entries()[i].path, declarations.value(i));
+        list.emplace(declarations.entries()[i].path, declarations.value(i));
       return list;
     };
     const auto old_values = values(before), new_values = values(after);
     std::vector<std::string> list;
-    for (std::size_t i = 0; i < old_values.size(); ++i)
-      if (old_values[i].second != new_values[i].second &&
-          std::find(others.begin(), others.end(), old_values[i].first) == others.end())
-        list.push_back(
-          fmt::format("{} was \"{}\" and is \"{}\"", old_values[i].first, old_values[i].second, new_values[i].second));
+    const auto compare = [&](const std::string &entry)
+    {
+      const auto value_in = [&](const auto &all)
+      {
+        const auto found = all.find(entry);
+        return found == all.end() ? std::string("not there") : "\"" + found->second + "\"";
+      };
+      const std::string was = value_in(old_values), is = value_in(new_values);
+      if (was != is && std::find(others.begin(), others.end(), entry) == others.end())
+        list.push_back(fmt::format("{} was {} and is {}", entry, was, is));
+    };
+    for (const auto &[entry, value] : old_values)
+      compare(entry);
+    for (const auto &[entry, value] : new_values)
+      if (old_values.count(entry) == 0)
+        compare(entry);
     return list;
   }
 
   void
   draw(const std::string &script, const std::filesystem::path &folder, Log &log)
   {
-    const std::string path    = CRAWLER_SOURCE_DIR "/contrib/plot/" + script;
+    // Beside an installed program, else in the folder of the source code.
+    std::error_code ignored;
+    const auto program   = std::filesystem::read_symlink("/proc/self/exe", ignored);
+    const auto installed = program.parent_path().parent_path() / CRAWLER_INSTALLED_PLOTS / script;
+    const std::string path =
+      std::filesystem::exists(installed, ignored) ? installed.string() : CRAWLER_SOURCE_DIR "/contrib/plot/" + script;
     const std::string debians = "/usr/bin/python3";
     for (const std::string &python : {debians, std::string("python3")})
       if (run_silently({python, path, folder.string()}))
         return;
     log.line(fmt::format("There is no picture (it needs Python with numpy and matplotlib); draw it with: "
-                         "python3 contrib/plot/{} {}",
-                         script,
+                         "python3 {} {}",
+                         path,
                          folder.string()));
   }
 } // namespace crawler

@@ -22,11 +22,13 @@ namespace crawler
 
   struct SweepPoints::Form
   {
-    Form(const ParameterFile &file, const std::vector<Assignment> &scene)
+    Form(const ParameterFile &file, const ParameterFile *scene)
     {
+      const bool scene_has_terms = scene != nullptr && !scene->subsections("Active stress/Sum").empty();
+      parameters.count_terms(scene_has_terms ? *scene : file);
       parameters.add_parameters(declarations);
       file.apply(declarations);
-      for (const Assignment &assignment : scene)
+      for (const Assignment &assignment : scene != nullptr ? scene->assignments() : std::vector<Assignment>())
         try
         {
           declarations.set(assignment.path, assignment.value);
@@ -48,7 +50,7 @@ namespace crawler
   SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file)
     : file_(file)
   {
-    auto base = std::make_unique<Form>(file, std::vector<Assignment>());
+    auto base = std::make_unique<Form>(file, nullptr);
     sweep_    = base->parameters.sweep;
     std::ostringstream text;
     base->declarations.print_prm(text);
@@ -63,17 +65,17 @@ namespace crawler
       if (file_axis_ < design_->axes().size())
         for (const std::string &name : design_->axes()[file_axis_].admissible)
           if (scenes_.count(name) == 0)
-            scenes_[name] = read_file(communicator, name, {}).assignments();
+            scenes_.emplace(name, read_file(communicator, name, {}));
       forms_[""] = std::move(base);
       for (const auto &[name, scene] : scenes_)
       {
-        for (const Assignment &assignment : scene)
+        for (const Assignment &assignment : scene.assignments())
           if (assignment.path.starts_with("Sweep/"))
             throw InputError(fmt::format("{}: \"{}\" stands in a file of a sweep, but section Sweep belongs to {}",
                                          assignment.place,
                                          assignment.path,
                                          file.name()));
-        forms_[name] = std::make_unique<Form>(file, scene);
+        forms_[name] = std::make_unique<Form>(file, &scene);
       }
       require_admissible_values();
       require_scene();
@@ -105,7 +107,7 @@ namespace crawler
           throw InputError(
             fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),
             axes_entry);
-      Form scratch(file_, {});
+      Form scratch(file_, nullptr);
       require_valid({axis.entry, axis.admissible}, axes_entry, scratch.declarations);
     }
   }
@@ -147,7 +149,7 @@ namespace crawler
     std::vector<std::string> list;
     const auto &axes = design.axes();
     if (file_axis_ < axes.size())
-      for (const Assignment &assignment : scenes_.at(design.value(file_axis_, point)))
+      for (const Assignment &assignment : scenes_.at(design.value(file_axis_, point)).assignments())
         list.push_back(assignment.path + "=" + assignment.value);
     list.insert(list.end(), file_.overrides().begin(), file_.overrides().end());
     for (std::size_t i = 0; i < axes.size(); ++i)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../support/run_text.h"
+#include "../support/with_breaks.h"
 
 #include <cmath>
 #include <random>
@@ -11,8 +12,19 @@ namespace crawler::test
   /// A scene of the calibration study: its kind, and the entries that make it.
   struct RandomScene
   {
-    std::string kind; ///< wave, waves, pulse, standing or sudden
+    std::string kind; ///< wave, waves, pulse, standing or sudden; or start, switch or segments
     Settings settings;
+    std::vector<double> in_space, in_time; ///< breaks of the active stress
+
+    /// The scene of @p parameters, which have the settings.
+    Scene
+    create(const Parameters &parameters) const
+    {
+      Scene scene = parameters.create_scene();
+      if (!in_space.empty() || !in_time.empty())
+        scene.active_stress = std::make_unique<WithBreaks>(std::move(scene.active_stress), in_space, in_time);
+      return scene;
+    }
   };
 
   /// Numbers that are the same everywhere (distributions of the standard library are not).
@@ -141,6 +153,76 @@ namespace crawler::test
     set("Generator", "expression");
     set("Expression/Active stress", formula);
     set("Expression/Constants", fmt::format("A={}, nu={}", text(A), text(nu)));
+    return scene;
+  }
+
+  /// The scenes from this number on are jumping_scene()s.
+  constexpr unsigned int first_jumping_scene = 10000;
+
+  /**
+   * Scene number @p number of those whose stress starts or jumps suddenly; body and time as in random_scene(),
+   * stiffness from 0.05, strength up to 0.4 k. A third each are waves that start suddenly, waves that turn round at one
+   * to four times, and two to six segments of unequal length that switch between two values, one after the other.
+   */
+  inline RandomScene
+  jumping_scene(const unsigned int number)
+  {
+    Random r(1000 + number);
+    RandomScene scene;
+    const double a = r.chance(0.3) ? static_cast<double>(r.whole(0, 6)) - 3. : r.uniform(-3., 3.);
+    const double L = r.log_uniform(0.1, 10.), gamma = r.log_uniform(0.1, 10.), nu = r.log_uniform(0.1, 10.);
+    const double k    = r.log_uniform(0.05, 100.) * gamma * L * L * nu;
+    const double T    = r.log_uniform(0.3, 3.) / nu;
+    const double A    = r.uniform(0.03, 0.4) * k;
+    const double kind = r.uniform(0., 1.);
+    std::string formula;
+    if (kind < 1. / 3.)
+    {
+      scene.kind = "start";
+      formula    = fmt::format("A*sin(2*pi*({}*s/L+nu*t)+{})", text(r.uniform(0.3, 2.)), text(r.uniform(0., 6.3)));
+    }
+    else if (kind < 2. / 3.)
+    {
+      scene.kind           = "switch";
+      const unsigned int n = r.whole(1, 4);
+      for (unsigned int i = 0; i < n; ++i)
+        scene.in_time.push_back(T * (i + r.uniform(0.1, 0.9)) / n);
+      // Nested from the last to the first.
+      std::string sign = n % 2 == 0 ? "1" : "-1";
+      for (unsigned int i = n; i-- > 0;)
+        sign = fmt::format("(t<{} ? {} : {})", text(scene.in_time[i]), i % 2 == 0 ? "1" : "-1", sign);
+      formula =
+        fmt::format("A*sin(2*pi*({}*s/L+nu*t)+{})*{}", text(r.uniform(0.3, 1.5)), text(r.uniform(0., 6.3)), sign);
+    }
+    else
+    {
+      scene.kind           = "segments";
+      const unsigned int n = r.whole(2, 6);
+      const double lag = r.uniform(-0.4, 0.4), low = r.uniform(-1., 0.5), duty = r.uniform(0.2, 0.8);
+      std::vector<std::string> values;
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        if (i > 0)
+          scene.in_space.push_back(L * (i + r.uniform(-0.2, 0.2)) / n);
+        const double phase = i * lag - std::floor(i * lag);
+        values.push_back(fmt::format("(mod(nu*t+{},1)<{} ? 1 : {})", text(phase), text(duty), text(low)));
+        for (unsigned int stride = 0; stride < 6; ++stride)
+          for (const double edge : {0., duty})
+            scene.in_time.push_back((stride + edge - phase) / nu);
+      }
+      formula = values.back();
+      for (unsigned int i = n - 1; i-- > 0;)
+        formula = fmt::format("(s<{} ? {} : {})", text(scene.in_space[i]), values[i], formula);
+      formula = "A*" + formula;
+    }
+    scene.settings = {{"Body/Length", text(L)},
+                      {"Body/Friction coefficient", text(gamma)},
+                      {"Body/Elastic modulus", text(k)},
+                      {"Body/Anchoring exponent", text(1. - a)},
+                      {"Time/End time", text(T)},
+                      {"Active stress/Generator", "expression"},
+                      {"Active stress/Expression/Active stress", formula},
+                      {"Active stress/Expression/Constants", fmt::format("A={}, nu={}", text(A), text(nu))}};
     return scene;
   }
 } // namespace crawler::test

@@ -33,12 +33,14 @@ namespace crawler
   TimeParameters
   time_of_finer_run(const TimeParameters &time);
   Numerics
-  numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, double end_time);
+  numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, const Scene &scene);
 
-  /// The error of a finished result from its @p difference to the finer run (not a number: unknown); @p length is that
-  /// of the body.
+  /// The error of a finished result from its @p difference to the finer run (not a number: unknown).
   DisplacementError
-  error_from_difference(const NumericsChoice &choice, const SimulationResult &result, double difference, double length);
+  error_from_difference(const NumericsChoice &choice,
+                        const SimulationResult &result,
+                        double difference,
+                        const Scene &scene);
 
   /// A run with its error, and how it was found.
   struct Answer

@@ -72,8 +72,8 @@ namespace crawler
     SweepParameters sweep_;
     std::unique_ptr<SweepDesign> design_;
     std::string effective_;
-    std::size_t file_axis_ = 0;                             ///< number of axes: none
-    std::map<std::string, std::vector<Assignment>> scenes_; ///< of the files on the file axis
-    std::map<std::string, std::unique_ptr<Form>> forms_;    ///< for each of them, or one for ""
+    std::size_t file_axis_ = 0;                          ///< number of axes: none
+    std::map<std::string, ParameterFile> scenes_;        ///< of the files on the file axis
+    std::map<std::string, std::unique_ptr<Form>> forms_; ///< for each of them, or one for ""
   };
 } // namespace crawler

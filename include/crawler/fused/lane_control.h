@@ -22,7 +22,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   constexpr double large_part          = 0.5;
   /// Step control: the next step is safety * (1/error)^(1/(stages+1)) of this one, within these factors.
   constexpr double safety = 0.9, after_rejection = 0.5, least_change = 0.1, most_change = 5.;
-  constexpr double least_step = 1e-12;
+  constexpr double least_step = 1e-18; // a sudden start needs short ones
   /// A start disturbs stiff components; traces are left after so many steps.
   constexpr unsigned int settling_steps = 3;
 
@@ -163,6 +163,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       next          = job.initial_step;
       has_old       = false;
       just_rejected = false;
+      known_rate    = 1.;
       first_step    = steps;
     }
 

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/scene.h>
+
+#include <cstddef>
+
+namespace crawler
+{
+  /// What a look at the active stress alone tells: pilots cannot miss what this has seen.
+  struct StressScales
+  {
+    double displacement; ///< of the stiff body, or of the one that is held by friction [length]
+    double length;       ///< largest |m| over largest |m_s| between the breaks [length]
+    double time;         ///< largest |m| over largest |m_t| between the breaks [time]
+    /// The largest sudden change of what makes layers, relative to the largest |m|: of m at the ends of the body and of
+    /// its jumps in space, at the start and at the breaks in time [1].
+    double sudden;
+    double sudden_later;           ///< the same at the breaks in time alone [1]
+    std::size_t in_space, in_time; ///< numbers of breaks
+  };
+
+  StressScales
+  stress_scales(const Scene &scene);
+} // namespace crawler

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/drivers/stress_scales.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Is one of @p breaks (ascending) between @p from and @p to?
+    bool
+    any_between(const std::vector<double> &breaks, const double from, const double to)
+    {
+      const auto next = std::lower_bound(breaks.begin(), breaks.end(), from);
+      return next != breaks.end() && *next <= to;
+    }
+
+    struct SuddenChange
+    {
+      double at_start, later;
+    };
+
+    /// The largest sudden changes of m at the ends and of its jumps at the breaks in space.
+    SuddenChange
+    largest_sudden_change(const Scene &scene, const std::vector<double> &in_space)
+    {
+      const double L = scene.body.length, T = scene.end_time, beside = 2. * least_space_between_breaks * L;
+      std::vector<double> points = {0., L};
+      for (const double s : in_space)
+        points.insert(points.end(), {s - beside, s + beside});
+      const auto stress = scene.active_stress->at(points);
+      std::vector<double> m(points.size());
+      const std::size_t n = 2 + in_space.size();
+      std::vector<double> before(n, 0.), now(n);
+      SuddenChange largest{0., 0.};
+      const auto look = [&](const double t)
+      {
+        stress->values(t * T, m);
+        now[0] = m[0];
+        now[1] = m[1];
+        for (std::size_t i = 0; i < in_space.size(); ++i)
+          now[2 + i] = m[3 + 2 * i] - m[2 + 2 * i];
+      };
+      TimePieces pieces(*scene.active_stress, T);
+      for (double start = 0.;; pieces.go_on())
+      {
+        look(pieces.inside(start));
+        for (std::size_t i = 0; i < n; ++i)
+        {
+          double &known = start == 0. ? largest.at_start : largest.later;
+          known         = std::max(known, std::abs(now[i] - before[i]));
+        }
+        if (pieces.is_last())
+          return largest;
+        start = pieces.end();
+        look(pieces.inside(start));
+        before = now;
+      }
+    }
+  } // namespace
+
+  StressScales
+  stress_scales(const Scene &scene)
+  {
+    constexpr unsigned int fine = 512, coarse = 16;
+    const double L = scene.body.length, T = scene.end_time;
+    const std::vector<double> in_space = breaks_in_space(*scene.active_stress, L),
+                              in_time  = TimePieces(*scene.active_stress, T).breaks();
+    double largest = 0., along = 0., over = 0.;
+    const auto look = [&](const unsigned int n_points, const unsigned int n_times)
+    {
+      std::vector<double> points(n_points + 1), m(n_points + 1), before;
+      for (unsigned int i = 0; i <= n_points; ++i)
+        points[i] = L * i / n_points;
+      const auto stress = scene.active_stress->at(points);
+      for (unsigned int j = 0; j <= n_times; ++j)
+      {
+        before = m;
+        stress->values(T * j / n_times, m);
+        const bool goes_on = j > 0 && !any_between(in_time, (j - 1.) / n_times, 1. * j / n_times);
+        for (unsigned int i = 0; i <= n_points; ++i)
+        {
+          largest = std::max(largest, std::abs(m[i]));
+          if (i > 0 && !any_between(in_space, points[i - 1], points[i]))
+            along = std::max(along, std::abs(m[i] - m[i - 1]) / (points[i] - points[i - 1]));
+          if (goes_on)
+            over = std::max(over, std::abs(m[i] - before[i]) * n_times / T);
+        }
+      }
+    };
+    look(fine, coarse);
+    look(coarse, fine);
+    const SuddenChange change = largest > 0. ? largest_sudden_change(scene, in_space) : SuddenChange{0., 0.};
+    const double unit         = largest > 0. ? largest : 1.;
+    return {std::min(largest * L / scene.body.elastic_modulus, largest * T / (L * scene.body.friction_coefficient)),
+            along > 0. ? largest / along : L,
+            over > 0. ? largest / over : T,
+            std::max(change.at_start, change.later) / unit,
+            change.later / unit,
+            in_space.size(),
+            in_time.size()};
+  }
+} // namespace crawler

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Active stresses that jump: full orders where the jumps are declared, and lost orders where they are not.
+#include "../support/fused_runs.h"
+#include "../support/observed_order.h"
+#include "../support/with_breaks.h"
+
+#include <crawler/time/integrators.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+using namespace crawler;
+using test::FusedRun;
+
+namespace
+{
+  std::unique_ptr<FusedRun>
+  jumping(const test::Settings &settings,
+          const std::string &integrator,
+          const Numerics &numerics,
+          const std::vector<double> &in_space,
+          const std::vector<double> &in_time)
+  {
+    auto run = std::make_unique<FusedRun>(settings, integrator, numerics);
+    run->scene.active_stress =
+      std::make_unique<test::WithBreaks>(std::move(run->scene.active_stress), in_space, in_time);
+    return run;
+  }
+
+  /// Keeps what the steps of a run were.
+  class Times : public Observer
+  {
+  public:
+    explicit Times(std::vector<double> &steps, std::vector<double> &frames)
+      : steps_(steps)
+      , frames_(frames)
+    {
+    }
+    void
+    observe(const Snapshot &snapshot) override
+    {
+      steps_.push_back(snapshot.step.time);
+      if (snapshot.is_frame)
+        frames_.push_back(snapshot.step.time);
+    }
+
+  private:
+    std::vector<double> &steps_, &frames_;
+  };
+
+  double
+  distance(const std::vector<double> &list, const double value)
+  {
+    double least = HUGE_VAL;
+    for (const double entry : list)
+      least = std::min(least, std::abs(entry - value));
+    return least;
+  }
+} // namespace
+
+/// The stress jumps at s = 0.37 L and grows from 0 so smoothly that nothing else is rough.
+TEST(Jumps, InSpaceKeepTheOrder)
+{
+  const auto displacement =
+    [](const FormulationChoice form, const unsigned int q, const unsigned int n, const bool declared)
+  {
+    const auto run    = jumping(test::expression(-1., "sin(pi*t/2)^8*(s<0.37 ? 0.5*cos(2*s) : -0.4*sin(3*s))", 0.9),
+                             "radau 9",
+                             {.degree = q, .n_cells = n, .tolerance = 1e-13, .initial_step = 1e-3, .formulation = form},
+                             declared ? std::vector<double>{0.37} : std::vector<double>(),
+                             {});
+    const auto result = run->simulate("automatic", {});
+    EXPECT_EQ(result.time.status, "finished") << result.time.message;
+    EXPECT_EQ(result.most_cells, n);
+    return result.displacement;
+  };
+  for (const auto form : {FormulationChoice::position, FormulationChoice::log_stretch})
+  {
+    const double exact = displacement(FormulationChoice::position, 8, 20, true);
+    for (const auto &[q, cells] :
+         {std::tuple(2u, std::vector<double>{8, 16, 32}), std::tuple(4u, std::vector<double>{3, 5, 8})})
+    {
+      std::vector<double> declared, hidden;
+      for (const double n : cells)
+      {
+        declared.push_back(std::abs(displacement(form, q, static_cast<unsigned int>(n), true) - exact));
+        hidden.push_back(std::abs(displacement(form, q, static_cast<unsigned int>(n), false) - exact));
+      }
+      const double order = test::observed_order(cells, declared), lost = test::observed_order(cells, hidden);
+      fmt::print("degree {}: errors {:.2e} ... {:.2e}, order {:.2f}; not declared {:.2e} ... {:.2e}, order {:.2f}\n",
+                 q,
+                 declared.front(),
+                 declared.back(),
+                 order,
+                 hidden.front(),
+                 hidden.back(),
+                 lost);
+      EXPECT_GE(order, 2. * q - 0.4);
+      EXPECT_LT(lost, 2.5);
+      EXPECT_GT(hidden.back(), 100. * declared.back());
+    }
+  }
+}
+
+/// The stress, or only its derivative, jumps at t = 3/8, where a step ends in any case. Equal steps, a mesh that is not
+/// stiff, and the energy as in fused_test.cc.
+TEST(Jumps, InTimeKeepTheOrder)
+{
+  for (const std::string after : {"0.02*cos(2*t)", "0.02*sin(pi*0.375/2)^8*(1+3*(t-0.375))"})
+  {
+    const bool of_value = after == "0.02*cos(2*t)";
+    const auto energy =
+      [&](const std::string &integrator, const std::string &engine, const unsigned int n, const bool declared)
+    {
+      const auto run =
+        jumping(test::expression(0., "cos(3*(s-2*t))*(t<0.375 ? 0.02*sin(pi*t/2)^8 : " + after + ")", 1., 0.05),
+                integrator,
+                {.degree = 4, .n_cells = 1, .tolerance = 1e3, .initial_step = 1. / n, .largest_step = 1. / n},
+                {},
+                declared ? std::vector<double>{0.375} : std::vector<double>());
+      const auto result = engine == "batch" ? *test::run_alone(*run) : run->simulate(engine);
+      EXPECT_LE(result.time.steps, n + 1) << integrator << " " << engine;
+      return result.ledger->elastic_energy;
+    };
+    const double exact = energy("radau 9", "batch", 400, true);
+    for (const auto &[integrator, order, steps] : {std::tuple("radau 5", 5., std::vector<double>{24, 48, 96}),
+                                                   std::tuple("radau 9", 9., std::vector<double>{8, 16})})
+      for (const std::string engine : {"batch", "automatic", "petsc"})
+      {
+        std::vector<double> declared, hidden;
+        for (const double n : steps)
+        {
+          declared.push_back(std::abs(energy(integrator, engine, static_cast<unsigned int>(n), true) / exact - 1.));
+          hidden.push_back(std::abs(energy(integrator, engine, static_cast<unsigned int>(n), false) / exact - 1.));
+        }
+        const double observed = test::observed_order(steps, declared), lost = test::observed_order(steps, hidden);
+        fmt::print("{} {}: errors {:.2e} ... {:.2e}, order {:.2f}; not declared {:.2e} ... {:.2e}, order {:.2f}\n",
+                   integrator,
+                   engine,
+                   declared.front(),
+                   declared.back(),
+                   observed,
+                   hidden.front(),
+                   hidden.back(),
+                   lost);
+        // A derivative that jumps excites all modes of the mesh, the stiff ones with a reduced order.
+        EXPECT_GE(observed, of_value || order < 9. ? order - 0.4 : 5.6) << integrator << " " << engine;
+        if (of_value)
+        {
+          EXPECT_LT(lost, 1.5) << integrator << " " << engine;
+        }
+      }
+  }
+}
+
+namespace
+{
+  // Two segments that switch: 0.4 of the body with one phase, the rest with another.
+  const std::string robot               = "0.2*(s<0.4 ? (mod(2*t,1)<0.5 ? 1 : -1) : (mod(2*t+0.25,1)<0.5 ? 1 : -1))";
+  const std::vector<double> robot_times = {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875};
+} // namespace
+
+/// Every integrator, both forms, uniform, graded and adaptive meshes, and the engines, come to the same displacement,
+/// and their ledgers close.
+TEST(Jumps, AreTheSameForAllMethods)
+{
+  const Numerics fine  = {.degree = 6, .n_cells = 5, .tolerance = 1e-10, .initial_step = 1e-9, .grading = {6, 0.25}};
+  const auto reference = test::run_alone(*jumping(test::expression(-1., robot), "radau 9", fine, {0.4}, robot_times));
+  ASSERT_TRUE(reference);
+  const auto compare = [&](const std::string &name, const SimulationResult &result, const double within)
+  {
+    ASSERT_EQ(result.time.status, "finished") << name << ": " << result.time.message;
+    fmt::print("{:30} {:7} steps, displacement {:.10g}, off by {:.1e}, ledger {:.1e}\n",
+               name,
+               result.time.steps,
+               result.displacement,
+               std::abs(result.displacement / reference->displacement - 1.),
+               result.ledger->residual());
+    EXPECT_NEAR(result.displacement / reference->displacement, 1., within) << name;
+    // Where the velocity jumps the others have no formula of their own for integrals over a step.
+    if (name.starts_with("arkimex") || name == "midpoint")
+      return;
+    EXPECT_LT(result.ledger->residual(), 10. * within) << name;
+  };
+  for (const Integrator &method : integrators())
+  {
+    if (!method.adaptive || method.name == "backward euler")
+      continue;
+    const bool first_orders = method.name == "midpoint" || method.name == "arkimex l2";
+    Numerics numerics       = fine;
+    numerics.tolerance      = first_orders ? 1e-7 : 1e-9;
+    const auto run          = jumping(test::expression(-1., robot), method.name, numerics, {0.4}, robot_times);
+    compare(method.name, run->simulate("petsc"), first_orders ? 1e-4 : 1e-5);
+  }
+  const auto with = [&](const auto &change)
+  {
+    Numerics numerics = fine;
+    change(numerics);
+    return jumping(test::expression(-1., robot), "radau 5", numerics, {0.4}, robot_times);
+  };
+  compare("fused", with([](Numerics &) {})->simulate("automatic"), 1e-7);
+  compare("log stretch",
+          with(
+            [](Numerics &n)
+            {
+              n.formulation = FormulationChoice::log_stretch;
+            })
+            ->simulate("petsc"),
+          1e-6);
+  compare("adaptive mesh",
+          with(
+            [](Numerics &n)
+            {
+              n.grading   = {};
+              n.n_cells   = 10;
+              n.mesh      = {1e-7, 1e-6};
+              n.tolerance = 1e-8;
+            })
+            ->simulate("petsc"),
+          1e-4);
+}
+
+/// A thousand switchings: steps end at each of them, frames are frames and nothing else is.
+TEST(Jumps, ManyInTime)
+{
+  constexpr unsigned int n = 1000;
+  std::vector<double> switches;
+  for (unsigned int i = 0; i <= n; ++i) // 0 and the end time are admitted
+    switches.push_back(2. * i / n);
+  const auto run                   = jumping(test::expression(-1., "0.1*s*(1-s)*(2-s)*(mod(500*t,2)<1 ? 1 : -1)", 2.),
+                           "radau 5",
+                           {.degree = 4, .n_cells = 6, .tolerance = 1e-6, .initial_step = 2e-5},
+                           {},
+                           switches);
+  const std::vector<double> wanted = {0.1, 0.5, 0.7001, 1., 2.};
+  std::vector<double> displacements;
+  for (const std::string engine : {"automatic", "petsc"})
+  {
+    TimeParameters time = run->parameters.time;
+    time.engine         = engine;
+    Simulation simulation(MPI_COMM_WORLD, run->scene, time, run->numerics);
+    std::vector<double> steps, frames;
+    std::vector<std::unique_ptr<Observer>> observers;
+    observers.push_back(std::make_unique<Times>(steps, frames));
+    const SimulationResult result = simulation.run(wanted, {.ledger = true}, observers);
+    ASSERT_EQ(result.time.status, "finished") << result.time.message;
+    EXPECT_EQ(result.time.steps + 1, steps.size());
+    EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end()));
+    for (const double t : switches)
+      EXPECT_LT(distance(steps, t), 1e-14 + 1e-15 * t);
+    ASSERT_EQ(frames.size(), wanted.size() + 1);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      EXPECT_EQ(frames[i + 1], wanted[i]);
+    EXPECT_LT(result.ledger->residual(), 1e-5);
+    displacements.push_back(result.displacement);
+    fmt::print("{}: {} steps, {:.3f} s\n", engine, result.time.steps, result.solve_seconds);
+  }
+  const auto batch = test::run_alone(*run);
+  ASSERT_TRUE(batch);
+  EXPECT_NEAR(run->simulate("automatic").displacement / batch->displacement, 1., 1e-12);
+  for (const double displacement : displacements) // frames make other steps
+    EXPECT_NEAR(displacement / batch->displacement, 1., 1e-5);
+}
+
+/// An end inverts at the moment when the stress jumps there, and that is what is reported.
+TEST(Jumps, InvertAnEndWhenTheyHappen)
+{
+  for (const std::string engine : {"automatic", "petsc"})
+  {
+    const auto run    = jumping(test::expression(1., "(t<0.3 ? 0.1*t : 1.2)*(1-s)^2"),
+                             "radau 5",
+                             {.degree = 4, .n_cells = 6, .tolerance = 1e-6, .initial_step = 1e-4},
+                             {},
+                             {0.3});
+    const auto result = run->simulate(engine);
+    EXPECT_EQ(result.time.reason, "inverted_at_end") << result.time.message;
+    ASSERT_TRUE(result.inversion);
+    EXPECT_DOUBLE_EQ(result.inversion->t, 0.3);
+    EXPECT_EQ(result.inversion->s, 0.);
+    EXPECT_FALSE(test::run_alone(*run));
+  }
+}
+
+/// A sudden start: each level of the grading divides the error by the square of the ratio, until the mesh is good.
+TEST(Jumps, GradedMeshesConvergeExponentially)
+{
+  const auto displacement = [](const unsigned int levels)
+  {
+    const auto run =
+      jumping(test::expression(-1., "0.3*cos(2*pi*(s+t))"),
+              "radau 9",
+              {.degree = 8, .n_cells = 8, .tolerance = 1e-11, .initial_step = 1e-11, .grading = {levels, 0.25}},
+              {},
+              {});
+    const auto result = test::run_alone(*run, {.ledger = false});
+    EXPECT_TRUE(result) << levels;
+    return result->displacement;
+  };
+  const double exact = displacement(8);
+  std::vector<double> errors;
+  for (const unsigned int levels : {0u, 2u, 4u, 6u})
+  {
+    errors.push_back(std::abs(displacement(levels) / exact - 1.));
+    fmt::print("{} levels: error {:.2e}\n", levels, errors.back());
+    if (levels > 0)
+    {
+      EXPECT_LT(errors.back(), errors[errors.size() - 2] / 50.) << levels;
+    }
+  }
+}

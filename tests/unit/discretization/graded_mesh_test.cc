@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/discretization/discretization.h>
+#include <crawler/discretization/graded_mesh.h>
+#include <crawler/discretization/mesh_marking.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace crawler;
+
+TEST(GradedMesh, PutsCellsInProportionBetweenTheBreaks)
+{
+  EXPECT_TRUE(cell_ends(7, {}, {}).empty());
+  for (const unsigned int n : {1u, 3u, 4u, 10u, 37u, 1000u})
+  {
+    const std::vector<double> breaks = {0.05, 0.4, 0.7};
+    const std::vector<double> ends   = cell_ends(n, breaks, {});
+    EXPECT_EQ(ends.size(), std::max(n, 4u) + 1);
+    EXPECT_TRUE(std::is_sorted(ends.begin(), ends.end()));
+    EXPECT_EQ(ends.front(), 0.);
+    EXPECT_EQ(ends.back(), 1.);
+    for (const double s : breaks)
+      EXPECT_NE(std::find(ends.begin(), ends.end(), s), ends.end());
+    double smallest = 1., largest = 0.;
+    for (std::size_t i = 1; i < ends.size(); ++i)
+    {
+      if (ends[i - 1] >= 0.05) // shorter pieces have one cell
+        smallest = std::min(smallest, ends[i] - ends[i - 1]);
+      largest = std::max(largest, ends[i] - ends[i - 1]);
+    }
+    if (n >= 10)
+    {
+      EXPECT_LT(largest, 1.6 * smallest) << n;
+    }
+  }
+}
+
+TEST(GradedMesh, GoesDownGeometricallyToEndsAndBreaks)
+{
+  for (const auto &breaks : {std::vector<double>(), std::vector<double>{0.5}})
+  {
+    const unsigned int levels = 5, pieces = static_cast<unsigned int>(breaks.size()) + 1;
+    const std::vector<double> ends = cell_ends(4, breaks, {levels, 0.2});
+    EXPECT_EQ(ends.size() - 1, 4 + 2 * levels * pieces);
+    for (std::size_t i = 1; i <= levels; ++i)
+    {
+      EXPECT_NEAR(ends[i], 0.25 * std::pow(0.2, levels + 1 - i), 1e-15);
+      EXPECT_NEAR(ends[ends.size() - 1 - i], 1. - ends[i], 1e-15);
+    }
+    if (!breaks.empty())
+    {
+      const auto at = std::find(ends.begin(), ends.end(), 0.5) - ends.begin();
+      for (std::size_t i = 1; i <= levels; ++i)
+      {
+        EXPECT_NEAR(ends[at + i] - 0.5, ends[i], 1e-15);
+        EXPECT_NEAR(0.5 - ends[at - i], ends[i], 1e-15);
+      }
+    }
+  }
+  // A single cell is halved first.
+  EXPECT_EQ(cell_ends(1, {}, {1, 0.5}), (std::vector<double>{0., 0.25, 0.5, 0.75, 1.}));
+}
+
+/// Cells of any size can be divided and joined; after all is joined the first mesh is there again.
+TEST(GradedMesh, CanBeAdapted)
+{
+  const std::vector<double> ends = cell_ends(3, {0.3}, {2, 0.3});
+  auto mesh                      = std::make_unique<Discretization>(MPI_COMM_WORLD, ends, 3);
+  const auto first               = mesh->cells();
+  ASSERT_EQ(first.size(), ends.size() - 1);
+  for (std::size_t c = 0; c < first.size(); ++c)
+  {
+    EXPECT_EQ(first[c].left, ends[c]);
+    EXPECT_EQ(first[c].size, ends[c + 1] - ends[c]);
+  }
+  for (const unsigned int divided : {1u, 2u, 6u})
+  {
+    std::vector<CellChange> changes(mesh->n_cells(), CellChange::keep);
+    changes[divided] = CellChange::divide;
+    mesh             = mesh->adapted(changes);
+  }
+  EXPECT_GE(mesh->n_cells(), first.size() + 3);
+  double left = 0.;
+  for (const Cell &cell : mesh->cells())
+  {
+    EXPECT_NEAR(cell.left, left, 1e-15);
+    left = cell.left + cell.size;
+  }
+  EXPECT_NEAR(left, 1., 1e-15);
+  // Joined where the indicators are nothing.
+  for (int i = 0; i < 5; ++i)
+    mesh = mesh->adapted(std::vector<CellChange>(mesh->n_cells(), CellChange::join));
+  ASSERT_EQ(mesh->n_cells(), first.size());
+  for (std::size_t c = 0; c < first.size(); ++c)
+    EXPECT_NEAR(mesh->cells()[c].size, first[c].size, 1e-15);
+}

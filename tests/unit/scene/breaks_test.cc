@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/with_breaks.h"
+
+#include <crawler/scene/active_stress/none.h>
+#include <crawler/scene/scene.h>
+
+#include <gtest/gtest.h>
+
+using namespace crawler;
+
+namespace
+{
+  /// m = t.
+  class Clock : public ActiveStress
+  {
+  public:
+    std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &) const override
+    {
+      struct Now : ActiveStressAtPoints
+      {
+        void
+        values(const double t, const std::span<double> m) override
+        {
+          std::fill(m.begin(), m.end(), t);
+        }
+      };
+      return std::make_unique<Now>();
+    }
+  };
+
+  test::WithBreaks
+  with(const std::vector<double> &in_space, const std::vector<double> &in_time)
+  {
+    return {std::make_unique<Clock>(), in_space, in_time};
+  }
+} // namespace
+
+TEST(Breaks, AreSortedDistinctAndInside)
+{
+  using List = std::vector<double>;
+  EXPECT_EQ(breaks_in_space(with({1.5, 0.5, 0., 2., 0.5 + 1e-10, -3., 7.}, {}), 2.), (List{0.5, 1.5}));
+  EXPECT_EQ(TimePieces(with({}, {3., 1., 4., 0., 1. + 1e-13, 9.}), 4.).breaks(), (List{0.25, 0.75}));
+  EXPECT_TRUE(TimePieces(with({}, {}), 4.).breaks().empty());
+}
+
+/// Within a piece no time of another is used, and none at its ends; without breaks times are what they are.
+TEST(Breaks, PiecesAreEvaluatedInside)
+{
+  Scene scene;
+  scene.friction = std::make_unique<PowerFriction>(1., 0.);
+  scene.end_time = 2.;
+  scene.active_stress =
+    std::make_unique<test::WithBreaks>(std::make_unique<Clock>(), std::vector<double>(), std::vector<double>{0.5, 1.});
+  TimePieces pieces(*scene.active_stress, 2.);
+  const Units units{1., 2., 1.};
+  const Scene scaled = in_units(scene, units, &pieces);
+  const auto stress  = scaled.active_stress->at({0.5});
+  double m           = 0.;
+  const auto at      = [&](const double t)
+  {
+    stress->values(t, {&m, 1});
+    return m;
+  };
+  EXPECT_EQ(pieces.end(), 0.25);
+  EXPECT_GT(at(0.), 0.);
+  EXPECT_NEAR(at(0.), 0., 1e-11);
+  EXPECT_EQ(at(0.1), 0.2);
+  EXPECT_LT(at(0.25), 0.5);
+  EXPECT_NEAR(at(0.25), 0.5, 1e-11);
+  EXPECT_EQ(at(0.3), at(0.25));
+  pieces.go_on();
+  EXPECT_EQ(pieces.end(), 0.5);
+  EXPECT_GT(at(0.25), 0.5);
+  EXPECT_NEAR(at(0.25), 0.5, 1e-11);
+  EXPECT_FALSE(pieces.is_last());
+  pieces.go_on();
+  EXPECT_TRUE(pieces.is_last());
+  EXPECT_LT(at(1.), 2.);
+  pieces.restart();
+  EXPECT_EQ(at(0.1), 0.2);
+
+  const Scene plain = in_units(scene, units);
+  plain.active_stress->at({0.5})->values(0.25, {&m, 1});
+  EXPECT_EQ(m, 0.5);
+}
