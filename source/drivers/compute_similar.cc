@@ -164,7 +164,7 @@ namespace crawler
         choice.wanted_error      = task.parameters.accuracy * std::abs(result.displacement);
         choice.promised_error    = choice.wanted_error;
         result.error             = error_from_difference(
-          choice, result, std::abs(finer_results[j]->displacement - result.displacement), task.scene->body.length);
+          choice, result, std::abs(finer_results[j]->displacement - result.displacement), *task.scene);
         check_identities(result, task.parameters);
         if (result.time.status != "finished" || !(result.error->total <= choice.wanted_error))
           continue;
