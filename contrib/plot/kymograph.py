@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws a run of crawler: the moving body, its stretch over s and t, and its displacement.
 
-    python3 kymograph.py OUTPUT_FOLDER [--output picture.png]
+    python3 kymograph.py OUTPUT_FOLDER [--output picture.png] [--stress]
+
+With --stress the active stress over s and t comes first.
 
 Reads kymograph.vts, statistics.csv and parameters.prm of the folder; needs matplotlib (Debian: python3-matplotlib).
 """
@@ -62,7 +64,7 @@ def read_number(text, entry):
     return float(match[1])
 
 
-def draw(folder, picture):
+def draw(folder, picture, with_stress):
     """Reads the files and writes the picture."""
     try:
         import matplotlib
@@ -75,16 +77,24 @@ def draw(folder, picture):
     steps = existing(folder, "statistics.csv", "Output/Statistics = true")
     parameters = existing(folder, "parameters.prm", "its files complete").read_text(encoding="utf-8")
     length, duration = read_number(parameters, "Length"), read_number(parameters, "End time")
-    s, t, stretch, displacement = read_kymograph(grid, ("stretch", "displacement"))
+    s, t, stretch, displacement, stress = read_kymograph(grid, ("stretch", "displacement", "active_stress"))
     times, travelled = read_statistics(steps)
     position = [[length * x + u for x, u in zip(s, row)] for row in displacement]
     rows_of_t = [[duration * y] * len(s) for y in t]
 
     plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "xtick.labelsize": 9,
                          "ytick.labelsize": 9, "axes.linewidth": 0.7})
-    figure = plt.figure(figsize=(7.5, 5.6), layout="constrained")
-    body, map_, below = figure.subplot_mosaic("bm;dd", height_ratios=(3, 1.15)).values()
+    figure = plt.figure(figsize=(10.5 if with_stress else 7.5, 5.6), layout="constrained")
+    panels = figure.subplot_mosaic("amb;ddd" if with_stress else "bm;dd",
+                                   height_ratios=(3, 1.15))
+    body, map_, below = panels["b"], panels["m"], panels["d"]
     colours = dict(cmap="cividis", shading="gouraud", rasterized=True)
+    bar = {"location": "bottom", "aspect": 30}
+    if with_stress:
+        largest = max(max(map(abs, row)) for row in stress) or 1
+        mesh = panels["a"].pcolormesh(s, t, stress, **(colours | dict(cmap="PuOr_r")), vmin=-largest, vmax=largest)
+        panels["a"].set(title="active stress", xlabel="$s/L$", ylabel="$t/T$")
+        figure.colorbar(mesh, ax=panels["a"], **bar)
     body.pcolormesh(position, rows_of_t, stretch, **colours)
     for eighth in range(9):  # paths of material points, the ends thicker
         i = eighth * (len(s) - 1) // 8
@@ -98,7 +108,7 @@ def draw(folder, picture):
 
     mesh = map_.pcolormesh(s, t, stretch, **colours)
     map_.set(title="stretch of each point", xlabel="$s/L$", ylabel="$t/T$")
-    figure.colorbar(mesh, ax=map_, label="stretch")
+    figure.colorbar(mesh, ax=map_, **bar if with_stress else {"label": "stretch"})
 
     below.plot(times, travelled, color="black", linewidth=1.2)
     below.set(xlabel="time", ylabel="displacement", xlim=(0, times[-1]))
@@ -106,8 +116,8 @@ def draw(folder, picture):
         axes.locator_params(steps=(1, 2, 5, 10))
     below.grid(color="0.85", linewidth=0.6)
     try:
-        figure.savefig(picture, dpi=160)
-        if picture.suffix == ".png":  # 256 colours: less than half the size
+        figure.savefig(picture, dpi=120 if with_stress else 160)
+        if picture.suffix == ".png" and not with_stress:  # 256 colours: less than half the size
             from PIL import Image  # comes with matplotlib
             Image.open(picture).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(picture, optimize=True)
     except (OSError, ValueError) as error:
@@ -120,11 +130,12 @@ def main():
     parser.add_argument("folder", type=pathlib.Path, help="output folder of crawler run")
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("kymograph.png"),
                         help="the picture (.png, .pdf, .svg)")
+    parser.add_argument("--stress", action="store_true", help="draw the active stress as well")
     options = parser.parse_args()
     try:
         if not options.folder.is_dir():
             raise Problem(f"{options.folder} is not a folder; the output folder of a run is expected")
-        draw(options.folder, options.output)
+        draw(options.folder, options.output, options.stress)
     except (Problem, OSError) as problem:
         sys.exit(f"kymograph.py: {problem}")
     print(f"wrote {options.output}")

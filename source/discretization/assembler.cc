@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/parabola.h>
 #include <crawler/discretization/assembler.h>
+#include <crawler/discretization/general_log_form.h>
+#include <crawler/discretization/general_position_form.h>
+#include <crawler/discretization/general_sampler.h>
 #include <crawler/discretization/log_stretch_form.h>
 #include <crawler/discretization/position_form.h>
 #include <crawler/model/crawler_equation.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -62,6 +67,7 @@ namespace crawler
                        const std::vector<double> &stress_points)
     : scene_(scene)
     , discretization_(discretization)
+    , end_moduli_(scene.end_moduli())
     , stress_(scene.active_stress->at(stress_points))
     , end_stress_(scene.active_stress->at({0., scene.body.length}))
     , n_stress_points_(stress_points.size())
@@ -244,12 +250,20 @@ namespace crawler
     const auto &element   = discretization_.element();
     const auto &to_points = friction_integration(); // [quadrature point][friction point]
     const unsigned int n = element.n, n_cells = discretization_.n_local_cells();
-    const double k = scene_.body.elastic_modulus;
-    // The position form has the active stress at these points already.
     const std::size_t n_points = static_cast<std::size_t>(n_cells) * n;
-    if (n_stress_points_ != n_points && !quadrature_stress_)
+    const bool is_plain        = scene_.is_plain();
+    if (!is_plain)
+    {
+      if (!quadrature_sampler_)
+        quadrature_sampler_ = std::make_unique<GeneralSampler>(*this, element.points);
+      quadrature_sampler_->sample(t, y, v);
+    }
+    // The position form has the active stress at these points already.
+    else if (n_stress_points_ != n_points && !quadrature_stress_)
       quadrature_stress_ = scene_.active_stress->at(discretization_.points(element.points));
-    if (quadrature_stress_)
+    if (!is_plain)
+      m_at_quadrature_ = quadrature_sampler_->force().m;
+    else if (quadrature_stress_)
     {
       m_at_quadrature_.resize(n_points);
       quadrature_stress_->values(t, m_at_quadrature_);
@@ -284,6 +298,7 @@ namespace crawler
         for (unsigned int i = 0; i < n; ++i)
           N += h * to_points[p * n + i] * g_v[i];
         const double e = sampler_.strain(local, log_w, c, h, p + 1);
+        const double k = is_plain ? scene_.body.elastic_modulus : quadrature_sampler_->force().k[c * n + p];
         const double d = (N - equation::body_force(e, m_at_quadrature_[c * n + p], k)) / k;
         const double w = std::max(1. + e, smallest_scale);
         // An error of the stretch changes the friction by w g'/g times as much.
@@ -310,11 +325,98 @@ namespace crawler
   }
 
   std::pair<double, double>
-  Assembler::end_stress(const double t)
+  Assembler::end_stretches(const double t)
   {
     std::array<double, 2> m{};
     end_stress_->values(t, m);
-    return {m[0], m[1]};
+    return {1. - m[0] / end_moduli_.first, 1. - m[1] / end_moduli_.second};
+  }
+
+  void
+  Assembler::set_initial_state(const Vector y)
+  {
+    std::fill(y.begin(), y.end(), 0.);
+    const auto &initial = scene_.profiles.initial_stretch;
+    if (!initial)
+      return;
+    // u is the integral of w - 1, from node to node by a Gauss formula, minus its mean.
+    const auto &element     = discretization_.element();
+    const auto &formula     = reference_element(ReferenceElement::highest_degree);
+    const unsigned int n    = element.n;
+    const std::size_t first = static_cast<std::size_t>(discretization_.first_cell()) * element.degree +
+                              (discretization_.has_left_neighbour() ? 1 : 0);
+    std::vector<double> u(discretization_.n_unknowns(), 0.), places(formula.n), w(formula.n);
+    double mean = 0.;
+    for (std::size_t c = 0; c < discretization_.n_cells(); ++c)
+    {
+      const Cell &cell = discretization_.cells()[c];
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        double &here = u[c * element.degree + i];
+        if (i > 0)
+        {
+          const double from = cell.left + cell.size * element.nodes[i - 1],
+                       size = cell.size * (element.nodes[i] - element.nodes[i - 1]);
+          for (unsigned int p = 0; p < formula.n; ++p)
+            places[p] = from + size * formula.points[p];
+          initial->values(places, w);
+          here = u[c * element.degree + i - 1];
+          for (unsigned int p = 0; p < formula.n; ++p)
+            here += size * formula.weights[p] * (w[p] - 1.);
+        }
+        mean += cell.size * element.node_weights[i] * here;
+      }
+    }
+    for (std::size_t i = 0; i < discretization_.n_owned(); ++i)
+      y[i] = u[first + i] - mean / discretization_.length();
+    if (formulation() == Formulation::position)
+      return;
+    const auto points = discretization_.points(element.stretch_points);
+    const auto log_w  = y.subspan(discretization_.n_owned(), points.size());
+    initial->values(points, log_w);
+    for (double &value : log_w)
+      value = std::log(value);
+  }
+
+  std::vector<double>
+  Assembler::stretch_coefficients(const ConstVector y) const
+  {
+    const auto log_w = log_stretch(y);
+    if (formulation() == Formulation::log_stretch)
+      return {log_w.begin(), log_w.end()};
+    const auto &element  = discretization_.element();
+    const unsigned int q = element.degree;
+    std::vector<double> buffer;
+    const auto local = discretization_.to_local<double>(displacement(y), buffer);
+    std::vector<double> strain(static_cast<std::size_t>(discretization_.n_local_cells()) * q, 0.);
+    for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
+      for (unsigned int p = 0; p < q; ++p)
+      {
+        double &sum = strain[c * q + p];
+        for (unsigned int i = 0; i < element.n; ++i)
+          sum += element.stretch_derivatives[p * element.n + i] * local[c * q + i];
+        sum /= discretization_.cell_size()[c];
+      }
+    return strain;
+  }
+
+  long
+  Assembler::look_at_friction(const std::span<const double> w, const std::span<const double> g)
+  {
+    for (std::size_t i = 0; i < g.size(); ++i)
+      if (!(g[i] > 0. && std::isfinite(g[i])))
+      {
+        describe_bad_law_ = [stretch = w[i], friction = g[i]](const Units &)
+        {
+          return BadLaw{fmt::format("the friction law is {} at the stretch w = {:.6g}, which the body has reached; a "
+                                    "positive number is expected",
+                                    friction > 0. || friction <= 0. ? "not positive" : "not a finite number",
+                                    stretch),
+                        "Ground/Friction law"};
+        };
+        return static_cast<long>(i);
+      }
+    return -1;
   }
 
   void
@@ -368,10 +470,22 @@ namespace crawler
   }
 
   double
-  Assembler::end_power(const double t, const ConstVector v)
+  Assembler::end_power(const double t, const ConstVector y, const ConstVector v)
   {
-    const auto [m_left, m_right] = end_stress(t);
-    double power                 = 0.;
+    std::array<double, 2> m{};
+    if (has_known_ends())
+      end_stress_->values(t, m);
+    else
+    {
+      if (!end_sampler_)
+        end_sampler_ = GeneralSampler::at_ends(*this);
+      end_sampler_->sample(t, y, v);
+      const auto &own = end_sampler_->force().m;
+      if (!own.empty()) // the left one is used by the first rank only, the right one by the last
+        m = {{own.front(), own.back()}};
+    }
+    const double m_left = m[0], m_right = m[1];
+    double power = 0.;
     if (discretization_.rank() == 0)
       power -= m_left * v.front();
     if (discretization_.n_local() > 0 && !discretization_.has_right_neighbour())
@@ -384,8 +498,15 @@ namespace crawler
   std::unique_ptr<Assembler>
   create_assembler(const Formulation formulation, const Scene &scene, const Discretization &discretization)
   {
-    if (formulation == Formulation::position)
-      return std::make_unique<PositionForm>(scene, discretization);
-    return std::make_unique<LogStretchForm>(scene, discretization);
+    const bool in_position = formulation == Formulation::position;
+    if (scene.is_plain())
+    {
+      if (in_position)
+        return std::make_unique<PositionForm>(scene, discretization);
+      return std::make_unique<LogStretchForm>(scene, discretization);
+    }
+    if (in_position)
+      return std::make_unique<GeneralPositionForm>(scene, discretization);
+    return std::make_unique<GeneralLogForm>(scene, discretization);
   }
 } // namespace crawler

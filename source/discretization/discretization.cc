@@ -240,6 +240,21 @@ namespace crawler
     return points;
   }
 
+  std::vector<double>
+  Discretization::gather(const std::span<const double> own) const
+  {
+    if (n_ranks_ == 1)
+      return {own.begin(), own.end()};
+    const int n = static_cast<int>(own.size());
+    std::vector<int> counts(n_ranks_), offsets(n_ranks_, 0);
+    MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator_);
+    for (unsigned int r = 1; r < counts.size(); ++r)
+      offsets[r] = offsets[r - 1] + counts[r - 1];
+    std::vector<double> all(static_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()));
+    MPI_Allgatherv(own.data(), n, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, communicator_);
+    return all;
+  }
+
   template <typename Number>
   std::span<const Number>
   Discretization::to_local(const std::span<const Number> owned, std::vector<Number> &buffer) const

@@ -147,13 +147,35 @@ namespace crawler
       }
 
       static void
-      friction(const LogCellInput &in, double *g)
+      friction(const LogCellInput &in, double *g, double *w_dg)
       {
         for (unsigned int c = 0; c < in.cells.n_cells; ++c)
         {
-          Nodes at_nodes;
-          friction_at_nodes(in, c, at_nodes);
+          Nodes at_nodes, derivatives;
+          friction_at_nodes(in, c, at_nodes, derivatives);
           std::copy(at_nodes.begin(), at_nodes.end(), g + c * n);
+          std::copy(derivatives.begin(), derivatives.end(), w_dg + c * n);
+        }
+      }
+
+      /// The blocks of cell c from its factors.
+      template <typename Number>
+      static void
+      eliminate(const ReferenceElement &e, const Factors<Number> &f, Number *J)
+      {
+        const double *D = e.stretch_derivatives.data(), *E = e.stretch_to_nodes.data();
+        for (int i = 0; i < n; ++i)
+        {
+          Number column[q];
+          for (int p = 0; p < q; ++p)
+            column[p] = (f.column_node[i] * E[i * q + p] + f.column_point[p] * D[p * n + i]) * f.row[p] / f.diagonal[p];
+          for (int j = 0; j < n; ++j)
+          {
+            Number sum = i == j ? f.mass[i] : 0.;
+            for (int p = 0; p < q; ++p)
+              sum += column[p] * D[p * n + j];
+            J[i * n + j] = sum;
+          }
         }
       }
 
@@ -163,8 +185,7 @@ namespace crawler
       {
         const CellInput &cells    = in.cells;
         const ReferenceElement &e = *cells.element;
-        const double *D = e.stretch_derivatives.data(), *E = e.stretch_to_nodes.data();
-        bool ok = true;
+        bool ok                   = true;
         for (unsigned int c = 0; c < cells.n_cells; ++c)
         {
           const double h      = cells.cell_size[c];
@@ -172,7 +193,7 @@ namespace crawler
           Nodes g, w_dg;
           friction_at_nodes(in, c, g, w_dg);
           Points v_s;
-          rates(D, v, 1. / h, v_s);
+          rates(e.stretch_derivatives.data(), v, 1. / h, v_s);
           auto &f = reinterpret_cast<Factors<Number> *>(factors)[c];
           for (int i = 0; i < n; ++i)
           {
@@ -187,21 +208,46 @@ namespace crawler
             f.column_point[p]    = e.stretch_weights[p] * cells.k * stretch;
             ok                   = ok && f.diagonal[p] != 0. && is_finite(f.diagonal[p]);
           }
-          Number *J = blocks + c * n * n;
+          eliminate(e, f, blocks + c * n * n);
+        }
+        return ok;
+      }
+
+      template <typename Number>
+      static bool
+      general_jacobian(const LogCellInput &in, const LogLaws &laws, const Number sigma, Number *blocks, double *factors)
+      {
+        const CellInput &cells    = in.cells;
+        const ReferenceElement &e = *cells.element;
+        const double *D           = e.stretch_derivatives.data();
+        bool ok                   = true;
+        for (unsigned int c = 0; c < cells.n_cells; ++c)
+        {
+          const double h = cells.cell_size[c];
+          Points v_s;
+          rates(D, cells.v + c * q, 1. / h, v_s);
+          auto &f = reinterpret_cast<Factors<Number> *>(factors)[c];
           for (int i = 0; i < n; ++i)
           {
-            Number column[q];
-            for (int p = 0; p < q; ++p)
-              column[p] =
-                (f.column_node[i] * E[i * q + p] + f.column_point[p] * D[p * n + i]) * f.row[p] / f.diagonal[p];
-            for (int j = 0; j < n; ++j)
-            {
-              Number sum = i == j ? f.mass[i] : 0.;
-              for (int p = 0; p < q; ++p)
-                sum += column[p] * D[p * n + j];
-              J[i * n + j] = sum;
-            }
+            f.mass[i]        = h * e.node_weights[i] * laws.by_v[c * n + i];
+            f.column_node[i] = h * e.node_weights[i] * laws.by_log_w[c * n + i];
           }
+          for (int p = 0; p < q; ++p)
+          {
+            const double stretch = std::exp(in.log_w[c * q + p]);
+            f.diagonal[p]        = sigma + v_s[p] / stretch;
+            f.row[p]             = 1. / (h * stretch);
+            f.column_point[p]    = e.stretch_weights[p] * laws.by_log[c * q + p];
+            ok                   = ok && f.diagonal[p] != 0. && is_finite(f.diagonal[p]);
+          }
+          Number *J = blocks + c * n * n;
+          eliminate(e, f, J);
+          if (laws.by_rate.empty())
+            continue;
+          for (int p = 0; p < q; ++p)
+            for (int i = 0; i < n; ++i)
+              for (int j = 0; j < n; ++j)
+                J[i * n + j] += e.stretch_weights[p] / h * laws.by_rate[c * q + p] * D[p * n + i] * D[p * n + j];
         }
         return ok;
       }
@@ -293,7 +339,8 @@ namespace crawler
 
       static constexpr LogCellKernels table = {residual, mass, friction, multiply, integrals};
       template <typename Number>
-      static constexpr LogElimination<Number> elimination = {jacobian<Number>, reduce<Number>, recover<Number>};
+      static constexpr LogElimination<Number> elimination = {
+        jacobian<Number>, general_jacobian<Number>, reduce<Number>, recover<Number>};
     };
   } // namespace
 

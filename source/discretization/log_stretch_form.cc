@@ -89,15 +89,74 @@ namespace crawler
 
   template <typename Number>
   bool
-  LogStretchForm::setup(Eliminated<Number> &jacobian, const LogCellInput &in, const Number sigma) const
+  LogStretchForm::setup(Eliminated<Number> &jacobian,
+                        const LogCellInput &in,
+                        const LogLaws *laws,
+                        const Number sigma) const
   {
-    jacobian.sigma = sigma;
-    const bool ok =
-      log_elimination<Number>(q_).jacobian(in, sigma, jacobian.matrix.blocks().data(), jacobian.factors.data());
+    jacobian.sigma          = sigma;
+    const auto &elimination = log_elimination<Number>(q_);
+    auto &blocks            = jacobian.matrix.blocks();
+    bool ok                 = false;
+    if (laws == nullptr)
+      ok = elimination.jacobian(in, sigma, blocks.data(), jacobian.factors.data());
+    else
+    {
+      ok = elimination.general_jacobian(in, *laws, sigma, blocks.data(), jacobian.factors.data());
+      keep_laws(jacobian, *laws);
+      // u follows from the velocity: sigma u = v.
+      const auto &e = *in.cells.element;
+      for (std::size_t c = 0; c < in.cells.n_cells; ++c)
+        for (unsigned int i = 0; i < e.n; ++i)
+          blocks[(c * e.n + i) * e.n + i] +=
+            in.cells.cell_size[c] * e.node_weights[i] * laws->by_u[c * e.n + i] / sigma;
+    }
     int all_ok = jacobian.matrix.factorize() && ok;
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE, &all_ok, 1, MPI_INT, MPI_MIN, discretization_.communicator());
     return all_ok != 0;
+  }
+
+  template <typename Number>
+  void
+  LogStretchForm::keep_laws(Eliminated<Number> &jacobian, const LogLaws &laws) const
+  {
+    const auto &e = discretization_.element();
+    std::vector<double> local(discretization_.n_local(), 0.);
+    for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
+      for (unsigned int i = 0; i < e.n; ++i)
+        local[c * q_ + i] += discretization_.cell_size()[c] * e.node_weights[i] * laws.by_u[c * e.n + i];
+    jacobian.by_u.resize(discretization_.n_owned());
+    discretization_.add_to_owned<double>(local, jacobian.by_u);
+    jacobian.laws = laws;
+  }
+
+  /// What factors do not have: the place on the ground, the rate of the stretch and the stretch nearby.
+  void
+  LogStretchForm::add_general(const Eliminated<double> &jacobian, const ConstVector x, const Vector y) const
+  {
+    const auto &e       = discretization_.element();
+    const LogLaws &laws = *jacobian.laws;
+    std::vector<double> local(discretization_.n_local(), 0.), near(laws.by_near.size()), buffer;
+    const auto v = discretization_.to_local<double>(velocities(x), buffer);
+    if (!near.empty() || discretization_.n_ranks() > 1)
+      change_of_near(laws, x, near);
+    for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
+      for (unsigned int p = 0; p < q_; ++p)
+      {
+        const double *D = &e.stretch_derivatives[p * e.n];
+        double force    = near.empty() ? 0. : laws.by_near[c * q_ + p] * near[c * q_ + p];
+        if (!laws.by_rate.empty())
+          for (unsigned int i = 0; i < e.n; ++i)
+            force += laws.by_rate[c * q_ + p] * D[i] / discretization_.cell_size()[c] * v[c * q_ + i];
+        for (unsigned int i = 0; i < e.n; ++i)
+          local[c * q_ + i] += e.stretch_weights[p] * force * D[i];
+      }
+    std::vector<double> owned(discretization_.n_owned());
+    discretization_.add_to_owned<double>(local, owned);
+    const Vector F = velocities(y);
+    for (std::size_t i = 0; i < owned.size(); ++i)
+      F[i] += owned[i] + jacobian.by_u[i] * x[i];
   }
 
   template <typename Number>
@@ -116,6 +175,8 @@ namespace crawler
     discretization_.add_to_owned<Number>(jacobian.node_local, jacobian.nodes);
     for (std::size_t i = 0; i < n; ++i)
       v[i] += jacobian.nodes[i];
+    for (std::size_t i = 0; i < jacobian.by_u.size(); ++i)
+      v[i] -= jacobian.by_u[i] * x[i] / jacobian.sigma;
     jacobian.matrix.solve(v, v);
     elimination.recover(
       cells, jacobian.factors.data(), discretization_.to_local<Number>(v, jacobian.local_buffer).data(), x.data() + n);
@@ -126,7 +187,8 @@ namespace crawler
   bool
   LogStretchForm::setup_jacobian(const double t, const ConstVector y, const ConstVector, const double sigma)
   {
-    return setup(jacobian_, log_input(t, y, velocities(y)), sigma);
+    const LogCellInput in = log_input(t, y, velocities(y));
+    return setup(jacobian_, in, laws_at(t, y, in), sigma);
   }
 
   void
@@ -136,24 +198,26 @@ namespace crawler
   }
 
   void
-  LogStretchForm::multiply(const std::vector<double> &factors, const ConstVector x, const Vector y)
+  LogStretchForm::multiply(const Eliminated<double> &jacobian, const ConstVector x, const Vector y)
   {
     const std::size_t n = discretization_.n_owned();
     node_local_.assign(discretization_.n_local(), 0.);
     std::fill(y.begin(), y.end(), 0.);
     kernels_.multiply(geometry(),
-                      factors.data(),
+                      jacobian.factors.data(),
                       discretization_.to_local<double>(velocities(x), local_buffer_).data(),
                       x.data() + n,
                       node_local_.data(),
                       y.data() + n);
     discretization_.add_to_owned<double>(node_local_, velocities(y));
+    if (jacobian.laws)
+      add_general(jacobian, x, y);
   }
 
   void
   LogStretchForm::jacobian_vmult(const ConstVector x, const Vector y)
   {
-    multiply(jacobian_.factors, x, y);
+    multiply(jacobian_, x, y);
     const auto v = velocities(x);
     for (std::size_t i = 0; i < v.size(); ++i)
       y[i] = jacobian_.sigma * x[i] - v[i];
@@ -166,12 +230,13 @@ namespace crawler
                                           const std::span<const Complex> sigma)
   {
     const LogCellInput in = log_input(t, y, velocities(y));
+    const LogLaws *laws   = laws_at(t, y, in);
     bool ok               = true;
     for (std::size_t i = 0; i < sigma.size(); ++i)
     {
       if (complex_jacobians_.size() <= i)
         complex_jacobians_.emplace_back(discretization_);
-      ok = setup(complex_jacobians_[i], in, sigma[i]) && ok;
+      ok = setup(complex_jacobians_[i], in, laws, sigma[i]) && ok;
     }
     return ok;
   }
@@ -189,8 +254,16 @@ namespace crawler
   {
     while (stages_.size() <= stage)
       stages_.emplace_back(discretization_);
-    log_elimination<double>(q_).jacobian(
-      log_input(t, y, velocities(y)), 0., stages_[stage].matrix.blocks().data(), stages_[stage].factors.data());
+    auto &kept            = stages_[stage];
+    const LogCellInput in = log_input(t, y, velocities(y));
+    const LogLaws *laws   = laws_at(t, y, in);
+    if (laws == nullptr)
+      log_elimination<double>(q_).jacobian(in, 0., kept.matrix.blocks().data(), kept.factors.data());
+    else
+    {
+      log_elimination<double>(q_).general_jacobian(in, *laws, 0., kept.matrix.blocks().data(), kept.factors.data());
+      keep_laws(kept, *laws);
+    }
   }
 
   /// dF/dy' is the identity for u and log w, and 0 for the balance of forces.
@@ -200,7 +273,7 @@ namespace crawler
                               const ConstVector x_dot,
                               const Vector result)
   {
-    multiply(stages_[stage].factors, x, result);
+    multiply(stages_[stage], x, result);
     const auto v = velocities(x);
     for (std::size_t i = 0; i < v.size(); ++i)
       result[i] = x_dot[i] - v[i];
@@ -262,7 +335,8 @@ namespace crawler
     const LogCellInput in = log_input(t, y, v);
     const auto &e         = discretization_.element();
     g_v.resize(static_cast<std::size_t>(in.cells.n_cells) * e.n);
-    kernels_.friction(in, g_v.data());
+    std::vector<double> derivatives(g_v.size());
+    kernels_.friction(in, g_v.data(), derivatives.data());
     for (unsigned int c = 0; c < in.cells.n_cells; ++c)
       for (unsigned int i = 0; i < e.n; ++i)
         g_v[c * e.n + i] *= in.cells.v[c * q_ + i];

@@ -24,29 +24,6 @@ namespace crawler
       return k == 0 ? x : (std::legendre(k + 1, z) - std::legendre(k - 1, z)) / (2. * (2. * k + 1.));
     }
 
-    /// All ranks' parts of a distributed array, in the order of the ranks.
-    std::vector<double>
-    gather(const std::span<const double> own, const Discretization &discretization)
-    {
-      if (discretization.n_ranks() == 1)
-        return {own.begin(), own.end()};
-      const int n = static_cast<int>(own.size());
-      std::vector<int> counts(discretization.n_ranks()), offsets(discretization.n_ranks(), 0);
-      MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, discretization.communicator());
-      for (unsigned int r = 1; r < counts.size(); ++r)
-        offsets[r] = offsets[r - 1] + counts[r - 1];
-      std::vector<double> all(static_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()));
-      MPI_Allgatherv(own.data(),
-                     n,
-                     MPI_DOUBLE,
-                     all.data(),
-                     counts.data(),
-                     offsets.data(),
-                     MPI_DOUBLE,
-                     discretization.communicator());
-      return all;
-    }
-
     /// y = matrix x, both of one cell.
     void
     apply(const std::vector<double> &matrix,
@@ -116,8 +93,8 @@ namespace crawler
     const bool to_log     = to.formulation() == Formulation::log_stretch,
                was_log    = from.formulation() == Formulation::log_stretch;
     const auto &old_cells = from.discretization().cells(), &new_cells = to.discretization().cells();
-    const std::vector<double> u_old = gather(from.displacement(y), from.discretization());
-    std::vector<double> log_old     = gather(from.log_stretch(y), from.discretization());
+    const std::vector<double> u_old = from.discretization().gather(from.displacement(y));
+    std::vector<double> log_old     = from.discretization().gather(from.log_stretch(y));
     if (to_log && !was_log)
     {
       log_old.resize(old_cells.size() * q);

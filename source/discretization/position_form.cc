@@ -12,6 +12,24 @@ namespace crawler
   {
   }
 
+  long
+  PositionForm::add_residual(double, ConstVector, const CellInput &in, double *F)
+  {
+    return kernels_.residual(in, F);
+  }
+
+  void
+  PositionForm::jacobian_blocks(double, ConstVector, const CellInput &in, const double sigma, double *blocks)
+  {
+    kernels_.jacobian(in, sigma, blocks);
+  }
+
+  void
+  PositionForm::mass_blocks(double, ConstVector, const CellInput &in, double *blocks)
+  {
+    kernels_.mass(in, blocks);
+  }
+
   bool
   PositionForm::residual(const double t, const ConstVector u, const ConstVector v, const Vector F)
   {
@@ -25,7 +43,7 @@ namespace crawler
       F_local_.assign(discretization_.n_local(), 0.);
       data = F_local_.data();
     }
-    const long bad = kernels_.residual(in, data);
+    const long bad = add_residual(t, u, in, data);
     if (!one)
       discretization_.add_to_owned<double>(F_local_, F);
 
@@ -54,7 +72,7 @@ namespace crawler
   PositionForm::jacobian(
     const double t, const ConstVector u, const ConstVector v, const double sigma, ChainMatrix<double> &A)
   {
-    kernels_.jacobian(input(t, u, v), sigma, A.blocks().data());
+    jacobian_blocks(t, u, input(t, u, v), sigma, A.blocks().data());
   }
 
   bool
@@ -111,8 +129,8 @@ namespace crawler
     while (stages_.size() <= stage)
       stages_.push_back({ChainMatrix<double>(discretization_), ChainMatrix<double>(discretization_)});
     const CellInput in = input(t, u, v);
-    kernels_.jacobian(in, 0., stages_[stage].by_u.blocks().data());
-    kernels_.mass(in, stages_[stage].by_v.blocks().data());
+    jacobian_blocks(t, u, in, 0., stages_[stage].by_u.blocks().data());
+    mass_blocks(t, u, in, stages_[stage].by_v.blocks().data());
   }
 
   void
@@ -134,7 +152,7 @@ namespace crawler
       return false;
     for (double &value : v)
       value = -value;
-    kernels_.mass(input(t, u, {}), mass_->blocks().data());
+    mass_blocks(t, u, input(t, u, {}), mass_->blocks().data());
     if (!mass_->factorize())
       return false;
     mass_->solve(v, v);

@@ -27,6 +27,7 @@ namespace crawler
     public:
       explicit Form(const ParameterFile &file)
       {
+        parameters_.count_terms(file);
         parameters_.add_parameters(declarations_);
         file.apply(declarations_);
       }
@@ -103,6 +104,10 @@ namespace crawler
                         "nonlinear is expected",
                         model),
             "Model");
+        if (scratch.parameters().active_stress.generator == "strain feedback")
+          throw InputError("Generator is strain feedback, but an atlas must know the stretch of the ends beforehand; "
+                           "another one is expected",
+                           "Active stress/Generator");
         axes.first_unit  = unit_of(axes.first.entry, scratch.declarations());
         axes.second_unit = unit_of(axes.second.entry, scratch.declarations());
         return axes;

@@ -23,12 +23,13 @@ namespace crawler
     {
       constexpr unsigned int n_times = 10000;
       const auto ends                = scene.active_stress->at({0., scene.body.length});
+      const auto [left, right]       = scene.end_moduli();
       std::array<double, 2> m{};
       for (unsigned int i = 0; i <= n_times; ++i)
       {
         const double t = scene.end_time * i / n_times;
         ends->values(t, m);
-        if (1. - std::max(m[0], m[1]) / scene.body.elastic_modulus < level)
+        if (std::min(1. - m[0] / left, 1. - m[1] / right) < level)
           return t;
       }
       return std::numeric_limits<double>::infinity();
@@ -38,7 +39,7 @@ namespace crawler
     inversion_facts(const Scene &scene)
     {
       return {.end_time        = scene.end_time,
-              .possible_inside = scene.body.friction_exponent() > -1.,
+              .possible_inside = scene.friction_exponent() > -1.,
               .earliest_at_end = end_below(scene, clear_stretch),
               .latest_at_end   = end_below(scene, -clear_stretch)};
     }

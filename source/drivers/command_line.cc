@@ -9,6 +9,7 @@
 #include <crawler/drivers/run.h>
 #include <crawler/drivers/tradeoff.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/parameters/parameter_file.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -50,6 +51,9 @@ namespace crawler
     {
       Parameters parameters;
       Declarations declarations;
+      parameters.count_terms(ParameterFile::from_text("subsection Active stress\nsubsection Sum\nsubsection Term 1\n"
+                                                      "end\nend\nend\n",
+                                                      "one term, to show its entries"));
       parameters.add_parameters(declarations);
       if (format == "json")
         declarations.print_json(std::cout);

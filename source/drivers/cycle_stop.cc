@@ -41,6 +41,8 @@ namespace crawler
     const std::string &entry = parameters.time.cycle_stop;
     if (entry == "off" || (entry == "automatic" && (n_frames > 0 || parameters.time.step_control != "adaptive")))
       return std::nullopt;
+    if (!scene.is_plain()) // its cycles need not repeat
+      return std::nullopt;
     const auto period = scene.active_stress->period();
     if (!period || !CycleStop::fits(*period / scene.end_time))
       return std::nullopt;

@@ -37,16 +37,30 @@ namespace crawler
     /// No displacement is more accurate than this part of the body length.
     constexpr double round_off = 1e-15;
 
+    /// Is the error known beforehand? The rule of the numerics does not know what a point value of the stretch, seen
+    /// from elsewhere, does.
+    bool
+    is_promised(const NumericsChoice &choice, const Scene &scene)
+    {
+      const StretchFeedback *feedback = scene.active_stress->feedback();
+      return std::isfinite(choice.promised_error) && (feedback == nullptr || feedback->distance() == 0.);
+    }
+
     Numerics
     finer(const NumericsChoice &choice, const std::string &integrator, const Scene &scene)
     {
       Numerics n          = choice.numerics;
-      const bool promised = std::isfinite(choice.promised_error);
+      const bool promised = is_promised(choice, scene);
       if (n.mesh.tolerance > 0.)
         n.mesh.tolerance *= finer_mesh_tolerance;
       else
-        n.n_cells =
-          static_cast<unsigned int>(std::ceil((promised ? more_cells : more_cells_without_promise) * n.n_cells));
+      {
+        const double factor = promised ? more_cells : more_cells_without_promise;
+        // A piece between breaks may have one cell only, and must get another.
+        const auto n_breaks   = static_cast<unsigned int>(scene.breaks_in_space().size());
+        const unsigned int by = n_breaks > 0 ? n_breaks + 1 : 0;
+        n.n_cells             = std::max(static_cast<unsigned int>(std::ceil(factor * n.n_cells)), n.n_cells + by);
+      }
       n.tolerance *= !promised                       ? finer_tolerance_without_promise
                      : integrator == best_integrator ? finer_tolerance
                                                      : finer_tolerance_than_others;
@@ -127,8 +141,8 @@ namespace crawler
                           : choice.numerics.grading.levels > 0 ? promised_part_if_graded
                                                                : promised_part;
       const double x    = difference_to_finer_run(communicator, parameters, scene, choice, result, keep_going);
-      total             = std::isfinite(choice.promised_error) ? measured_factor * x + part * choice.promised_error
-                                                               : factor_without_promise * x;
+      total =
+        is_promised(choice, scene) ? measured_factor * x + part * choice.promised_error : factor_without_promise * x;
     }
     if (!std::isfinite(total))
       return error;

@@ -119,7 +119,7 @@ namespace crawler
   std::optional<double>
   gait_efficiency(const Scene &scene, const SimulationResult &result)
   {
-    if (!result.ledger)
+    if (!result.ledger || !scene.is_plain()) // the bound is for plain bodies and grounds
       return std::nullopt;
     const double min_stretch = result.min_stretch.value, max_stretch = result.max_stretch.value;
     const double work = result.ledger->stress_power, a = scene.body.friction_exponent();

@@ -9,41 +9,58 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace crawler
 {
   namespace
   {
+    struct Rule
+    {
+      std::string entry; ///< or the beginning of several
+      bool used;
+      std::string because;
+    };
+
+    /// The sections in @p section of generators that are not used.
+    void
+    rules_of_generators(const std::string &section, const ActiveStressParameters &p, std::vector<Rule> &rules)
+    {
+      const bool is_strain = p.generator == "prescribed strain" && p.prescribed_strain.is_generated();
+      for (const std::string &name : generator_names())
+      {
+        std::string title = name;
+        title[0]          = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+        rules.push_back({section + title + "/",
+                         p.generator == name || (is_strain && p.prescribed_strain.given_by == name),
+                         "Generator = " + p.generator});
+      }
+    }
+
     /// Entries that have an effect only if another entry says so: a change of one that has none is worth a word.
     std::vector<std::string>
     settings_without_effect(const ParameterFile &file, const Parameters &p, const Declarations &declarations)
     {
-      struct Rule
-      {
-        std::string entry; ///< or the beginning of several
-        bool used;
-        std::string because;
-      };
-      const auto &wave            = p.active_stress.optimal_wave;
-      const std::string generator = "Generator = " + p.active_stress.generator,
-                        choice    = "Choose wave by = " + wave.choose_wave_by;
-      const auto &given_by        = p.active_stress.prescribed_strain.given_by;
-      const std::string source    = "Given by = " + given_by;
-      const auto &travelling      = p.active_stress.travelling_wave;
-      const auto &standing        = p.active_stress.standing_wave;
-      const auto smoothed         = [](const WaveProfileParameters &profile)
+      const auto &wave         = p.active_stress.optimal_wave;
+      const std::string choice = "Choose wave by = " + wave.choose_wave_by;
+      const auto &given_by     = p.active_stress.prescribed_strain.given_by;
+      const std::string source = "Given by = " + given_by;
+      const auto &travelling   = p.active_stress.travelling_wave;
+      const auto &standing     = p.active_stress.standing_wave;
+      const auto smoothed      = [](const WaveProfileParameters &profile)
       {
         return profile.profile == "smoothed square";
       };
-      const bool by_energy          = wave.choose_wave_by == "energy";
-      const std::vector<Rule> rules = {
-        {"Active stress/Optimal wave/", p.active_stress.generator == "optimal wave", generator},
-        {"Active stress/Travelling wave/", p.active_stress.generator == "travelling wave", generator},
-        {"Active stress/Standing wave/", p.active_stress.generator == "standing wave", generator},
-        {"Active stress/Pulse/", p.active_stress.generator == "pulse", generator},
-        {"Active stress/Expression/", p.active_stress.generator == "expression", generator},
-        {"Active stress/Table/", p.active_stress.generator == "table", generator},
-        {"Active stress/Prescribed strain/", p.active_stress.generator == "prescribed strain", generator},
+      const bool by_energy = wave.choose_wave_by == "energy";
+      std::vector<Rule> rules;
+      rules_of_generators("Active stress/", p.active_stress, rules);
+      for (std::size_t i = 0; i < p.active_stress.sum.terms.size(); ++i)
+        rules_of_generators(
+          fmt::format("Active stress/Sum/Term {}/", i + 1), p.active_stress.sum.terms[i].stress, rules);
+      const std::vector<Rule> details = {
+        {"Active stress/Segments/Front width",
+         p.active_stress.segments.switching == "smooth",
+         "Switching = " + p.active_stress.segments.switching},
         {"Active stress/Prescribed strain/Strain", given_by == "expression", source},
         {"Active stress/Prescribed strain/Constants", given_by == "expression", source},
         {"Active stress/Prescribed strain/File", given_by == "table", source},
@@ -52,6 +69,11 @@ namespace crawler
         {"Active stress/Prescribed strain/Wave", given_by == "wave", source},
         {"Active stress/Prescribed strain/Phase", given_by == "wave", source},
         {"Discretization/", p.model != "perturbation" && p.model != "kinematic", "Model = " + p.model},
+        {"Active stress/Optimal wave/Sine coefficients", wave.shape == "Fourier", "Shape = " + wave.shape},
+        {"Active stress/Optimal wave/Cosine coefficients", wave.shape == "Fourier", "Shape = " + wave.shape},
+        {"Active stress/Optimal wave/Shape formula", wave.shape == "expression", "Shape = " + wave.shape},
+        {"Active stress/Optimal wave/Shape constants", wave.shape == "expression", "Shape = " + wave.shape},
+        {"Active stress/Optimal wave/Shape file", wave.shape == "table", "Shape = " + wave.shape},
         {"Active stress/Optimal wave/Wave speed", !by_energy, choice},
         {"Active stress/Optimal wave/Energy", by_energy, choice},
         {"Active stress/Optimal wave/Root", by_energy, choice},
@@ -75,6 +97,7 @@ namespace crawler
          "Integrator = " + p.time.integrator},
         {"Output/Ledger tolerance", p.output.ledger, "Ledger = false"},
       };
+      rules.insert(rules.end(), details.begin(), details.end());
       std::vector<std::string> notes;
       for (const Assignment &assignment : file.assignments())
       {
@@ -119,6 +142,7 @@ namespace crawler
     const ParameterFile file = read_file(communicator, file_name, overrides);
     Parameters parameters;
     Declarations declarations;
+    parameters.count_terms(file);
     parameters.add_parameters(declarations);
     file.apply(declarations);
     std::ostringstream effective;

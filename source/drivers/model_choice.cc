@@ -46,6 +46,12 @@ namespace crawler
     void
     require_fit(const std::string &model, const Parameters &parameters, const RungScene &rungs)
     {
+      if (model == "perturbation" && !rungs.wave() && parameters.active_stress.generator == "optimal wave")
+        throw InputError(
+          fmt::format("Model is perturbation, which is a series for Fourier coefficients, but the Shape of "
+                      "the optimal wave is {}; Model = kinematic, nonlinear or auto is expected",
+                      parameters.active_stress.optimal_wave.shape),
+          "Model");
       if (model == "perturbation" && !rungs.wave())
         throw InputError(fmt::format("Model is perturbation, which is a series for the optimal wave, but the Generator "
                                      "is {}; Model = kinematic, nonlinear or auto is expected",
@@ -127,6 +133,10 @@ namespace crawler
         "Model");
     if (parameters.model != "linear" && parameters.model != "nonlinear")
     {
+      if (!scene.is_plain())
+        return {"nonlinear",
+                "Model nonlinear: simpler ones are for plain bodies and grounds, and here is " +
+                  scene.general_features()};
       const RungScene rungs(scene);
       if (parameters.model == "auto")
         choice = choose_by_error(rungs, parameters.accuracy);

@@ -63,10 +63,10 @@ namespace crawler
     /// Is this the linear rung, by its own stepper? Where "auto" chooses the rung but other entries ask for what that
     /// does not have, the stepper of the nonlinear rung computes it.
     bool
-    uses_linear_stepper(const Parameters &parameters)
+    uses_linear_stepper(const Parameters &parameters, const Scene &scene)
     {
       const bool fits =
-        parameters.body.friction_exponent() == 0. && parameters.discretization.mesh != "adaptive" &&
+        parameters.body.friction_exponent() == 0. && scene.is_plain() && parameters.discretization.mesh != "adaptive" &&
         parameters.discretization.formulation != "log stretch" && parameters.time.engine == "automatic" &&
         (parameters.time.integrator == "automatic" || integrator(parameters.time.integrator).petsc_type == "radau");
       return fits && (parameters.model == "linear" || parameters.model == "auto");
@@ -102,7 +102,7 @@ namespace crawler
         , adaptive_steps_(parameters.time.step_control == "adaptive")
       {
         Numerics &n              = choice_.numerics;
-        n.linear                 = uses_linear_stepper(parameters);
+        n.linear                 = uses_linear_stepper(parameters, scene);
         n.degree                 = parameters.discretization.degree.value_or(automatic_degree);
         n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
         n.largest_step           = scales_.time;
@@ -199,7 +199,7 @@ namespace crawler
       collapses() const
       {
         return pilot_.time.status != "finished" && pilot_.time.reason != "inverted_at_end" &&
-               pilot_.min_stretch.value < emptied && scene_.body.friction_exponent() < 0.;
+               pilot_.min_stretch.value < emptied && scene_.friction_exponent() < 0.;
       }
 
       /// Of the last pilot, whether it went there or its cycles were extrapolated.
@@ -224,7 +224,7 @@ namespace crawler
       double
       stiffness_over_friction() const
       {
-        const double a       = scene_.body.friction_exponent();
+        const double a       = scene_.friction_exponent();
         const double largest = std::max(std::pow(pilot_.min_stretch.value, a), std::pow(pilot_.max_stretch.value, a));
         return scene_.body.elastic_modulus / natural_units(scene_).force / largest;
       }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/drivers/parameters.h>
+#include <crawler/observers/active_stress_table.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/parameters/parameter_file.h>
 #include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
@@ -52,7 +54,69 @@ namespace crawler
               "automatic, radau 5 or radau 9");
       require(p.time.engine == "automatic", "Time/Engine", p.time.engine, "automatic");
     }
+    /// What only plain scenes have.
+    void
+    require_general(const Parameters &p, const Scene &scene)
+    {
+      const std::string features = scene.general_features();
+      if (p.model != "auto" && p.model != "nonlinear")
+        throw InputError(
+          fmt::format("Model is {}, which is for plain bodies and grounds, but the scene has {}; nonlinear or "
+                      "auto is expected",
+                      p.model,
+                      features),
+          "Model");
+      if (scene.active_stress->prescribed_strain() != nullptr)
+        throw InputError(fmt::format("Generator is {}, which is for plain bodies and grounds, but the scene has {}; "
+                                     "another one is expected",
+                                     p.active_stress.generator,
+                                     features),
+                         "Active stress/Generator");
+      if (p.time.cycle_stop == "on")
+        throw InputError(fmt::format("Cycle stop is on, which is for plain bodies and grounds, but the scene has {}; "
+                                     "automatic or off is expected",
+                                     features),
+                         "Time/Cycle stop");
+      const StretchFeedback *feedback = scene.active_stress->feedback();
+      const double delay              = feedback != nullptr ? feedback->delay() : 0.;
+      if (delay > 0. && p.time.step_control == "fixed" && p.time.initial_step && *p.time.initial_step > delay)
+        throw InputError(
+          fmt::format("Initial step is {:g} and Step control is fixed, but no more than the delay of the "
+                      "feedback, {:g}, is expected",
+                      *p.time.initial_step,
+                      delay),
+          "Time/Initial step");
+    }
   } // namespace
+
+  void
+  Parameters::count_terms(const ParameterFile &file)
+  {
+    const std::string sum = "Active stress/Sum", term = "Term ";
+    const auto names = file.subsections(sum);
+    std::size_t n    = 0;
+    while (names.contains(term + std::to_string(n + 1)))
+      ++n;
+    for (const std::string &name : names)
+    {
+      const bool is_number = name.size() > term.size() && name.starts_with(term) &&
+                             name.find_first_not_of("0123456789", term.size()) == std::string::npos;
+      if (is_number && name[term.size()] != '0' &&
+          (name.size() > term.size() + 6 || std::stoul(name.substr(term.size())) > n))
+        throw InputError(
+          fmt::format("{}: the section \"{}/{}\" is found, but \"{}{}\" is not; terms are expected to be "
+                      "numbered without a gap, from Term 1 on",
+                      file.name(),
+                      sum,
+                      name,
+                      term,
+                      n + 1));
+    }
+    // With none, the names of the first are known all the same where the file has a slip in them.
+    active_stress.sum.terms.assign(names.empty() ? 0 : std::max<std::size_t>(n, 1), {});
+    for (TermParameters &parameters : active_stress.sum.terms)
+      parameters.stress.generator = "expression";
+  }
 
   void
   Parameters::add_parameters(Declarations &declarations)
@@ -76,6 +140,7 @@ namespace crawler
                       "Whether a second, finer run tells the error of the displacement; about as expensive as a run "
                       "without output.");
     body.add_parameters(declarations);
+    ground.add_parameters(declarations);
     active_stress.add_parameters(declarations);
     discretization.add_parameters(declarations);
     time.add_parameters(declarations);
@@ -103,13 +168,18 @@ namespace crawler
                     "Output/Number of snapshots, or automatic or off here",
                     output.n_snapshots),
         "Time/Cycle stop");
-    Scene scene{body,
-                std::make_unique<PowerFriction>(body.friction_coefficient, body.friction_exponent()),
-                nullptr,
-                time.end_time};
+    Scene scene{body, nullptr, nullptr, time.end_time};
     natural_units(scene); // first, since nothing else is prepared for numbers that it refuses
-    scene.active_stress = create_active_stress(active_stress, body, time.end_time);
+    scene.profiles = read_profiles(body, time.end_time);
+    scene.ground   = create_ground(ground, body, time.end_time);
+    scene.friction = create_friction_law(ground, body, time.end_time);
+    if (ground.friction_law != "power") // the power law that touches it where the stretch is 1
+      scene.body.anchoring_exponent = 1. - scene.friction->exponent(1.);
+    scene.active_stress = create_active_stress(active_stress, scene.body, time.end_time);
     require_computable_stress(scene);
+    require_table_fits(output.active_stress_table, *scene.active_stress);
+    if (!scene.is_plain())
+      require_general(*this, scene);
     return scene;
   }
 } // namespace crawler

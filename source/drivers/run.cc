@@ -14,6 +14,7 @@
 #include <crawler/drivers/self_check.h>
 #include <crawler/drivers/simulation.h>
 #include <crawler/drivers/summary.h>
+#include <crawler/observers/active_stress_table.h>
 #include <crawler/observers/kymograph_writer.h>
 #include <crawler/observers/statistics_writer.h>
 #include <crawler/observers/vtu_writer.h>
@@ -94,6 +95,8 @@ namespace crawler
                          p.body.anchoring_exponent,
                          p.body.friction_exponent(),
                          p.time.end_time));
+    if (!input.scene.is_plain())
+      log.line("Besides: " + input.scene.general_features());
     std::ostringstream wave;
     input.scene.active_stress->report(wave);
     std::istringstream lines(wave.str());
@@ -102,6 +105,24 @@ namespace crawler
       log.line("  " + line);
     for (const std::string &note : input.notes)
       log.line(note);
+    if (const auto *failures = input.scene.active_stress->failures(); failures != nullptr && failures->count > 0)
+      log.warn("warning: " + failures->latest);
+  }
+
+  void
+  write_stress_table(Log &log, const Input &input, const std::filesystem::path &folder)
+  {
+    const std::vector<double> &size = input.parameters.output.active_stress_table;
+    if (size.empty())
+      return;
+    const std::string problem = write_active_stress_table(folder / "active_stress.csv",
+                                                          *input.scene.active_stress,
+                                                          input.scene.body.length,
+                                                          input.scene.end_time,
+                                                          static_cast<unsigned int>(size[0]),
+                                                          static_cast<unsigned int>(size[1]));
+    if (!problem.empty())
+      log.warn("warning: active_stress.csv is not written: " + problem);
   }
 
   ExitCode
@@ -194,6 +215,7 @@ namespace crawler
                     write_file(folder / "original.prm", input.file.text());
                     write_file(folder / "parameters.prm", input.effective);
                     log.open(folder / "log.txt");
+                    write_stress_table(log, input, folder);
                     return "";
                   });
     report_plan(log, input, model, *chosen);

@@ -133,6 +133,7 @@ namespace crawler
                     write_file(folder / "original.prm", input.file.text());
                     write_file(folder / "parameters.prm", input.effective);
                     log.open(folder / "log.txt");
+                    write_stress_table(log, input, folder);
                     report_scene(log, input);
                     log.line(choice.explanation);
 

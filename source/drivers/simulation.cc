@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/discretization/mesh_transfer.h>
 #include <crawler/drivers/simulation.h>
 #include <crawler/time/integrators.h>
@@ -47,7 +48,7 @@ namespace crawler
   first_cell_ends(const Scene &scene, const Numerics &numerics)
   {
     const double L             = scene.body.length;
-    std::vector<double> breaks = breaks_in_space(*scene.active_stress, L);
+    std::vector<double> breaks = scene.breaks_in_space();
     for (double &s : breaks)
       s /= L;
     return cell_ends(numerics.n_cells, breaks, numerics.grading);
@@ -66,6 +67,8 @@ namespace crawler
     , communicator_(communicator)
   {
     time_.end_time = 1.;
+    if (scene_.active_stress->feedback() != nullptr)
+      delay_ = scene_.active_stress->feedback()->delay();
     if (time_.integrator == "automatic")
       time_.integrator = !numerics_.integrator.empty() ? numerics_.integrator : numerics_.linear ? "radau 5" : "bdf";
     build_first();
@@ -95,6 +98,11 @@ namespace crawler
     assembler_.reset();
     discretization_ = std::move(discretization);
     assembler_      = create_assembler(formulation, scene_, *discretization_);
+    if (delay_ > 0.)
+    {
+      assembler_->set_history(&history_);
+      history_cells_ = std::make_shared<const std::vector<Cell>>(discretization_->cells());
+    }
     assembler_->keep_stresses(integrator(time_.integrator).n_stages);
     rates_.assign(integrator(time_.integrator).n_stages + 1, {});
     y_.resize(assembler_->n_owned());
@@ -126,6 +134,7 @@ namespace crawler
     next_frame_           = 0;
     tiny_steps_           = 0;
     started_              = false;
+    n_failures_           = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0;
     fused_gave_up_        = false;
     integrals_            = {};
     largest_friction_     = 0.;
@@ -134,7 +143,8 @@ namespace crawler
       result_.ledger.emplace();
     if (numerics_.formulation == FormulationChoice::log_stretch)
       result_.log_stretch_since = 0.;
-    std::fill(y_.begin(), y_.end(), 0.);
+    history_.clear();
+    assembler_->set_initial_state(y_);
     assembler_->make_consistent(0., y_);
     accepted_      = y_;
     accepted_time_ = 0.;
@@ -176,6 +186,8 @@ namespace crawler
                     "no cell may be divided further; a smaller Discretization/Smallest cell is needed",
                     result_.largest_indicator * units_.length,
                     numerics_.mesh.tolerance * units_.length)};
+    if (diagnosis_ && diagnosis_->reason == "nonfinite")
+      stress_failed(); // knows better why
     if (diagnosis_)
     {
       result_.time.status  = diagnosis_->status;
@@ -208,6 +220,7 @@ namespace crawler
       request_     = Request::none;
       bool resumed = started_;
       choose_stepper();
+      Step latest{};
       if (!pieces_.is_last() && accepted_time_ >= pieces_.end())
         begin_piece();
       if (diagnosis_)
@@ -216,6 +229,7 @@ namespace crawler
       const bool ends_at_frame       = ends_at_frame_;
       stepper_->monitor              = [&](const Step &part, const std::span<const double> y)
       {
+        latest = part;
         if (resumed) // the state from which this part starts has been seen already
         {
           resumed = false;
@@ -250,8 +264,23 @@ namespace crawler
           request_ = Request::restart;
         return request_ == Request::none;
       };
-      TimeOutcome outcome =
-        stepper_->solve(y_, ends, numerics_.tolerance, next_step_, numerics_.largest_step, accepted_time_);
+      TimeOutcome outcome;
+      try
+      {
+        const double largest = delay_ > 0. ? std::min(delay_, numerics_.largest_step) : numerics_.largest_step;
+        outcome              = stepper_->solve(y_, ends, numerics_.tolerance, next_step_, largest, accepted_time_);
+      }
+      catch (const NonfiniteStress &error) // of an observer
+      {
+        outcome.status            = "failed";
+        outcome.time              = latest.time;
+        outcome.step_size         = latest.size;
+        outcome.steps             = latest.number;
+        outcome.rejected_steps    = latest.rejected;
+        outcome.newton_iterations = latest.newton_iterations;
+        if (!stress_failed())
+          diagnosis_ = {"failed", "nonfinite", error.what()};
+      }
       stepper_->monitor = nullptr;
       outcome.steps += before_.steps;
       outcome.rejected_steps += before_.rejected_steps;
@@ -319,7 +348,7 @@ namespace crawler
     if (!options_.ledger || !stepper_->quadrature().empty())
       return;
     if (velocity(accepted_time_, 0., y_, v_))
-      quadrature_.advance(accepted_time_, rates(accepted_time_, assembler_->integrals(accepted_time_, y_, v_), v_));
+      quadrature_.advance(accepted_time_, rates(accepted_time_, assembler_->integrals(accepted_time_, y_, v_), y_, v_));
   }
 
   /// Keeps the counts of a part of the run that has ended.
@@ -347,6 +376,8 @@ namespace crawler
       to_log ? std::vector<CellChange>(old_discretization->n_cells(), CellChange::keep) : changes_);
     build(std::move(mesh), formulation);
     y_ = mesh_transfer(numerics_.degree).transfer(*old_assembler, accepted_, *assembler_);
+    if (accepted_time_ == 0. && !scene_.is_plain())
+      assembler_->set_initial_state(y_);
     assembler_->make_consistent(accepted_time_, y_);
     const double old_time = accepted_time_;
     if (!to_log && keeps_rate())
@@ -409,6 +440,8 @@ namespace crawler
   bool
   Simulation::examine(const Step &step, const std::span<const double> y)
   {
+    if (stress_failed())
+      return false;
     stretch_            = assembler_->stretch_range(y);
     const double before = step.time - step.size;
     const bool finite   = std::isfinite(stretch_.min.value) && std::isfinite(stretch_.max.value);
@@ -474,7 +507,7 @@ namespace crawler
     }
     // Many steps that lead nowhere.
     tiny_steps_ = step.size > 0. && step.size < tiny_step ? tiny_steps_ + 1 : 0;
-    if (tiny_steps_ > most_steps_at_zero && scene_.body.friction_exponent() >= 0. && stretch_.min.value < nearly_zero)
+    if (tiny_steps_ > most_steps_at_zero && scene_.friction_exponent() >= 0. && stretch_.min.value < nearly_zero)
     {
       inverted_inside(stretch_.min.value, stretch_.min.s, step.time);
       return false;
@@ -492,6 +525,7 @@ namespace crawler
                                 stretch_.min.s * units_.length)};
       return false;
     }
+    keep_history(step, y);
     accepted_.assign(y.begin(), y.end());
     accepted_time_ = step.time;
     started_       = true;
@@ -505,7 +539,7 @@ namespace crawler
   Simulation::keeps_rate() const
   {
     return numerics_.linear ||
-           (scene_.body.friction_exponent() > 0. && assembler_->formulation() == Formulation::position);
+           (scene_.friction_exponent() > 0. && assembler_->formulation() == Formulation::position && scene_.is_plain());
   }
 
   /// Keeps the rate of the latest residual at each of the latest times: those of the stages of a step, and its start.
@@ -563,7 +597,7 @@ namespace crawler
   bool
   Simulation::may_change_form() const
   {
-    return numerics_.formulation == FormulationChoice::automatic && scene_.body.friction_exponent() < 0.;
+    return numerics_.formulation == FormulationChoice::automatic && scene_.friction_exponent() < 0.;
   }
 
   /// Is the sum of the error indicators admissible? If not, and if cells can be divided, asks for that.
@@ -597,10 +631,13 @@ namespace crawler
   }
 
   RateQuadrature::Rates
-  Simulation::rates(const double t, const CellIntegrals &sums, const std::span<const double> v)
+  Simulation::rates(const double t,
+                    const CellIntegrals &sums,
+                    const std::span<const double> y,
+                    const std::span<const double> v)
   {
     return {
-      {sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, assembler_->end_power(t, v)}};
+      {sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, assembler_->end_power(t, y, v)}};
   }
 
   /// The rates integrated over the step by the formula of the integrator itself. The states within the step are looked
@@ -621,13 +658,41 @@ namespace crawler
         const double t = step.time - (1. - point.place) * step.size;
         stepper_->interpolate(t, y_inside_);
         velocity(t, step.size, y_inside_, v_inside_);
-        inside = rates(t, assembler_->integrals(t, y_inside_, v_inside_), v_inside_);
+        inside = rates(t, assembler_->integrals(t, y_inside_, v_inside_), y_inside_, v_inside_);
         look_at_extremes(t, assembler_->stretch_range(y_inside_), /*is_first=*/false);
       }
       for (std::size_t i = 0; i < sum.size(); ++i)
         sum[i] += step.size * point.weight * inside[i];
     }
     return sum;
+  }
+
+  /// Where somebody asks for the past: the stretch within the step, from the integrator's dense output.
+  void
+  Simulation::keep_history(const Step &step, const std::span<const double> y)
+  {
+    if (delay_ == 0. || step.size == 0.)
+      return;
+    // The step starts from the last accepted state, of which the integrator may know less than of what is inside.
+    StretchHistory::Step record{accepted_time_,
+                                step.time,
+                                history_cells_,
+                                &discretization_->element(),
+                                assembler_->formulation() == Formulation::log_stretch,
+                                {}};
+    std::vector<double> inside(y.size());
+    for (std::size_t i = 0; i < record.coefficients.size(); ++i)
+    {
+      const double place            = StretchHistory::places()[i];
+      std::span<const double> state = place == 0. ? std::span<const double>(accepted_) : y;
+      if (place > 0. && place < 1.)
+      {
+        stepper_->interpolate(record.from + place * (record.to - record.from), inside);
+        state = inside;
+      }
+      record.coefficients[i] = discretization_->gather(assembler_->stretch_coefficients(state));
+    }
+    history_.add(std::move(record), step.time - 2. * delay_);
   }
 
   void
@@ -733,7 +798,7 @@ namespace crawler
     if (!options_.ledger)
       return true;
     Ledger &ledger                  = *result_.ledger;
-    const RateQuadrature::Rates now = rates(step.time, integrals_, v_);
+    const RateQuadrature::Rates now = rates(step.time, integrals_, y, v_);
     const RateQuadrature::Rates increment =
       stepper_->quadrature().empty() ? quadrature_.advance(step.time, now) : integrate_step(step, now);
     ledger.stress_power += increment[0];
@@ -742,6 +807,8 @@ namespace crawler
     ledger.exchanged += increment[3];
     ledger.end_work += increment[4];
     ledger.elastic_energy = integrals_.elastic_energy;
+    if (step.number == 0)
+      ledger.initial_energy = integrals_.elastic_energy;
     largest_friction_     = std::max(largest_friction_, integrals_.abs_friction);
     largest_net_friction_ = std::max(largest_net_friction_, std::abs(integrals_.net_friction));
     if (largest_friction_ > 0.)

@@ -2,6 +2,8 @@
 //
 // The part of Simulation that gives a lost stretch and a failed time step their names (doc/numerics.md, "Failures and
 // inversions").
+#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
 #include <crawler/drivers/simulation.h>
 
 #include <boost/math/tools/toms748_solve.hpp>
@@ -53,7 +55,7 @@ namespace crawler
   Simulation::lost_stretch() const
   {
     return assembler_->formulation() == Formulation::position ? lost_in_position
-                                                              : lost_in_log_form(scene_.body.friction_exponent());
+                                                              : lost_in_log_form(scene_.friction_exponent());
   }
 
   /// Has the stretch that the end conditions prescribe, 1 - m/k, become 0 since @p from? Then the diagnosis says so.
@@ -63,9 +65,11 @@ namespace crawler
     constexpr int parts = 4;
     const auto smallest = [this](const double t)
     {
-      const auto [left, right] = assembler_->end_stress(t);
-      return 1. - std::max(left, right) / scene_.body.elastic_modulus;
+      const auto [left, right] = assembler_->end_stretches(t);
+      return std::min(left, right);
     };
+    if (!assembler_->has_known_ends())
+      return false;
     double begin = from;
     for (int i = from < to ? 1 : parts; i <= parts; ++i)
     {
@@ -76,18 +80,25 @@ namespace crawler
         continue;
       }
       const double t           = begin < end ? first_zero(smallest, begin, end) : end;
-      const auto [left, right] = assembler_->end_stress(t);
-      const double s           = left >= right ? 0. : 1.;
-      result_.inversion        = SimulationResult::Extreme{0., s, t};
-      diagnosis_               = {"inverted",
-                                  "inverted_at_end",
-                                  fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, where "
-                                              "1 - m/k is not positive; the model ends there",
-                                s * units_.length,
-                                t * units_.time)};
+      const auto [left, right] = assembler_->end_stretches(t);
+      const double s           = left <= right ? 0. : 1.;
+      inverted_at_end(s, t, "where 1 - m/k is not positive");
       return true;
     }
     return false;
+  }
+
+  void
+  Simulation::inverted_at_end(const double s, const double t, const std::string &reason)
+  {
+    result_.inversion = SimulationResult::Extreme{0., s, t};
+    diagnosis_        = {"inverted",
+                         "inverted_at_end",
+                         fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, {}; "
+                                     "the model ends there",
+                              s * units_.length,
+                              t * units_.time,
+                              reason)};
   }
 
   /// The stretch was lost inside within the step: finds where and when on the integrator's dense output.
@@ -108,16 +119,45 @@ namespace crawler
       t = first_zero(above, step.time - step.size, step.time);
     const bool at_end  = smallest.s == 0. || smallest.s == 1.;
     const double reach = at_end ? end_reach_at_end : end_reach;
-    if (!end_inverts(t, std::min(t + reach, 1.)))
+    if (at_end && !assembler_->has_known_ends())
+      inverted_at_end(smallest.s, t, "where the active stress with its feedback is not below k");
+    else if (!end_inverts(t, std::min(t + reach, 1.)))
       inverted_inside(stretch_.min.value, smallest.s, t);
+  }
+
+  /// Has the active stress failed since the run began, on any rank (collective)? Then the diagnosis says how.
+  bool
+  Simulation::stress_failed()
+  {
+    const StressFailures *failures = scene_.active_stress->failures();
+    if (failures == nullptr) // the same on all ranks
+      return false;
+    const int rank = static_cast<int>(rank_of(communicator_)), n_ranks = static_cast<int>(size_of(communicator_));
+    int first = failures->count > n_failures_ ? rank : n_ranks;
+    if (n_ranks > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, communicator_);
+    if (first == n_ranks)
+      return false;
+    std::string message = failures->latest;
+    if (n_ranks > 1)
+    {
+      const std::vector<std::string> all = gather(message, communicator_);
+      message = broadcast(rank == 0 ? all[static_cast<std::size_t>(first)] : "", communicator_);
+    }
+    diagnosis_ = {"failed", "nonfinite", message};
+    return true;
   }
 
   /// What a failure of the time stepper means.
   void
   Simulation::explain_failure()
   {
+    if (stress_failed())
+      return;
     TimeOutcome &outcome = result_.time;
     const double t       = accepted_time_;
+    if (const auto bad = assembler_->bad_law(units_); bad && outcome.domain_error)
+      throw InputError(bad->message, bad->entry);
     // Very small steps may be the end of the model.
     const double reach = std::max(end_reach, 2. * outcome.step_size);
     if (outcome.reason != "petsc_error")
@@ -131,7 +171,7 @@ namespace crawler
       const double left        = rate > 0. ? smallest.value / rate : 1.;
       // For a >= 0 the stretch reaches 0 at a bounded rate, so one that is not near 0 was not lost by the body.
       const bool near = left < (outcome.domain_error ? nearly_lost : end_reach);
-      if (near || (outcome.domain_error && scene_.body.friction_exponent() < 0.))
+      if (near || (outcome.domain_error && scene_.friction_exponent() < 0.))
       {
         inverted_inside(smallest.value, smallest.s, std::min(t + (near ? left : 0.), 1.));
         return;
@@ -149,7 +189,7 @@ namespace crawler
   void
   Simulation::inverted_inside(const double value, const double s, const double t)
   {
-    const double a     = scene_.body.friction_exponent();
+    const double a     = scene_.friction_exponent();
     const bool is_safe = assembler_->formulation() == Formulation::log_stretch && numerics_.degree == 1;
     if (a <= -1. || (a < 0. && !is_safe))
     {
@@ -168,7 +208,7 @@ namespace crawler
   void
   Simulation::under_resolved(const double value, const double s, const double t)
   {
-    const bool positive  = scene_.body.friction_exponent() <= -1.,
+    const bool positive  = scene_.friction_exponent() <= -1.,
                user_form = numerics_.formulation == FormulationChoice::position;
     std::string needed;
     if (user_form)

@@ -55,7 +55,7 @@ namespace crawler
   void
   Simulation::build_linear_stepper()
   {
-    if (scene_.body.friction_exponent() != 0. || numerics_.mesh.tolerance > 0. ||
+    if (scene_.body.friction_exponent() != 0. || !scene_.is_plain() || numerics_.mesh.tolerance > 0. ||
         assembler_->formulation() != Formulation::position || integrator(time_.integrator).petsc_type != "radau")
       throw std::logic_error("the linear model is for a = 0, the position form, uniform meshes and radau");
     linear_stepper_ = std::make_unique<LinearStepper>(
@@ -87,6 +87,9 @@ namespace crawler
     TimeStepper &stepper = *petsc_stepper_;
     // The friction of degree 1 switches with the sign of the velocity.
     stepper.smooth = assembler_->formulation() == Formulation::position || numerics_.degree > 1;
+
+    stepper.exact_elimination =
+      scene_.active_stress->feedback() == nullptr || scene_.active_stress->feedback()->distance() == 0.;
 
     stepper.implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F)
     {

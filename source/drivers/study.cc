@@ -64,14 +64,19 @@ namespace crawler
   void
   draw(const std::string &script, const std::filesystem::path &folder, Log &log)
   {
-    const std::string path    = CRAWLER_SOURCE_DIR "/contrib/plot/" + script;
+    // Beside an installed program, else in the folder of the source code.
+    std::error_code ignored;
+    const auto program   = std::filesystem::read_symlink("/proc/self/exe", ignored);
+    const auto installed = program.parent_path().parent_path() / CRAWLER_INSTALLED_PLOTS / script;
+    const std::string path =
+      std::filesystem::exists(installed, ignored) ? installed.string() : CRAWLER_SOURCE_DIR "/contrib/plot/" + script;
     const std::string debians = "/usr/bin/python3";
     for (const std::string &python : {debians, std::string("python3")})
       if (run_silently({python, path, folder.string()}))
         return;
     log.line(fmt::format("There is no picture (it needs Python with numpy and matplotlib); draw it with: "
-                         "python3 contrib/plot/{} {}",
-                         script,
+                         "python3 {} {}",
+                         path,
                          folder.string()));
   }
 } // namespace crawler

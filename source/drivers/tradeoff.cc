@@ -45,8 +45,10 @@ namespace crawler
       {
         Parameters parameters;
         Declarations declarations;
+        const ParameterFile file = ParameterFile::from_text(text, "parameters.prm");
+        parameters.count_terms(file);
         parameters.add_parameters(declarations);
-        ParameterFile::from_text(text, "parameters.prm").apply(declarations);
+        file.apply(declarations);
         std::vector<std::pair<std::string, std::string>> list;
         for (unsigned int i = 0; i < declarations.entries().size(); ++i)
           list.emplace_back(declarations.entries()[i].path, declarations.value(i));

@@ -57,7 +57,7 @@ namespace crawler
       TradeoffSetting adaptive = setting("automatic", "petsc", "bdf", 4);
       adaptive.mesh            = "adaptive";
       adaptive.mesh_tolerance  = 1e-3;
-      if (scene.body.friction_exponent() < 0.)
+      if (scene.friction_exponent() < 0.)
         return {{setting("position", "fused", "radau 9", 8), 8},
                 {setting("log stretch", "petsc", "radau 5", 7), 8},
                 // For bodies that collapse.
@@ -215,8 +215,7 @@ namespace crawler
       {
         // The position form if it gave the reference, or the check.
         const bool in_position = reference_.first.method.starts_with("position") ||
-                                 reference_.second.method.starts_with("position") ||
-                                 scene_.body.friction_exponent() >= 0.;
+                                 reference_.second.method.starts_with("position") || scene_.friction_exponent() >= 0.;
         TradeoffSetting setting = crawler::setting(
           in_position ? "position" : "log stretch", in_position ? "fused" : "petsc", "radau 9", degree);
         setting.tolerance = mesh_tolerance;

@@ -119,8 +119,8 @@ namespace crawler
     std::string
     refusal(const TradeoffSetting &setting, const Scene &scene)
     {
-      if (setting.formulation == "log stretch" && scene.body.friction_exponent() >= 0.)
-        return "the log-stretch form is for a < 0, and here a = " + to_text(scene.body.friction_exponent());
+      if (setting.formulation == "log stretch" && scene.friction_exponent() >= 0.)
+        return "the log-stretch form is for a < 0, and here a = " + to_text(scene.friction_exponent());
       if (setting.engine == "petsc")
         return "";
       Numerics numerics;

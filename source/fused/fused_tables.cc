@@ -106,6 +106,6 @@ namespace crawler
   bool
   fits_fused(const Scene &scene)
   {
-    return dynamic_cast<const PowerFriction *>(scene.friction.get()) != nullptr;
+    return scene.is_plain();
   }
 } // namespace crawler

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/model/crawler_equation.h>
 #include <crawler/observers/field_sampler.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace crawler
 {
@@ -14,6 +20,23 @@ namespace crawler
         x.push_back(point.x);
       return x;
     }
+
+    /// Throws NonfiniteStress on all ranks if one of them has something else than finite numbers.
+    void
+    require_finite(const std::vector<double> &m, const double t, const Discretization &discretization)
+    {
+      int bad = std::all_of(m.begin(),
+                            m.end(),
+                            [](const double value)
+                            {
+                              return std::isfinite(value);
+                            })
+                  ? 0
+                  : 1;
+      MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_MAX, discretization.communicator());
+      if (bad != 0)
+        throw NonfiniteStress(fmt::format("the active stress at t = {:.9g} is not a finite number everywhere", t));
+    }
   } // namespace
 
   FieldSampler::FieldSampler(const Assembler &assembler, const Units &units, std::vector<Point> points)
@@ -26,7 +49,15 @@ namespace crawler
     const Discretization &d = assembler.discretization();
     for (const Point &point : points_)
       coordinates_.push_back(d.cell_left()[point.cell] + point.x * d.cell_size()[point.cell]);
-    stress_ = assembler.scene().active_stress->at(coordinates_);
+    if (assembler.scene().is_plain())
+      stress_ = assembler.scene().active_stress->at(coordinates_);
+    else
+    {
+      std::vector<GeneralSampler::Place> general;
+      for (const Point &point : points_)
+        general.push_back({point.cell, point.x});
+      general_ = std::make_unique<GeneralSampler>(assembler, general);
+    }
     for (double &s : coordinates_)
       s *= units.length;
     for (auto *field : {&fields_.position,
@@ -66,12 +97,26 @@ namespace crawler
       fields_.elastic_stress[p] =
         units_.force * equation::body_force(stretch_.strain(u_local, log_w, cell, d.cell_size()[cell], place), 0., k);
     }
-    stress_->values(t, fields_.active_stress);
-    assembler_.scene().friction->values(fields_.stretch, fields_.friction_force);
+    if (general_)
+    {
+      general_->sample(t, y, v);
+      const BodyForceAtPoints &force = general_->force();
+      fields_.active_stress          = force.m;
+      fields_.friction_force         = general_->friction();
+      for (std::size_t p = 0; p < points_.size(); ++p)
+        fields_.elastic_stress[p] = units_.force * (force.N[p] - force.m[p]);
+    }
+    else
+    {
+      stress_->values(t, fields_.active_stress);
+      assembler_.scene().friction->values(fields_.stretch, fields_.friction_force);
+      for (std::size_t p = 0; p < points_.size(); ++p)
+        fields_.friction_force[p] = equation::friction_force(fields_.friction_force[p], fields_.velocity[p]);
+    }
+    require_finite(fields_.active_stress, t * units_.time, d);
     for (std::size_t p = 0; p < points_.size(); ++p)
     {
-      fields_.friction_force[p] =
-        equation::friction_force(fields_.friction_force[p], fields_.velocity[p]) * units_.force / units_.length;
+      fields_.friction_force[p] *= units_.force / units_.length;
       fields_.active_stress[p] *= units_.force;
       fields_.velocity[p] *= units_.velocity();
     }

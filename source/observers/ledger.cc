@@ -16,8 +16,8 @@ namespace crawler
   double
   Ledger::residual() const
   {
-    const double gap   = std::abs(stress_power - dissipation - elastic_energy - transfer_loss);
-    const double scale = std::max({exchanged, dissipation, elastic_energy});
+    const double gap   = std::abs(stress_power - dissipation - elastic_energy + initial_energy - transfer_loss);
+    const double scale = std::max({exchanged, dissipation, elastic_energy, initial_energy});
     return gap == 0. ? 0. : gap / scale;
   }
 
@@ -30,7 +30,8 @@ namespace crawler
             exchanged * unit,
             end_work * unit,
             elastic_energy * unit,
-            transfer_loss * unit};
+            transfer_loss * unit,
+            initial_energy * unit};
   }
 
   RateQuadrature::Rates

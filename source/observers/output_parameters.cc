@@ -30,6 +30,11 @@ namespace crawler
       "used), at least 1e-8 "
       "(a Tolerance or an integrator of the user's own choice: 0.1).",
       "1");
+    declarations.numbers("Active stress table",
+                         active_stress_table,
+                         "Numbers of samples over s and over t, like 65, 129, of the active stress that are written to "
+                         "active_stress.csv, which the generator table reads. Nothing: no such file.",
+                         "");
     declarations.leave();
   }
 } // namespace crawler

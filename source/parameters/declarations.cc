@@ -275,28 +275,30 @@ namespace crawler
                         const std::string &documentation,
                         const std::string &unit)
   {
+    const bool may_be_empty = value.empty();
     std::vector<std::string> items;
     for (const double number : value)
       items.push_back(to_text(number));
     declare(
       name,
       fmt::format("{}", fmt::join(items, ", ")),
-      "a list of numbers separated by commas",
-      [](const std::string &text)
+      may_be_empty ? "a list of numbers separated by commas, or nothing" : "a list of numbers separated by commas",
+      [may_be_empty](const std::string &text)
       {
         const auto all = to_numbers(text);
-        return std::all_of(all.begin(),
-                           all.end(),
-                           [](const auto &number)
-                           {
-                             return number;
-                           });
+        return (may_be_empty && text.empty()) || std::all_of(all.begin(),
+                                                             all.end(),
+                                                             [](const auto &number)
+                                                             {
+                                                               return number;
+                                                             });
       },
       [&value](const std::string &text)
       {
         value.clear();
-        for (const auto &number : to_numbers(text))
-          value.push_back(*number);
+        if (!text.empty())
+          for (const auto &number : to_numbers(text))
+            value.push_back(*number);
       },
       documentation,
       unit);

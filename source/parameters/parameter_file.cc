@@ -205,6 +205,26 @@ namespace crawler
       }
   }
 
+  std::set<std::string>
+  ParameterFile::subsections(const std::string &path) const
+  {
+    std::set<std::string> names;
+    const auto add = [&](const std::string &inner, const bool is_entry)
+    {
+      if (!inner.starts_with(path + "/"))
+        return;
+      const std::string rest = inner.substr(path.size() + 1);
+      const auto slash       = rest.find('/');
+      if (slash != std::string::npos || !is_entry)
+        names.insert(trimmed(rest.substr(0, slash)));
+    };
+    for (const Section &section : sections_)
+      add(section.path, /*is_entry=*/false);
+    for (const Assignment &assignment : assignments_)
+      add(assignment.path, /*is_entry=*/true);
+    return names;
+  }
+
   InputError
   ParameterFile::with_place(const InputError &error) const
   {

@@ -24,6 +24,44 @@ namespace crawler
                         "stretch^(1-p). Where p > 1 a contracted part grips (earthworm), where p < 1 a "
                         "stretched part grips (snail); at p = 1 no wave moves the body.",
                         "1");
+    const std::string expected = "a formula of s, or a CSV file (a name that ends in .csv) with the header s,value";
+    declarations.text("Elastic modulus profile",
+                      elastic_modulus_profile,
+                      expected,
+                      "Factor of the elastic modulus along the body; s is the material coordinate, L the body length.",
+                      "1");
+    declarations.text("Friction profile",
+                      friction_profile,
+                      expected,
+                      "Factor of the friction coefficient along the body, for example of a belly with scales.",
+                      "1");
+    declarations.text("Initial stretch",
+                      initial_stretch,
+                      expected,
+                      "Stretch of the body at t = 0; its centre of mass starts where that of the unstretched body "
+                      "would.",
+                      "1");
+    declarations.choice("Profile interpolation",
+                        profile_interpolation,
+                        {"cubic", "linear"},
+                        "Between the rows of the CSV files of this section; beyond the first and the last row their "
+                        "values hold.");
     declarations.leave();
+  }
+
+  BodyProfiles
+  read_profiles(const Body &body, const double end_time)
+  {
+    const auto read = [&](const std::string &name, const std::string &quantity, const std::string &text)
+    {
+      const ProfileInput input{quantity, "s", text, body.profile_interpolation, "hold", "Body/" + name};
+      auto profile = read_profile(input, body.length, end_time);
+      if (profile)
+        require_positive(*profile, 0., body.length, input);
+      return profile;
+    };
+    return {read("Elastic modulus profile", "profile of the elastic modulus", body.elastic_modulus_profile),
+            read("Friction profile", "profile of the friction", body.friction_profile),
+            read("Initial stretch", "initial stretch", body.initial_stretch)};
   }
 } // namespace crawler

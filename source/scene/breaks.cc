@@ -25,7 +25,13 @@ namespace crawler
   std::vector<double>
   breaks_in_space(const ActiveStress &stress, const double length)
   {
-    std::vector<double> breaks = distinct(stress.breaks_in_space(), length, least_space_between_breaks);
+    return distinct_breaks_in_space(stress.breaks_in_space(), length);
+  }
+
+  std::vector<double>
+  distinct_breaks_in_space(std::vector<double> places, const double length)
+  {
+    std::vector<double> breaks = distinct(std::move(places), length, least_space_between_breaks);
     for (double &s : breaks)
       s *= length;
     return breaks;

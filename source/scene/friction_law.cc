@@ -19,6 +19,14 @@ namespace crawler
     }
   } // namespace
 
+  double
+  FrictionLaw::exponent(const double w) const
+  {
+    double g = 0., w_dg = 0.;
+    values_and_log_derivatives({&w, 1}, {&g, 1}, {&w_dg, 1});
+    return w_dg / g;
+  }
+
   PowerFriction::PowerFriction(const double gamma, const double a)
     : gamma_(gamma)
     , a_(a)

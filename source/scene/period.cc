@@ -210,4 +210,67 @@ namespace crawler
     PeriodSearch fine(stress, length, end_time, many_times);
     return fine.is_steady() ? std::nullopt : fine.smallest(fine.candidates(longest), longest);
   }
+
+  std::optional<double>
+  common_period(const std::vector<double> &periods)
+  {
+    constexpr double largest = 1000., tolerance = 1e-10;
+    double common = periods.front();
+    for (const double P : periods)
+    {
+      // The convergents p/q of the ratio's continued fraction.
+      const double ratio = common / P;
+      double rest = ratio, p = std::floor(ratio), q = 1., p_before = 1., q_before = 0.;
+      while (std::abs(ratio - p / q) > tolerance * ratio)
+      {
+        rest = 1. / (rest - std::floor(rest));
+        if (!(std::max(p, q) <= largest) || !std::isfinite(rest))
+          return std::nullopt;
+        const double digit = std::floor(rest), p_next = digit * p + p_before, q_next = digit * q + q_before;
+        p_before = p;
+        q_before = q;
+        p        = p_next;
+        q        = q_next;
+      }
+      if (std::max(p, q) > largest)
+        return std::nullopt;
+      common *= q; // q times the one is p times the other
+    }
+    return common;
+  }
+
+  double
+  shortest_period(const ActiveStress &stress, const double length, const double period)
+  {
+    constexpr unsigned int n         = 256;
+    const std::vector<double> points = {0., 0.1837 * length, 0.4142 * length, 0.7321 * length, length};
+    const auto at                    = stress.at(points);
+    std::vector<double> now(points.size()), later(points.size());
+    double largest           = 0.;
+    const auto repeats_after = [&](const double P)
+    {
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        const double t = (i + 0.381966) / n * period;
+        at->values(t, now);
+        at->values(t + P, later);
+        for (std::size_t p = 0; p < points.size(); ++p)
+          if (!(std::abs(later[p] - now[p]) <= same * largest))
+            return false;
+      }
+      return true;
+    };
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      at->values((i + 0.381966) / n * period, now);
+      for (std::size_t p = 0; p < points.size(); ++p)
+        largest = std::max(largest, std::abs(now[p]));
+    }
+    constexpr unsigned int most = 10; // times each factor
+    double shortest             = period;
+    for (const unsigned int factor : {2, 3, 5, 7})
+      for (unsigned int i = 0; i < most && repeats_after(shortest / factor); ++i)
+        shortest /= factor;
+    return shortest;
+  }
 } // namespace crawler

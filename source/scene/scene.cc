@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <typeinfo>
 
 namespace crawler
 {
@@ -99,6 +100,76 @@ namespace crawler
       const Units units_;
     };
 
+    class ScaledFeedbackAtPoints : public FeedbackAtPoints
+    {
+    public:
+      ScaledFeedbackAtPoints(std::unique_ptr<FeedbackAtPoints> feedback, const Units &units, const TimePieces *pieces)
+        : feedback_(std::move(feedback))
+        , units_(units)
+        , pieces_(pieces)
+      {
+      }
+
+      void
+      values(const double t, const StretchSeen &seen, const FeedbackStress &m) override
+      {
+        rate_.assign(seen.rate.begin(), seen.rate.end());
+        for (double &value : rate_)
+          value /= units_.time;
+        feedback_->values((pieces_ != nullptr ? pieces_->inside(t) : t) * units_.time,
+                          {seen.stretch, rate_, seen.near, seen.delayed},
+                          m);
+        for (const auto &part : {m.m, m.m_w, m.m_near})
+          for (double &value : part)
+            value /= units_.force;
+        for (double &value : m.m_rate)
+          value /= units_.force * units_.time;
+      }
+
+    private:
+      const std::unique_ptr<FeedbackAtPoints> feedback_;
+      const Units units_;
+      const TimePieces *pieces_;
+      std::vector<double> rate_;
+    };
+
+    class ScaledFeedback : public StretchFeedback
+    {
+    public:
+      ScaledFeedback(const StretchFeedback &feedback, const Units &units, const TimePieces *pieces)
+        : feedback_(feedback)
+        , units_(units)
+        , pieces_(pieces)
+      {
+      }
+
+      std::unique_ptr<FeedbackAtPoints>
+      at(const std::vector<double> &points) const override
+      {
+        return std::make_unique<ScaledFeedbackAtPoints>(feedback_.at(times(points, units_.length)), units_, pieces_);
+      }
+      bool
+      uses_rate() const override
+      {
+        return feedback_.uses_rate();
+      }
+      double
+      distance() const override
+      {
+        return feedback_.distance() / units_.length;
+      }
+      double
+      delay() const override
+      {
+        return feedback_.delay() / units_.time;
+      }
+
+    private:
+      const StretchFeedback &feedback_;
+      const Units units_;
+      const TimePieces *pieces_;
+    };
+
     /// An active stress in other units.
     class ScaledActiveStress : public ActiveStress
     {
@@ -110,6 +181,8 @@ namespace crawler
       {
         if (stress.prescribed_strain() != nullptr)
           strain_.emplace(*stress.prescribed_strain(), units);
+        if (stress.feedback() != nullptr)
+          feedback_.emplace(*stress.feedback(), units, pieces);
       }
 
       std::unique_ptr<ActiveStressAtPoints>
@@ -146,6 +219,12 @@ namespace crawler
         return strain_ ? &*strain_ : nullptr;
       }
 
+      const StressFailures *
+      failures() const override
+      {
+        return stress_.failures();
+      }
+
       std::optional<double>
       period() const override
       {
@@ -159,11 +238,18 @@ namespace crawler
         stress_.report(out);
       }
 
+      const StretchFeedback *
+      feedback() const override
+      {
+        return feedback_ ? &*feedback_ : nullptr;
+      }
+
     private:
       const ActiveStress &stress_;
       const Units units_;
       const TimePieces *pieces_;
       std::optional<ScaledStrainHistory> strain_;
+      std::optional<ScaledFeedback> feedback_;
     };
   } // namespace
 
@@ -181,7 +267,8 @@ namespace crawler
                                      most));
     }
 
-    /// Looked for at some points and times; infinite if it is not a finite number at one of them.
+    /// Looked for at some points and times; infinite if it is not a finite number at one of them. What a generator
+    /// itself calls a failure is left out: the run ends there, if it comes so far.
     double
     largest_active_stress(const Scene &scene)
     {
@@ -193,13 +280,83 @@ namespace crawler
       double largest    = 0.;
       for (unsigned int j = 0; j <= n; ++j)
       {
+        const auto *failures         = scene.active_stress->failures();
+        const unsigned long n_before = failures != nullptr ? failures->count : 0;
         stress->values(scene.end_time * j / n, m);
+        failures = scene.active_stress->failures();
+        if (failures != nullptr && failures->count > n_before)
+          continue;
         for (const double value : m)
           largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : std::numeric_limits<double>::infinity();
       }
       return largest;
     }
   } // namespace
+
+  namespace
+  {
+    /// Asked for in every residual, and a comparison of types is faster than dynamic_cast.
+    bool
+    has_power_law(const Scene &scene)
+    {
+      const FrictionLaw &law = *scene.friction;
+      return typeid(law) == typeid(PowerFriction);
+    }
+  } // namespace
+
+  bool
+  Scene::is_plain() const
+  {
+    return profiles.is_plain() && ground.is_plain() && active_stress->feedback() == nullptr && has_power_law(*this);
+  }
+
+  std::string
+  Scene::general_features() const
+  {
+    std::string names;
+    const auto add = [&names](const bool present, const char *name)
+    {
+      if (present)
+        names += (names.empty() ? "" : ", ") + std::string(name);
+    };
+    add(profiles.elastic_modulus != nullptr, "Body/Elastic modulus profile");
+    add(profiles.friction != nullptr, "Body/Friction profile");
+    add(profiles.initial_stretch != nullptr, "Body/Initial stretch");
+    add(ground.profile != nullptr, "Ground/Profile");
+    add(!has_power_law(*this), "Ground/Friction law");
+    add(ground.direction.ratio != 1., "Ground/Backward ratio");
+    add(active_stress && active_stress->feedback() != nullptr, "an active stress with feedback");
+    return names;
+  }
+
+  double
+  Scene::friction_exponent() const
+  {
+    constexpr double small = 1e-3;
+    return friction->exponent(small);
+  }
+
+  std::pair<double, double>
+  Scene::end_moduli() const
+  {
+    const double k = body.elastic_modulus;
+    if (!profiles.elastic_modulus)
+      return {k, k};
+    return {k * profiles.elastic_modulus->value(0.), k * profiles.elastic_modulus->value(body.length)};
+  }
+
+  std::vector<double>
+  Scene::breaks_in_space() const
+  {
+    std::vector<double> places = active_stress->breaks_in_space();
+    for (const auto &profile : {profiles.elastic_modulus, profiles.friction, profiles.initial_stretch})
+      if (profile)
+      {
+        const auto more = profile->breaks();
+        places.insert(places.end(), more.begin(), more.end());
+      }
+    return distinct_breaks_in_space(std::move(places), body.length);
+  }
 
   Units
   natural_units(const Scene &scene)
@@ -246,6 +403,11 @@ namespace crawler
     scaled.friction                  = scene.friction->scaled(1. / friction);
     scaled.active_stress             = std::make_unique<ScaledActiveStress>(*scene.active_stress, units, pieces);
     scaled.end_time                  = scene.end_time / units.time;
+    for (const auto member : {&BodyProfiles::elastic_modulus, &BodyProfiles::friction, &BodyProfiles::initial_stretch})
+      scaled.profiles.*member = in_units(scene.profiles.*member, units.length);
+    scaled.ground.profile                      = in_units(scene.ground.profile, units.length);
+    scaled.ground.direction                    = scene.ground.direction;
+    scaled.ground.direction.switching_velocity = scene.ground.direction.switching_velocity / units.velocity();
     return scaled;
   }
 } // namespace crawler

@@ -80,6 +80,8 @@ namespace crawler
     void
     set_options();
     void
+    use_krylov_method();
+    void
     connect_radau();
     bool
     report(double time, double size);
@@ -292,6 +294,24 @@ namespace crawler
     throw InputError(
       "the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " +
       (reason.empty() ? "it has not been verified for a mass matrix that depends on the state" : reason));
+  }
+
+  /// The elimination becomes a preconditioner from the right, so that residuals are the true ones.
+  void
+  TimeStepper::Implementation::use_krylov_method()
+  {
+    constexpr double relative_tolerance_of_krylov = 1e-6;
+    PetscBool chosen                              = PETSC_FALSE;
+    petsc(PetscOptionsHasName(nullptr, parameters.petsc_prefix.c_str(), "-ksp_type", &chosen));
+    if (chosen)
+      return;
+    SNES snes = nullptr;
+    KSP ksp   = nullptr;
+    petsc(TSGetSNES(ts.get(), &snes));
+    petsc(SNESGetKSP(snes, &ksp));
+    petsc(KSPSetType(ksp, KSPGMRES));
+    petsc(KSPSetPCSide(ksp, PC_RIGHT));
+    petsc(KSPSetTolerances(ksp, relative_tolerance_of_krylov, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   }
 
   /// Gives the Radau methods the callbacks of the owner.
@@ -702,6 +722,8 @@ namespace crawler
       for (std::size_t i = 0; i < self.weights.size(); ++i)
         access.span[i] = self.tolerance * self.weights[i];
     }
+    if (!exact_elimination)
+      self.use_krylov_method();
     petsc(TSSetTolerances(ts, self.tolerance, self.tolerances.get(), self.relative_tolerance, nullptr));
     petsc(TSSetTime(ts, start_time));
     petsc(TSSetStepNumber(ts, 0));

@@ -148,6 +148,50 @@ namespace crawler::test
       state.SetItemsProcessed(state.iterations() * state.range(0) * 5);
     }
 
+    /// Values of a generator by its settings.
+    void
+    generator_values(benchmark::State &state, const Settings &settings)
+    {
+      const auto points    = stress_points(static_cast<std::size_t>(state.range(0)));
+      const Scene scene    = parameters_with(settings).create_scene();
+      const auto at_points = scene.active_stress->at(points);
+      std::vector<double> m(points.size());
+      double t = 0.;
+      for (auto _ : state)
+      {
+        at_points->values(t += 1e-3, m);
+        t = t > 1. ? 0. : t;
+        benchmark::DoNotOptimize(m.data());
+      }
+      state.SetItemsProcessed(state.iterations() * state.range(0) * 5);
+    }
+
+    void
+    add_generators()
+    {
+      const std::string generator = "Active stress/Generator", wave = "Active stress/Optimal wave/";
+      const std::vector<std::pair<std::string, Settings>> list = {
+        {"travelling_wave", {{generator, "travelling wave"}}},
+        {"smoothed_square",
+         {{generator, "travelling wave"}, {"Active stress/Travelling wave/Profile", "smoothed square"}}},
+        {"standing_wave", {{generator, "standing wave"}}},
+        {"pulse", {{generator, "pulse"}}},
+        {"optimal_wave", {{generator, "optimal wave"}}},
+        {"shaped_wave",
+         {{wave + "Choose wave by", "wave speed"},
+          {wave + "Shape", "expression"},
+          {wave + "Shape formula", "exp(-(x/0.1)^2)"}}},
+        {"formula_of_shaped_wave",
+         {{generator, "expression"},
+          {"Active stress/Expression/Active stress",
+           "0.4*(0.0886*(erf(10*(s+t)) - erf(10*t) - s*(erf(10*(1+t)) - erf(10*t))) - exp(-100*(s+t)^2) + "
+           "exp(-100*s^2))"}}}};
+      for (const auto &[name, settings] : list)
+        benchmark::RegisterBenchmark(("kernel/" + name + "/values").c_str(), generator_values, settings)
+          ->Arg(12)
+          ->Arg(1200);
+    }
+
     void
     table_construction(benchmark::State &state)
     {
@@ -212,6 +256,7 @@ namespace crawler::test
                });
     benchmark::RegisterBenchmark("kernel/expression/bulk", expression_bulk)->Arg(12)->Arg(1200);
     benchmark::RegisterBenchmark("kernel/expression/construction", expression_construction)->Arg(12)->Arg(1200);
+    add_generators();
     benchmark::RegisterBenchmark("kernel/table/cubic", table_values, "cubic")->Arg(12)->Arg(1200);
     benchmark::RegisterBenchmark("kernel/table/linear", table_values, "linear")->Arg(12)->Arg(1200);
     benchmark::RegisterBenchmark("kernel/table/construction", table_construction)->Arg(12)->Arg(1200);

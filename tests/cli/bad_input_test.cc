@@ -50,6 +50,24 @@ namespace
     return {name, in_section("Active stress/Optimal wave", lines), message};
   }
 
+  /// Actuators of robots, and measurements.
+  std::vector<BadInput>
+  generators()
+  {
+    return {
+      {"SegmentsAmplitudes",
+       in_section("Active stress", "set Generator = segments") +
+         in_section("Active stress/Segments", "set Amplitude = 1, 2"),
+       {"bad.prm, line 6", "the list of amplitudes has 2 numbers", "1 or 8"}},
+      {"TableFile",
+       in_section("Active stress", "set Generator = table") + in_section("Active stress/Table", "set File = none.csv"),
+       {"bad.prm, line 6", "cannot read \"none.csv\"", "header s,t,m"}},
+      {"TableHeader",
+       in_section("Active stress", "set Generator = table") + in_section("Active stress/Table", "set File = bad.prm"),
+       {"the first row of \"bad.prm\" is \"subsection Active stress\"", "header s,t,m is expected"}},
+    };
+  }
+
   std::vector<BadInput>
   names()
   {
@@ -259,6 +277,64 @@ namespace
   bad_atlas(const std::string &name, const std::string &lines, const Words &message)
   {
     return {name, in_section("Atlas", lines), message, 2, {"atlas", "bad.prm", "--output", "results"}};
+  }
+
+  /// A sum with the lines @p first in its first term.
+  BadInput
+  bad_sum(const std::string &name, const std::string &first, const Words &message, const std::string &more = "")
+  {
+    return {name,
+            "subsection Active stress\nset Generator = sum\nsubsection Sum\nsubsection Term 1\n" + first + "\nend\n" +
+              more + "end\nend\n",
+            message};
+  }
+
+  std::vector<BadInput>
+  sums()
+  {
+    const std::string term = "Active stress/Sum/Term 1/";
+    return {
+      {"SumWithoutTerms", in_section("Active stress", "set Generator = sum"), {"the sum has no terms", "\"Term 1\""}},
+      bad_sum("SumOfFactors", "set Combine = multiply", {"bad.prm, line 5", "all terms of the sum multiply"}),
+      bad_sum("SumWithinSum",
+              "set Generator = sum",
+              {"bad.prm, line 5", "\"" + term + "Generator\"", "\"sum\"", "\"expression\""}),
+      bad_sum("SumSectionWithinTerm",
+              "subsection Sum\nsubsection Term 1\nend\nend",
+              {"bad.prm, line 5", "\"" + term + "Sum\""}),
+      bad_sum("SumWithGap",
+              "set Factor = 1",
+              {"\"Active stress/Sum/Term 3\"", "\"Term 2\" is not", "without a gap"},
+              "subsection Term 3\nset Factor = 2\nend\n"),
+      bad_sum("SumTermZero",
+              "set Factor = 1",
+              {"\"Active stress/Sum/Term 0\"", "\"Active stress/Sum/Term 1\""},
+              "subsection Term 0\nend\n"),
+      bad_sum("SumTermMisspelt", "set Factor = 1", {"\"Active stress/Sum/Tern 2\""}, "subsection Tern 2\nend\n"),
+      bad_sum("SumWrongFormula",
+              "subsection Expression\nset Active stress = sin(q)\nend",
+              {"bad.prm, line 6", "term 1: error in the formula \"sin(q)\" at position 5"}),
+      bad_sum(
+        "SumWindowBackwards", "set Window in s = 0.5, 0.2", {"bad.prm, line 5", "Window in s is from 0.5 to 0.2"}),
+      bad_sum(
+        "SumWindowOfThree", "set Window in t = 0, 1, 2", {"bad.prm, line 5", "Window in t has 3 numbers, but two"}),
+      bad_sum(
+        "SumWindowOfWords", "set Window in t = from 0 to 1", {"bad.prm, line 5", "a list of numbers", "or nothing"}),
+      bad_sum("SumWindowOutside", "set Window in s = 2, 3", {"bad.prm, line 5", "from 2 to 3", "from 0 to 1"}),
+      bad_sum("SumEdgeTooWide",
+              "set Window in s = 0.2, 0.6\nset Edge width in s = 0.3",
+              {"bad.prm, line 6", "0.3 wide", "at most 0.2"}),
+      bad_sum("SumEdgeNegative", "set Edge width in t = -1", {"bad.prm, line 5", "not negative"}),
+      {"StrainByItself",
+       in_section("Active stress/Prescribed strain", "set Given by = prescribed strain"),
+       {"bad.prm, line 3", "\"prescribed strain\"", "\"travelling wave\""}},
+      {"StressTableSize",
+       in_section("Output", "set Active stress table = 65"),
+       {"bad.prm, line 2", "\"65\"", "whole numbers from 2"}},
+      {"LibraryMissing",
+       "subsection Active stress\nset Generator = library\nsubsection Library\nset File = no.so\nend\nend\n",
+       {"bad.prm, line 4", "there is no file", "/no.so"}},
+    };
   }
 
   std::vector<BadInput>
@@ -504,6 +580,8 @@ INSTANTIATE_TEST_SUITE_P(Names, BadInputTest, testing::ValuesIn(names()), name_o
 INSTANTIATE_TEST_SUITE_P(Values, BadInputTest, testing::ValuesIn(values()), name_of);
 INSTANTIATE_TEST_SUITE_P(Formulas, BadInputTest, testing::ValuesIn(formulas()), name_of);
 INSTANTIATE_TEST_SUITE_P(Waves, BadInputTest, testing::ValuesIn(waves()), name_of);
+INSTANTIATE_TEST_SUITE_P(Generators, BadInputTest, testing::ValuesIn(generators()), name_of);
+INSTANTIATE_TEST_SUITE_P(Sums, BadInputTest, testing::ValuesIn(sums()), name_of);
 INSTANTIATE_TEST_SUITE_P(Atlases, BadInputTest, testing::ValuesIn(atlases()), name_of);
 INSTANTIATE_TEST_SUITE_P(Tradeoffs, BadInputTest, testing::ValuesIn(tradeoffs()), name_of);
 INSTANTIATE_TEST_SUITE_P(Files, BadInputTest, testing::ValuesIn(files()), name_of);

@@ -32,6 +32,7 @@ namespace crawler::test
       file.add_override(entry + "=" + value);
     Parameters parameters;
     Declarations declarations;
+    parameters.count_terms(file);
     parameters.add_parameters(declarations);
     file.apply(declarations);
     return parameters;

@@ -35,6 +35,13 @@ namespace crawler
     const std::string entry;
   };
 
+  /// An active stress that is to be written is not a finite number. All ranks that write together throw it together.
+  class NonfiniteStress : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+
   /// A file or folder cannot be read or written.
   class FileError : public std::runtime_error
   {

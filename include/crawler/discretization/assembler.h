@@ -4,10 +4,12 @@
 #include <crawler/discretization/cell_kernels.h>
 #include <crawler/discretization/chain_matrix.h>
 #include <crawler/discretization/discretization.h>
+#include <crawler/discretization/general_laws.h>
 #include <crawler/discretization/stretch_sampler.h>
 #include <crawler/scene/scene.h>
 
 #include <complex>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -15,6 +17,8 @@
 
 namespace crawler
 {
+  class GeneralSampler;
+
   /// A stretch and where it was seen.
   struct StretchAt
   {
@@ -166,11 +170,45 @@ namespace crawler
 
     /// The power that leaves through the ends in the paper's energy: [m v] from s = 0 to L (theory.md section 6).
     double
-    end_power(double t, ConstVector v);
+    end_power(double t, ConstVector y, ConstVector v);
 
-    /// m at the ends of the body, s = 0 and s = L [force].
+    /// The stretches that the end conditions prescribe, 1 - m/k at s = 0 and s = L. A body with feedback makes its own:
+    /// then they are not known, and has_known_ends() is false.
     std::pair<double, double>
-    end_stress(double t);
+    end_stretches(double t);
+    bool
+    has_known_ends() const
+    {
+      return scene_.active_stress->feedback() == nullptr;
+    }
+
+    /// The unknowns of the body at t = 0: with its initial stretch, its centre of mass where it is without.
+    void
+    set_initial_state(Vector y);
+
+    /// The strain, in the log-stretch form log w, at the stretch points of this rank's cells [cell][q].
+    std::vector<double>
+    stretch_coefficients(ConstVector y) const;
+
+    /// Where a feedback with delay finds the past; none: the body was at its initial stretch before. Must outlive this.
+    void
+    set_history(const StretchHistory *history)
+    {
+      history_ = history;
+    }
+    const StretchHistory *
+    history() const
+    {
+      return history_;
+    }
+
+    /// The first law that was not positive, of the last residual() that returned false because of one (on each rank
+    /// its own). @p units are those of the user.
+    std::optional<BadLaw>
+    bad_law(const Units &units) const
+    {
+      return describe_bad_law_ ? std::optional(describe_bad_law_(units)) : std::nullopt;
+    }
 
     /// The first stretch that was not positive, of the last residual() that returned false.
     const std::optional<StretchAt> &
@@ -220,10 +258,19 @@ namespace crawler
     const Scene &scene_;
     const Discretization &discretization_;
     std::optional<StretchAt> bad_stretch_;
+    std::function<BadLaw(const Units &)> describe_bad_law_;
+    const StretchHistory *history_ = nullptr;
+
+    /// Looks whether the friction @p g at the stretches @p w is positive and finite; the number of the first point
+    /// where it is not, or -1. Then bad_law() tells.
+    long
+    look_at_friction(std::span<const double> w, std::span<const double> g);
     std::vector<double> F_local_;
 
   private:
+    const std::pair<double, double> end_moduli_;
     std::unique_ptr<ActiveStressAtPoints> stress_, end_stress_, quadrature_stress_;
+    std::unique_ptr<GeneralSampler> end_sampler_, quadrature_sampler_; ///< of general scenes, once they are needed
     const std::vector<double> &
     stress_at(double t);
 

@@ -4,6 +4,7 @@
 #include <crawler/discretization/reference_element.h>
 
 #include <array>
+#include <vector>
 
 namespace crawler
 {
@@ -82,11 +83,22 @@ namespace crawler
     /// The friction at the nodes, int g phi_i: the diagonal of the friction matrix; added to @p mass. Of the velocity
     /// only the sign matters.
     void (*mass)(const LogCellInput &, double *mass);
-    /// The friction g at the nodes of each cell [cell][n].
-    void (*friction)(const LogCellInput &, double *g);
+    /// The friction g at the nodes of each cell and its derivative as in the Jacobian [cell][n].
+    void (*friction)(const LogCellInput &, double *g, double *w_dg);
     /// (f, l) += J (v, log w) with the real factors of LogElimination.
     void (*multiply)(const CellInput &, const double *factors, const double *v, const double *x, double *f, double *l);
     void (*integrals)(const LogCellInput &, CellIntegrals &);
+  };
+
+  /// The laws of a general scene in the log-stretch form (doc/theory.md, "General bodies and grounds").
+  struct LogLaws
+  {
+    // At the nodes of each cell [cell][n]: the friction per reference length f and its derivatives.
+    std::vector<double> f, by_v, by_log_w, by_u;
+    // At the stretch points [cell][q]: the derivatives of N by log w, by w_t and by the stretch nearby; the last two
+    // may be empty.
+    std::vector<double> by_log, by_rate, by_near;
+    std::vector<double> near; ///< the stretch nearby
   };
 
   /// The elimination of log w from the Jacobian of the log-stretch form, cell by cell; real or complex shifts.
@@ -95,6 +107,8 @@ namespace crawler
   {
     /// The blocks of the Jacobian after elimination of log w, and what the others need [cell][log_factors].
     bool (*jacobian)(const LogCellInput &, Number sigma, Number *blocks, double *factors);
+    /// The same for a general scene, without what by_u adds and without the stretch nearby.
+    bool (*general_jacobian)(const LogCellInput &, const LogLaws &, Number sigma, Number *blocks, double *factors);
     /// From a right-hand side (f, l) to that of the chain of blocks: added to @p f.
     void (*reduce)(const CellInput &, const double *factors, const Number *l, Number *f);
     /// log w [cell][q] from the velocities @p v at the nodes and the right-hand side @p l (in place).

@@ -159,6 +159,10 @@ namespace crawler
     void
     add_to_owned(std::span<const Number> local, std::span<Number> owned) const;
 
+    /// All ranks' parts of a distributed array, in the order of the ranks, on all ranks (collective).
+    std::vector<double>
+    gather(std::span<const double> own) const;
+
   private:
     struct Mesh; ///< holds deal.II's triangulation, kept out of this header
 

@@ -69,7 +69,19 @@ namespace crawler
     void
     friction(double t, ConstVector y, ConstVector v, std::vector<double> &g_v) override;
 
-  private:
+    /// The laws of a general scene at a state; null for a plain scene.
+    virtual const LogLaws *
+    laws_at(double, ConstVector, const LogCellInput &)
+    {
+      return nullptr;
+    }
+
+    /// Changes of the stretch nearby for a change @p x of the unknowns, at the stretch points.
+    virtual void
+    change_of_near(const LogLaws &, ConstVector, Vector) const
+    {
+    }
+
     /// The part of the velocities in a vector of all unknowns.
     template <typename Span>
     Span
@@ -86,6 +98,7 @@ namespace crawler
     std::vector<double> node_local_, nodes_; ///< local and owned arrays over the nodes
     std::vector<double> local_buffer_;
 
+  private:
     /// The Jacobian for one shift, log w eliminated.
     template <typename Number>
     struct Eliminated
@@ -96,16 +109,23 @@ namespace crawler
       ChainMatrix<Number> matrix;
       std::vector<double> factors; ///< [cell][log_factors]
       std::vector<Number> node_local, nodes, local_buffer;
+      std::optional<LogLaws> laws; ///< of a general scene
+      std::vector<double> by_u;    ///< int f_x phi_i at the own nodes, of a general scene
     };
     template <typename Number>
     bool
-    setup(Eliminated<Number> &jacobian, const LogCellInput &in, Number sigma) const;
+    setup(Eliminated<Number> &jacobian, const LogCellInput &in, const LogLaws *laws, Number sigma) const;
+    template <typename Number>
+    void
+    keep_laws(Eliminated<Number> &jacobian, const LogLaws &laws) const;
+    void
+    add_general(const Eliminated<double> &jacobian, ConstVector x, Vector y) const;
     template <typename Number>
     void
     solve(Eliminated<Number> &jacobian, std::span<const Number> b, std::span<Number> x) const;
     /// (L, F) parts of a product with the Jacobian, from its factors.
     void
-    multiply(const std::vector<double> &factors, ConstVector x, Vector y);
+    multiply(const Eliminated<double> &jacobian, ConstVector x, Vector y);
 
     Eliminated<double> jacobian_;
     std::vector<Eliminated<Complex>> complex_jacobians_;

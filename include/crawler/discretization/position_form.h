@@ -59,10 +59,24 @@ namespace crawler
     void
     friction(double t, ConstVector u, ConstVector v, std::vector<double> &g_v) override;
 
+    // The loops over cells, which general scenes replace. The arrays of @p in are local, the unknowns @p u are owned.
+
+    /// Adds F to the local array @p F; the number of the first quadrature point [cell][point] where F is not defined,
+    /// or -1.
+    virtual long
+    add_residual(double t, ConstVector u, const CellInput &in, double *F);
+    /// dF/du + sigma dF/dv.
+    virtual void
+    jacobian_blocks(double t, ConstVector u, const CellInput &in, double sigma, double *blocks);
+    /// dF/dv.
+    virtual void
+    mass_blocks(double t, ConstVector u, const CellInput &in, double *blocks);
+
+    std::unique_ptr<ChainMatrix<double>> mass_; ///< built when a velocity is first asked for
+
   private:
     const CellKernels &kernels_;
     ChainMatrix<double> jacobian_;
-    std::unique_ptr<ChainMatrix<double>> mass_; ///< built when a velocity is first asked for
     std::vector<ChainMatrix<Complex>> complex_jacobians_;
     struct Stage
     {

@@ -14,6 +14,7 @@
 namespace crawler
 {
   class Declarations;
+  class ParameterFile;
 
   /// All sections of the parameter file, in file order.
   struct Parameters
@@ -22,12 +23,17 @@ namespace crawler
     double accuracy     = 1e-6;
     bool error_estimate = true;
     Body body;
+    GroundParameters ground;
     ActiveStressParameters active_stress;
     DiscretizationParameters discretization;
     TimeParameters time;
     OutputParameters output;
     AtlasParameters atlas;
     TradeoffParameters tradeoff;
+
+    /// Makes as many terms of a sum as @p file has; before add_parameters(). Throws InputError if a number is left out.
+    void
+    count_terms(const ParameterFile &file);
 
     void
     add_parameters(Declarations &declarations);

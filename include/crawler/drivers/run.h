@@ -5,6 +5,7 @@
 
 #include <mpi.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,10 @@ namespace crawler
   /// Logs body and active stress.
   void
   report_scene(Log &log, const Input &input);
+
+  /// Writes active_stress.csv into @p folder if the input asks for it. Throws FileError.
+  void
+  write_stress_table(Log &log, const Input &input, const std::filesystem::path &folder);
 
   /// What a run that ended like this returns to the shell.
   ExitCode

@@ -160,6 +160,8 @@ namespace crawler
     void
     settle();
     bool
+    stress_failed();
+    bool
     examine(const Step &step, std::span<const double> y);
     bool
     may_change_form() const;
@@ -180,9 +182,11 @@ namespace crawler
     bool
     compute_integrals(const Step &step, std::span<const double> y);
     RateQuadrature::Rates
-    rates(double t, const CellIntegrals &sums, std::span<const double> v);
+    rates(double t, const CellIntegrals &sums, std::span<const double> y, std::span<const double> v);
     RateQuadrature::Rates
     integrate_step(const Step &step, const RateQuadrature::Rates &at_end);
+    void
+    keep_history(const Step &step, std::span<const double> y);
     void
     look_at_extremes(double t, const StretchRange &range, bool is_first);
     void
@@ -195,6 +199,8 @@ namespace crawler
     locate_inversion(const Step &step);
     void
     explain_failure();
+    void
+    inverted_at_end(double s, double t, const std::string &reason);
     void
     inverted_inside(double value, double s, double t);
     void
@@ -253,6 +259,9 @@ namespace crawler
       std::vector<double> y_dot;
     };
     std::vector<Rate> rates_; ///< of the latest residuals, where they are kept
+    double delay_ = 0.;       ///< of the feedback [natural units]; 0: nobody asks for the past
+    StretchHistory history_;
+    std::shared_ptr<const std::vector<Cell>> history_cells_; ///< of the present mesh
     // The last state that was accepted, to which a change of mesh or formulation may go back.
     std::vector<double> accepted_;
     double accepted_time_ = 0., next_step_ = 0.;
@@ -264,6 +273,7 @@ namespace crawler
     std::optional<GaitMeter> gait_meter_;
     std::optional<double> hidden_frame_; ///< one of frames_ that nobody has asked for
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
-    bool started_ = false; ///< a state has been accepted
+    unsigned long n_failures_ = 0;     ///< of the active stress before this run
+    bool started_             = false; ///< a state has been accepted
   };
 } // namespace crawler

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/discretization/assembler.h>
+#include <crawler/discretization/general_sampler.h>
 
 namespace crawler
 {
@@ -23,7 +24,7 @@ namespace crawler
 
     FieldSampler(const Assembler &assembler, const Units &units, std::vector<Point> points);
 
-    /// The fields of the state @p y with the velocity @p v (collective).
+    /// The fields of the state @p y with the velocity @p v (collective). Throws NonfiniteStress.
     const Fields &
     sample(double t, std::span<const double> y, std::span<const double> v);
 
@@ -42,6 +43,7 @@ namespace crawler
     std::vector<double> values_;   ///< [point][node] shape functions
     const StretchSampler stretch_; ///< at the x of the points
     std::unique_ptr<ActiveStressAtPoints> stress_;
+    std::unique_ptr<GeneralSampler> general_; ///< of a general scene
     std::vector<double> u_local_, v_local_;
     Fields fields_;
   };

@@ -16,6 +16,7 @@ namespace crawler
     double end_work       = 0.; ///< int [m v] from s = 0 to L dt [energy]
     double elastic_energy = 0.; ///< of the present state [energy]
     double transfer_loss  = 0.; ///< elastic energy lost by changes of mesh and formulation [energy]
+    double initial_energy = 0.; ///< elastic energy at t = 0, of a body that does not start unstretched [energy]
 
     /// All of these, for what is done to each.
     static constexpr std::array<double Ledger::*, 7>
@@ -40,8 +41,7 @@ namespace crawler
     {
       return stress_power + end_work;
     }
-    /// |W - Q - (elastic energy) - (transfer loss)|/(exchanged work): 0 for the exact solution, which starts at rest
-    /// [1].
+    /// |W - Q - (elastic energy) + (initial energy) - (transfer loss)|/(exchanged work): 0 for the exact solution [1].
     double
     residual() const;
   };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 namespace crawler
 {
@@ -15,6 +16,7 @@ namespace crawler
     bool statistics          = true;
     bool ledger              = true;
     std::optional<double> ledger_tolerance;
+    std::vector<double> active_stress_table; ///< numbers of samples over s and t; empty: no table
 
     void
     add_parameters(Declarations &declarations);

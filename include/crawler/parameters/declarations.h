@@ -88,6 +88,7 @@ namespace crawler
                  unsigned int lower,
                  unsigned int upper,
                  const std::string &documentation);
+    /// A list; it may be empty if the default is.
     void
     numbers(const std::string &name,
             std::vector<double> &value,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,10 @@ namespace crawler
     /// The same error with the place of the entry that it names in front, if the entry was set at all.
     InputError
     with_place(const InputError &error) const;
+
+    /// The sections within the section @p path that the file opens or that something is set in, sorted.
+    std::set<std::string>
+    subsections(const std::string &path) const;
 
     /// Everything that is set, in the order of file and command line.
     const std::vector<Assignment> &

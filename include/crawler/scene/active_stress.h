@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace crawler
@@ -23,9 +24,17 @@ namespace crawler
     values(double t, std::span<double> m) = 0;
   };
 
+  /// What went wrong in a generator that is code of the user's; its values are not a number there.
+  struct StressFailures
+  {
+    unsigned long count = 0;
+    std::string latest; ///< a sentence that names the function, the place and the time
+  };
+
   /**
    * A generator of active stress. It answers one question: what is the active stress m(s,t) [force] at
    * the material point 0 <= s <= L [length] and time t >= 0? To add one, see doc/developer_guide.md.
+   * All of it is in this header, so that a plug-in (stress_plugin.h) needs nothing else.
    */
   class ActiveStress
   {
@@ -39,32 +48,59 @@ namespace crawler
     /// The smallest P > 0 with m(s, t + P) = m(s, t) for all s and t [time]; nothing if there is none, or if it is not
     /// known (the default).
     virtual std::optional<double>
-    period() const;
+    period() const
+    {
+      return std::nullopt;
+    }
 
     /// The same for the derivative m_t [force/time]; null if the generator does not know it.
     virtual std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const;
+    rate_at([[maybe_unused]] const std::vector<double> &points) const
+    {
+      return nullptr;
+    }
 
     /// Places in (0, L), in any order, where m or a derivative of it jumps [length]: cells of the mesh end there.
     virtual std::vector<double>
-    breaks_in_space() const;
+    breaks_in_space() const
+    {
+      return {};
+    }
 
     /// Times, in any order, when m or a derivative of it jumps [time]: steps end at those in (0, T). T is the end time
     /// that the generator was made for. On which side values() is at such a time does not matter, nor at 0 and at T if
     /// they are listed too, as they should be if m jumps there (breaks.h).
     virtual std::vector<double>
-    breaks_in_time() const;
+    breaks_in_time() const
+    {
+      return {};
+    }
 
     /// How m depends on the stretch besides place and time; null if it does not. Then values() is m of a body at rest.
     virtual const StretchFeedback *
-    feedback() const;
+    feedback() const
+    {
+      return nullptr;
+    }
 
     /// The strain that this active stress is made to bring about; null if it is not made from a strain.
     virtual const StrainHistory *
-    prescribed_strain() const;
+    prescribed_strain() const
+    {
+      return nullptr;
+    }
 
     /// Writes lines for the log and for `crawler check`: what this generator chose. Nothing by default.
     virtual void
-    report(std::ostream &out) const;
+    report([[maybe_unused]] std::ostream &out) const
+    {
+    }
+
+    /// What has gone wrong up to now; null if the generator never fails (the default).
+    virtual const StressFailures *
+    failures() const
+    {
+      return nullptr;
+    }
   };
 } // namespace crawler

@@ -3,15 +3,28 @@
 
 #include <crawler/scene/active_stress.h>
 #include <crawler/scene/active_stress/expression.h>
+#include <crawler/scene/active_stress/library.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
 #include <crawler/scene/active_stress/pulse.h>
+#include <crawler/scene/active_stress/segments.h>
 #include <crawler/scene/active_stress/standing_wave.h>
+#include <crawler/scene/active_stress/strain_feedback.h>
+#include <crawler/scene/active_stress/sum.h>
 #include <crawler/scene/active_stress/table.h>
 #include <crawler/scene/active_stress/travelling_wave.h>
 
 namespace crawler
 {
+  struct TermParameters;
+
+  /// Section "Active stress/Sum": a subsection for each term, "Term 1", "Term 2", ... There are as many as the file has
+  /// (Parameters::count_terms).
+  struct SumParameters
+  {
+    std::vector<TermParameters> terms;
+  };
+
   /// Section "Active stress": the generator's name, and the section of each generator.
   struct ActiveStressParameters
   {
@@ -20,13 +33,37 @@ namespace crawler
     TravellingWaveParameters travelling_wave;
     StandingWaveParameters standing_wave;
     PulseParameters pulse;
+    SegmentsParameters segments;
     ExpressionParameters expression;
     PrescribedStrainParameters prescribed_strain;
+    LibraryParameters library;
+    StrainFeedbackParameters strain_feedback;
     TableParameters table;
+    SumParameters sum;
 
     void
     add_parameters(Declarations &declarations);
+
+    /// The same for a term of a sum, in its section.
+    void
+    add_parameters_of_term(Declarations &declarations);
+
+  private:
+    void
+    add_generators(Declarations &declarations, bool is_term);
   };
+
+  /// Section "Active stress/Sum/Term N": what a section "Active stress" has, but for the sum, and how the term is
+  /// combined.
+  struct TermParameters
+  {
+    SumTermParameters combination;
+    ActiveStressParameters stress;
+  };
+
+  /// The names of all generators. The section of each has the same name, with a capital letter.
+  std::vector<std::string>
+  generator_names();
 
   /// The generator that the parameters name. Throws InputError if its own parameters do not make sense.
   std::unique_ptr<ActiveStress>

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/scene/profile.h>
+
+#include <string>
+
 namespace crawler
 {
   class Declarations;
@@ -13,6 +17,12 @@ namespace crawler
     double friction_coefficient = 1.; ///< gamma [force time/length^2]
     double anchoring_exponent   = 2.; ///< p [1]
 
+    // What a body that is not plain has besides: formulas of s or CSV files (profile.h).
+    std::string elastic_modulus_profile = "1";
+    std::string friction_profile        = "1";
+    std::string initial_stretch         = "1";
+    std::string profile_interpolation   = "cubic";
+
     /// a = 1 - p, the exponent of the stretch in the friction per reference length [1].
     double
     friction_exponent() const
@@ -23,4 +33,22 @@ namespace crawler
     void
     add_parameters(Declarations &declarations);
   };
+
+  /// What varies along the body; null where it is 1 everywhere.
+  struct BodyProfiles
+  {
+    std::shared_ptr<const Profile> elastic_modulus; ///< k(s)/k
+    std::shared_ptr<const Profile> friction;        ///< b(s), gamma(s)/gamma
+    std::shared_ptr<const Profile> initial_stretch; ///< w(s, 0)
+
+    bool
+    is_plain() const
+    {
+      return !elastic_modulus && !friction && !initial_stretch;
+    }
+  };
+
+  /// Reads them. Throws InputError if one has an error or is not positive.
+  BodyProfiles
+  read_profiles(const Body &body, double end_time);
 } // namespace crawler

@@ -15,6 +15,9 @@ namespace crawler
   /// The breaks of an active stress in (0, @p length), ascending, each once [length]; an end of the body is none.
   std::vector<double>
   breaks_in_space(const ActiveStress &stress, double length);
+  /// The same for any list of places.
+  std::vector<double>
+  distinct_breaks_in_space(std::vector<double> places, double length);
 
   /**
    * The pieces of [0, T] between the times when the active stress, or a derivative of it, jumps. Within a piece from

@@ -27,6 +27,10 @@ namespace crawler
     /// The same law with another coefficient: g times @p factor.
     virtual std::unique_ptr<FrictionLaw>
     scaled(double factor) const = 0;
+
+    /// w g'/g [1] at the stretch @p w: the exponent of the power law that touches g there.
+    virtual double
+    exponent(double w) const;
   };
 
   /// The p-model of Santhosh and Serra, Phys. Rev. E 106, 024610 (2022): g(w) = gamma w^a, a = 1 - p.
@@ -42,6 +46,11 @@ namespace crawler
     values_and_log_derivatives(std::span<const double> w, std::span<double> g, std::span<double> w_dg) const override;
     std::unique_ptr<FrictionLaw>
     scaled(double factor) const override;
+    double
+    exponent(double) const override
+    {
+      return a_;
+    }
 
   private:
     const double gamma_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 namespace crawler
 {
@@ -15,4 +16,14 @@ namespace crawler
    */
   std::optional<double>
   find_period(const ActiveStress &stress, double length, double end_time);
+
+  /// The smallest time that is a whole number of times each of the @p periods (positive, not empty), which are equal to
+  /// fractions of each other to 1e-10; nothing if these have numerators or denominators above 1000.
+  std::optional<double>
+  common_period(const std::vector<double> &periods);
+
+  /// The smallest of P, P/2, P/3, P/4, ... after which an active stress with the period P = @p period repeats, found as
+  /// by find_period(); P if it does not change. Whole parts with prime factors up to 7 are looked at.
+  double
+  shortest_period(const ActiveStress &stress, double length, double period);
 } // namespace crawler

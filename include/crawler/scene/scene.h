@@ -5,9 +5,13 @@
 #include <crawler/scene/body.h>
 #include <crawler/scene/breaks.h>
 #include <crawler/scene/friction_law.h>
+#include <crawler/scene/ground.h>
 #include <crawler/scene/units.h>
 
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace crawler
 {
@@ -18,6 +22,30 @@ namespace crawler
     std::unique_ptr<const FrictionLaw> friction;
     std::unique_ptr<const ActiveStress> active_stress;
     double end_time; ///< T [time]
+    BodyProfiles profiles = {};
+    Ground ground         = {};
+
+    /// Nothing but the numbers of the body, the power law and an active stress m(s,t)? Other scenes are general: they
+    /// have the equation of doc/theory.md, "General bodies and grounds".
+    bool
+    is_plain() const;
+
+    /// What is_plain() misses, in words; empty if nothing.
+    std::string
+    general_features() const;
+
+    /// w g'/g of the friction law where the stretch is small, which decides what is lost there: a of the power law.
+    double
+    friction_exponent() const;
+
+    /// The elastic modulus at s = 0 and s = L [force].
+    std::pair<double, double>
+    end_moduli() const;
+
+    /// Places in (0, L) where the active stress or a profile of the body has a jump or a kink, ascending, each once
+    /// [length].
+    std::vector<double>
+    breaks_in_space() const;
   };
 
   /**

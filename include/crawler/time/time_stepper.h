@@ -51,6 +51,9 @@ namespace crawler
     std::function<void(unsigned int stage, ConstVector x, ConstVector x_dot, Vector destination)> stage_vmult;
     /// Has F derivatives everywhere? If not, Newton's method goes on until a second correction is small.
     bool smooth = true;
+    /// Is solve_with_jacobian the inverse of jacobian_vmult? If not it preconditions a Krylov method, unless the user
+    /// asks for another linear solver.
+    bool exact_elimination = true;
     TimeOutcome
     solve(std::vector<double> &y,
           const std::vector<double> &frames,

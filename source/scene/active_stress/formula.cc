@@ -171,21 +171,25 @@ namespace crawler
   class FormulaReader
   {
   public:
-    FormulaReader(Formula &formula, const mu::Parser &parser)
+    /// @p variables: the values of the @p names that the byte code points to.
+    FormulaReader(Formula &formula,
+                  const mu::Parser &parser,
+                  const std::vector<std::string> &names,
+                  const std::vector<double> &variables)
       : formula_(formula)
+      , variables_(variables)
     {
       for (const auto &[name, function] : parser.GetFunDef())
         names_[reinterpret_cast<Function>(function.GetAddr())] = name;
-      add_value({true, false}); // s
-      add_value({false, true}); // t
+      for (const std::string &name : names)
+        add_value({name != "t", name != "s"}); // others may change with place and time
     }
 
-    /// @p s is the address that stands for s in the byte code.
     void
-    read(const mu::SToken *token, const double *s)
+    read(const mu::SToken *token)
     {
       for (; token->Cmd != mu::cmEND; ++token)
-        read_token(*token, s);
+        read_token(*token);
       formula_.result_ = pop();
       keep(formula_.result_);
     }
@@ -199,11 +203,13 @@ namespace crawler
     };
 
     void
-    read_token(const mu::SToken &token, const double *s)
+    read_token(const mu::SToken &token)
     {
       const auto variable = [&]()
       {
-        return token.Val.ptr == s ? Formula::s_ : Formula::t_;
+        const auto number      = static_cast<unsigned int>(token.Val.ptr - variables_.data());
+        formula_.used_[number] = true;
+        return number;
       };
       switch (token.Cmd)
       {
@@ -351,24 +357,32 @@ namespace crawler
     }
 
     Formula &formula_;
+    const std::vector<double> &variables_;
     std::map<Function, std::string> names_; ///< Of muParser's functions and ours.
     std::vector<unsigned int> stack_;       ///< Values.
     std::vector<Condition> conditions_;
   };
 
 
-  Formula::Formula(const std::string &text, const Constants &constants)
+  Formula::Formula(const std::string &text, const Constants &constants, const std::vector<std::string> &variables)
+    : used_(variables.size(), false)
   {
-    double s = 0., t = 0.;
+    std::vector<double> values(variables.size(), 0.);
     mu::Parser parser;
     define_functions(parser);
     for (const auto &[name, value] : constants)
       parser.DefineConst(name, value);
-    parser.DefineVar("s", &s);
-    parser.DefineVar("t", &t);
+    for (std::size_t i = 0; i < variables.size(); ++i)
+      parser.DefineVar(variables[i], &values[i]);
     parser.SetExpr(text);
     parser.Eval(); // finds syntax errors and makes the byte code
-    FormulaReader(*this, parser).read(parser.GetByteCode().GetBase(), &s);
+    FormulaReader(*this, parser, variables, values).read(parser.GetByteCode().GetBase());
+  }
+
+  bool
+  Formula::uses(const unsigned int variable) const
+  {
+    return used_[variable];
   }
 
 

@@ -18,7 +18,7 @@ namespace crawler
   {
     /// What muParser has against a formula, as one sentence with a position that counts from 1.
     std::string
-    in_words(const mu::ParserError &error, const std::string &formula)
+    in_words(const mu::ParserError &error, const std::string &formula, const std::vector<std::string> &variables)
     {
       std::string problem = error.GetMsg();
       if (error.GetCode() == mu::ecINTERNAL_ERROR)
@@ -32,11 +32,11 @@ namespace crawler
       if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty() &&
           std::isalpha(static_cast<unsigned char>(token[0])))
       {
-        const auto near = nearest_names(token,
-                                        {"s",    "t",    "L",    "T",    "pi",   "sin",   "cos",  "tan",  "asin",
-                                         "acos", "atan", "sinh", "cosh", "tanh", "exp",   "log",  "sqrt", "abs",
-                                         "sign", "min",  "max",  "pow",  "mod",  "floor", "ceil", "erf",  "erfc"},
-                                        1);
+        std::vector<std::string> names = variables;
+        names.insert(names.end(), {"L",    "T",    "pi",   "sin",   "cos",  "tan",  "asin", "acos", "atan",
+                                   "sinh", "cosh", "tanh", "exp",   "log",  "sqrt", "abs",  "sign", "min",
+                                   "max",  "pow",  "mod",  "floor", "ceil", "erf",  "erfc"});
+        const auto near = nearest_names(token, names, 1);
         problem += near.empty() ? "" : "; the nearest name is " + quoted_list(near);
       }
       return fmt::format("error in the formula \"{}\" at position {}: {}",
@@ -74,6 +74,7 @@ namespace crawler
 
     Formula::Constants
     parse_constants(const std::string &text,
+                    const std::vector<std::string> &variables,
                     const double length,
                     const double end_time,
                     const std::string &constants_entry)
@@ -100,7 +101,7 @@ namespace crawler
                                        "name=number, ...\" is expected",
                                        trimmed(item)),
                            constants_entry);
-        if (name == "s" || name == "t")
+        if (std::find(variables.begin(), variables.end(), name) != variables.end())
           throw InputError(fmt::format("\"{}\" is a variable of the formula and cannot be a constant", name),
                            constants_entry);
         for (const auto &[other, ignored] : constants)
@@ -115,18 +116,20 @@ namespace crawler
   std::shared_ptr<const Formula>
   read_formula(const FormulaInput &input, const double length, const double end_time)
   {
-    const auto constants = parse_constants(input.constants, length, end_time, input.constants_entry);
+    const auto constants = parse_constants(input.constants, input.variables, length, end_time, input.constants_entry);
     if (input.formula.empty())
-      throw InputError("the formula of the " + input.quantity + " is empty; an expression of s and t is expected",
+      throw InputError(fmt::format("the formula of the {} is empty; an expression of {} is expected",
+                                   input.quantity,
+                                   fmt::join(input.variables, input.variables.size() > 2 ? ", " : " and ")),
                        input.formula_entry);
     require_one_value(input.formula, input.formula_entry);
     try
     {
-      return std::make_shared<const Formula>(input.formula, constants);
+      return std::make_shared<const Formula>(input.formula, constants, input.variables);
     }
     catch (const mu::ParserError &error)
     {
-      throw InputError(in_words(error, input.formula), input.formula_entry);
+      throw InputError(in_words(error, input.formula, input.variables), input.formula_entry);
     }
   }
 } // namespace crawler

@@ -85,6 +85,11 @@ namespace crawler
                         "Perturbation parameter chi: the active stress is proportional to it, the displacement to "
                         "its square.",
                         "1");
+    declarations.choice("Shape",
+                        shape,
+                        {"Fourier", "expression", "table"},
+                        "What gives the velocity wave V(x): Fourier coefficients, a formula or a table. The active "
+                        "stress moves V along the body; x = s at t = 0.");
     declarations.numbers("Sine coefficients",
                          sine_coefficients,
                          "Fourier coefficients a_1, a_2, ... of the velocity wave.",
@@ -94,10 +99,27 @@ namespace crawler
                          "Fourier coefficients b_1, b_2, ... of the velocity wave: as many as there are sine "
                          "coefficients, or a single 0 for none.",
                          "length/time");
-    declarations.choice("Choose wave by",
-                        choose_wave_by,
-                        {"energy", "wave speed"},
-                        "Whether the wave is given by its speed, or is one of those that spend a given energy.");
+    declarations.text("Shape formula",
+                      shape_formula,
+                      "a formula of x",
+                      "The velocity wave V as a formula of x, continuous, like that of Active stress/Expression; it "
+                      "need not repeat after the length of the body. Used if Shape is expression.",
+                      "length/time");
+    declarations.text(
+      "Shape constants", shape_constants, "a list name=number, name=number", "Constants that the formula may use.");
+    declarations.text(
+      "Shape file",
+      shape_file,
+      "the name of a CSV file",
+      "Table with the header x,f: values of the velocity wave V at increasing x, with a cubic spline "
+      "through them; from min(0, cT) to L + max(0, cT) for the wave speed c and the end time T. Used if "
+      "Shape is table.");
+    declarations.choice(
+      "Choose wave by",
+      choose_wave_by,
+      {"energy", "wave speed"},
+      "Whether the wave is given by its speed, or is one of those that spend a given energy (only for "
+      "Shape = Fourier).");
     declarations.number("Energy",
                         energy,
                         positive(),

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <ostream>
@@ -174,9 +175,73 @@ namespace crawler
       std::vector<double> e_, e_t_, g_, B_t_, elastic_;
     };
 
-    std::unique_ptr<const StrainHistory>
-    create_history(const PrescribedStrainParameters &parameters, const double length, const double end_time)
+    /// The values of a generator, read as strain.
+    class GeneratedStrain : public StrainHistory
     {
+    public:
+      explicit GeneratedStrain(const ActiveStress &generator)
+        : generator_(generator)
+      {
+      }
+
+      std::unique_ptr<StrainAtPoints>
+      at(const std::vector<double> &points) const override
+      {
+        return std::make_unique<AtPoints>(generator_, points);
+      }
+
+    private:
+      class AtPoints : public StrainAtPoints
+      {
+      public:
+        AtPoints(const ActiveStress &generator, const std::vector<double> &points)
+          : values_(generator.at(points))
+          , rates_(generator.rate_at(points))
+        {
+        }
+
+        void
+        strain(const double t, const std::span<double> e) override
+        {
+          values_->values(t, e);
+        }
+        void
+        rate(const double t, const std::span<double> e_t) override
+        {
+          rates_->values(t, e_t);
+        }
+
+      private:
+        const std::unique_ptr<ActiveStressAtPoints> values_, rates_;
+      };
+
+      const ActiveStress &generator_;
+    };
+
+    std::unique_ptr<const StrainHistory>
+    create_history(const PrescribedStrainParameters &parameters,
+                   const double length,
+                   const double end_time,
+                   const ActiveStress *generator)
+    {
+      if (parameters.is_generated())
+      {
+        if (generator == nullptr)
+          throw std::logic_error("the generator of the strain is missing");
+        if (generator->feedback() != nullptr)
+          throw InputError(
+            fmt::format("Given by is {}, but there the active stress depends on the stretch; a generator that "
+                        "is a function of s and t is expected",
+                        parameters.given_by),
+            section + "Given by");
+        if (!generator->rate_at({0.}))
+          throw InputError(
+            fmt::format("Given by is {}, which does not know its rate of change here; a strain that can be "
+                        "differentiated in time is expected",
+                        parameters.given_by),
+            section + "Given by");
+        return std::make_unique<GeneratedStrain>(*generator);
+      }
       if (parameters.given_by == "wave")
         return std::make_unique<WaveStrain>(Wave{parameters.mean_strain,
                                                  parameters.amplitude,
@@ -192,15 +257,27 @@ namespace crawler
     }
   } // namespace
 
-  void
-  PrescribedStrainParameters::add_parameters(Declarations &declarations)
+  bool
+  PrescribedStrainParameters::is_generated() const
   {
+    return given_by != "expression" && given_by != "wave" && given_by != "table";
+  }
+
+  void
+  PrescribedStrainParameters::add_parameters(Declarations &declarations, const std::vector<std::string> &generators)
+  {
+    std::vector<std::string> choices = {"expression", "wave", "table"};
+    for (const std::string &name : generators)
+      if (std::find(choices.begin(), choices.end(), name) == choices.end())
+        choices.push_back(name);
     declarations.enter("Prescribed strain");
-    declarations.choice("Given by",
-                        given_by,
-                        {"expression", "wave", "table"},
-                        "What gives the strain e(s,t), the stretch minus 1: a formula, a sine wave, or a table in a "
-                        "file. The nonlinear model starts from rest, so there e(s,0) must be 0.");
+    declarations.choice(
+      "Given by",
+      given_by,
+      choices,
+      "What gives the strain e(s,t), the stretch minus 1: a formula, a sine wave, a table in a file, or "
+      "another generator with the entries of its own section, whose values are read as strain. The nonlinear model "
+      "starts from rest, so there e(s,0) must be 0.");
     declarations.text("Strain",
                       strain,
                       "a formula of s and t",
@@ -222,23 +299,102 @@ namespace crawler
     declarations.number(
       "Wave speed", wave_speed, any_number(), "Wave speed c; a positive one runs from s = L to s = 0.", "length/time");
     declarations.number("Phase", phase, any_number(), "Phase of the wave at s = 0, t = 0, in radians.", "1");
-    declarations.text("File",
-                      file,
-                      "the name of a CSV file",
-                      "Table with the header s,t,strain and a row for each point of a full grid over the whole body "
-                      "and duration, in any order; cubic splines in s and t go through them. Used if given by table.");
+    declarations.text(
+      "File",
+      file,
+      "the name of a CSV or HDF5 file",
+      "Table: CSV with the header s,t,strain and a row for each point of a full grid over the whole body "
+      "and duration, in any order, or HDF5 with s[ns], t[nt] and strain[nt,ns]; cubic splines in s and t go through "
+      "them. Used if given by table.");
     declarations.leave();
   }
 
   PrescribedStrain::PrescribedStrain(const PrescribedStrainParameters &parameters,
                                      const Body &body,
-                                     const double end_time)
+                                     const double end_time,
+                                     std::unique_ptr<const ActiveStress> generator)
     : body_(body)
     , given_by_(parameters.given_by)
-    , history_(create_history(parameters, body.length, end_time))
+    , generator_(std::move(generator))
+    , history_(create_history(parameters, body.length, end_time, generator_.get()))
   {
+    if (generator_)
+      require_usable_generator(end_time);
     require_admissible_strain(end_time);
     choose_panels(end_time);
+  }
+
+  /// No jumps where it says that there may be some.
+  void
+  PrescribedStrain::require_usable_generator(const double end_time) const
+  {
+    constexpr unsigned int n = 33;
+    constexpr double beside = 1e-9, jump = 1e-6;
+    const double L = body_.length;
+    std::vector<double> points(n), e(n), after(n);
+    double size = 0.;
+    for (unsigned int i = 0; i < n; ++i)
+      points[i] = L * i / (n - 1);
+    const auto at_points = history_->at(points);
+    for (unsigned int j = 0; j < n; ++j)
+    {
+      at_points->strain(end_time * j / (n - 1), e);
+      for (const double value : e)
+        size = std::max(size, std::abs(value));
+    }
+    const auto refuse = [&](const char *variable, const double place)
+    {
+      throw InputError(
+        fmt::format("Given by is {}, whose values jump at {} = {:g}; a strain without jumps is expected (give "
+                    "fronts and edges a width)",
+                    given_by_,
+                    variable,
+                    place),
+        section + "Given by");
+    };
+    for (const double t : generator_->breaks_in_time())
+    {
+      at_points->strain(t - beside * end_time, e);
+      at_points->strain(t + beside * end_time, after);
+      for (unsigned int i = 0; i < n; ++i)
+        if (std::abs(after[i] - e[i]) > jump * size)
+          refuse("t", t);
+    }
+    for (const double s : generator_->breaks_in_space())
+    {
+      const auto sides = history_->at({s - beside * L, s + beside * L});
+      std::array<double, 2> values{};
+      for (unsigned int j = 0; j < n; ++j)
+      {
+        sides->strain(end_time * j / (n - 1), values);
+        if (std::abs(values[1] - values[0]) > jump * size)
+          refuse("s", s);
+      }
+    }
+  }
+
+  std::optional<double>
+  PrescribedStrain::period() const
+  {
+    return generator_ ? generator_->period() : std::nullopt;
+  }
+
+  std::vector<double>
+  PrescribedStrain::breaks_in_space() const
+  {
+    return generator_ ? generator_->breaks_in_space() : std::vector<double>();
+  }
+
+  std::vector<double>
+  PrescribedStrain::breaks_in_time() const
+  {
+    return generator_ ? generator_->breaks_in_time() : std::vector<double>();
+  }
+
+  const StressFailures *
+  PrescribedStrain::failures() const
+  {
+    return generator_ ? generator_->failures() : nullptr;
   }
 
   void
@@ -247,7 +403,10 @@ namespace crawler
     constexpr unsigned int n = 161;
     extremes_                = find_extremes(*history_, body_.length, end_time, n, n);
     const auto &[e, s, t]    = extremes_.smallest;
-    const std::string entry  = section + (given_by_ == "wave" ? "Amplitude" : given_by_ == "table" ? "File" : "Strain");
+    const std::string entry  = section + (given_by_ == "wave"    ? "Amplitude"
+                                          : given_by_ == "table" ? "File"
+                                          : generator_           ? "Given by"
+                                                                 : "Strain");
     if (!std::isfinite(e))
       throw InputError(fmt::format("the strain is {} at s = {:.6g}, t = {:.6g}; a finite number is expected", e, s, t),
                        entry);
@@ -326,5 +485,7 @@ namespace crawler
                        extremes_.largest.strain,
                        extremes_.largest.s,
                        extremes_.largest.t);
+    if (generator_)
+      generator_->report(out);
   }
 } // namespace crawler

@@ -30,6 +30,13 @@ namespace crawler
     return half * half * (1. / (x * x) + 1. / (y * y));
   }
 
+  double
+  smooth_step_inverse(const double value)
+  {
+    const double z = std::log(1. / value - 1.); // = 1/x - 1/(1-x), a quadratic equation for x
+    return 2. / (z + 2. + std::sqrt(z * z + 4.));
+  }
+
   Switching::Switching(const double duty, const double front)
     : duty_(duty)
     , front_(front)

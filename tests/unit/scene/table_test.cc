@@ -218,6 +218,31 @@ TEST(Table, Breaks)
   EXPECT_EQ(fine.breaks_in_space(), List());
 }
 
+/// Each entry has its range; the message names the entry and what is expected.
+TEST(Table, EntriesHaveRanges)
+{
+  struct Bad
+  {
+    std::string entry, value, expected;
+  };
+  for (const auto &[entry, value, expected] : std::vector<Bad>{{"Interpolation", "spline", "cubic"},
+                                                               {"Outside", "zero", "periodic"},
+                                                               {"Outside in s", "periodic", "hold"},
+                                                               {"Unit of s", "0", "positive"},
+                                                               {"Unit of t", "-1", "positive"},
+                                                               {"Unit of m", "mN", "number"}})
+    try
+    {
+      test::parameters_with({{"Active stress/Table/" + entry, value}});
+      ADD_FAILURE() << entry << " = " << value;
+    }
+    catch (const InputError &error)
+    {
+      EXPECT_EQ(error.entry, "Active stress/Table/" + entry);
+      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+    }
+}
+
 TEST(Table, SaysWhatIsWrong)
 {
   const Samples small(3, 5, wave_of), good(5, 5, wave_of), high(5, 5, wave_of, 100.), late(5, 5, wave_of, 1., 2., 3.),

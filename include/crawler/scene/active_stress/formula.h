@@ -10,18 +10,26 @@
 namespace crawler
 {
   /**
-   * A formula of s and t, read by muParser and then evaluated for many points at a time: each operation is one loop
-   * over a block of points instead of one step of muParser's interpreter per point. What depends on t only is computed
-   * once per time, what depends on s only once per mesh. Every operation is muParser's, so the values are the same to
-   * the last bit. (muParser's own bulk mode reads the text again at every call, and Debian's starts threads.)
+   * A formula of some variables, s and t unless others are named, read by muParser and then evaluated for many points
+   * at a time: each operation is one loop over a block of points instead of one step of muParser's interpreter per
+   * point. What depends on t only is computed once per time, what depends on s only once per mesh. Every operation is
+   * muParser's, so the values are the same to the last bit. (muParser's own bulk mode reads the text again at every
+   * call, and Debian's starts threads.)
    */
   class Formula
   {
   public:
     using Constants = std::vector<std::pair<std::string, double>>;
 
-    /// Throws mu::ParserError if @p text is not a formula of s, t and the @p constants.
-    Formula(const std::string &text, const Constants &constants);
+    /// Throws mu::ParserError if @p text is not a formula of the @p variables and the @p constants. FormulaAtPoints and
+    /// FormulaRateAtPoints are for the variables s and t; FormulaGradient is for any.
+    Formula(const std::string &text,
+            const Constants &constants,
+            const std::vector<std::string> &variables = {"s", "t"});
+
+    /// Does the value depend on the variable with this number?
+    bool
+    uses(unsigned int variable) const;
 
     /// An argument of an operation: one number for all points, or one for each.
     struct Operand
@@ -60,6 +68,7 @@ namespace crawler
   private:
     friend class FormulaAtPoints;
     friend class FormulaRateAtPoints;
+    friend class FormulaGradient;
     friend class FormulaReader;
 
     /// What a value depends on.
@@ -68,8 +77,9 @@ namespace crawler
       bool on_s, on_t;
     };
 
-    static constexpr unsigned int s_ = 0, t_ = 1; ///< The values that are the variables.
+    static constexpr unsigned int s_ = 0, t_ = 1; ///< The values that are the variables, if these are s and t.
 
+    std::vector<bool> used_;
     std::vector<Dependence> dependence_;
     std::vector<double> scalars_; ///< At the constants among the values what they are.
     std::vector<Operation> of_time_, of_place_, of_both_;

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace crawler
 {
@@ -14,10 +15,11 @@ namespace crawler
     std::string quantity; ///< what it gives, for messages
     std::string formula, constants;
     std::string formula_entry, constants_entry; ///< full names of the entries
+    std::vector<std::string> variables = {"s", "t"};
   };
 
-  /// Compiles a formula of s and t with the constants pi, L, T and the user's own. Throws InputError with the position
-  /// if the formula or the list of constants has an error.
+  /// Compiles a formula of its variables with the constants pi, L, T and the user's own. Throws InputError with the
+  /// position if the formula or the list of constants has an error.
   std::shared_ptr<const Formula>
   read_formula(const FormulaInput &input, double length, double end_time);
 } // namespace crawler

@@ -18,6 +18,10 @@ namespace crawler
     double perturbation_parameter           = 0.4; ///< chi [1]
     std::vector<double> sine_coefficients   = {1.};
     std::vector<double> cosine_coefficients = {0.};
+    std::string shape                       = "Fourier";
+    std::string shape_formula               = "sin(2*pi*x/L)";
+    std::string shape_constants             = "";
+    std::string shape_file                  = "shape.csv";
     std::string choose_wave_by              = "energy";
     double energy                           = 0.5;
     std::string root                        = "largest admissible displacement";
@@ -34,7 +38,8 @@ namespace crawler
    *   m = chi sum_n [ gamma ( a_n (cos q c t - cos q(s+ct)) + b_n (sin q(s+ct) - sin q c t) )/q
    *                   - (k/c) ( a_n (sin q(s+ct) - sin q s) + b_n (cos q(s+ct) - cos q s) ) ],   q = 2 pi n/L,
    *
-   * with the wave speed given, or chosen among the waves that spend a given energy H (wave_roots.h).
+   * with the wave speed given, or chosen among the waves that spend a given energy H (wave_roots.h). This is the wave
+   * whose shape is given by Fourier coefficients; for others see ShapedWave.
    */
   class OptimalWave : public ActiveStress
   {

@@ -23,8 +23,13 @@ namespace crawler
 
     std::string file = "strain.csv";
 
+    /// @p generators: the names of those whose values can be read as strain.
     void
-    add_parameters(Declarations &declarations);
+    add_parameters(Declarations &declarations, const std::vector<std::string> &generators);
+
+    /// Is the strain what another generator gives?
+    bool
+    is_generated() const;
   };
 
   /**
@@ -40,9 +45,13 @@ namespace crawler
   public:
     static constexpr const char *description = "the stress that brings about a given strain";
 
-    /// Throws InputError if formula, file or numbers do not make sense, if 1 + e is not positive somewhere,
-    /// or if the strain jumps in time.
-    PrescribedStrain(const PrescribedStrainParameters &parameters, const Body &body, double end_time);
+    /// @p generator, if the strain is generated: its values are read as strain [1]. Throws InputError if formula, file
+    /// or numbers do not make sense, if 1 + e is not positive somewhere, if the strain jumps, or if the generator does
+    /// not know its rate or depends on the stretch.
+    PrescribedStrain(const PrescribedStrainParameters &parameters,
+                     const Body &body,
+                     double end_time,
+                     std::unique_ptr<const ActiveStress> generator = nullptr);
 
     std::unique_ptr<ActiveStressAtPoints>
     at(const std::vector<double> &points) const override;
@@ -53,10 +62,22 @@ namespace crawler
       return history_.get();
     }
 
+    /// What the generator knows of these, if the strain is generated.
+    std::optional<double>
+    period() const override;
+    std::vector<double>
+    breaks_in_space() const override;
+    std::vector<double>
+    breaks_in_time() const override;
+    const StressFailures *
+    failures() const override;
+
     void
     report(std::ostream &out) const override;
 
   private:
+    void
+    require_usable_generator(double end_time) const;
     void
     require_admissible_strain(double end_time);
     void
@@ -64,6 +85,7 @@ namespace crawler
 
     const Body body_;
     const std::string given_by_;
+    const std::unique_ptr<const ActiveStress> generator_; ///< of the strain, if it is generated
     std::unique_ptr<const StrainHistory> history_;
     StrainExtremes extremes_{};
     unsigned int n_panels_ = 1;

@@ -14,6 +14,10 @@ namespace crawler
   double
   smooth_step_rate(double x);
 
+  /// The x in (0, 1) at which S(x) = @p value, which is between 0 and 1.
+  double
+  smooth_step_inverse(double value);
+
   /**
    * What is switched on and off once a period. The argument x counts periods: on for the share `duty` of each, from
    * x = 0 to x = duty, with fronts (smooth steps) of width `front` about both instants, so that the mean over a period

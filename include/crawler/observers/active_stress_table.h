@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/active_stress.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// Throws InputError unless the entry Output/Active stress table has nothing, or two whole numbers from 2 on, and the
+  /// active stress is a function of s and t alone.
+  void
+  require_table_fits(const std::vector<double> &size, const ActiveStress &stress);
+
+  /**
+   * Writes the samples of an active stress at @p n_s equally spaced places of the whole body [length] and @p n_t
+   * equally spaced times from 0 to @p end_time [time]: CSV with the header s,t,m, which the generator "table" reads.
+   * Gives what is wrong instead, and writes nothing, if a sample is not a finite number. Throws FileError.
+   */
+  std::string
+  write_active_stress_table(const std::filesystem::path &path,
+                            const ActiveStress &stress,
+                            double length,
+                            double end_time,
+                            unsigned int n_s,
+                            unsigned int n_t);
+} // namespace crawler

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/active_stress.h>
+#include <crawler/scene/body.h>
+
+#include <string>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// Section "Active stress/Library".
+  struct LibraryParameters
+  {
+    std::string file       = "libmy_stress.so";
+    std::string parameters = "";
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /// What has gone wrong, and a name for who did it.
+  struct LibraryFailures : StressFailures
+  {
+    std::string plugin;
+  };
+
+  /**
+   * An active stress from a shared object that the user has compiled (stress_plugin.h). Exceptions and values that are
+   * not finite numbers do not leave it: they are kept as failures, and the values are not a number there, which ends a
+   * run in order on all ranks.
+   */
+  class Library : public ActiveStress
+  {
+  public:
+    static constexpr const char *description = "a shared object that the user has compiled";
+
+    /**
+     * Throws InputError if there is no such file, if it is not a shared object for this machine or not a plug-in of
+     * this version, if it does not know one of the parameters, or if it throws, with its message.
+     */
+    Library(const LibraryParameters &parameters, const Body &body, double end_time);
+
+    std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &points) const override;
+    std::unique_ptr<ActiveStressAtPoints>
+    rate_at(const std::vector<double> &points) const override;
+    std::optional<double>
+    period() const override
+    {
+      return period_;
+    }
+    std::vector<double>
+    breaks_in_space() const override
+    {
+      return breaks_in_space_;
+    }
+    std::vector<double>
+    breaks_in_time() const override
+    {
+      return breaks_in_time_;
+    }
+    const StretchFeedback *
+    feedback() const override
+    {
+      return feedback_.get();
+    }
+    const StrainHistory *
+    prescribed_strain() const override
+    {
+      return strain_.get();
+    }
+    void
+    report(std::ostream &out) const override;
+    const StressFailures *
+    failures() const override
+    {
+      return failures_.get();
+    }
+
+  private:
+    void
+    ask(double length, double end_time);
+
+    std::string file_;
+    std::shared_ptr<LibraryFailures> failures_; ///< evaluators write here
+    std::unique_ptr<const ActiveStress> stress_;
+    // What it says of itself, asked once.
+    bool has_rate_ = false;
+    std::optional<double> period_;
+    std::vector<double> breaks_in_space_, breaks_in_time_;
+    std::unique_ptr<const StretchFeedback> feedback_;
+    std::unique_ptr<const StrainHistory> strain_;
+    std::string report_;
+  };
+} // namespace crawler

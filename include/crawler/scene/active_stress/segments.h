@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/active_stress.h>
+#include <crawler/scene/active_stress/envelope.h>
+#include <crawler/scene/active_stress/profile.h>
+
+#include <string>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// Section "Active stress/Segments".
+  struct SegmentsParameters
+  {
+    unsigned int number              = 8;     ///< N
+    std::vector<double> amplitude    = {0.3}; ///< [force], one for all segments or one for each
+    double frequency                 = 1.;    ///< f [1/time]
+    double phase_lag                 = 0.125; ///< [1], a share of the period
+    std::string direction            = "from head to tail";
+    double duty_cycle                = 0.5; ///< D [1]
+    std::string switching            = "square";
+    double front_width               = 0.1; ///< [1], a share of the period
+    double phase                     = 0.;  ///< [1], a share of the period
+    double gap                       = 0.;  ///< [1], a share of the length of a segment
+    std::optional<double> saturation = {};  ///< [force]; nothing: no limit
+    std::optional<double> rate_limit = {};  ///< r [force/time]; nothing: no limit
+    double ramp_duration             = 0.;  ///< [time]
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /**
+   * A robot of N actuated segments, each of which switches its active stress, the same everywhere in it, on and off:
+   *
+   *   m(s,t) = ramp(t) y_i( f t + phase - n_i lag )  in segment i,  0 in the gaps between segments,
+   *
+   * where n_i counts the segments before it in the running direction, and y_i has the period 1, mean A_i D, and is
+   *  - square: A_i for the share D of the period, then 0, where A_i is cut to the saturation. With a rate limit it is
+   *    the periodic answer of an actuator that goes towards the square signal with the rate r: a trapezoid;
+   *  - smooth: A_i times a Switching with smooth fronts (profile.h), cut to the saturation.
+   */
+  class Segments : public ActiveStress
+  {
+  public:
+    static constexpr const char *description = "actuated segments of a robot that switch one after the other";
+
+    /// Throws InputError if there are neither one nor N amplitudes, if smooth fronts do not fit into the period or are
+    /// faster than the rate limit, or if there is more switching until the end time than a run can have.
+    Segments(const SegmentsParameters &parameters, double length, double end_time);
+
+    std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &points) const override;
+    std::unique_ptr<ActiveStressAtPoints>
+    rate_at(const std::vector<double> &points) const override;
+
+    /// 1/f; none with a ramp.
+    std::optional<double>
+    period() const override;
+    std::vector<double>
+    breaks_in_space() const override;
+    std::vector<double>
+    breaks_in_time() const override;
+
+    /// Lengths, and how far a rate limit lets the segments come.
+    void
+    report(std::ostream &out) const override;
+
+  private:
+    /// A segment from `first` to `last` [length]. Its phase at t = 0 is `phase`. If not smooth, y goes from `low` to
+    /// `high` [force] and back by fronts of the width `front` [period], which begin at 0 and at D.
+    struct Segment
+    {
+      double first, last, phase, amplitude;
+      double low, high, front;
+    };
+    class AtPoints;
+
+    /// y_i(x), or its derivative [force/period].
+    double
+    value(const Segment &segment, double x) const;
+    double
+    rate(const Segment &segment, double x) const;
+
+    /// The places of a period at which y_i or its derivative jumps.
+    std::vector<double>
+    breaks(const Segment &segment) const;
+
+    /// Throws InputError, see the constructor.
+    void
+    require_smooth_rate() const;
+
+    const SegmentsParameters parameters_;
+    const double length_, end_time_;
+    const Envelope envelope_; ///< the ramp only
+    std::optional<Switching> smooth_;
+    std::vector<Segment> segments_; ///< from s = 0 to s = L
+    std::vector<double> breaks_in_time_;
+  };
+} // namespace crawler

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/active_stress.h>
+#include <crawler/scene/active_stress/optimal_wave.h>
+#include <crawler/scene/active_stress/shape_function.h>
+
+namespace crawler
+{
+  /**
+   * The optimal wave for a velocity wave V of any shape (Santhosh and Serra, Phys. Rev. E 106, 024610 (2022); their
+   * f = alpha V, alpha = a/(L gamma c)), also one that does not repeat after the length of the body:
+   *
+   *   m = chi [ gamma ( int_0^s V(s'+ct) ds' - (s/L) int_0^L V(s'+ct) ds' ) - (k/c) ( V(s+ct) - V(s) ) ].
+   *
+   * To leading order in chi the velocity is chi ( V(s+ct) - its mean over the body ) and the strain
+   * (chi/c) ( V(s+ct) - V(s) ). With V = sum a_n sin q_n x + b_n cos q_n x it is the OptimalWave.
+   */
+  class ShapedWave : public ActiveStress
+  {
+  public:
+    /// For Shape = expression or table. Throws InputError if the wave is to be chosen by its energy, if the speed is 0
+    /// or so large that 1e4 body lengths of V are passed, if the formula or the file has an error, or if V is not given
+    /// or not continuous wherever the wave comes, min(0, cT) <= x <= L + max(0, cT).
+    ShapedWave(const OptimalWaveParameters &parameters, const Body &body, double end_time);
+
+    std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &points) const override;
+    std::unique_ptr<ActiveStressAtPoints>
+    rate_at(const std::vector<double> &points) const override;
+
+    /// Looked for (scene/period.h).
+    std::optional<double>
+    period() const override;
+
+    /// Where V' jumps at the start.
+    std::vector<double>
+    breaks_in_space() const override;
+
+    /// The wave, with what the leading order says of it.
+    void
+    report(std::ostream &out) const override;
+
+    /// Of the leading order in chi, until the end time: D = -(a chi^2/(cL)) int int e' v' ds dt for e' = V(s+ct) - V(s)
+    /// and v' = V(s+ct) - its mean; Q = gamma chi^2 int int v'^2 ds dt; E = (k/2) (chi/c)^2 int e'^2 ds at the end.
+    struct LeadingOrder
+    {
+      double displacement; ///< D [length]
+      double energy;       ///< Q + E [force length]
+      double min_stretch, max_stretch;
+    };
+    LeadingOrder
+    leading_order() const;
+
+    struct Settings
+    {
+      Body body;
+      double chi, speed;
+      ShapeFunction shape; ///< V [length/time]
+    };
+
+  private:
+    const double end_time_;
+    const std::string shape_;
+    const Settings settings_;
+    mutable std::optional<std::optional<double>> period_; ///< once somebody has asked
+  };
+
+  /// OptimalWave or ShapedWave, as the entry Shape says.
+  std::unique_ptr<ActiveStress>
+  create_optimal_wave(const OptimalWaveParameters &parameters, const Body &body, double end_time);
+} // namespace crawler

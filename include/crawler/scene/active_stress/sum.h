@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/active_stress.h>
+#include <crawler/scene/active_stress/window.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// The entries of a term of a sum but for its generator's.
+  struct SumTermParameters
+  {
+    std::string combine = "add"; ///< | multiply
+    double factor       = 1.;
+    WindowEntries in_s, in_t; ///< [length], [time]
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /// A term: a generator g, and what it is multiplied with.
+  struct SumTerm
+  {
+    std::string name; ///< of the generator
+    std::unique_ptr<const ActiveStress> stress;
+    bool multiplies;
+    double factor;
+    Window in_s, in_t;
+  };
+
+  /**
+   * Generators combined. Each term is f_i(s,t) = factor_i W_i(s) V_i(t) g_i(s,t), with windows W and V (window.h), and
+   *
+   *   m = ( sum of the terms that add ) * ( product of the terms that multiply ).
+   *
+   * A term that multiplies is a number without unit, and 0 outside of its windows as all others. A generator is not
+   * evaluated where a window is closed. Rates and derivatives with respect to the stretch follow from the sum and the
+   * product rule.
+   */
+  class Sum : public ActiveStress
+  {
+  public:
+    static constexpr const char *description = "a sum and product of generators, each with a window in s and t";
+
+    /// Throws InputError if no term adds, or if terms use the stretch at different distances or with different delays.
+    Sum(std::vector<SumTerm> terms, double length, double end_time);
+    ~Sum() override;
+
+    std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &points) const override;
+    /// Null if a term has none.
+    std::unique_ptr<ActiveStressAtPoints>
+    rate_at(const std::vector<double> &points) const override;
+
+    /// A period that all terms have in common (period.h), or a whole part of it after which the sum repeats; where not
+    /// all terms know theirs, the sum's is looked for. Nothing if a window in time opens or closes.
+    std::optional<double>
+    period() const override;
+
+    std::vector<double>
+    breaks_in_space() const override;
+    std::vector<double>
+    breaks_in_time() const override;
+    const StretchFeedback *
+    feedback() const override;
+    void
+    report(std::ostream &out) const override;
+    const StressFailures *
+    failures() const override;
+
+  private:
+    class Feedback;
+
+    const std::vector<SumTerm> terms_;
+    const double length_, end_time_;
+    std::unique_ptr<const Feedback> feedback_;
+    mutable std::optional<std::optional<double>> period_; ///< once somebody has asked
+    mutable StressFailures failures_;                     ///< of all terms
+  };
+} // namespace crawler

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/body.h>
+#include <crawler/scene/friction_law.h>
+#include <crawler/scene/profile.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// Section "Ground" of the parameter file.
+  struct GroundParameters
+  {
+    std::string profile                      = "1";
+    std::string interpolation                = "cubic";
+    std::string outside                      = "hold";
+    std::string friction_law                 = "power";
+    std::string expression                   = "1/w";
+    std::string constants                    = "";
+    double backward_ratio                    = 1.; ///< r [1]
+    std::optional<double> switching_velocity = {}; ///< v_s [length/time]
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /// d(v) = (1+r)/2 + (1-r)/2 tanh(v/v_s): the resistance of a ground that holds more in one direction. The force d(v)
+  /// v increases with v for 0.1 <= r <= 10, so that a body has one velocity.
+  struct Direction
+  {
+    double ratio              = 1.; ///< r, resistance for v < 0 over that for v > 0
+    double switching_velocity = 1.; ///< v_s [length/time]
+
+    double
+    factor(double v) const;
+    /// d/dv (d(v) v)
+    double
+    force_slope(double v) const;
+  };
+
+  /// What the ground is besides the friction law.
+  struct Ground
+  {
+    std::shared_ptr<const Profile> profile; ///< c(x), null where it is 1 everywhere
+    Direction direction;
+
+    bool
+    is_plain() const
+    {
+      return !profile && direction.ratio == 1.;
+    }
+  };
+
+  /// The friction law that the parameters name. Throws InputError if the expression has an error, or is not positive
+  /// for stretches near 1.
+  std::unique_ptr<const FrictionLaw>
+  create_friction_law(const GroundParameters &parameters, const Body &body, double end_time);
+
+  /// Throws InputError if the entries do not make sense.
+  Ground
+  create_ground(const GroundParameters &parameters, const Body &body, double end_time);
+} // namespace crawler

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// A factor that depends on a place: along the body (s) or on the ground (x). Not a number where it is not known.
+  class Profile
+  {
+  public:
+    virtual ~Profile() = default;
+
+    /// The factor [1] at the places @p x [length]; and in the second function its derivative [1/length].
+    virtual void
+    values(std::span<const double> x, std::span<double> f) const = 0;
+    virtual void
+    values_and_slopes(std::span<const double> x, std::span<double> f, std::span<double> slope) const = 0;
+
+    /// Where the factor is known to have a kink [length].
+    virtual std::vector<double>
+    breaks() const
+    {
+      return {};
+    }
+
+    double
+    value(double x) const;
+  };
+
+  /// A profile as the user writes it: a formula, or the name of a CSV file with two columns.
+  struct ProfileInput
+  {
+    std::string quantity;                ///< what it gives, for messages
+    std::string variable;                ///< s or x; also the first word of the file's header, "value" being the second
+    std::string text;                    ///< ends in .csv: a file
+    std::string interpolation = "cubic"; ///< or linear, of a file
+    std::string outside       = "hold";  ///< or error, of a file
+    std::string entry;                   ///< full name of the entry
+  };
+
+  /**
+   * Null if the profile is the number 1. Throws InputError if the formula or the file has an error, with its position
+   * or the number of its row.
+   */
+  std::shared_ptr<const Profile>
+  read_profile(const ProfileInput &input, double length, double end_time);
+
+  /// The same profile in other units: @p unit is that of its places.
+  std::shared_ptr<const Profile>
+  in_units(std::shared_ptr<const Profile> profile, double unit);
+
+  /// Throws InputError unless the profile is positive and finite on a fine grid of @p from to @p to [length].
+  void
+  require_positive(const Profile &profile, double from, double to, const ProfileInput &input);
+} // namespace crawler

@@ -1,0 +1,602 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/library.h>
+#include <crawler/scene/stress_plugin.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <dlfcn.h>
+#include <elf.h>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    const std::string file_entry       = "Active stress/Library/File";
+    const std::string parameters_entry = "Active stress/Library/Parameters";
+    constexpr double no_number         = std::numeric_limits<double>::quiet_NaN();
+
+    /// Runs code of the user's; nothing if all went well, else what it threw.
+    template <typename Function>
+    std::optional<std::string>
+    thrown_by(const Function &function)
+    {
+      try
+      {
+        function();
+        return std::nullopt;
+      }
+      catch (const std::exception &error)
+      {
+        return error.what();
+      }
+      catch (...)
+      {
+        return "something that is not a std::exception";
+      }
+    }
+
+    void
+    fail(LibraryFailures &failures, const std::string &what)
+    {
+      ++failures.count;
+      failures.latest = fmt::format("the plug-in \"{}\" {}", failures.plugin, what);
+    }
+
+    /// Evaluators for some points, one of them or all, by the same function of the plug-in.
+    template <typename AtPoints>
+    using Make = std::function<std::unique_ptr<AtPoints>(const std::vector<double> &)>;
+
+    /// Makes an evaluator; null, and a failure, if that throws.
+    template <typename AtPoints>
+    std::unique_ptr<AtPoints>
+    made(LibraryFailures &failures, const Make<AtPoints> &make, const char *name, const std::vector<double> &points)
+    {
+      std::unique_ptr<AtPoints> result;
+      const auto thrown = thrown_by(
+        [&]()
+        {
+          result = make(points);
+        });
+      if (thrown)
+        fail(failures, fmt::format("threw an exception in {}: {}", name, *thrown));
+      else if (!result)
+        fail(failures, fmt::format("gave no evaluator in {}", name));
+      return result;
+    }
+
+    /// Calls an evaluator that writes into @p result. If it throws, or writes something that is not a finite number,
+    /// that is a failure, and all of @p result is not a number.
+    template <typename AtPoints>
+    void
+    evaluate(LibraryFailures &failures,
+             const Make<AtPoints> &make,
+             AtPoints *at_points,
+             const std::vector<double> &points,
+             const char *name,
+             const double t,
+             const std::function<void(AtPoints &, std::span<double>)> &call,
+             const std::span<double> result)
+    {
+      if (at_points == nullptr) // that has been said already
+      {
+        ++failures.count;
+        std::fill(result.begin(), result.end(), no_number);
+        return;
+      }
+      const auto thrown = thrown_by(
+        [&]()
+        {
+          call(*at_points, result);
+        });
+      if (thrown)
+      {
+        // Where? The first point that throws on its own.
+        const auto place = std::find_if(points.begin(),
+                                        points.end(),
+                                        [&](const double s)
+                                        {
+                                          double value = 0.;
+                                          return thrown_by(
+                                                   [&]()
+                                                   {
+                                                     call(*make({s}), {&value, 1});
+                                                   })
+                                            .has_value();
+                                        });
+        fail(failures,
+             fmt::format("threw an exception in {} at {}t = {:.9g}: {}",
+                         name,
+                         place != points.end() ? fmt::format("s = {:.9g}, ", *place) : "",
+                         t,
+                         *thrown));
+        std::fill(result.begin(), result.end(), no_number);
+        return;
+      }
+      const auto bad = std::find_if_not(result.begin(),
+                                        result.end(),
+                                        [](const double value)
+                                        {
+                                          return std::isfinite(value);
+                                        });
+      if (bad == result.end())
+        return;
+      fail(failures,
+           fmt::format("gave {} in {} at s = {:.9g}, t = {:.9g}; a finite number is expected",
+                       *bad,
+                       name,
+                       points[static_cast<std::size_t>(bad - result.begin())],
+                       t));
+      std::fill(result.begin(), result.end(), no_number);
+    }
+
+    class LibraryAtPoints : public ActiveStressAtPoints
+    {
+    public:
+      LibraryAtPoints(std::shared_ptr<LibraryFailures> failures,
+                      Make<ActiveStressAtPoints> make,
+                      const char *name,
+                      const char *maker,
+                      const std::vector<double> &points)
+        : failures_(std::move(failures))
+        , make_(std::move(make))
+        , name_(name)
+        , points_(points)
+        , at_points_(made(*failures_, make_, maker, points))
+      {
+      }
+
+      void
+      values(const double t, const std::span<double> m) override
+      {
+        evaluate<ActiveStressAtPoints>(
+          *failures_,
+          make_,
+          at_points_.get(),
+          points_,
+          name_,
+          t,
+          [t](ActiveStressAtPoints &at_points, const std::span<double> result)
+          {
+            at_points.values(t, result);
+          },
+          m);
+      }
+
+    private:
+      const std::shared_ptr<LibraryFailures> failures_;
+      const Make<ActiveStressAtPoints> make_;
+      const char *const name_;
+      const std::vector<double> points_;
+      const std::unique_ptr<ActiveStressAtPoints> at_points_;
+    };
+
+    class LibraryStrain : public StrainHistory
+    {
+    public:
+      LibraryStrain(std::shared_ptr<LibraryFailures> failures, const StrainHistory &history)
+        : failures_(std::move(failures))
+        , history_(history)
+      {
+      }
+
+      std::unique_ptr<StrainAtPoints>
+      at(const std::vector<double> &points) const override
+      {
+        return std::make_unique<AtPoints>(failures_, history_, points);
+      }
+
+    private:
+      class AtPoints : public StrainAtPoints
+      {
+      public:
+        AtPoints(const std::shared_ptr<LibraryFailures> &failures,
+                 const StrainHistory &history,
+                 const std::vector<double> &points)
+          : failures_(failures)
+          , make_(
+              [&history](const std::vector<double> &places)
+              {
+                return history.at(places);
+              })
+          , points_(points)
+          , at_points_(made(*failures_, make_, "at() of its strain", points))
+        {
+        }
+
+        void
+        strain(const double t, const std::span<double> e) override
+        {
+          evaluate<StrainAtPoints>(
+            *failures_,
+            make_,
+            at_points_.get(),
+            points_,
+            "strain()",
+            t,
+            [t](StrainAtPoints &at_points, const std::span<double> result)
+            {
+              at_points.strain(t, result);
+            },
+            e);
+        }
+        void
+        rate(const double t, const std::span<double> e_t) override
+        {
+          evaluate<StrainAtPoints>(
+            *failures_,
+            make_,
+            at_points_.get(),
+            points_,
+            "rate()",
+            t,
+            [t](StrainAtPoints &at_points, const std::span<double> result)
+            {
+              at_points.rate(t, result);
+            },
+            e_t);
+        }
+
+      private:
+        const std::shared_ptr<LibraryFailures> failures_;
+        const Make<StrainAtPoints> make_;
+        const std::vector<double> points_;
+        const std::unique_ptr<StrainAtPoints> at_points_;
+      };
+
+      const std::shared_ptr<LibraryFailures> failures_;
+      const StrainHistory &history_;
+    };
+
+    class LibraryFeedbackAtPoints : public FeedbackAtPoints
+    {
+    public:
+      LibraryFeedbackAtPoints(std::shared_ptr<LibraryFailures> failures,
+                              const StretchFeedback &feedback,
+                              const std::vector<double> &points)
+        : failures_(std::move(failures))
+        , points_(points)
+        , at_points_(made<FeedbackAtPoints>(
+            *failures_,
+            [&feedback](const std::vector<double> &places)
+            {
+              return feedback.at(places);
+            },
+            "at() of its feedback",
+            points))
+      {
+      }
+
+      void
+      values(const double t, const StretchSeen &seen, const FeedbackStress &m) override
+      {
+        const unsigned long n_before = failures_->count;
+        if (!at_points_)
+          ++failures_->count;
+        else if (const auto thrown = thrown_by(
+                   [&]()
+                   {
+                     at_points_->values(t, seen, m);
+                   }))
+          fail(*failures_, fmt::format("threw an exception in values() of its feedback at t = {:.9g}: {}", t, *thrown));
+        else
+        {
+          const std::pair<const char *, std::span<double>> all[] = {
+            {"m", m.m}, {"m_w", m.m_w}, {"m_rate", m.m_rate}, {"m_near", m.m_near}};
+          for (const auto &[name, values] : all)
+            for (std::size_t i = 0; i < values.size() && failures_->count == n_before; ++i)
+              if (!std::isfinite(values[i]))
+                fail(
+                  *failures_,
+                  fmt::format("gave {} = {} in values() of its feedback at s = {:.9g}, t = {:.9g}, stretch {:.9g}; a "
+                              "finite number is expected",
+                              name,
+                              values[i],
+                              points_[i],
+                              t,
+                              seen.stretch.empty() ? 1. : seen.stretch[i]));
+        }
+        if (failures_->count > n_before)
+          for (const std::span<double> values : {m.m, m.m_w, m.m_rate, m.m_near})
+            std::fill(values.begin(), values.end(), no_number);
+      }
+
+    private:
+      const std::shared_ptr<LibraryFailures> failures_;
+      const std::vector<double> points_;
+      const std::unique_ptr<FeedbackAtPoints> at_points_;
+    };
+
+    class LibraryFeedback : public StretchFeedback
+    {
+    public:
+      LibraryFeedback(std::shared_ptr<LibraryFailures> failures, const StretchFeedback &feedback)
+        : failures_(std::move(failures))
+        , feedback_(feedback)
+        , uses_rate_(feedback.uses_rate())
+        , distance_(feedback.distance())
+        , delay_(feedback.delay())
+      {
+      }
+
+      std::unique_ptr<FeedbackAtPoints>
+      at(const std::vector<double> &points) const override
+      {
+        return std::make_unique<LibraryFeedbackAtPoints>(failures_, feedback_, points);
+      }
+      bool
+      uses_rate() const override
+      {
+        return uses_rate_;
+      }
+      double
+      distance() const override
+      {
+        return distance_;
+      }
+      double
+      delay() const override
+      {
+        return delay_;
+      }
+
+    private:
+      const std::shared_ptr<LibraryFailures> failures_;
+      const StretchFeedback &feedback_;
+      const bool uses_rate_;
+      const double distance_, delay_;
+    };
+
+    /// The beginning of an ELF file; nothing if it is something else.
+    std::optional<Elf64_Ehdr>
+    read_header(const std::filesystem::path &file)
+    {
+      Elf64_Ehdr header{};
+      std::ifstream in(file, std::ios::binary);
+      in.read(reinterpret_cast<char *>(&header), sizeof(header));
+      if (in.gcount() < static_cast<std::streamsize>(sizeof(Elf32_Ehdr)) ||
+          std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0)
+        return std::nullopt;
+      return header;
+    }
+
+    /// Throws InputError unless this is a shared object for this machine; the dynamic linker's own words say less.
+    void
+    require_shared_object(const std::filesystem::path &file, const std::string &name)
+    {
+      std::error_code ignored;
+      if (!std::filesystem::exists(file, ignored))
+        throw InputError(
+          fmt::format("there is no file \"{}\" (\"{}\" in the folder in which crawler was started); a shared "
+                      "object is expected",
+                      file.string(),
+                      name),
+          file_entry);
+      const auto header = std::filesystem::is_regular_file(file, ignored) ? read_header(file) : std::nullopt;
+      if (!header || header->e_type != ET_DYN)
+        throw InputError(fmt::format("\"{}\" is not a shared object; a file that the compiler has made with -shared is "
+                                     "expected",
+                                     name),
+                         file_entry);
+      const auto own = read_header("/proc/self/exe");
+      if (own && (own->e_machine != header->e_machine || own->e_ident[EI_CLASS] != header->e_ident[EI_CLASS]))
+        throw InputError(
+          fmt::format("\"{}\" is for another kind of processor (ELF machine {}, {} bits) than crawler (machine "
+                      "{}, {} bits); it is expected to be compiled on this machine",
+                      name,
+                      header->e_machine,
+                      header->e_ident[EI_CLASS] == ELFCLASS64 ? 64 : 32,
+                      own->e_machine,
+                      own->e_ident[EI_CLASS] == ELFCLASS64 ? 64 : 32),
+          file_entry);
+    }
+
+    /// Loads it, for as long as the program lasts: what it has made may be anywhere.
+    const Plugin &
+    load(const std::string &name)
+    {
+      if (name.empty())
+        throw InputError("the name of the shared object is missing", file_entry);
+      const std::filesystem::path file = std::filesystem::absolute(name).lexically_normal();
+      require_shared_object(file, name);
+      void *handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+      if (handle == nullptr)
+      {
+        const char *words = dlerror();
+        throw InputError(fmt::format("\"{}\" cannot be loaded: {}", name, words != nullptr ? words : "unknown"),
+                         file_entry);
+      }
+      const auto function = reinterpret_cast<const Plugin *(*)()>(dlsym(handle, plugin_function));
+      if (function == nullptr)
+        throw InputError(fmt::format("\"{}\" is not a plug-in of crawler: it has no function {}; the macro "
+                                     "CRAWLER_ACTIVE_STRESS_PLUGIN is expected in it",
+                                     name,
+                                     plugin_function),
+                         file_entry);
+      const Plugin &plugin = *function();
+      if (plugin.interface != plugin_interface || std::strcmp(plugin.crawler_version, plugin_version) != 0)
+        throw InputError(
+          fmt::format("\"{}\" was built against crawler {} (interface {}), but this program is crawler {} "
+                      "(interface {}); build it again, against this one",
+                      name,
+                      plugin.crawler_version,
+                      plugin.interface,
+                      plugin_version,
+                      plugin_interface),
+          file_entry);
+      return plugin;
+    }
+
+    std::map<std::string, std::string>
+    parse_parameters(const std::string &text)
+    {
+      std::map<std::string, std::string> values;
+      std::istringstream in(text);
+      std::string item;
+      while (std::getline(in, item, ','))
+      {
+        const auto equals      = item.find('=');
+        const std::string name = trimmed(item.substr(0, equals));
+        if (equals == std::string::npos || name.empty())
+          throw InputError(
+            fmt::format("found \"{}\" among the parameters of the plug-in, but \"name=value, name=value, "
+                        "...\" is expected",
+                        trimmed(item)),
+            parameters_entry);
+        if (!values.emplace(name, trimmed(item.substr(equals + 1))).second)
+          throw InputError(fmt::format("the parameter \"{}\" of the plug-in is set a second time", name),
+                           parameters_entry);
+      }
+      return values;
+    }
+
+    void
+    require_known(const PluginParameters &parameters, const std::string &plugin)
+    {
+      const std::vector<std::string> known(parameters.known().begin(), parameters.known().end());
+      for (const auto &[name, value] : parameters.values())
+        if (std::find(known.begin(), known.end(), name) == known.end())
+          throw InputError(fmt::format("the plug-in \"{}\" does not know the parameter \"{}\"; it knows {}",
+                                       plugin,
+                                       name,
+                                       known.empty() ? "none" : quoted_list(known)),
+                           parameters_entry);
+    }
+  } // namespace
+
+  void
+  LibraryParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Library");
+    declarations.text(
+      "File",
+      file,
+      "the name of a shared object",
+      "Shared object with the active stress as a plug-in (doc/generators/library.md). A name that does not "
+      "begin with / counts from the folder in which crawler is started.");
+    declarations.text("Parameters",
+                      parameters,
+                      "a list name=value, name=value",
+                      "What the plug-in is told; it says itself which names it knows.");
+    declarations.leave();
+  }
+
+  Library::Library(const LibraryParameters &parameters, const Body &body, const double end_time)
+    : file_(parameters.file)
+    , failures_(std::make_shared<LibraryFailures>())
+  {
+    const Plugin &plugin = load(file_);
+    failures_->plugin    = plugin.name;
+    const PluginInput input{body.length,
+                            body.elastic_modulus,
+                            body.friction_coefficient,
+                            body.anchoring_exponent,
+                            end_time,
+                            PluginParameters(parse_parameters(parameters.parameters))};
+    if (const auto thrown = thrown_by(
+          [&]()
+          {
+            stress_ = plugin.create(input);
+          }))
+      throw InputError(fmt::format("the plug-in \"{}\" refuses the scene: {}", plugin.name, *thrown), parameters_entry);
+    if (!stress_)
+      throw InputError(fmt::format("the plug-in \"{}\" has made nothing; an active stress is expected", plugin.name),
+                       file_entry);
+    require_known(input.parameters, plugin.name);
+    ask(body.length, end_time);
+  }
+
+  /// What the plug-in says of itself, asked once.
+  void
+  Library::ask(const double length, const double end_time)
+  {
+    const char *asked = "";
+    const auto thrown = thrown_by(
+      [&]()
+      {
+        asked            = "period()";
+        period_          = stress_->period();
+        asked            = "breaks_in_space()";
+        breaks_in_space_ = stress_->breaks_in_space();
+        asked            = "breaks_in_time()";
+        breaks_in_time_  = stress_->breaks_in_time();
+        asked            = "rate_at()";
+        has_rate_        = stress_->rate_at({0.}) != nullptr;
+        asked            = "feedback()";
+        if (const StretchFeedback *feedback = stress_->feedback())
+          feedback_ = std::make_unique<LibraryFeedback>(failures_, *feedback);
+        asked = "prescribed_strain()";
+        if (const StrainHistory *strain = stress_->prescribed_strain())
+          strain_ = std::make_unique<LibraryStrain>(failures_, *strain);
+        asked = "report()";
+        std::ostringstream out;
+        stress_->report(out);
+        report_ = out.str();
+      });
+    const auto refuse = [&](const std::string &what)
+    {
+      throw InputError(fmt::format("the plug-in \"{}\" {}", failures_->plugin, what), file_entry);
+    };
+    if (thrown)
+      refuse(fmt::format("threw an exception in {}: {}", asked, *thrown));
+    if (period_ && !(*period_ > 0. && std::isfinite(*period_)))
+      refuse(fmt::format("says that its period is {}; a positive number is expected", *period_));
+    const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end)
+    {
+      for (const double value : breaks)
+        if (!(value > 0. && value < end))
+          refuse(fmt::format("gave {} in {}; a number above 0 and below {:g} is expected", value, name, end));
+    };
+    require_inside(breaks_in_space_, "breaks_in_space()", length);
+    require_inside(breaks_in_time_, "breaks_in_time()", end_time);
+  }
+
+  std::unique_ptr<ActiveStressAtPoints>
+  Library::at(const std::vector<double> &points) const
+  {
+    return std::make_unique<LibraryAtPoints>(
+      failures_,
+      [stress = stress_.get()](const std::vector<double> &places)
+      {
+        return stress->at(places);
+      },
+      "values()",
+      "at()",
+      points);
+  }
+
+  std::unique_ptr<ActiveStressAtPoints>
+  Library::rate_at(const std::vector<double> &points) const
+  {
+    if (!has_rate_)
+      return nullptr;
+    return std::make_unique<LibraryAtPoints>(
+      failures_,
+      [stress = stress_.get()](const std::vector<double> &places)
+      {
+        return stress->rate_at(places);
+      },
+      "values() of the rate",
+      "rate_at()",
+      points);
+  }
+
+  void
+  Library::report(std::ostream &out) const
+  {
+    out << fmt::format("Plug-in \"{}\" from {}\n", failures_->plugin, file_) << report_;
+    if (!report_.empty() && report_.back() != '\n')
+      out << '\n';
+  }
+} // namespace crawler

@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/segments.h>
+#include <crawler/scene/active_stress/wave_entries.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+namespace crawler
+{
+  namespace
+  {
+    const std::string section = "Active stress/Segments/";
+
+    constexpr double round_off = 1e-12;
+
+    double
+    fraction(const double x)
+    {
+      return x - std::floor(x);
+    }
+
+    /// @p values sorted, those that differ by round-off only once.
+    std::vector<double>
+    distinct(std::vector<double> values)
+    {
+      std::sort(values.begin(), values.end());
+      values.erase(std::unique(values.begin(),
+                               values.end(),
+                               [](const double a, const double b)
+                               {
+                                 return b - a <= round_off;
+                               }),
+                   values.end());
+      return values;
+    }
+  } // namespace
+
+  void
+  SegmentsParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Segments");
+    declarations.whole_number(
+      "Number of segments", number, 1, 1000, "Number N of actuated segments, all of the same length.");
+    declarations.numbers("Amplitude",
+                         amplitude,
+                         "Active stress of a segment that is on, positive for a contraction: one number for all "
+                         "segments, or N from s = 0 to s = L.",
+                         "force");
+    declarations.number("Frequency", frequency, positive(), "Frequency f of the switching.", "1/time");
+    declarations.number("Phase lag",
+                        phase_lag,
+                        between(0., 1.),
+                        "How much later a segment switches than its neighbour before it, as a share of the period; 1/N "
+                        "for one wave on the body.",
+                        "1");
+    declare_direction(direction, declarations);
+    declarations.number(
+      "Duty cycle", duty_cycle, {.lower = 0., .upper = 1.}, "Share of the period in which a segment is on.", "1");
+    declarations.choice("Switching",
+                        switching,
+                        {"square", "smooth"},
+                        "How a segment switches: by jumps, or by smooth fronts about the same instants.");
+    declarations.number("Front width",
+                        front_width,
+                        {.lower = 0., .upper = 0.5, .upper_included = true},
+                        "Width of a smooth front as a share of the period.",
+                        "1");
+    declarations.number("Phase",
+                        phase,
+                        any_number(),
+                        "Phase of the first segment at t = 0 as a share of the period: it is switched on at phase 0.",
+                        "1");
+    declarations.number("Gap",
+                        gap,
+                        {.lower = 0., .lower_included = true},
+                        "Length of the passive part between neighbouring segments as a share of the length of a "
+                        "segment.",
+                        "1");
+    declarations.number("Saturation",
+                        saturation,
+                        positive(),
+                        "Largest absolute value of the active stress; larger ones are cut to it. Automatic: no limit.",
+                        "force");
+    declarations.number("Rate limit",
+                        rate_limit,
+                        positive(),
+                        "Largest absolute value of the active stress's change per time: square signals become "
+                        "trapezoids. Automatic: no limit.",
+                        "force/time");
+    declarations.number(
+      "Ramp duration",
+      ramp_duration,
+      {.lower = 0., .lower_included = true},
+      "How long the stress takes to grow, by a smooth step, from 0 at t = 0 to its full size; the rate "
+      "limit holds without this factor.",
+      "time");
+    declarations.leave();
+  }
+
+  Segments::Segments(const SegmentsParameters &parameters, const double length, const double end_time)
+    : parameters_(parameters)
+    , length_(length)
+    , end_time_(end_time)
+    , envelope_({{}, {}, /*window_edge=*/0., parameters.ramp_duration}, section, length)
+  {
+    const auto &p   = parameters_;
+    const double D  = p.duty_cycle;
+    const auto n    = p.number;
+    const bool head = sign_of(p.direction) < 0.; // begins there
+    if (p.amplitude.size() != 1 && p.amplitude.size() != n)
+      throw InputError(
+        fmt::format("the list of amplitudes has {} numbers, but 1 or {}, one for each segment, are expected",
+                    p.amplitude.size(),
+                    n),
+        section + "Amplitude");
+    if (p.switching == "smooth")
+    {
+      const double most = std::min(D, 1. - D);
+      if (p.front_width > most * (1. + round_off))
+        throw InputError(fmt::format("the fronts are {:g} of a period wide, but at most {:g} is expected for the duty "
+                                     "cycle {:g}",
+                                     p.front_width,
+                                     most,
+                                     D),
+                         section + "Front width");
+      smooth_.emplace(D, p.front_width);
+      require_smooth_rate();
+    }
+
+    const double segment = length / (n + (n - 1) * p.gap), pitch = segment * (1. + p.gap);
+    for (unsigned int i = 0; i < n; ++i)
+    {
+      const double A = p.amplitude[p.amplitude.size() == 1 ? 0 : i], most = p.saturation.value_or(std::abs(A));
+      const double high = std::clamp(A, -most, most);
+      Segment s{i * pitch,
+                i + 1 == n ? length : i * pitch + segment,
+                p.phase - (head ? n - 1 - i : i) * p.phase_lag,
+                A,
+                0.,
+                high,
+                0.};
+      if (p.rate_limit)
+      {
+        // In the shorter one of the two parts of the period the actuator comes this far; and if that is not far enough,
+        // it stays at the value that it is sent to in the longer one.
+        const double per_period     = *p.rate_limit / p.frequency;
+        const double way            = std::min(std::abs(high), per_period * std::min(D, 1. - D));
+        (D <= 0.5 ? s.high : s.low) = D <= 0.5 ? std::copysign(way, high) : high - std::copysign(way, high);
+        s.front                     = way / per_period;
+      }
+      segments_.push_back(s);
+    }
+
+    std::vector<double> phases; // of f t
+    for (const Segment &s : segments_)
+      for (const double x : breaks(s))
+        phases.push_back(fraction(x - s.phase));
+    phases                = distinct(std::move(phases));
+    constexpr double most = 1e6;
+    const double periods = p.frequency * end_time, n_breaks = static_cast<double>(phases.size()) * periods;
+    require_countable_periods(p.frequency, end_time, false, section + "Frequency");
+    if (n_breaks > most)
+      throw InputError(fmt::format("the segments switch at {:.3g} different times until the end time, but at most {:g} "
+                                   "are expected",
+                                   n_breaks,
+                                   most),
+                       section + "Frequency");
+    if (phases.empty())
+      return;
+    for (double period = 0.; period <= periods; ++period)
+      for (const double x : phases)
+        if (const double t = (period + x) / p.frequency; t > round_off * end_time && t < (1. - round_off) * end_time)
+          breaks_in_time_.push_back(t);
+  }
+
+  void
+  Segments::require_smooth_rate() const
+  {
+    if (!parameters_.rate_limit)
+      return;
+    double largest = 0.;
+    for (const double A : parameters_.amplitude)
+    {
+      // Where it is steepest: in the middle of the front, or where it is cut.
+      const double cut = std::abs(parameters_.saturation.value_or(std::abs(A)) / A);
+      const double x   = cut < 0.5 ? smooth_step_inverse(cut) : 0.5;
+      largest          = std::max(largest, A == 0. ? 0. : std::abs(A) * smooth_step_rate(x));
+    }
+    largest *= parameters_.frequency / parameters_.front_width;
+    if (largest > *parameters_.rate_limit * (1. + round_off))
+      throw InputError(
+        fmt::format("the smooth fronts change by up to {:.6g} per time, but at most {:g}, the rate limit, is "
+                    "expected; make \"{}Front width\" {:.6g} or more, or \"{}Switching\" square",
+                    largest,
+                    *parameters_.rate_limit,
+                    section,
+                    parameters_.front_width * largest / *parameters_.rate_limit,
+                    section),
+        section + "Rate limit");
+  }
+
+  double
+  Segments::value(const Segment &segment, const double x) const
+  {
+    if (smooth_)
+    {
+      const double most = parameters_.saturation.value_or(std::abs(segment.amplitude));
+      return std::clamp(segment.amplitude * smooth_->value(x), -most, most);
+    }
+    const double on = fraction(x), D = parameters_.duty_cycle, change = segment.high - segment.low;
+    if (on < D)
+      return on < segment.front ? segment.low + change * (on / segment.front) : segment.high;
+    const double off = on - D;
+    return off < segment.front ? segment.high - change * (off / segment.front) : segment.low;
+  }
+
+  double
+  Segments::rate(const Segment &segment, const double x) const
+  {
+    if (smooth_)
+    {
+      const bool is_cut =
+        parameters_.saturation && std::abs(segment.amplitude) * smooth_->value(x) > *parameters_.saturation;
+      return is_cut ? 0. : segment.amplitude * smooth_->rate(x);
+    }
+    const double on = fraction(x), D = parameters_.duty_cycle;
+    if ((on < D ? on : on - D) >= segment.front)
+      return 0.;
+    return (on < D ? 1. : -1.) * (segment.high - segment.low) / segment.front;
+  }
+
+  std::vector<double>
+  Segments::breaks(const Segment &segment) const
+  {
+    const double D = parameters_.duty_cycle;
+    if (segment.amplitude == 0.)
+      return {};
+    if (!smooth_)
+      return segment.front > 0. ? std::vector<double>{0., segment.front, D, D + segment.front}
+                                : std::vector<double>{0., D};
+    if (!parameters_.saturation || *parameters_.saturation >= std::abs(segment.amplitude))
+      return {};
+    const double cut =
+      (smooth_step_inverse(*parameters_.saturation / std::abs(segment.amplitude)) - 0.5) * parameters_.front_width;
+    return {cut, D - cut};
+  }
+
+  /// One number for each segment, then the segment of each point.
+  class Segments::AtPoints : public ActiveStressAtPoints
+  {
+  public:
+    AtPoints(const Segments &owner, const std::vector<double> &points, const bool rates)
+      : owner_(owner)
+      , rates_(rates)
+      , now_(owner.segments_.size() + 1, 0.)
+    {
+      for (const double s : points)
+      {
+        const auto &list = owner.segments_;
+        const auto above = std::upper_bound(list.begin() + 1,
+                                            list.end(),
+                                            s,
+                                            [](const double place, const Segment &segment)
+                                            {
+                                              return place < segment.first;
+                                            });
+        const auto i     = static_cast<std::size_t>(above - list.begin()) - 1;
+        segment_.push_back(s <= list[i].last + round_off * owner.length_ ? i : list.size());
+      }
+    }
+
+    void
+    values(const double t, const std::span<double> m) override
+    {
+      const Envelope &envelope = owner_.envelope_;
+      const double f = owner_.parameters_.frequency, ramp = envelope.ramp(t);
+      for (std::size_t i = 0; i < owner_.segments_.size(); ++i)
+      {
+        const Segment &segment = owner_.segments_[i];
+        const double x         = f * t + segment.phase;
+        now_[i]                = ramp * (rates_ ? f * owner_.rate(segment, x) : owner_.value(segment, x));
+        if (rates_ && envelope.has_ramp())
+          now_[i] += envelope.ramp_rate(t) * owner_.value(segment, x);
+      }
+      for (std::size_t p = 0; p < segment_.size(); ++p)
+        m[p] = now_[segment_[p]];
+    }
+
+  private:
+    const Segments &owner_;
+    const bool rates_;
+    std::vector<std::size_t> segment_; ///< of each point; in a gap the number of segments, where now_ is 0
+    std::vector<double> now_;
+  };
+
+  std::unique_ptr<ActiveStressAtPoints>
+  Segments::at(const std::vector<double> &points) const
+  {
+    return std::make_unique<AtPoints>(*this, points, /*rates=*/false);
+  }
+
+  std::unique_ptr<ActiveStressAtPoints>
+  Segments::rate_at(const std::vector<double> &points) const
+  {
+    return std::make_unique<AtPoints>(*this, points, /*rates=*/true);
+  }
+
+  std::optional<double>
+  Segments::period() const
+  {
+    return envelope_.has_ramp() ? std::nullopt : std::optional(1. / parameters_.frequency);
+  }
+
+  std::vector<double>
+  Segments::breaks_in_space() const
+  {
+    std::vector<double> places;
+    for (std::size_t i = 1; i < segments_.size(); ++i)
+    {
+      places.push_back(segments_[i].first);
+      if (parameters_.gap > 0.)
+        places.push_back(segments_[i - 1].last);
+    }
+    return places;
+  }
+
+  std::vector<double>
+  Segments::breaks_in_time() const
+  {
+    return breaks_in_time_;
+  }
+
+  void
+  Segments::report(std::ostream &out) const
+  {
+    out << fmt::format("Segments: {} of length {:g}, period {:g}, {}",
+                       segments_.size(),
+                       segments_[0].last - segments_[0].first,
+                       1. / parameters_.frequency,
+                       parameters_.switching);
+    if (parameters_.rate_limit && !smooth_)
+    {
+      const Segment &slowest = *std::max_element(segments_.begin(),
+                                                 segments_.end(),
+                                                 [](const Segment &a, const Segment &b)
+                                                 {
+                                                   return a.front < b.front;
+                                                 });
+      out << fmt::format("; the rate limit makes fronts of up to {:.4g} of a period", slowest.front);
+    }
+    out << fmt::format("; {} switching times\n", breaks_in_time_.size());
+  }
+} // namespace crawler

@@ -1,0 +1,494 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/sum.h>
+#include <crawler/scene/period.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <ostream>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    /// The points where a term's window is open.
+    struct OpenPoints
+    {
+      OpenPoints(const SumTerm &term, const std::vector<double> &points)
+      {
+        for (std::size_t i = 0; i < points.size(); ++i)
+          if (const double W = term.in_s.value(points[i]); W != 0.)
+          {
+            index.push_back(i);
+            place.push_back(points[i]);
+            factor.push_back(term.factor * W);
+          }
+      }
+
+      std::vector<std::size_t> index; ///< among all points
+      std::vector<double> place;      ///< [length]
+      std::vector<double> factor;     ///< the term's factor times W(s)
+    };
+
+    /// A sum and a product of terms, and their derivatives in some directions, point by point.
+    class Combination
+    {
+    public:
+      Combination(const std::size_t n_points, const std::size_t n_derivatives)
+        : sum_(n_points)
+        , product_(n_points)
+        , f(n_points)
+        , sum_d_(n_derivatives, sum_)
+        , product_d_(n_derivatives, sum_)
+        , f_d(n_derivatives, sum_)
+      {
+      }
+
+      void
+      start()
+      {
+        std::fill(sum_.begin(), sum_.end(), 0.);
+        std::fill(product_.begin(), product_.end(), 1.);
+        for (auto *all : {&sum_d_, &product_d_})
+          for (auto &d : *all)
+            std::fill(d.begin(), d.end(), 0.);
+      }
+
+      /// Before a term is written into f and f_d.
+      void
+      clear_term()
+      {
+        std::fill(f.begin(), f.end(), 0.);
+        for (auto &d : f_d)
+          std::fill(d.begin(), d.end(), 0.);
+      }
+
+      void
+      combine(const bool multiplies)
+      {
+        for (std::size_t d = 0; d < f_d.size(); ++d)
+          for (std::size_t i = 0; i < f.size(); ++i)
+            if (multiplies)
+              product_d_[d][i] = product_d_[d][i] * f[i] + product_[i] * f_d[d][i];
+            else
+              sum_d_[d][i] += f_d[d][i];
+        for (std::size_t i = 0; i < f.size(); ++i)
+          if (multiplies)
+            product_[i] *= f[i];
+          else
+            sum_[i] += f[i];
+      }
+
+      void
+      values(const std::span<double> m) const
+      {
+        for (std::size_t i = 0; i < m.size(); ++i)
+          m[i] = sum_[i] * product_[i];
+      }
+
+      void
+      derivatives(const std::size_t d, const std::span<double> m_d) const
+      {
+        for (std::size_t i = 0; i < m_d.size(); ++i)
+          m_d[i] = sum_d_[d][i] * product_[i] + sum_[i] * product_d_[d][i];
+      }
+
+    private:
+      std::vector<double> sum_, product_;
+
+    public:
+      std::vector<double> f; ///< of one term
+
+    private:
+      std::vector<std::vector<double>> sum_d_, product_d_;
+
+    public:
+      std::vector<std::vector<double>> f_d; ///< [direction][point]
+    };
+
+    /// Values, or rates.
+    class SumAtPoints : public ActiveStressAtPoints
+    {
+    public:
+      SumAtPoints(const std::vector<SumTerm> &terms, const std::vector<double> &points, const bool wants_rate)
+        : wants_rate_(wants_rate)
+        , all_(points.size(), wants_rate ? 1 : 0)
+      {
+        for (const SumTerm &term : terms)
+        {
+          Part part{&term, OpenPoints(term, points), {}, {}, {}, {}};
+          if (!part.open.index.empty())
+          {
+            part.stress = term.stress->at(part.open.place);
+            part.g.resize(part.open.index.size());
+            if (wants_rate)
+              part.rate = term.stress->rate_at(part.open.place);
+            part.g_t.resize(part.g.size());
+          }
+          parts_.push_back(std::move(part));
+        }
+      }
+
+      void
+      values(const double t, const std::span<double> m) override
+      {
+        all_.start();
+        for (Part &part : parts_)
+        {
+          all_.clear_term();
+          const double V = part.term->in_t.value(t), V_t = wants_rate_ ? part.term->in_t.rate(t) : 0.;
+          if (part.stress && (V != 0. || V_t != 0.))
+            write(part, t, V, V_t);
+          all_.combine(part.term->multiplies);
+        }
+        if (wants_rate_)
+          all_.derivatives(0, m);
+        else
+          all_.values(m);
+      }
+
+    private:
+      struct Part
+      {
+        const SumTerm *term;
+        OpenPoints open;
+        std::unique_ptr<ActiveStressAtPoints> stress, rate;
+        std::vector<double> g, g_t;
+      };
+
+      /// f = F W V g,   f_t = F W ( V_t g + V g_t )
+      void
+      write(Part &part, const double t, const double V, const double V_t)
+      {
+        const OpenPoints &open = part.open;
+        part.stress->values(t, part.g);
+        for (std::size_t i = 0; i < open.index.size(); ++i)
+          all_.f[open.index[i]] = open.factor[i] * V * part.g[i];
+        if (!wants_rate_)
+          return;
+        part.rate->values(t, part.g_t);
+        for (std::size_t i = 0; i < open.index.size(); ++i)
+          all_.f_d[0][open.index[i]] = open.factor[i] * (V_t * part.g[i] + V * part.g_t[i]);
+      }
+
+      const bool wants_rate_;
+      Combination all_;
+      std::vector<Part> parts_;
+    };
+
+    class SumFeedbackAtPoints : public FeedbackAtPoints
+    {
+    public:
+      SumFeedbackAtPoints(const std::vector<SumTerm> &terms, const std::vector<double> &points)
+        : all_(points.size(), n_directions)
+      {
+        for (const SumTerm &term : terms)
+        {
+          Part part{&term, OpenPoints(term, points), {}, {}, {}, {}, {}};
+          const std::size_t n = part.open.index.size();
+          if (n > 0)
+          {
+            if (const StretchFeedback *feedback = term.stress->feedback())
+              part.feedback = feedback->at(part.open.place);
+            else
+              part.stress = term.stress->at(part.open.place);
+            part.g.resize(n);
+            for (auto &d : part.g_d)
+              d.resize(n);
+          }
+          parts_.push_back(std::move(part));
+        }
+      }
+
+      void
+      values(const double t, const StretchSeen &seen, const FeedbackStress &m) override
+      {
+        const std::array<std::span<double>, n_directions> wanted = {{m.m_w, m.m_rate, m.m_near}};
+        all_.start();
+        for (Part &part : parts_)
+        {
+          all_.clear_term();
+          const double V = part.term->in_t.value(t);
+          if (!part.open.index.empty() && V != 0.)
+            write(part, t, V, seen, wanted);
+          all_.combine(part.term->multiplies);
+        }
+        all_.values(m.m);
+        for (std::size_t d = 0; d < n_directions; ++d)
+          all_.derivatives(d, wanted[d]);
+      }
+
+    private:
+      static constexpr std::size_t n_directions = 3, n_seen = 4; ///< w, w_t, w near; also w delayed
+
+      struct Part
+      {
+        const SumTerm *term;
+        OpenPoints open;
+        std::unique_ptr<ActiveStressAtPoints> stress; ///< or
+        std::unique_ptr<FeedbackAtPoints> feedback;
+        std::array<std::vector<double>, n_seen> seen;
+        std::vector<double> g;
+        std::array<std::vector<double>, n_directions> g_d;
+      };
+
+      void
+      write(Part &part,
+            const double t,
+            const double V,
+            const StretchSeen &seen,
+            const std::array<std::span<double>, n_directions> &wanted)
+      {
+        const OpenPoints &open = part.open;
+        const std::size_t n    = open.index.size();
+        if (part.stress)
+          part.stress->values(t, part.g);
+        else
+        {
+          const std::array<std::span<const double>, n_seen> all = {{seen.stretch, seen.rate, seen.near, seen.delayed}};
+          for (std::size_t k = 0; k < n_seen; ++k)
+          {
+            part.seen[k].resize(all[k].empty() ? 0 : n);
+            for (std::size_t i = 0; i < part.seen[k].size(); ++i)
+              part.seen[k][i] = all[k][open.index[i]];
+          }
+          FeedbackStress answer{part.g, {}, {}, {}};
+          std::span<double> *const derivatives[] = {&answer.m_w, &answer.m_rate, &answer.m_near};
+          for (std::size_t d = 0; d < n_directions; ++d)
+            if (!wanted[d].empty())
+              *derivatives[d] = part.g_d[d];
+          part.feedback->values(t, {part.seen[0], part.seen[1], part.seen[2], part.seen[3]}, answer);
+        }
+        for (std::size_t i = 0; i < n; ++i)
+          all_.f[open.index[i]] = open.factor[i] * V * part.g[i];
+        if (part.feedback)
+          for (std::size_t d = 0; d < n_directions; ++d)
+            if (!wanted[d].empty())
+              for (std::size_t i = 0; i < n; ++i)
+                all_.f_d[d][open.index[i]] = open.factor[i] * V * part.g_d[d][i];
+      }
+
+      Combination all_;
+      std::vector<Part> parts_;
+    };
+
+    const std::string section = "Active stress/Sum/";
+  } // namespace
+
+
+  class Sum::Feedback : public StretchFeedback
+  {
+  public:
+    explicit Feedback(const std::vector<SumTerm> &terms)
+      : terms_(terms)
+    {
+      for (std::size_t i = 0; i < terms.size(); ++i)
+        if (const StretchFeedback *feedback = terms[i].stress->feedback())
+        {
+          uses_rate_ = uses_rate_ || feedback->uses_rate();
+          take(feedback->distance(), distance_, "distance", i);
+          take(feedback->delay(), delay_, "delay", i);
+        }
+    }
+
+    std::unique_ptr<FeedbackAtPoints>
+    at(const std::vector<double> &points) const override
+    {
+      return std::make_unique<SumFeedbackAtPoints>(terms_, points);
+    }
+    bool
+    uses_rate() const override
+    {
+      return uses_rate_;
+    }
+    double
+    distance() const override
+    {
+      return distance_;
+    }
+    double
+    delay() const override
+    {
+      return delay_;
+    }
+
+  private:
+    static void
+    take(const double value, double &common, const char *name, const std::size_t i)
+    {
+      if (value != 0. && common != 0. && value != common)
+        throw InputError(
+          fmt::format("term {} uses the stretch with the {} {:g}, but another term with {:g}; one {} for all "
+                      "terms is expected",
+                      i + 1,
+                      name,
+                      value,
+                      common,
+                      name),
+          fmt::format("{}Term {}/Generator", section, i + 1));
+      if (value != 0.)
+        common = value;
+    }
+
+    const std::vector<SumTerm> &terms_;
+    bool uses_rate_  = false;
+    double distance_ = 0., delay_ = 0.;
+  };
+
+
+  void
+  SumTermParameters::add_parameters(Declarations &declarations)
+  {
+    const Range not_negative{.lower = 0., .lower_included = true};
+    declarations.choice("Combine",
+                        combine,
+                        {"add", "multiply"},
+                        "m is the sum of all terms that add, times the product of all terms that multiply.");
+    declarations.number("Factor", factor, any_number(), "What the term's generator is multiplied with.", "1");
+    const auto window = [&](WindowEntries &entries, const std::string &x, const std::string &whole, const char *unit)
+    {
+      declarations.numbers("Window in " + x,
+                           entries.interval,
+                           "From where to where in " + x +
+                             " the term acts, as two numbers; outside it is 0. Nothing: " + whole + ".",
+                           unit);
+      declarations.number("Edge width in " + x,
+                          entries.edge_width,
+                          not_negative,
+                          "Width of the window's edges, smooth steps inside of its ends; with 0 the term jumps there.",
+                          unit);
+    };
+    window(in_s, "s", "the whole body", "length");
+    window(in_t, "t", "all the time", "time");
+  }
+
+  Sum::Sum(std::vector<SumTerm> terms, const double length, const double end_time)
+    : terms_(std::move(terms))
+    , length_(length)
+    , end_time_(end_time)
+  {
+    if (terms_.empty())
+      throw InputError("the sum has no terms; a subsection \"Term 1\" in the subsection Sum is expected",
+                       "Active stress/Generator");
+    if (std::all_of(terms_.begin(),
+                    terms_.end(),
+                    [](const SumTerm &term)
+                    {
+                      return term.multiplies;
+                    }))
+      throw InputError("all terms of the sum multiply; at least one that adds is expected", section + "Term 1/Combine");
+    if (std::any_of(terms_.begin(),
+                    terms_.end(),
+                    [](const SumTerm &term)
+                    {
+                      return term.stress->feedback() != nullptr;
+                    }))
+      feedback_ = std::make_unique<Feedback>(terms_);
+  }
+
+  Sum::~Sum() = default;
+
+  std::unique_ptr<ActiveStressAtPoints>
+  Sum::at(const std::vector<double> &points) const
+  {
+    return std::make_unique<SumAtPoints>(terms_, points, /*wants_rate=*/false);
+  }
+
+  std::unique_ptr<ActiveStressAtPoints>
+  Sum::rate_at(const std::vector<double> &points) const
+  {
+    for (const SumTerm &term : terms_)
+      if (!term.stress->rate_at({0.}))
+        return nullptr;
+    return std::make_unique<SumAtPoints>(terms_, points, /*wants_rate=*/true);
+  }
+
+  std::optional<double>
+  Sum::period() const
+  {
+    if (period_)
+      return *period_;
+    period_.emplace();
+    std::vector<double> periods;
+    for (const SumTerm &term : terms_)
+    {
+      if (!term.in_t.is_whole())
+        return *period_;
+      if (const auto period = term.stress->period())
+        periods.push_back(*period);
+    }
+    if (periods.size() < terms_.size())
+      *period_ = find_period(*this, length_, end_time_);
+    else if (const auto common = common_period(periods))
+      *period_ = shortest_period(*this, length_, *common);
+    return *period_;
+  }
+
+  std::vector<double>
+  Sum::breaks_in_space() const
+  {
+    std::vector<double> all;
+    for (const SumTerm &term : terms_)
+      for (const auto &list : {term.stress->breaks_in_space(), term.in_s.breaks()})
+        all.insert(all.end(), list.begin(), list.end());
+    return all;
+  }
+
+  std::vector<double>
+  Sum::breaks_in_time() const
+  {
+    std::vector<double> all;
+    for (const SumTerm &term : terms_)
+      for (const auto &list : {term.stress->breaks_in_time(), term.in_t.breaks()})
+        all.insert(all.end(), list.begin(), list.end());
+    return all;
+  }
+
+  const StretchFeedback *
+  Sum::feedback() const
+  {
+    return feedback_.get();
+  }
+
+  const StressFailures *
+  Sum::failures() const
+  {
+    bool may_fail = false;
+    StressFailures all;
+    for (const SumTerm &term : terms_)
+      if (const StressFailures *own = term.stress->failures())
+      {
+        may_fail = true;
+        all.count += own->count;
+        if (!own->latest.empty())
+          all.latest = own->latest;
+      }
+    failures_ = all;
+    return may_fail ? &failures_ : nullptr;
+  }
+
+  void
+  Sum::report(std::ostream &out) const
+  {
+    for (std::size_t i = 0; i < terms_.size(); ++i)
+    {
+      const SumTerm &term = terms_[i];
+      out << fmt::format("Term {} {}: {}", i + 1, term.multiplies ? "multiplies" : "adds", term.name);
+      if (term.factor != 1.)
+        out << fmt::format(", factor {:g}", term.factor);
+      for (const std::string &words : {term.in_s.in_words(), term.in_t.in_words()})
+        if (!words.empty())
+          out << ", " << words;
+      out << '\n';
+      std::ostringstream own;
+      term.stress->report(own);
+      std::istringstream lines(own.str());
+      for (std::string line; std::getline(lines, line);)
+        out << "  " << line << '\n';
+    }
+  }
+} // namespace crawler

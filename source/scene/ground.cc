@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/formula_input.h>
+#include <crawler/scene/friction_law/expression_friction.h>
+#include <crawler/scene/friction_law/newtonian.h>
+#include <crawler/scene/ground.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+
+namespace crawler
+{
+  namespace
+  {
+    struct Law
+    {
+      std::string name, description;
+      std::function<std::unique_ptr<const FrictionLaw>(const GroundParameters &, const Body &, double)> create;
+    };
+
+    /// Looked at where every body is: near the stretch 1. Others are looked at when a body gets there.
+    void
+    require_positive_law(const FrictionLaw &law, const std::string &formula)
+    {
+      constexpr unsigned int n = 100;
+      for (unsigned int i = 0; i <= n; ++i)
+      {
+        const double w = 0.9 + 0.2 * i / n;
+        double g       = 0.;
+        law.values({&w, 1}, {&g, 1});
+        if (!(std::isfinite(g) && g > 0.))
+          throw InputError(
+            fmt::format("the friction law \"{}\" is {} at w = {:g}; a positive number is expected", formula, g, w),
+            "Ground/Expression");
+      }
+    }
+
+    /// The one list of all friction laws.
+    const std::vector<Law> &
+    laws()
+    {
+      static const std::vector<Law> list = {
+        {"power",
+         "gamma times stretch^(1-p), p the Anchoring exponent",
+         [](const auto &, const Body &body, double) -> std::unique_ptr<const FrictionLaw>
+         {
+           return std::make_unique<PowerFriction>(body.friction_coefficient, body.friction_exponent());
+         }},
+        {"Newtonian",
+         NewtonianFriction::description,
+         [](const auto &, const Body &body, double) -> std::unique_ptr<const FrictionLaw>
+         {
+           return std::make_unique<NewtonianFriction>(body.friction_coefficient);
+         }},
+        {"expression",
+         ExpressionFriction::description,
+         [](const auto &p, const Body &body, const double end_time) -> std::unique_ptr<const FrictionLaw>
+         {
+           auto law = std::make_unique<ExpressionFriction>(
+             body.friction_coefficient,
+             read_formula({"friction law", p.expression, p.constants, "Ground/Expression", "Ground/Constants", {"w"}},
+                          body.length,
+                          end_time));
+           require_positive_law(*law, p.expression);
+           return law;
+         }},
+      };
+      return list;
+    }
+  } // namespace
+
+  void
+  GroundParameters::add_parameters(Declarations &declarations)
+  {
+    std::vector<std::string> names;
+    std::string documentation = "Friction per reference length and velocity as a function of the stretch: ";
+    for (const Law &law : laws())
+    {
+      documentation += (names.empty() ? "" : "; ") + law.name + " (" + law.description + ")";
+      names.push_back(law.name);
+    }
+    declarations.enter("Ground");
+    declarations.text("Profile",
+                      profile,
+                      "a formula of x, or a CSV file (a name that ends in .csv) with the header x,value",
+                      "Factor of the friction along the ground; x is the place on the ground, where the body lies from "
+                      "0 to L before it is stretched.",
+                      "1");
+    declarations.choice(
+      "Profile interpolation", interpolation, {"cubic", "linear"}, "Between the rows of the CSV file.");
+    declarations.choice("Outside",
+                        outside,
+                        {"hold", "error"},
+                        "Beyond the first and the last row of the CSV file: their values hold, or the run ends.");
+    declarations.choice("Friction law", friction_law, names, documentation + ".");
+    declarations.text("Expression",
+                      expression,
+                      "a formula of w",
+                      "For the law expression: friction divided by gamma, as a function of the stretch w; positive.",
+                      "1");
+    declarations.text("Constants", constants, "a list name=number, name=number", "Constants that it may use.");
+    declarations.number("Backward ratio",
+                        backward_ratio,
+                        between(0.1, 10),
+                        "Resistance to backward motion (v < 0) over that to forward motion, r; in between the friction "
+                        "has the factor (1+r)/2 + (1-r)/2 tanh(v/v_s).",
+                        "1");
+    declarations.number("Switching velocity",
+                        switching_velocity,
+                        positive(),
+                        "The velocity v_s of this transition; needed if the Backward ratio is not 1.",
+                        "length/time");
+    declarations.leave();
+  }
+
+  double
+  Direction::factor(const double v) const
+  {
+    return 0.5 * (1. + ratio) + 0.5 * (1. - ratio) * std::tanh(v / switching_velocity);
+  }
+
+  double
+  Direction::force_slope(const double v) const
+  {
+    const double x = v / switching_velocity, tangent = std::tanh(x);
+    return factor(v) + 0.5 * (1. - ratio) * x * (1. - tangent * tangent);
+  }
+
+  std::unique_ptr<const FrictionLaw>
+  create_friction_law(const GroundParameters &parameters, const Body &body, const double end_time)
+  {
+    for (const Law &law : laws())
+      if (law.name == parameters.friction_law)
+        return law.create(parameters, body, end_time);
+    throw std::logic_error("the parameters name a friction law that is not in the list");
+  }
+
+  Ground
+  create_ground(const GroundParameters &parameters, const Body &body, const double end_time)
+  {
+    const ProfileInput input{
+      "profile of the ground", "x", parameters.profile, parameters.interpolation, parameters.outside, "Ground/Profile"};
+    Ground ground{read_profile(input, body.length, end_time), {}};
+    if (ground.profile)
+      require_positive(*ground.profile, 0., body.length, input);
+    if (parameters.backward_ratio != 1.)
+    {
+      if (!parameters.switching_velocity)
+        throw InputError(fmt::format("Backward ratio is {:g} and Switching velocity is automatic, but a velocity is "
+                                     "expected",
+                                     parameters.backward_ratio),
+                         "Ground/Switching velocity");
+      ground.direction = {parameters.backward_ratio, *parameters.switching_velocity};
+    }
+    return ground;
+  }
+} // namespace crawler

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/cubic_spline.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/formula_gradient.h>
+#include <crawler/scene/active_stress/formula_input.h>
+#include <crawler/scene/profile.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    class FormulaProfile : public Profile
+    {
+    public:
+      explicit FormulaProfile(std::shared_ptr<const Formula> formula)
+        : gradient_(std::move(formula))
+      {
+      }
+
+      void
+      values(const std::span<const double> x, const std::span<double> f) const override
+      {
+        const std::span<const double> places[] = {x};
+        gradient_.evaluate(places, f);
+      }
+      void
+      values_and_slopes(const std::span<const double> x,
+                        const std::span<double> f,
+                        const std::span<double> slope) const override
+      {
+        const std::span<const double> places[] = {x};
+        const std::span<double> slopes[]       = {slope};
+        gradient_.evaluate(places, f, slopes);
+      }
+
+    private:
+      mutable FormulaGradient gradient_; ///< has room for intermediate values
+    };
+
+    /// Linear or cubic interpolation of samples.
+    class TableProfile : public Profile
+    {
+    public:
+      TableProfile(std::vector<double> x, std::vector<double> y, const bool cubic, const bool hold)
+        : x_(std::move(x))
+        , y_(std::move(y))
+        , hold_(hold)
+      {
+        if (cubic)
+        {
+          spline_     = std::make_unique<CubicSpline>(x_);
+          curvatures_ = spline_->curvatures(y_);
+        }
+      }
+
+      void
+      values(const std::span<const double> x, const std::span<double> f) const override
+      {
+        for (std::size_t i = 0; i < x.size(); ++i)
+          f[i] = at(x[i]).first;
+      }
+      void
+      values_and_slopes(const std::span<const double> x,
+                        const std::span<double> f,
+                        const std::span<double> slope) const override
+      {
+        for (std::size_t i = 0; i < x.size(); ++i)
+          std::tie(f[i], slope[i]) = at(x[i]);
+      }
+      std::vector<double>
+      breaks() const override
+      {
+        return spline_ ? std::vector<double>{x_.front(), x_.back()} : x_;
+      }
+
+    private:
+      std::pair<double, double>
+      at(const double x) const
+      {
+        const double round_off = 1e-12 * (x_.back() - x_.front());
+        if (!(x >= x_.front() && x <= x_.back()))
+        {
+          const bool is_left = x < x_.front();
+          if (!hold_ && !(std::abs(x - (is_left ? x_.front() : x_.back())) <= round_off))
+            return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+          return {is_left ? y_.front() : y_.back(), 0.};
+        }
+        if (spline_)
+        {
+          const auto p = spline_->place(x);
+          return {p.a * y_[p.i] + p.b * y_[p.i + 1] + p.c * curvatures_[p.i] + p.d * curvatures_[p.i + 1],
+                  p.da * y_[p.i] + p.db * y_[p.i + 1] + p.dc * curvatures_[p.i] + p.dd * curvatures_[p.i + 1]};
+        }
+        const auto right   = static_cast<std::size_t>(std::upper_bound(x_.begin(), x_.end() - 1, x) - x_.begin());
+        const double slope = (y_[right] - y_[right - 1]) / (x_[right] - x_[right - 1]);
+        return {y_[right - 1] + slope * (x - x_[right - 1]), slope};
+      }
+
+      const std::vector<double> x_, y_;
+      const bool hold_;
+      std::unique_ptr<CubicSpline> spline_;
+      std::vector<double> curvatures_;
+    };
+
+    class ScaledProfile : public Profile
+    {
+    public:
+      ScaledProfile(std::shared_ptr<const Profile> profile, const double unit)
+        : profile_(std::move(profile))
+        , unit_(unit)
+      {
+      }
+
+      void
+      values(const std::span<const double> x, const std::span<double> f) const override
+      {
+        scale(x);
+        profile_->values(scaled_, f);
+      }
+      void
+      values_and_slopes(const std::span<const double> x,
+                        const std::span<double> f,
+                        const std::span<double> slope) const override
+      {
+        scale(x);
+        profile_->values_and_slopes(scaled_, f, slope);
+        for (double &value : slope)
+          value *= unit_;
+      }
+      std::vector<double>
+      breaks() const override
+      {
+        auto result = profile_->breaks();
+        for (double &x : result)
+          x /= unit_;
+        return result;
+      }
+
+    private:
+      void
+      scale(const std::span<const double> x) const
+      {
+        scaled_.assign(x.begin(), x.end());
+        for (double &value : scaled_)
+          value *= unit_;
+      }
+
+      const std::shared_ptr<const Profile> profile_;
+      const double unit_;
+      mutable std::vector<double> scaled_;
+    };
+
+    std::shared_ptr<const Profile>
+    read_table(const ProfileInput &input)
+    {
+      std::ifstream in(input.text);
+      const std::string header = input.variable + ",value";
+      if (!in)
+        throw InputError(
+          fmt::format("cannot read \"{}\"; a formula of {}, or the name of a CSV file with the header {} "
+                      "is expected",
+                      input.text,
+                      input.variable,
+                      header),
+          input.entry);
+      std::vector<double> x, y;
+      std::string line;
+      for (unsigned int row = 1; std::getline(in, line); ++row)
+      {
+        line = trimmed(line); // of a carriage return, too
+        if (line.empty())
+          continue;
+        const auto comma = line.find(',');
+        if (row == 1)
+        {
+          if (comma == std::string::npos ||
+              trimmed(line.substr(0, comma)) + "," + trimmed(line.substr(comma + 1)) != header)
+            throw InputError(
+              fmt::format("the first row of \"{}\" is \"{}\", but the header {} is expected", input.text, line, header),
+              input.entry);
+          continue;
+        }
+        const auto first  = comma == std::string::npos ? std::nullopt : to_number(trimmed(line.substr(0, comma)));
+        const auto second = comma == std::string::npos ? std::nullopt : to_number(trimmed(line.substr(comma + 1)));
+        if (!first || !second)
+          throw InputError(
+            fmt::format("row {} of \"{}\" is \"{}\", but two numbers {} are expected", row, input.text, line, header),
+            input.entry);
+        if (!(*second > 0.))
+          throw InputError(
+            fmt::format(
+              "row {} of \"{}\" has the value {:g}, but a positive number is expected", row, input.text, *second),
+            input.entry);
+        if (!x.empty() && !(*first > x.back()))
+          throw InputError(fmt::format("row {} of \"{}\" has {} = {:g} after {:g}, but increasing numbers are expected",
+                                       row,
+                                       input.text,
+                                       input.variable,
+                                       *first,
+                                       x.back()),
+                           input.entry);
+        x.push_back(*first);
+        y.push_back(*second);
+      }
+      const bool cubic        = input.interpolation == "cubic";
+      const std::size_t least = cubic ? 4 : 2;
+      if (x.size() < least)
+        throw InputError(fmt::format("\"{}\" has {} rows of numbers, but at least {} are expected for {} interpolation",
+                                     input.text,
+                                     x.size(),
+                                     least,
+                                     input.interpolation),
+                         input.entry);
+      return std::make_shared<TableProfile>(std::move(x), std::move(y), cubic, input.outside == "hold");
+    }
+  } // namespace
+
+  double
+  Profile::value(const double x) const
+  {
+    double f = 0.;
+    values({&x, 1}, {&f, 1});
+    return f;
+  }
+
+  std::shared_ptr<const Profile>
+  read_profile(const ProfileInput &input, const double length, const double end_time)
+  {
+    const std::string text = trimmed(input.text);
+    if (to_number(text) == 1.)
+      return nullptr;
+    if (text.ends_with(".csv"))
+      return read_table(input);
+    return std::make_shared<FormulaProfile>(
+      read_formula({input.quantity, text, "", input.entry, input.entry, {input.variable}}, length, end_time));
+  }
+
+  std::shared_ptr<const Profile>
+  in_units(std::shared_ptr<const Profile> profile, const double unit)
+  {
+    return profile ? std::make_shared<ScaledProfile>(std::move(profile), unit) : nullptr;
+  }
+
+  void
+  require_positive(const Profile &profile, const double from, const double to, const ProfileInput &input)
+  {
+    constexpr unsigned int n = 1000;
+    for (unsigned int i = 0; i <= n; ++i)
+    {
+      const double x = from + (to - from) * i / n, f = profile.value(x);
+      if (!(std::isfinite(f) && f > 0.))
+        throw InputError(fmt::format("the {} \"{}\" is {} at {} = {:g}; a positive number is expected",
+                                     input.quantity,
+                                     input.text,
+                                     f,
+                                     input.variable,
+                                     x),
+                         input.entry);
+    }
+  }
+} // namespace crawler

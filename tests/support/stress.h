@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include "run_text.h"
+
+#include <crawler/base/exceptions.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler::test
+{
+  /// The active stress of a scene, by full names of entries.
+  inline std::unique_ptr<const ActiveStress>
+  stress_with(const Settings &settings)
+  {
+    return std::move(parameters_with(settings).create_scene().active_stress);
+  }
+
+  inline std::vector<double>
+  values(const ActiveStress &stress, const std::vector<double> &points, const double t)
+  {
+    std::vector<double> m(points.size());
+    stress.at(points)->values(t, m);
+    return m;
+  }
+
+  inline std::vector<double>
+  rates(const ActiveStress &stress, const std::vector<double> &points, const double t)
+  {
+    std::vector<double> m(points.size());
+    stress.rate_at(points)->values(t, m);
+    return m;
+  }
+
+  inline double
+  largest_difference(const std::vector<double> &a, const std::vector<double> &b)
+  {
+    double largest = 0.;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      largest = std::max(largest, std::abs(a[i] - b[i]));
+    return largest;
+  }
+
+  /// n + 1 places from 0 to @p length.
+  inline std::vector<double>
+  places(const double length, const unsigned int n = 40)
+  {
+    std::vector<double> points;
+    for (unsigned int i = 0; i <= n; ++i)
+      points.push_back(length * i / n);
+    return points;
+  }
+
+  /// The rate against differences of fourth order, at these @p times.
+  inline void
+  expect_rate(const ActiveStress &stress,
+              const double length,
+              const std::vector<double> &times,
+              const double tolerance,
+              const double h = 1e-4)
+  {
+    const auto points = places(length);
+    for (const double t : times)
+    {
+      const auto m = [&](const double at)
+      {
+        return values(stress, points, at);
+      };
+      const auto a = m(t - 2. * h), b = m(t - h), c = m(t + h), d = m(t + 2. * h), rate = rates(stress, points, t);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        EXPECT_NEAR(rate[i], (8. * (c[i] - b[i]) - (d[i] - a[i])) / (12. * h), tolerance)
+          << "s = " << points[i] << ", t = " << t;
+    }
+  }
+
+  /// What is wrong with these settings.
+  inline std::string
+  complaint(const Settings &settings)
+  {
+    try
+    {
+      parameters_with(settings).create_scene();
+    }
+    catch (const InputError &error)
+    {
+      return error.entry + ": " + error.what();
+    }
+    return "nothing";
+  }
+
+  inline void
+  expect_complaint(const Settings &settings, const std::vector<std::string> &words)
+  {
+    const std::string found = complaint(settings);
+    for (const std::string &word : words)
+      EXPECT_NE(found.find(word), std::string::npos) << "\"" << word << "\" is not in \"" << found << "\"";
+  }
+} // namespace crawler::test

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/program.h"
+#include "../../support/run_text.h"
+
+#include <crawler/base/exceptions.h>
+#include <crawler/scene/active_stress/formula_gradient.h>
+#include <crawler/scene/active_stress/formula_input.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  /// What the user is told.
+  std::string
+  message(const test::Settings &settings)
+  {
+    try
+    {
+      test::parameters_with(settings).create_scene();
+    }
+    catch (const InputError &error)
+    {
+      return error.entry + ": " + error.what();
+    }
+    return "";
+  }
+
+  void
+  expect_message(const test::Settings &settings, const std::string &entry, const std::string &part)
+  {
+    const std::string found = message(settings);
+    EXPECT_TRUE(found.starts_with(entry + ": ")) << found;
+    EXPECT_NE(found.find(part), std::string::npos) << found;
+  }
+
+  class ProfileFile : public testing::Test
+  {
+  protected:
+    std::string
+    file(const std::string &content)
+    {
+      const auto path = folder_.path / "profile.csv";
+      test::write_text(path, content);
+      return path.string();
+    }
+    std::shared_ptr<const Profile>
+    table(const std::string &content, const std::string &interpolation, const std::string &outside = "hold")
+    {
+      return read_profile({"profile", "x", file(content), interpolation, outside, "Ground/Profile"}, 1., 1.);
+    }
+    test::TemporaryFolder folder_;
+  };
+} // namespace
+
+/// The derivative of a formula of several variables with respect to each, against differences.
+TEST(FormulaGradient, MatchesDifferences)
+{
+  const auto formula = read_formula({"m",
+                                     "s*w^2*sin(t)+exp(-w_t)*w+(w_t>0 ? w_near*w : w_near^3)+max(w,2*w_t)",
+                                     "",
+                                     "f",
+                                     "c",
+                                     {"s", "t", "w", "w_t", "w_near"}},
+                                    1.,
+                                    1.);
+  FormulaGradient gradient(formula);
+  constexpr std::size_t n = 100; // more than one block
+  std::vector<std::vector<double>> x(5, std::vector<double>(n));
+  for (std::size_t v = 0; v < 5; ++v)
+    for (std::size_t i = 0; i < n; ++i)
+      x[v][i] = 0.9 + 0.5 * std::sin(3. * static_cast<double>(v) + 0.7 * static_cast<double>(i));
+  for (std::size_t v = 0; v < 5; ++v)
+  {
+    std::vector<double> f(n), slope(n), plus(n), minus(n);
+    const auto evaluate = [&](const double step, std::vector<double> &result, const bool with_slope)
+    {
+      auto shifted = x;
+      for (double &value : shifted[v])
+        value += step;
+      std::vector<std::span<const double>> arguments(shifted.begin(), shifted.end());
+      std::vector<std::span<double>> derivatives(5);
+      if (with_slope)
+        derivatives[v] = slope;
+      gradient.evaluate(arguments, result, derivatives);
+    };
+    evaluate(0., f, true);
+    evaluate(1e-6, plus, false);
+    evaluate(-1e-6, minus, false);
+    for (std::size_t i = 0; i < n; ++i)
+      EXPECT_NEAR(slope[i], (plus[i] - minus[i]) / 2e-6, 1e-8) << "variable " << v;
+  }
+  EXPECT_TRUE(formula->uses(4));
+}
+
+TEST_F(ProfileFile, InterpolatesAndHolds)
+{
+  // A cubic polynomial is reproduced by the spline, with its slope.
+  const auto cubic_of = [](const double x)
+  {
+    return 2. + x - 0.5 * x * x + 0.3 * x * x * x;
+  };
+  std::string rows = "x,value\n";
+  for (const double x : {0., 0.3, 0.5, 1.1, 2.})
+    rows += to_text(x) + "," + to_text(cubic_of(x)) + "\r\n";
+  const auto cubic = table(rows, "cubic");
+  for (const double x : {0., 0.4, 1.9})
+  {
+    double f = 0., slope = 0.;
+    cubic->values_and_slopes({&x, 1}, {&f, 1}, {&slope, 1});
+    EXPECT_NEAR(f, cubic_of(x), 1e-13);
+    EXPECT_NEAR(slope, 1. - x + 0.9 * x * x, 1e-12);
+  }
+  const auto linear = table("x,value\n0,1\n\n1,3\n", "linear");
+  EXPECT_DOUBLE_EQ(linear->value(0.25), 1.5);
+  EXPECT_EQ(linear->value(-7.), 1.);
+  EXPECT_EQ(linear->value(7.), 3.);
+  EXPECT_TRUE(std::isnan(table("x,value\n0,1\n1,3\n", "linear", "error")->value(1.1)));
+  // Units of the places do not change the profile.
+  const auto scaled = in_units(linear, 10.);
+  const double x    = 0.025;
+  double f = 0., slope = 0.;
+  scaled->values_and_slopes({&x, 1}, {&f, 1}, {&slope, 1});
+  EXPECT_DOUBLE_EQ(f, 1.5);
+  EXPECT_DOUBLE_EQ(slope, 20.);
+}
+
+TEST_F(ProfileFile, BadFilesAreNamedWithTheirRow)
+{
+  const auto expect = [&](const std::string &content, const std::string &part)
+  {
+    expect_message(
+      {{"Ground/Profile", file(content)}, {"Ground/Profile interpolation", "linear"}}, "Ground/Profile", part);
+  };
+  expect("s,value\n0,1\n1,1\n", "the header x,value is expected");
+  expect("x,value\n0,1\n1,two\n", "row 3 ");
+  expect("x,value\n0,1\n1\n", "row 3 ");
+  expect("x,value\n0,1\n1,-1\n", "positive number is expected");
+  expect("x,value\n0,1\n0,2\n", "increasing numbers are expected");
+  expect("x,value\n0,1\n", "at least 2 are expected");
+  expect_message({{"Ground/Profile", "nowhere.csv"}}, "Ground/Profile", "cannot read");
+}
+
+TEST(GeneralInput, IsCheckedInOneSentence)
+{
+  expect_message(
+    {{"Body/Elastic modulus profile", "1-2*s"}}, "Body/Elastic modulus profile", "positive number is expected");
+  expect_message(
+    {{"Body/Friction profile", "1/(s-0.5)^0"}, {"Body/Initial stretch", "s"}}, "Body/Initial stretch", "at s = 0");
+  expect_message({{"Ground/Profile", "1+t"}}, "Ground/Profile", "position 3");
+  expect_message(
+    {{"Ground/Friction law", "expression"}, {"Ground/Expression", "w-1"}}, "Ground/Expression", "positive");
+  expect_message(
+    {{"Ground/Friction law", "expression"}, {"Ground/Expression", ""}}, "Ground/Expression", "expression of w");
+  expect_message({{"Ground/Backward ratio", "2"}}, "Ground/Switching velocity", "a velocity is expected");
+  expect_message({{"Ground/Profile", "1+x"}, {"Model", "kinematic"}}, "Model", "Ground/Profile");
+  expect_message({{"Ground/Profile", "1+x"}, {"Time/Cycle stop", "on"}, {"Output/Number of snapshots", "0"}},
+                 "Time/Cycle stop",
+                 "Ground/Profile");
+  const auto feedback = [](const std::string &formula)
+  {
+    return test::Settings{{"Active stress/Generator", "strain feedback"},
+                          {"Active stress/Strain feedback/Active stress", formula}};
+  };
+  const std::string section = "Active stress/Strain feedback/";
+  expect_message(feedback("w_neer"), section + "Active stress", "nearest name is \"w_near\"");
+  expect_message(feedback("w_near"), section + "Distance", "other than 0");
+  expect_message(feedback("w_delayed"), section + "Delay", "at least");
+  expect_message(feedback("log(w-1)"), section + "Active stress", "finite number is expected");
+  EXPECT_EQ(message(feedback("w_t*(w-1)")), "");
+}

@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/run_text.h"
+
+#include <crawler/base/exceptions.h>
+#include <crawler/scene/active_stress/expression.h>
+#include <crawler/scene/active_stress/sum.h>
+#include <crawler/scene/period.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+using namespace crawler;
+using crawler::test::parameters_with;
+using crawler::test::Settings;
+
+namespace
+{
+  constexpr double L = 2., T = 3.;
+  const std::string sum = "Active stress/Sum/";
+
+  std::unique_ptr<const ActiveStress>
+  expression(const std::string &formula)
+  {
+    ExpressionParameters parameters;
+    parameters.active_stress = formula;
+    return std::make_unique<Expression>(parameters, L, T);
+  }
+
+  SumTerm
+  term(std::unique_ptr<const ActiveStress> stress,
+       const bool multiplies     = false,
+       const double factor       = 1.,
+       const WindowEntries &in_s = {},
+       const WindowEntries &in_t = {})
+  {
+    return {"test", std::move(stress), multiplies, factor, Window(in_s, 's', sum, L), Window(in_t, 't', sum, T)};
+  }
+
+  template <typename... Terms>
+  Sum
+  sum_of(Terms &&...terms)
+  {
+    std::vector<SumTerm> list;
+    (list.push_back(std::move(terms)), ...);
+    return {std::move(list), L, T};
+  }
+
+  const std::vector<double> points = {0., 0.3, 0.8, 1., 1.1, 1.45, 2.};
+  const std::vector<double> times  = {0., 0.17, 0.9, 1.31, 2.2, 3.};
+
+  std::vector<double>
+  values(const ActiveStress &stress, const double t, const std::vector<double> &places = points)
+  {
+    std::vector<double> m(places.size());
+    stress.at(places)->values(t, m);
+    return m;
+  }
+
+  std::vector<double>
+  rates(const ActiveStress &stress, const double t)
+  {
+    std::vector<double> m(points.size());
+    stress.rate_at(points)->values(t, m);
+    return m;
+  }
+
+  /// The rate by central differences, to the fourth order.
+  std::vector<double>
+  differences(const ActiveStress &stress, const double t)
+  {
+    constexpr double h = 1e-3;
+    const auto a = values(stress, t - 2 * h), b = values(stress, t - h), c = values(stress, t + h),
+               d = values(stress, t + 2 * h);
+    std::vector<double> result;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      result.push_back((a[i] - 8. * b[i] + 8. * c[i] - d[i]) / (12. * h));
+    return result;
+  }
+
+  void
+  expect_near(const std::vector<double> &a, const std::vector<double> &b, const double tolerance)
+  {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_NEAR(a[i], b[i], tolerance) << "point " << i;
+  }
+} // namespace
+
+TEST(Sum, OfTwoExpressionsIsTheExpressionOfTheSum)
+{
+  const Sum both        = sum_of(term(expression("sin(3*s+2*t)")), term(expression("s*s*cos(t)"), false, -0.5));
+  const auto by_hand    = expression("sin(3*s+2*t) - 0.5*s*s*cos(t)");
+  const Sum with_factor = sum_of(term(expression("sin(3*s+2*t)")),
+                                 term(expression("exp(-t)*(1+s)"), true, 2.),
+                                 term(expression("s*s*cos(t)")),
+                                 term(expression("cos(s-t)"), true));
+  const auto product    = expression("(sin(3*s+2*t) + s*s*cos(t))*2*exp(-t)*(1+s)*cos(s-t)");
+  for (const double t : times)
+  {
+    expect_near(values(both, t), values(*by_hand, t), 1e-15);
+    expect_near(rates(both, t), rates(*by_hand, t), 1e-14);
+    expect_near(values(with_factor, t), values(*product, t), 2e-14);
+    expect_near(rates(with_factor, t), rates(*product, t), 5e-14);
+  }
+}
+
+/// Windows by their closed form; neighbours whose edges overlap add up to 1.
+TEST(Sum, WindowsCutTermsOutAndBlendThem)
+{
+  const Sum cut = sum_of(term(expression("1+s+t"), false, 1., {{0.5, 1.1}, 0.}, {{1., 2.5}, 0.}));
+  for (const double t : times)
+  {
+    const auto m = values(cut, t);
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      const bool inside = points[i] >= 0.5 && points[i] < 1.1 && t >= 1. && t < 2.5;
+      EXPECT_EQ(m[i], inside ? 1. + points[i] + t : 0.) << points[i] << " " << t;
+    }
+  }
+  EXPECT_EQ(cut.breaks_in_space(), (std::vector<double>{0.5, 1.1}));
+  EXPECT_EQ(cut.breaks_in_time(), (std::vector<double>{1., 2.5}));
+
+  const auto whole = expression("sin(s)+t");
+  for (const double edge : {0., 0.4})
+  {
+    const Sum blended = sum_of(term(expression("sin(s)+t"), false, 1., {{-1., 1. + edge / 2.}, edge}),
+                               term(expression("sin(s)+t"), false, 1., {{1. - edge / 2., 3.}, edge}));
+    const Sum faded   = sum_of(term(expression("sin(s)+t"), false, 1., {}, {{-1., 1.3 + edge / 2.}, edge}),
+                             term(expression("sin(s)+t"), false, 1., {}, {{1.3 - edge / 2., 4.}, edge}));
+    for (const double t : times)
+    {
+      expect_near(values(blended, t), values(*whole, t), 1e-14);
+      expect_near(rates(blended, t), rates(*whole, t), 1e-14);
+      expect_near(values(faded, t), values(*whole, t), 1e-14);
+      expect_near(rates(faded, t), rates(*whole, t), 1e-13);
+    }
+    EXPECT_EQ(blended.breaks_in_space().size(), edge > 0. ? 0u : 2u);
+  }
+}
+
+/// The product rule with edges in time, against differences.
+TEST(Sum, RateIsTheDerivativeOfTheValues)
+{
+  const Sum all = sum_of(term(expression("sin(s+5*t)"), false, 0.7, {{0.2, 1.9}, 0.3}, {{0.1, 2.}, 0.8}),
+                         term(expression("t*t*s"), false, 1.),
+                         term(expression("1+0.3*cos(4*t-s)"), true, 1.5, {{-1., 1.7}, 0.5}, {{-1., 2.9}, 0.9}));
+  for (const double t : {0.35, 0.6, 1.2, 1.7, 2.4})
+    expect_near(rates(all, t), differences(all, t), 1e-7);
+}
+
+TEST(Sum, HasThePeriodThatItsTermsHaveInCommon)
+{
+  EXPECT_DOUBLE_EQ(*common_period({1., 1.5}), 3.);
+  EXPECT_DOUBLE_EQ(*common_period({1. / 3., 0.25, 0.5}), 1.);
+  EXPECT_DOUBLE_EQ(*common_period({0.7}), 0.7);
+  EXPECT_FALSE(common_period({1., std::numbers::sqrt2}));
+  EXPECT_FALSE(common_period({1., 1. + 1e-7}));
+
+  const auto period = [](const std::string &a, const std::string &b, const bool multiplies = false)
+  {
+    std::vector<SumTerm> terms;
+    for (const auto &[formula, is_factor] : {std::pair(a, false), std::pair(b, multiplies)})
+    {
+      ExpressionParameters parameters;
+      parameters.active_stress = formula;
+      terms.push_back({"test",
+                       std::make_unique<Expression>(parameters, L, 12.),
+                       is_factor,
+                       1.,
+                       Window({}, 's', sum, L),
+                       Window({}, 't', sum, 12.)});
+    }
+    return Sum(std::move(terms), L, 12.).period();
+  };
+  EXPECT_NEAR(*period("sin(2*pi*t+s)", "cos(2*pi*t/1.5-s)"), 3., 1e-9);
+  EXPECT_FALSE(period("sin(2*pi*t+s)", "cos(2*pi*t/sqrt(2)-s)"));
+  EXPECT_NEAR(*period("sin(2*pi*t)", "sin(2*pi*t)", true), 0.5, 1e-9); // the square
+  EXPECT_NEAR(*period("sin(2*pi*t)", "1+s", true), 1., 1e-9);          // a steady term has none of its own
+  EXPECT_FALSE(sum_of(term(expression("sin(2*pi*t/0.5)"), false, 1., {}, {{1., 2.}, 0.})).period());
+}
+
+/// Values by the formula, derivatives by differences (exact for a polynomial of degree 2).
+TEST(Sum, CombinesFeedback)
+{
+  class Feedback : public ActiveStress
+  {
+  public:
+    std::unique_ptr<ActiveStressAtPoints>
+    at(const std::vector<double> &points) const override
+    {
+      return inner_.at(points);
+    }
+    const StretchFeedback *
+    feedback() const override
+    {
+      return &answer_;
+    }
+    struct Answer : StretchFeedback
+    {
+      Answer(const double distance, const double delay)
+        : distance_(distance)
+        , delay_(delay)
+      {
+      }
+      std::unique_ptr<FeedbackAtPoints>
+      at(const std::vector<double> &) const override
+      {
+        struct Evaluator : FeedbackAtPoints
+        {
+          void
+          values(double, const StretchSeen &seen, const FeedbackStress &m) override
+          {
+            for (std::size_t i = 0; i < m.m.size(); ++i)
+            {
+              m.m[i] =
+                0.5 * seen.stretch[i] * seen.stretch[i] + 0.2 * seen.rate[i] + 0.6 * seen.near[i] * seen.delayed[i];
+              if (!m.m_w.empty())
+                m.m_w[i] = seen.stretch[i];
+              if (!m.m_rate.empty())
+                m.m_rate[i] = 0.2;
+              if (!m.m_near.empty())
+                m.m_near[i] = 0.6 * seen.delayed[i];
+            }
+          }
+        };
+        return std::make_unique<Evaluator>();
+      }
+      bool
+      uses_rate() const override
+      {
+        return true;
+      }
+      double
+      distance() const override
+      {
+        return distance_;
+      }
+      double
+      delay() const override
+      {
+        return delay_;
+      }
+      const double distance_, delay_;
+    };
+    Feedback(const double distance, const double delay)
+      : inner_({"1.3", ""}, L, T)
+      , answer_(distance, delay)
+    {
+    }
+
+  private:
+    const Expression inner_;
+    const Answer answer_;
+  };
+
+  const Sum all = sum_of(term(std::make_unique<Feedback>(0.1, 0.2), false, 3., {{0.5, 1.2}, 0.}),
+                         term(expression("s+t")),
+                         term(std::make_unique<Feedback>(0.1, 0.), true, 0.5),
+                         term(expression("1+s*t"), true));
+  ASSERT_NE(all.feedback(), nullptr);
+  EXPECT_TRUE(all.feedback()->uses_rate());
+  EXPECT_EQ(all.feedback()->distance(), 0.1);
+  EXPECT_EQ(all.feedback()->delay(), 0.2);
+
+  const std::size_t n = points.size();
+  const double t      = 0.7;
+  std::vector<double> w(n), rate(n), near(n), delayed(n);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    w[i]       = 0.8 + 0.1 * static_cast<double>(i);
+    rate[i]    = 0.3 - 0.2 * static_cast<double>(i);
+    near[i]    = 1.2 - 0.1 * static_cast<double>(i);
+    delayed[i] = 0.9 + 0.05 * static_cast<double>(i);
+  }
+  const auto at       = all.feedback()->at(points);
+  const auto evaluate = [&]()
+  {
+    std::vector<double> m(n);
+    at->values(t, {w, rate, near, delayed}, {m, {}, {}, {}});
+    return m;
+  };
+  std::vector<double> m(n), m_w(n), m_rate(n), m_near(n);
+  at->values(t, {w, rate, near, delayed}, {m, m_w, m_rate, m_near});
+  expect_near(m, evaluate(), 0.);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const double f = 0.5 * w[i] * w[i] + 0.2 * rate[i] + 0.6 * near[i] * delayed[i], s = points[i];
+    const double first = s >= 0.5 && s < 1.2 ? 3. * f : 0.;
+    EXPECT_NEAR(m[i], (first + s + t) * 0.5 * f * (1. + s * t), 1e-14);
+  }
+  for (const auto &[seen, derivative] : {std::pair(&w, &m_w), std::pair(&rate, &m_rate), std::pair(&near, &m_near)})
+  {
+    constexpr double h = 1e-5;
+    const auto kept    = *seen;
+    for (double &value : *seen)
+      value += h;
+    const auto after = evaluate();
+    *seen            = kept;
+    for (double &value : *seen)
+      value -= h;
+    const auto before = evaluate();
+    *seen             = kept;
+    for (std::size_t i = 0; i < n; ++i)
+      EXPECT_NEAR((*derivative)[i], (after[i] - before[i]) / (2. * h), 1e-8);
+  }
+  EXPECT_THROW(sum_of(term(std::make_unique<Feedback>(0.1, 0.)), term(std::make_unique<Feedback>(-0.1, 0.))),
+               InputError);
+  EXPECT_THROW(sum_of(term(std::make_unique<Feedback>(0., 1.)), term(std::make_unique<Feedback>(0., 2.))), InputError);
+}
+
+TEST(Sum, RefusesWhatMakesNoSense)
+{
+  EXPECT_THROW(sum_of(), InputError);
+  EXPECT_THROW(sum_of(term(expression("s"), true)), InputError);
+  for (const WindowEntries &entries : std::vector<WindowEntries>{{{1.}, 0.},
+                                                                 {{1., 2., 3.}, 0.},
+                                                                 {{1., 1.}, 0.},
+                                                                 {{1.5, 0.5}, 0.},
+                                                                 {{-2., -1.}, 0.},
+                                                                 {{2., 3.}, 0.},
+                                                                 {{0.5, 1.}, 0.3}})
+    EXPECT_THROW(Window(entries, 's', sum, L), InputError);
+  EXPECT_NO_THROW(Window({{0.5, 1.}, 0.25}, 's', sum, L));
+}
+
+/// Through the parameter file: as many terms as it has, and the displacement of the formula.
+TEST(Sum, RunsAsItsFormula)
+{
+  const Settings common = {{"Accuracy", "1e-9"}, {"Body/Anchoring exponent", "2"}};
+  Settings of_sum = common, of_formula = common;
+  of_sum.insert(of_sum.end(),
+                {{"Active stress/Generator", "sum"},
+                 {sum + "Term 2/Combine", "multiply"},
+                 {sum + "Term 2/Generator", "expression"},
+                 {sum + "Term 2/Expression/Active stress", "1-exp(-t/tau)"},
+                 {sum + "Term 2/Expression/Constants", "tau=0.2"},
+                 {sum + "Term 1/Generator", "travelling wave"},
+                 {sum + "Term 1/Travelling wave/Amplitude", "0.2"},
+                 {sum + "Term 3/Generator", "expression"},
+                 {sum + "Term 3/Factor", "0.1"},
+                 {sum + "Term 3/Expression/Active stress", "sin(pi*s)"}});
+  const Parameters parameters = parameters_with(of_sum);
+  EXPECT_EQ(parameters.active_stress.sum.terms.size(), 3u);
+  EXPECT_EQ(parameters_with(common).active_stress.sum.terms.size(), 0u);
+  const Scene scene = parameters.create_scene();
+  std::ostringstream report;
+  scene.active_stress->report(report);
+  EXPECT_NE(report.str().find("Term 2 multiplies: expression"), std::string::npos) << report.str();
+
+  // The same wave on its own tells its formula.
+  const Scene wave = parameters_with({{"Active stress/Generator", "travelling wave"},
+                                      {"Active stress/Travelling wave/Amplitude", "0.2"}})
+                       .create_scene();
+  for (const double t : {0., 0.3, 1.})
+  {
+    const std::vector<double> places = {0., 0.21, 0.5, 1.};
+    const auto m = values(*scene.active_stress, t, places), g = values(*wave.active_stress, t, places);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      EXPECT_NEAR(m[i], (g[i] + 0.1 * std::sin(std::numbers::pi * places[i])) * (1. - std::exp(-t / 0.2)), 1e-15);
+  }
+
+  of_sum.insert(
+    of_sum.end(),
+    {{sum + "Term 1/Generator", "expression"}, {sum + "Term 1/Expression/Active stress", "0.2*sin(2*pi*(s-t))"}});
+  of_formula.insert(
+    of_formula.end(),
+    {{"Active stress/Generator", "expression"},
+     {"Active stress/Expression/Active stress", "(0.2*sin(2*pi*(s-t)) + 0.1*sin(pi*s))*(1-exp(-t/0.2))"}});
+  const auto a = crawler::test::run_with(of_sum), b = crawler::test::run_with(of_formula);
+  EXPECT_EQ(a.result.time.status, "finished");
+  EXPECT_NEAR(a.result.displacement, b.result.displacement, 1e-10 * std::abs(b.result.displacement));
+}

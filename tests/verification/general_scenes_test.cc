@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Whole runs of general bodies and grounds (doc/theory.md) against plain scenes, closed forms and symmetries. Every run
+// must close its ledger and balance its friction.
+#include "../support/run_text.h"
+
+#include <crawler/base/exceptions.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace crawler;
+
+namespace
+{
+  using std::numbers::pi;
+  using test::Settings;
+  using test::text;
+
+  Settings
+  operator+(Settings a, const Settings &b)
+  {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  }
+
+  Settings
+  expression(const std::string &formula)
+  {
+    return {{"Active stress/Generator", "expression"}, {"Active stress/Expression/Active stress", formula}};
+  }
+
+  Settings
+  feedback(const std::string &formula, const double distance = 0., const double delay = 0.)
+  {
+    return {{"Active stress/Generator", "strain feedback"},
+            {"Active stress/Strain feedback/Active stress", formula},
+            {"Active stress/Strain feedback/Distance", text(distance)},
+            {"Active stress/Strain feedback/Delay", text(delay)}};
+  }
+
+  SimulationResult
+  run(const Settings &settings)
+  {
+    const SimulationResult result = test::run_with(settings).result;
+    EXPECT_EQ(result.time.status, "finished") << result.time.message;
+    EXPECT_LT(result.ledger->residual(), 1e-6);
+    EXPECT_LT(result.net_friction, 1e-9);
+    return result;
+  }
+
+  double
+  displacement(const Settings &settings)
+  {
+    return run(settings).displacement;
+  }
+
+  void
+  expect_near(const double found, const double expected, const double part)
+  {
+    EXPECT_NEAR(found, expected, part * std::abs(expected));
+  }
+
+  /// The part of its elastic energy that a body keeps until the end time.
+  double
+  energy_left(const Settings &settings)
+  {
+    const Ledger ledger = *run(settings).ledger;
+    return ledger.elastic_energy / ledger.initial_energy;
+  }
+
+  const std::string wave_formula = "0.3*sin(2*pi*(s+t))*s*(1-s)*4";
+  const Settings petsc           = {{"Time/Engine", "petsc"}};
+} // namespace
+
+TEST(GeneralScenes, ConstantProfilesAreNumbers)
+{
+  const Settings wave =
+    expression(wave_formula) + Settings{{"Discretization/Number of cells", "8"}, {"Time/Tolerance", "1e-10"}};
+  const double by_body = displacement(wave + petsc + Settings{{"Body/Elastic modulus", "1.5"}});
+  expect_near(displacement(wave + Settings{{"Body/Elastic modulus profile", "1.5"}}), by_body, 1e-11);
+  const double by_friction = displacement(wave + petsc + Settings{{"Body/Friction coefficient", "1.5"}});
+  expect_near(displacement(wave + Settings{{"Body/Friction profile", "1.5"}}), by_friction, 1e-10);
+  expect_near(displacement(wave + Settings{{"Ground/Profile", "1.5"}}), by_friction, 1e-10);
+}
+
+TEST(GeneralScenes, LawsAgreeWithThePowerLaw)
+{
+  for (const double a : {-1.5, -1., 0.5})
+  {
+    const Settings wave = expression(wave_formula) + Settings{{"Body/Anchoring exponent", text(1. - a)}};
+    const double power  = displacement(wave + petsc);
+    expect_near(displacement(wave + Settings{{"Ground/Friction law", "expression"},
+                                             {"Ground/Expression", "w^a"},
+                                             {"Ground/Constants", "a=" + text(a)}}),
+                power,
+                1e-10);
+  }
+  const Settings wave = expression(wave_formula);
+  expect_near(displacement(wave + Settings{{"Ground/Friction law", "Newtonian"}}),
+              displacement(wave + petsc + Settings{{"Body/Anchoring exponent", "0"}}),
+              1e-10);
+}
+
+/// The active stress of the optimal wave is made for the power law that touches the friction law at the stretch 1.
+TEST(GeneralScenes, WavesAreMadeForTheLaw)
+{
+  const Settings law = {{"Ground/Friction law", "expression"}, {"Ground/Expression", "w^2"}};
+  expect_near(displacement(test::wave(-1., 0.2) + law), displacement(test::wave(2., 0.2) + petsc), 1e-10);
+}
+
+/// m = -kappa (w - 1) is a softer body. All integrators and both forms see the same.
+TEST(GeneralScenes, LinearFeedbackIsAModulus)
+{
+  const double softer = displacement(expression(wave_formula) + Settings{{"Body/Elastic modulus", "0.6"}});
+  const Settings same = feedback(wave_formula + "-0.4*(w-1)");
+  for (const std::string integrator : {"automatic", "bdf", "radau 9"})
+    expect_near(displacement(same + Settings{{"Time/Integrator", integrator}}), softer, 2e-6);
+  expect_near(displacement(same + Settings{{"Discretization/Formulation", "log stretch"}}), softer, 2e-6);
+  expect_near(displacement(same + Settings{{"Discretization/Mesh", "adaptive"}}), softer, 2e-6);
+}
+
+/// doc/theory.md: strain modes decay at the rate k q^2/gamma, those of a Kelvin-Voigt body, m = eta w_t, at k
+/// q^2/(gamma + eta q^2).
+TEST(GeneralScenes, StrainModesDecay)
+{
+  constexpr double k = 0.7, gamma = 1.3, eta = 0.2, T = 0.4, small = 1e-5;
+  for (const int mode : {1, 2})
+    for (const double viscosity : {0., eta})
+      for (const std::string form : {"position", "log stretch"})
+      {
+        const double q = mode * pi, rate = k * q * q / (gamma + viscosity * q * q);
+        Settings settings = {{"Body/Elastic modulus", text(k)},
+                             {"Body/Friction coefficient", text(gamma)},
+                             {"Body/Initial stretch", "1+" + text(small) + "*sin(" + std::to_string(mode) + "*pi*s)"},
+                             {"Discretization/Formulation", form},
+                             {"Discretization/Degree", "4"},
+                             {"Discretization/Number of cells", "8"},
+                             {"Time/Integrator", "radau 9"},
+                             {"Time/Tolerance", "1e-13"},
+                             {"Time/End time", text(T / (mode * mode))}};
+        settings          = settings + (viscosity > 0. ? feedback(text(viscosity) + "*w_t")
+                                                       : Settings{{"Active stress/Generator", "none"}});
+        expect_near(energy_left(settings), std::exp(-2. * rate * T / (mode * mode)), 1e-4);
+      }
+}
+
+/// The same with m = kappa (w_delayed - 1), by the method of steps: e' = -A e - B e(t - delay), e = 1 before t = 0.
+TEST(GeneralScenes, DelayedModesDecay)
+{
+  constexpr double k = 0.05, kappa = 0.1, delay = 0.5;
+  const double A = k * pi * pi, B = kappa * pi * pi;
+  const auto first = [&](const double t)
+  {
+    return (1. + B / A) * std::exp(-A * t) - B / A;
+  };
+  const auto second = [&](const double t)
+  {
+    return first(delay) * std::exp(-A * t) -
+           B * ((1. + B / A) * t * std::exp(-A * t) - B / A * (1. - std::exp(-A * t)) / A);
+  };
+  for (const double T : {0.3, 1.})
+    for (const std::string integrator : {"bdf", "radau 9"})
+    {
+      const Settings settings = {{"Body/Elastic modulus", text(k)},
+                                 {"Body/Initial stretch", "1+1e-6*sin(pi*s)"},
+                                 {"Discretization/Degree", "4"},
+                                 {"Discretization/Number of cells", "8"},
+                                 {"Time/Tolerance", "1e-13"},
+                                 {"Time/Integrator", integrator},
+                                 {"Time/End time", text(T)}};
+      const double e          = T <= delay ? first(T) : second(T - delay);
+      expect_near(energy_left(settings + feedback(text(kappa) + "*(w_delayed-1)", 0., delay)), e * e, 1e-4);
+    }
+}
+
+TEST(GeneralScenes, NearbyStretch)
+{
+  // Next to the place itself: linear feedback, up to the distance.
+  const double softer = displacement(expression(wave_formula) + Settings{{"Body/Elastic modulus", "0.6"}});
+  const Settings mesh = {{"Discretization/Number of cells", "12"}, {"Time/Tolerance", "1e-9"}};
+  expect_near(displacement(feedback(wave_formula + "-0.4*(w_near-1)", 1e-6) + mesh), softer, 1e-4);
+  // The mirror image moves the other way.
+  const Settings to_right = feedback("0.3*sin(2*pi*(s+t))*s*(1-s)*4+0.5*(w_near-1)", 0.25),
+                 to_left  = feedback("0.3*sin(2*pi*(1-s+t))*s*(1-s)*4+0.5*(w_near-1)", -0.25);
+  expect_near(displacement(to_left), -displacement(to_right), 2e-5);
+}
+
+/// Uniform stretch w = 1 + e(t) on the ground c(x) = exp(beta x), with a = 0: the balance int c (s w' + h') ds = 0
+/// gives zeta = s w + h with h = -log( (exp(beta w) - 1)/(beta w) beta/(exp(beta) - 1) )/beta.
+TEST(GeneralScenes, GroundThatBecomesSticky)
+{
+  constexpr double beta = 1.2, E = 0.3;
+  const auto h = [&](const double w)
+  {
+    return -std::log((std::exp(beta * w) - 1.) / (beta * w) * beta / (std::exp(beta) - 1.)) / beta;
+  };
+  const std::string w = "(1+E*sin(t)^2)", w_t = "(E*sin(2*t))", p = "(b*" + w + ")", power = "(exp(b*" + w + "*s)-1)",
+                    whole = "(exp(b*" + w + ")-1)", h_of_t = "(-log(" + whole + "/" + p + "*b/(exp(b)-1))/b)",
+                    h_t = "(-" + w_t + "*(exp(" + p + ")/" + whole + "-1/" + p + "))";
+  // m = int_0^s c v ds - k e
+  const Settings scene = expression("exp(b*" + h_of_t + ")*(" + w_t + "*(s*exp(" + p + "*s)/" + p + "-" + power + "/" +
+                                    p + "^2)+" + h_t + "*" + power + "/" + p + ")-(" + w + "-1)") +
+                         Settings{{"Active stress/Expression/Constants", "b=" + text(beta) + ", E=" + text(E)},
+                                  {"Body/Anchoring exponent", "1"},
+                                  {"Ground/Profile", "exp(1.2*x)"}};
+  const double at_end = 1. + E * std::sin(1.) * std::sin(1.), expected = 0.5 * (at_end - 1.) + h(at_end);
+  for (const std::string form : {"position", "log stretch"})
+    expect_near(displacement(scene + Settings{{"Discretization/Formulation", form}}), expected, 2e-6);
+  EXPECT_LT(expected, 0.); // the sticky end holds less of the body back... and pulls it
+}
+
+/// A standing contraction at a = 0 goes nowhere on a ground like any other, and to +s where backward motion is held.
+TEST(GeneralScenes, DirectionOfTheGround)
+{
+  const Settings standing = expression("0.4*sin(2*pi*t)^2*s*(1-s)*4") + Settings{{"Body/Anchoring exponent", "1"}};
+  EXPECT_NEAR(displacement(standing + petsc), 0., 1e-12);
+  const auto with_ratio = [&](const double ratio, const double gamma)
+  {
+    return displacement(standing + Settings{{"Ground/Backward ratio", text(ratio)},
+                                            {"Ground/Switching velocity", "0.2"},
+                                            {"Body/Friction coefficient", text(gamma)}});
+  };
+  const double forward = with_ratio(4., 1.);
+  EXPECT_GT(forward, 1e-3);
+  // Seen in a mirror the ground has the reverse ratio, and its resistance to backward motion for its coefficient.
+  expect_near(with_ratio(0.25, 4.), -forward, 1e-5);
+}
+
+/// Everything at once, in both forms and with other integrators.
+TEST(GeneralScenes, FormsAndIntegratorsAgree)
+{
+  const Settings all =
+    feedback("0.2*sin(2*pi*(s+t))*s*(1-s)*4-0.1*(w-1)+0.05*w_t+0.1*(w_near-1)-0.05*(w_delayed-1)", 0.5, 0.25) +
+    Settings{{"Body/Elastic modulus profile", "1+0.3*s"},
+             {"Body/Friction profile", "1.2-0.3*s"},
+             {"Body/Initial stretch", "1+0.05*sin(pi*s)^2"},
+             {"Ground/Profile", "1+0.2*tanh(x)"},
+             {"Ground/Friction law", "expression"},
+             {"Ground/Expression", "0.3+0.7/w^1.5"},
+             {"Ground/Backward ratio", "2"},
+             {"Ground/Switching velocity", "0.2"}};
+  const Settings fine    = {{"Discretization/Number of cells", "16"}, {"Time/Tolerance", "1e-9"}};
+  const double reference = displacement(all + fine);
+  for (const Settings &other : {fine + Settings{{"Discretization/Formulation", "log stretch"}},
+                                fine + Settings{{"Time/Integrator", "bdf"}},
+                                fine + Settings{{"Time/Integrator", "radau 9"}}})
+    expect_near(displacement(all + other), reference, 1e-5);
+}
+
+TEST(GeneralScenes, LawsThatAreNotPositiveAreInputErrors)
+{
+  const auto message = [](const Settings &settings)
+  {
+    try
+    {
+      test::run_with(settings);
+    }
+    catch (const InputError &error)
+    {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const Settings wave = test::wave(-1., 0.3);
+  EXPECT_NE(message(wave + Settings{{"Ground/Friction law", "expression"}, {"Ground/Expression", "1.15-w"}})
+              .find("friction law"),
+            std::string::npos);
+  EXPECT_NE(message(wave + Settings{{"Ground/Profile", "1.01-x"}}).find("profile of the ground"), std::string::npos);
+}
