@@ -19,6 +19,8 @@ namespace crawler
     constexpr double measured_factor = 1.3, promised_part = 0.25, factor_without_promise = 2.;
     /// The errors of two adaptive meshes have more in common.
     constexpr double promised_part_if_adaptive = 0.5;
+    /// On graded meshes each part of the error was measured beforehand.
+    constexpr double promised_part_if_graded = 0.15;
     /// The finer run: cells and tolerances relative to the run's.
     constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;
     /// The same if the run is not by radau 9, which is more accurate for the same tolerance than all others.
@@ -143,7 +145,9 @@ namespace crawler
       total = 0.;
     else if (!choice.is_collapse)
     {
-      const double part = choice.numerics.mesh.tolerance > 0. ? promised_part_if_adaptive : promised_part;
+      const double part = choice.numerics.mesh.tolerance > 0.  ? promised_part_if_adaptive
+                          : choice.numerics.grading.levels > 0 ? promised_part_if_graded
+                                                               : promised_part;
       total             = is_promised(choice, scene) ? measured_factor * difference + part * choice.promised_error
                                                      : factor_without_promise * difference;
     }

@@ -148,6 +148,25 @@ namespace crawler
     return true;
   }
 
+  /// Throws InputError, on all ranks, if a law was not positive on one of them.
+  void
+  Simulation::require_good_laws() const
+  {
+    const auto bad   = assembler_->bad_law(units_);
+    const int n      = size_of(communicator_);
+    int speaker      = bad ? rank_of(communicator_) : n;
+    std::string text = bad ? bad->entry + "\n" + bad->message : "";
+    MPI_Allreduce(MPI_IN_PLACE, &speaker, 1, MPI_INT, MPI_MIN, communicator_);
+    if (speaker == n)
+      return;
+    unsigned long length = text.size();
+    MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, speaker, communicator_);
+    text.resize(length);
+    MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, speaker, communicator_);
+    const auto end = text.find('\n');
+    throw InputError(text.substr(end + 1), text.substr(0, end));
+  }
+
   /// What a failure of the time stepper means.
   void
   Simulation::explain_failure()
@@ -156,8 +175,8 @@ namespace crawler
       return;
     TimeOutcome &outcome = result_.time;
     const double t       = accepted_time_;
-    if (const auto bad = assembler_->bad_law(units_); bad && outcome.domain_error)
-      throw InputError(bad->message, bad->entry);
+    if (outcome.domain_error)
+      require_good_laws();
     // Very small steps may be the end of the model.
     const double reach = std::max(end_reach, 2. * outcome.step_size);
     if (outcome.reason != "petsc_error")

@@ -310,3 +310,65 @@ TEST(Jumps, GradedMeshesConvergeExponentially)
     }
   }
 }
+
+/// What `crawler run` does: a small graded mesh is chosen, by the fused engine, and Accuracy is kept.
+TEST(Jumps, GetGradedMeshes)
+{
+  const std::vector<std::tuple<std::string, std::vector<double>, std::vector<double>>> scenes = {
+    {"0.3*cos(2*pi*(s+t))", {}, {}}, {robot, {0.4}, robot_times}};
+  for (const auto &[formula, in_space, in_time] : scenes)
+  {
+    const auto fine =
+      jumping(test::expression(-1., formula),
+              "radau 9",
+              {.degree = 8, .n_cells = 12, .tolerance = 1e-11, .initial_step = 1e-14, .grading = {8, 0.4}},
+              in_space,
+              in_time);
+    const auto exact = test::run_alone(*fine, {.ledger = false});
+    ASSERT_TRUE(exact);
+    for (const double accuracy : {1e-3, 1e-6, 1e-8})
+    {
+      auto run                 = jumping(test::expression(-1., formula), "automatic", {}, in_space, in_time);
+      run->parameters.accuracy = accuracy;
+      run->numerics            = choose_numerics(MPI_COMM_WORLD, run->parameters, run->scene)->numerics;
+      EXPECT_GE(run->numerics.grading.levels, 2u);
+      EXPECT_EQ(run->numerics.mesh.tolerance, 0.);
+      const auto result = run->simulate("automatic");
+      ASSERT_EQ(result.time.status, "finished") << result.time.message;
+      EXPECT_EQ(result.engine, "fused");
+      EXPECT_LT(result.most_cells, 60u);
+      EXPECT_LT(std::abs(result.displacement / exact->displacement - 1.), accuracy);
+      EXPECT_LT(result.ledger->residual(), std::max(1e-8, 10. * accuracy));
+      fmt::print("Accuracy {:g}: {} cells, {} steps, error {:.1e}, ledger {:.1e}\n",
+                 accuracy,
+                 result.most_cells,
+                 result.time.steps,
+                 std::abs(result.displacement / exact->displacement - 1.),
+                 result.ledger->residual());
+    }
+  }
+  // A stress that starts and goes on smoothly does not need them.
+  const auto smooth = jumping(test::wave(-1., 0.2), "automatic", {}, {}, {});
+  EXPECT_EQ(choose_numerics(MPI_COMM_WORLD, smooth->parameters, smooth->scene)->numerics.grading.levels, 0u);
+}
+
+/// A robot that repeats its cycle: the run ends early, at a break, and knows the displacement at the end.
+TEST(Jumps, MayEndWhenCyclesRepeat)
+{
+  std::vector<double> times;
+  for (unsigned int i = 0; i <= 160; ++i)
+    times.push_back(0.125 * i);
+  const auto run   = jumping(test::expression(-1., robot, 20.),
+                           "radau 9",
+                           {.degree = 6, .n_cells = 5, .tolerance = 1e-7, .initial_step = 1e-8, .grading = {3, 0.25}},
+                           {0.4},
+                           times);
+  const auto all   = run->simulate("automatic");
+  const auto early = run->simulate("automatic", {.ledger = true, .cycles = CycleWish{1., 1e-6}});
+  ASSERT_EQ(early.time.status, "finished");
+  ASSERT_TRUE(early.cycles);
+  EXPECT_EQ(early.cycles->computed + early.cycles->extrapolated, 20u);
+  EXPECT_GT(early.cycles->extrapolated, 10u);
+  EXPECT_NEAR(early.displacement / all.displacement, 1., 1e-6);
+  EXPECT_NEAR(early.ledger->stress_power / all.ledger->stress_power, 1., 1e-5);
+}

@@ -13,8 +13,8 @@ namespace crawler
    * run tells it (doc/numerics.md, "Error bars"): with x the difference of both displacements and w the error that the
    * choice promises,
    *
-   *   total = 1.3 x + w/4   (w/2 on adaptive meshes; without a promise 2 x), and at least 1e-15 L, the error of
-   * round-off.
+   *   total = 1.3 x + w/4   (w/2 on adaptive meshes, 0.15 w on graded ones; without a promise 2 x), and at least 1e-15
+   * L, the error of round-off.
    *
    * It is split into space and time as the rule that chose the numerics expects it. Where the stretch collapses the
    * choice has measured the error, and no second run is made. Nothing is known of a result that is not finished, or

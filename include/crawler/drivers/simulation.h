@@ -200,6 +200,8 @@ namespace crawler
     void
     explain_failure();
     void
+    require_good_laws() const;
+    void
     inverted_at_end(double s, double t, const std::string &reason);
     void
     inverted_inside(double value, double s, double t);
