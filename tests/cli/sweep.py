@@ -154,6 +154,11 @@ def test_kills(program, mpirun, folder):
     whole = call(program, folder, "sweep", "sweep.prm", "--output", "whole")
     check(whole.returncode == 0, "an unbroken sweep")
     reference = table(folder / "whole")
+    call(program, folder, "sweep", "sweep.prm", "--output", "accurate", "--set", "Accuracy=1e-8")
+    error = np.abs(reference["displacement"] - table(folder / "accurate")["displacement"])
+    covered = np.mean(error <= reference["displacement_error.total"])
+    wanted = np.all(reference["displacement_error.total"] <= 1e-4 * np.abs(reference["displacement"]))
+    check(covered >= 0.99 and wanted, f"{100 * covered:.2f} % of the points are within their error bars, all bars within Accuracy")
     start = time.time()
     call(program, folder, "sweep", "sweep.prm", "--output", "timed", command=(mpirun, "--oversubscribe", "-n", "2"))
     duration = time.time() - start
