@@ -44,10 +44,10 @@ namespace crawler
   }
 
   WorkQueue::Done
-  WorkQueue::done(const bool failed)
+  WorkQueue::done(const unsigned long n, const unsigned long failed)
   {
-    const unsigned long before = add(completed, 1), failed_before = add(failures, failed ? 1 : 0);
-    return {before + 1, failed_before + (failed ? 1 : 0)};
+    const unsigned long before = add(completed, n), failed_before = add(failures, failed);
+    return {before + n, failed_before + failed};
   }
 
   void

@@ -85,18 +85,6 @@ namespace crawler
       return blocks;
     }
 
-    /// What has become of the points so far.
-    struct Counts
-    {
-      unsigned long finished = 0, others = 0;
-
-      void
-      add(const std::string &status)
-      {
-        ++(status == "finished" ? finished : others);
-      }
-    };
-
     /// One rank's part of the work.
     class Worker
     {
@@ -118,7 +106,7 @@ namespace crawler
 
       /// Returns false if it was interrupted.
       bool
-      compute(const Block &block, const std::function<void(const PointStatus &)> &see)
+      compute(const Block &block, const std::function<void(unsigned long n, unsigned long failed)> &see)
       {
         std::vector<bool> missing(block.size);
         for (unsigned long i = 0; i < block.size; ++i)
@@ -178,7 +166,7 @@ namespace crawler
       write(const Block &block,
             const std::vector<Task> &tasks,
             const std::vector<bool> &ready,
-            const std::function<void(const PointStatus &)> &see)
+            const std::function<void(unsigned long n, unsigned long failed)> &see)
       {
         std::vector<RowFile::Row> rows;
         for (unsigned long i = 0; i <= block.size; ++i)
@@ -191,9 +179,15 @@ namespace crawler
           file_.write(block.first + i - rows.size(), rows);
           rows.clear();
         }
+        unsigned long n = 0, failed = 0;
         for (unsigned long i = 0; i < block.size; ++i)
           if (ready[i])
-            see(status_of(tasks[i]));
+          {
+            ++n;
+            failed += status_of(tasks[i]).status != "finished";
+          }
+        if (n > 0)
+          see(n, failed);
       }
 
       const SweepDesign &design_;
@@ -400,9 +394,9 @@ namespace crawler
       unsigned long n_failed = 0;
       while (const auto number = queue.next())
         if (!worker.compute(blocks[*number],
-                            [&](const PointStatus &status)
+                            [&](const unsigned long n, const unsigned long failed)
                             {
-                              const auto count = queue.done(status.status != "finished");
+                              const auto count = queue.done(n, failed);
                               n_failed         = count.failed;
                               progress.report(count.done,
                                               n_failed > 0 ? fmt::format(", {} not finished", n_failed) : "");
@@ -498,15 +492,16 @@ namespace crawler
     }
     const double each = (now() - before) / static_cast<double>(n_computed);
     log.line(fmt::format("Sweep: {}.", in_words(design, points.sweep().design)));
-    log.line(
-      fmt::format("  About {:.2g} s a point (from {} of them): {:.3g} s on one rank, {:.3g} s on {} ranks; results.h5 "
-                  "will have {:.3g} MB.",
-                  each,
-                  n_computed,
-                  each * static_cast<double>(design.n_points()),
-                  each * static_cast<double>(design.n_points()) / size_of(communicator),
-                  size_of(communicator),
-                  static_cast<double>(bytes * design.n_points()) / 1e6));
+    log.line(fmt::format(
+      "  About {:.2g} s a point (from {} of them): {:.3g} s on one rank{}; results.h5 will have {:.3g} MB.",
+      each,
+      n_computed,
+      each * static_cast<double>(design.n_points()),
+      size_of(communicator) > 1 ? fmt::format(", {:.3g} s on {}",
+                                              each * static_cast<double>(design.n_points()) / size_of(communicator),
+                                              size_of(communicator))
+                                : "",
+      static_cast<double>(bytes * design.n_points()) / 1e6));
     log.line(file.name() + " is in order: all swept names and values are admissible. Nothing was written.");
     return true;
   }

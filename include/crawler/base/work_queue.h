@@ -29,9 +29,9 @@ namespace crawler
       unsigned long done, failed; ///< failed: those that were said to be so
     };
 
-    /// Says that something is done, usually a number that next() gave, and whether it failed.
+    /// Says that so much more is done, usually a number that next() gave, and how much of it failed.
     Done
-    done(bool failed = false);
+    done(unsigned long n = 1, unsigned long failed = 0);
 
     /// Nobody gets a number any more.
     void
