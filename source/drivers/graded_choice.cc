@@ -14,7 +14,7 @@ namespace crawler
     /// A refinement that changes the displacement by less than this part of the wanted error was not needed.
     constexpr double part = 0.25;
     /// The search is given up beyond these.
-    constexpr unsigned int most_runs = 40, most_cells = 96;
+    constexpr unsigned int most_runs = 40, most_cells = 96, most_cells_of_piece = 12;
     constexpr double smallest_cell = 1e-7, emptied = 0.1;
     constexpr double more_cells = 1.5, finer_tolerance = 0.1;
     constexpr double longest_first_step = 1e-2, shortest_first_step = 1e-16;
@@ -44,6 +44,7 @@ namespace crawler
       explicit Search(const GradedTask &task)
         : task_(task)
         , now_(task.start)
+        , n_pieces_(static_cast<unsigned int>(task.scene.breaks_in_space().size()) + 1)
       {
       }
 
@@ -89,9 +90,11 @@ namespace crawler
                                                                 }))
             ratio_change = 0.;
           again         = refine(cells_change,
-                         [](Numerics &n)
+                         [this](Numerics &n)
                          {
-                           n.n_cells = static_cast<unsigned int>(std::ceil(more_cells * n.n_cells));
+                           // One more in each piece between breaks, at least: else the mesh may stay as it is.
+                           n.n_cells = std::max(static_cast<unsigned int>(std::ceil(more_cells * n.n_cells)),
+                                                n.n_cells + (n_pieces_ > 1 ? n_pieces_ : 0));
                          });
           space_change_ = levels_change + ratio_change + cells_change;
         }
@@ -113,7 +116,8 @@ namespace crawler
       bool
       run(const Numerics &numerics, SimulationResult &result)
       {
-        possible_ = possible_ && ++n_runs_ <= most_runs && numerics.n_cells <= most_cells &&
+        possible_ = possible_ && ++n_runs_ <= most_runs &&
+                    numerics.n_cells <= std::max(most_cells, most_cells_of_piece * n_pieces_) &&
                     smallest_size(task_.scene, numerics) >= smallest_cell;
         if (!possible_)
           return false;
@@ -153,6 +157,7 @@ namespace crawler
 
       const GradedTask &task_;
       Numerics now_;
+      const unsigned int n_pieces_; ///< of the body, between breaks
       SimulationResult result_;
       double wanted_ = 0., time_change_ = 0., space_change_ = 0.;
       unsigned int n_runs_ = 0;
