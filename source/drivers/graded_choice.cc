@@ -15,7 +15,9 @@ namespace crawler
     constexpr double part = 0.25;
     /// The search is given up beyond these.
     constexpr unsigned int most_runs = 40, most_cells = 96, most_cells_of_piece = 12;
-    constexpr double smallest_cell = 1e-7, emptied = 0.1;
+    constexpr double smallest_cell = 1e-7, emptied = 1e-3;
+    /// So often the search begins anew, with twice the cells, if its first mesh loses a stretch.
+    constexpr unsigned int most_beginnings = 3;
     constexpr double more_cells = 1.5, finer_tolerance = 0.1;
     constexpr double longest_first_step = 1e-2, shortest_first_step = 1e-16;
 
@@ -54,20 +56,29 @@ namespace crawler
         now_.grading = {first_levels, coarse_ratio};
         if (task_.choose_tolerance)
           now_.tolerance = 1e-3 * task_.scale;
+        // Too coarse a mesh or step can lose a stretch that is not lost.
+        double largest = 1e-2 * task_.scale; // tolerance
+        for (unsigned int beginnings = 1; !run(now_, result_); ++beginnings)
+        {
+          if (beginnings == most_beginnings)
+            return std::nullopt;
+          possible_ = true;
+          now_.n_cells *= 2;
+          if (task_.choose_tolerance)
+            largest = now_.tolerance *= finer_tolerance;
+        }
         // The tolerance is relative to a size that the runs tell.
         for (unsigned int i = 0; i < 2; ++i)
         {
-          if (!run(now_, result_))
-            return std::nullopt;
           const double size = task_.size(result_);
           if (!(size > 0.))
             return std::nullopt;
           wanted_ = task_.accuracy * size;
           if (task_.choose_tolerance)
-            now_.tolerance = std::min(1e-2 * task_.scale, task_.tolerance_factor * wanted_);
+            now_.tolerance = std::min(largest, task_.tolerance_factor * wanted_);
+          if (!run(now_, result_))
+            return std::nullopt;
         }
-        if (!run(now_, result_))
-          return std::nullopt;
         if (task_.choose_tolerance)
           refine(time_change_,
                  [](Numerics &n)
