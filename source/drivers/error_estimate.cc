@@ -43,7 +43,7 @@ namespace crawler
     is_promised(const NumericsChoice &choice, const Scene &scene)
     {
       const StretchFeedback *feedback = scene.active_stress->feedback();
-      return std::isfinite(choice.promised_error) && (feedback == nullptr || feedback->distance() == 0.);
+      return std::isfinite(choice.promised_error) && (feedback == nullptr || !feedback->sees_near());
     }
 
     Numerics
