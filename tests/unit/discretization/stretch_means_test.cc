@@ -45,7 +45,8 @@ TEST(StretchMeans, AreExactForPolynomials)
       for (std::size_t i = 0; i < middles.size(); ++i)
       {
         const double left = std::min(std::max(middles[i] - 0.5 * length, 0.), L - length), right = left + length;
-        EXPECT_NEAR(found[i], (std::pow(right, q) - std::pow(left, q)) / (q * length), 1e-12 * std::pow(L, q - 1) / length)
+        EXPECT_NEAR(
+          found[i], (std::pow(right, q) - std::pow(left, q)) / (q * length), 1e-12 * std::pow(L, q - 1) / length)
           << "degree " << q << ", length " << length << ", middle " << middles[i];
       }
     }
