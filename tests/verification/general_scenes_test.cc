@@ -219,6 +219,27 @@ TEST(GeneralScenes, ModesOfASensorAsLongAsTheBody)
     }
 }
 
+/// The mode of prm/examples/feedback.prm that grows, by contrib/feedback_modes.py: rate 4.8993, period 0.8765. The
+/// elastic energy of one mode grows by exp(2 rate) over half a period.
+TEST(GeneralScenes, AModeGrowsByItself)
+{
+  constexpr double rate = 4.8993, half_period = 0.43825, start = 1.6;
+  const auto energy = [&](const double T, const std::string &form)
+  {
+    return energy_left(feedback("0.05*tanh(10*(w_near-1))", -0.25, 0., 0.2) +
+                       Settings{{"Body/Elastic modulus", "0.1"},
+                                {"Body/Initial stretch", "1+1e-7*exp(-((s-0.425)/0.05)^2)"},
+                                {"Discretization/Formulation", form},
+                                {"Discretization/Degree", "6"},
+                                {"Discretization/Number of cells", "16"},
+                                {"Time/Integrator", "radau 9"},
+                                {"Time/Tolerance", "1e-10"},
+                                {"Time/End time", text(T)}});
+  };
+  for (const std::string form : {"position", "log stretch"})
+    expect_near(energy(start + half_period, form) / energy(start, form), std::exp(2. * rate * half_period), 1e-3);
+}
+
 /// A motion that is known: w = 1 + E sin(t) sin(pi s), at a = 0 driven by m = -(E/pi^2) cos(t) sin(pi s) - k E sin(t)
 /// sin(pi s). Feedback K (w_near - M) does not change it if w_near is M, the mean over the sensor. The elastic energy
 /// and the largest stretch tell.
