@@ -740,7 +740,11 @@ namespace crawler
   Simulation::prepare_gait()
   {
     const auto period = scene_.active_stress->period();
-    gait_meter_.emplace(period && *period <= 1. + 1e-9 ? period : std::nullopt, cycle_stop_.has_value());
+    // To look for one costs a thousand looks at the state.
+    constexpr std::size_t most_unknowns = 10000;
+    if (!period && discretization_->n_unknowns() > most_unknowns)
+      return;
+    gait_meter_.emplace(period, cycle_stop_.has_value());
     const auto start = gait_meter_->stride_start();
     if (!start)
       return;

@@ -149,7 +149,10 @@ def check_stop(program, folder, first, command=()):
         SCENE.replace("0.1, 0.2, 0.3", f"linspace({first}, 0.3, 400)"), encoding="utf-8")
     with subprocess.Popen([*command, program, "atlas", "long.prm"], cwd=folder, env=ENVIRONMENT, text=True,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        time.sleep(1.5)
+        started = time.time()
+        while time.time() < started + 60 and not any(
+                path.read_text(encoding="utf-8").count("\n") > 1 for path in pathlib.Path(folder, "output-long", "rows").glob("*.csv")):
+            time.sleep(0.1)
         process.send_signal(signal.SIGTERM)
         _, errors = process.communicate(timeout=60)
     summary = json.loads(pathlib.Path(folder, "output-long", "summary.json").read_text(encoding="utf-8"))
