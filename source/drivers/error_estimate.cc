@@ -140,7 +140,7 @@ namespace crawler
     double total = choice.promised_error;
     if (choice.numerics.linear) // the centre of mass stays where it is, whatever the other errors are
       total = 0.;
-    else if (!choice.is_collapse)
+    else if (!choice.is_measured)
     {
       const double part = choice.numerics.mesh.tolerance > 0.  ? promised_part_if_adaptive
                           : choice.numerics.grading.levels > 0 ? promised_part_if_graded
@@ -173,7 +173,7 @@ namespace crawler
     answer.choice       = choice;
     const double wanted = choice.wanted_error;
     // What has been measured on one mesh after the other is not tried again.
-    const bool may_refine = !choice.is_collapse && choice.promised_error < hopeless * wanted;
+    const bool may_refine = !choice.is_measured && choice.promised_error < hopeless * wanted;
     for (;; ++answer.refinements, answer.choice = refined(answer.choice, scene))
     {
       answer.result            = simulate(answer.choice);
@@ -200,6 +200,8 @@ namespace crawler
         std::isnan(total)
           ? "the error of the displacement is not known: a finer run did not finish"
           : fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}", total, wanted);
+      if (!answer.choice.advice.empty())
+        result.time.message += "; " + answer.choice.advice;
       return answer;
     }
   }

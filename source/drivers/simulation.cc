@@ -25,6 +25,8 @@ namespace crawler
     constexpr double nearly_zero              = 1e-6;
     /// The step after a change of mesh that settle() makes is this times the root of the tolerance.
     constexpr double settling_factor = 0.01;
+    /// Cells that come to rest faster than this, relative to the duration, turn round-off of the state into a velocity.
+    constexpr double fast_relaxation = 1e-9;
 
     double
     now()
@@ -139,6 +141,7 @@ namespace crawler
     integrals_            = {};
     largest_friction_     = 0.;
     largest_net_friction_ = 0.;
+    result_.jumps_move    = numerics_.jumps_move;
     if (options.ledger)
       result_.ledger.emplace();
     if (numerics_.formulation == FormulationChoice::log_stretch)
@@ -533,13 +536,17 @@ namespace crawler
   }
 
   /// Where friction vanishes (w -> 0 for a > 0) a state alone does not tell the velocity: the error of Newton's method
-  /// would be divided by the friction. The rate of the time stepper has no such error, so it is kept. That of the
+  /// would be divided by the friction; and the smallest cells of graded meshes turn its round-off into velocities, by
+  /// 1e-16 over their time of relaxation. The rate of the time stepper has no such error, so it is kept. That of the
   /// linear rung is the velocity, exactly.
   bool
   Simulation::keeps_rate() const
   {
-    return numerics_.linear ||
-           (scene_.friction_exponent() > 0. && assembler_->formulation() == Formulation::position && scene_.is_plain());
+    if (numerics_.linear)
+      return true;
+    const bool amplifies =
+      scene_.friction_exponent() > 0. || (numerics_.grading.levels > 0 && numerics_.initial_step < fast_relaxation);
+    return amplifies && assembler_->formulation() == Formulation::position && scene_.is_plain();
   }
 
   /// Keeps the rate of the latest residual at each of the latest times: those of the stages of a step, and its start.
