@@ -43,7 +43,7 @@ namespace crawler
     is_promised(const NumericsChoice &choice, const Scene &scene)
     {
       const StretchFeedback *feedback = scene.active_stress->feedback();
-      return std::isfinite(choice.promised_error) && (feedback == nullptr || feedback->distance() == 0.);
+      return std::isfinite(choice.promised_error) && (feedback == nullptr || !feedback->sees_near());
     }
 
     Numerics
@@ -52,7 +52,12 @@ namespace crawler
       Numerics n          = choice.numerics;
       const bool promised = is_promised(choice, scene);
       if (n.mesh.tolerance > 0.)
+      {
         n.mesh.tolerance *= finer_mesh_tolerance;
+        // Two tolerances may leave the same cells where they matter; halves of them do not.
+        if (!promised)
+          n.n_cells *= 2;
+      }
       else
       {
         const double factor = promised ? more_cells : more_cells_without_promise;
