@@ -87,7 +87,7 @@ namespace crawler
     feedback_ = feedback->at(points);
     if (feedback->uses_rate())
       by_rate.resize(points.size());
-    if (feedback->distance() != 0.)
+    if (feedback->sees_near())
       by_near.resize(points.size());
   }
 
@@ -120,12 +120,15 @@ namespace crawler
     const StretchFeedback *feedback = scene.active_stress->feedback();
     if (feedback == nullptr)
       return;
-    if (feedback->distance() != 0.)
+    if (feedback->sees_near())
     {
       std::vector<double> others = points;
       for (double &s : others)
-        s = std::clamp(s + feedback->distance(), 0., discretization.length());
-      near_places_.emplace(discretization.cells(), discretization.element(), others);
+        s += feedback->distance();
+      if (feedback->sensor_length() > 0.)
+        sensors_.emplace(discretization.cells(), discretization.element(), others, feedback->sensor_length());
+      else
+        near_places_.emplace(discretization.cells(), discretization.element(), others);
       near.resize(points.size());
     }
     delay_ = feedback->delay();
@@ -151,6 +154,22 @@ namespace crawler
     {
       near_places_->interpolate(discretization_.gather(own), near);
       to_stretch(near, is_log);
+      if (is_log)
+        near_slope = near;
+    }
+    if (sensors_)
+    {
+      // The stretch is the polynomial through its values at the stretch points: so v_s changes it.
+      std::vector<double> strain(own.begin(), own.end());
+      if (is_log)
+      {
+        near_slope = strain;
+        to_stretch(near_slope, is_log);
+        for (double &value : strain)
+          value = std::expm1(value);
+      }
+      sensors_->mean(discretization_.gather(strain), near);
+      to_stretch(near, /*from_log=*/false);
     }
     if (delay_ == 0.)
       return;
@@ -181,13 +200,19 @@ namespace crawler
 
   void
   StretchElsewhere::change_of_near(const std::span<const double> own_change,
-                                   const std::span<const double> near_stretch,
-                                   const bool is_log,
+                                   const std::span<const double> slope,
                                    const std::span<double> change) const
   {
+    if (sensors_)
+    {
+      std::vector<double> strain(own_change.begin(), own_change.end());
+      for (std::size_t i = 0; i < slope.size(); ++i)
+        strain[i] *= slope[i];
+      sensors_->mean(discretization_.gather(strain), change);
+      return;
+    }
     near_places_->interpolate(discretization_.gather(own_change), change);
-    if (is_log)
-      for (std::size_t i = 0; i < change.size(); ++i)
-        change[i] *= near_stretch[i];
+    for (std::size_t i = 0; i < slope.size(); ++i)
+      change[i] *= slope[i];
   }
 } // namespace crawler

@@ -57,9 +57,9 @@ namespace crawler
     }
     for (std::size_t i = 0; i < e_.size(); ++i)
       laws_.by_log[i] = force_.by_w[i] * w_[i];
-    laws_.by_rate = force_.by_rate;
-    laws_.by_near = force_.by_near;
-    laws_.near    = elsewhere_.near;
+    laws_.by_rate    = force_.by_rate;
+    laws_.by_near    = force_.by_near;
+    laws_.near_slope = elsewhere_.near_slope;
     if (bad >= 0)
     {
       describe_bad_law_ = [this, bad](const Units &units)
@@ -132,8 +132,8 @@ namespace crawler
   GeneralLogForm::change_of_near(const LogLaws &laws, const ConstVector x, const Vector change) const
   {
     const StretchFeedback *feedback = scene_.active_stress->feedback();
-    if (feedback != nullptr && feedback->distance() != 0.)
-      elsewhere_.change_of_near(log_stretch(x), laws.near, /*is_log=*/true, change);
+    if (feedback != nullptr && feedback->sees_near())
+      elsewhere_.change_of_near(log_stretch(x), laws.near_slope, change);
   }
 
   /// By Newton's method: the friction may depend on the velocity, and the active stress on its derivative.

@@ -124,18 +124,18 @@ namespace crawler
   GeneralPositionForm::Far
   GeneralPositionForm::far() const
   {
-    return {force_.by_near, elsewhere_.near};
+    return {force_.by_near};
   }
 
   void
   GeneralPositionForm::add_far(const Far &far, const ConstVector x, const Vector result) const
   {
-    if (scene_.active_stress->feedback() == nullptr || scene_.active_stress->feedback()->distance() == 0.)
+    if (scene_.active_stress->feedback() == nullptr || !scene_.active_stress->feedback()->sees_near())
       return;
     const ReferenceElement &element = discretization_.element();
     const unsigned int n = element.n, q = element.degree;
     std::vector<double> change(far.by_near.size()), local(discretization_.n_local(), 0.), owned(result.size());
-    elsewhere_.change_of_near(stretch_coefficients(x), far.near, /*is_log=*/false, change);
+    elsewhere_.change_of_near(stretch_coefficients(x), {}, change);
     for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
       for (unsigned int p = 0; p < n; ++p)
         for (unsigned int i = 0; i < n; ++i)

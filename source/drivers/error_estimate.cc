@@ -43,7 +43,7 @@ namespace crawler
     is_promised(const NumericsChoice &choice, const Scene &scene)
     {
       const StretchFeedback *feedback = scene.active_stress->feedback();
-      return std::isfinite(choice.promised_error) && (feedback == nullptr || feedback->distance() == 0.);
+      return std::isfinite(choice.promised_error) && (feedback == nullptr || !feedback->sees_near());
     }
 
     Numerics
@@ -52,7 +52,12 @@ namespace crawler
       Numerics n          = choice.numerics;
       const bool promised = is_promised(choice, scene);
       if (n.mesh.tolerance > 0.)
+      {
         n.mesh.tolerance *= finer_mesh_tolerance;
+        // Two tolerances may leave the same cells where they matter; halves of them do not.
+        if (!promised)
+          n.n_cells *= 2;
+      }
       else
       {
         const double factor = promised ? more_cells : more_cells_without_promise;
@@ -143,7 +148,7 @@ namespace crawler
     double total = choice.promised_error;
     if (choice.numerics.linear) // the centre of mass stays where it is, whatever the other errors are
       total = 0.;
-    else if (!choice.is_collapse)
+    else if (!choice.is_measured)
     {
       const double part = choice.numerics.mesh.tolerance > 0.  ? promised_part_if_adaptive
                           : choice.numerics.grading.levels > 0 ? promised_part_if_graded
@@ -191,7 +196,7 @@ namespace crawler
     answer.choice       = choice;
     const double wanted = choice.wanted_error;
     // What has been measured on one mesh after the other is not tried again.
-    const bool may_refine = !choice.is_collapse && choice.promised_error < hopeless * wanted;
+    const bool may_refine = !choice.is_measured && choice.promised_error < hopeless * wanted;
     for (;; ++answer.refinements, answer.choice = refined(answer.choice, scene))
     {
       answer.result            = simulate(answer.choice);
@@ -218,6 +223,8 @@ namespace crawler
         std::isnan(total)
           ? "the error of the displacement is not known: a finer run did not finish"
           : fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}", total, wanted);
+      if (!answer.choice.advice.empty())
+        result.time.message += "; " + answer.choice.advice;
       return answer;
     }
   }

@@ -14,8 +14,10 @@ namespace crawler
     /// A refinement that changes the displacement by less than this part of the wanted error was not needed.
     constexpr double part = 0.25;
     /// The search is given up beyond these.
-    constexpr unsigned int most_runs = 40, most_cells = 96;
-    constexpr double smallest_cell = 1e-7, emptied = 0.1;
+    constexpr unsigned int most_runs = 40, most_cells = 96, most_cells_of_piece = 12;
+    constexpr double smallest_cell = 1e-7, emptied = 1e-3;
+    /// So often the search begins anew, with twice the cells, if its first mesh loses a stretch.
+    constexpr unsigned int most_beginnings = 3;
     constexpr double more_cells = 1.5, finer_tolerance = 0.1;
     constexpr double longest_first_step = 1e-2, shortest_first_step = 1e-16;
 
@@ -44,6 +46,7 @@ namespace crawler
       explicit Search(const GradedTask &task)
         : task_(task)
         , now_(task.start)
+        , n_pieces_(static_cast<unsigned int>(task.scene.breaks_in_space().size()) + 1)
       {
       }
 
@@ -53,20 +56,29 @@ namespace crawler
         now_.grading = {first_levels, coarse_ratio};
         if (task_.choose_tolerance)
           now_.tolerance = 1e-3 * task_.scale;
+        // Too coarse a mesh or step can lose a stretch that is not lost.
+        double largest = 1e-2 * task_.scale; // tolerance
+        for (unsigned int beginnings = 1; !run(now_, result_); ++beginnings)
+        {
+          if (beginnings == most_beginnings)
+            return std::nullopt;
+          possible_ = true;
+          now_.n_cells *= 2;
+          if (task_.choose_tolerance)
+            largest = now_.tolerance *= finer_tolerance;
+        }
         // The tolerance is relative to a size that the runs tell.
         for (unsigned int i = 0; i < 2; ++i)
         {
-          if (!run(now_, result_))
-            return std::nullopt;
           const double size = task_.size(result_);
           if (!(size > 0.))
             return std::nullopt;
           wanted_ = task_.accuracy * size;
           if (task_.choose_tolerance)
-            now_.tolerance = std::min(1e-2 * task_.scale, task_.tolerance_factor * wanted_);
+            now_.tolerance = std::min(largest, task_.tolerance_factor * wanted_);
+          if (!run(now_, result_))
+            return std::nullopt;
         }
-        if (!run(now_, result_))
-          return std::nullopt;
         if (task_.choose_tolerance)
           refine(time_change_,
                  [](Numerics &n)
@@ -89,9 +101,11 @@ namespace crawler
                                                                 }))
             ratio_change = 0.;
           again         = refine(cells_change,
-                         [](Numerics &n)
+                         [this](Numerics &n)
                          {
-                           n.n_cells = static_cast<unsigned int>(std::ceil(more_cells * n.n_cells));
+                           // One more in each piece between breaks, at least: else the mesh may stay as it is.
+                           n.n_cells = std::max(static_cast<unsigned int>(std::ceil(more_cells * n.n_cells)),
+                                                n.n_cells + (n_pieces_ > 1 ? n_pieces_ : 0));
                          });
           space_change_ = levels_change + ratio_change + cells_change;
         }
@@ -113,7 +127,8 @@ namespace crawler
       bool
       run(const Numerics &numerics, SimulationResult &result)
       {
-        possible_ = possible_ && ++n_runs_ <= most_runs && numerics.n_cells <= most_cells &&
+        possible_ = possible_ && ++n_runs_ <= most_runs &&
+                    numerics.n_cells <= std::max(most_cells, most_cells_of_piece * n_pieces_) &&
                     smallest_size(task_.scene, numerics) >= smallest_cell;
         if (!possible_)
           return false;
@@ -153,6 +168,7 @@ namespace crawler
 
       const GradedTask &task_;
       Numerics now_;
+      const unsigned int n_pieces_; ///< of the body, between breaks
       SimulationResult result_;
       double wanted_ = 0., time_change_ = 0., space_change_ = 0.;
       unsigned int n_runs_ = 0;

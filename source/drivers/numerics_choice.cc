@@ -48,9 +48,17 @@ namespace crawler
     constexpr unsigned int graded_degree = 6, accurate_graded_degree = 8;
     constexpr double accurate_graded = 1e-5;
     /// More breaks would make graded meshes too large, or too many starts where nothing happens suddenly.
-    constexpr std::size_t most_graded_places = 24, most_gentle_breaks = 200;
+    constexpr std::size_t most_graded_places = 200, most_gentle_breaks = 200;
     /// First tolerances on graded meshes, relative to the wanted error.
     constexpr double graded_radau_5 = 2., graded_radau_9 = 10., graded_others = 0.1;
+    /// Meshes for jumps that move: from the coarsest, doubled until the displacement settles, which it does like the
+    /// size of a cell, with tolerances that fall like it too; at most so many cells, and cells times steps.
+    constexpr unsigned int moving_degree = 2, first_moving_cells = 64, last_moving_cells = 2048;
+    constexpr double moving_tolerance = 0.1, most_moving_work = 1e7;
+    /// Steps of a period for each cell, at least.
+    constexpr double moving_steps = 4.;
+    /// The remaining error of a method of first order is the last change; a larger part is promised.
+    constexpr double moving_factor = 1.5, moving_factor_of_first = 4.;
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
     /// On adaptive meshes the error of bodies softer than this, in natural units, is up to soft_factor times Accuracy,
@@ -135,6 +143,13 @@ namespace crawler
           choice_.numerics.n_cells   = *user_cells_;
           choice_.numerics.tolerance = user_tolerance_.value_or(1e-10 * L_); // of Newton's method only
           choice_.explanation        = "cells and time steps as set by the user";
+          return choice_;
+        }
+        if (mesh == "automatic" && scales_.jumps_move && adaptive_steps_ && !user_cells_ && !user_tolerance_ &&
+            !choice_.numerics.linear)
+        {
+          moving_jumps();
+          finish(fixed);
           return choice_;
         }
         if (mesh == "automatic" && starts_or_jumps() && graded())
@@ -249,6 +264,8 @@ namespace crawler
         start.n_cells  = static_cast<unsigned int>(
           std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 1. * most_cells));
         const std::string &own = parameters_.time.integrator;
+        // Each piece between breaks has a cell at least.
+        start.n_cells          = std::max(start.n_cells, static_cast<unsigned int>(scales_.in_space) + 1);
         start.integrator       = accuracy_ < radau_9_accuracy ? "radau 9" : "radau 5";
         const std::string name = own == "automatic" ? start.integrator : own;
         start.tolerance        = user_tolerance_.value_or(0.);
@@ -469,7 +486,7 @@ namespace crawler
           {
             choice_.promised_error = std::max(wanted, error);
             choice_.space_share    = 0.9; // the time tolerance is a tenth of it
-            choice_.is_collapse    = true;
+            choice_.is_measured    = true;
           }
           else
             inversion_error_ = pilot_.inversion ? error : 0.;
@@ -482,8 +499,67 @@ namespace crawler
         {
           choice_.numerics       = before_collapse;
           choice_.promised_error = choice_.space_share = std::numeric_limits<double>::quiet_NaN();
-          choice_.is_collapse                          = false;
+          choice_.is_measured                          = false;
           pilot_                                       = failed;
+        }
+      }
+
+      /**
+       * Where jumps of the active stress move through the cells every method is of order 1 in their size: the mesh is
+       * doubled until the displacement settles, or until it is clear that too many cells would be needed. The error
+       * that is left is the one that is reported.
+       */
+      void
+      moving_jumps()
+      {
+        Numerics &n  = choice_.numerics;
+        jumps_move_  = true;
+        n.jumps_move = true;
+        n.degree     = parameters_.discretization.degree.value_or(moving_degree);
+        n.integrator = "radau 5";
+        if (cycles_)
+          cycles_->accuracy = 0.01 * accuracy_; // the displacements are compared here
+        const double period = std::min(scene_.active_stress->period().value_or(T_), T_);
+        double change       = std::numeric_limits<double>::infinity();
+        for (n.n_cells = first_moving_cells;; n.n_cells *= 2)
+        {
+          // Steps that pass over many cells at once miss what happens on the way, and their errors look small.
+          n.largest_step       = period / (moving_steps * n.n_cells);
+          tolerance_           = moving_tolerance * scale_ / n.n_cells;
+          const double before  = pilot_.displacement;
+          const bool is_second = pilot_.time.status == "finished";
+          pilot_               = pilot(pilot_numerics(n.degree, n.n_cells, tolerance_));
+          measure_size();
+          const bool finished = pilot_.time.status == "finished";
+          if (!finished && (n.n_cells > first_moving_cells || pilot_.time.reason == "inverted_at_end"))
+            return; // the run will say why
+          // Each next mesh has twice the cells and up to twice the steps.
+          unsigned int last = n.n_cells;
+          for (double work = 4. * n.n_cells * pilot_.time.steps;
+               2 * last <= last_moving_cells && work < most_moving_work;
+               work *= 4.)
+            last *= 2;
+          if (finished && is_second)
+          {
+            const double change_before = change;
+            change                     = std::abs(pilot_.displacement - before);
+            // One change alone may be small by chance.
+            const bool is_first = !std::isfinite(change_before);
+            const double error =
+              is_first ? moving_factor_of_first * change : moving_factor * std::max(change, 0.5 * change_before);
+            const double wanted    = accuracy_ * size_;
+            choice_.promised_error = error;
+            choice_.space_share    = 0.9; // the tolerance is small
+            choice_.is_measured    = true;
+            choice_.advice         = "the active stress jumps at places that move through the cells, where the error "
+                                     "falls only like the size of a cell, and works and energies are known to some "
+                                     "percent only: fronts of finite width (a smoothed square profile) cost far less";
+            const bool hopeless    = !is_first && error > wanted * last / n.n_cells;
+            if (error <= 0.9 * wanted || hopeless) // the end of cycles has an error, too
+              return;
+          }
+          if (n.n_cells == last)
+            return;
         }
       }
 
@@ -520,7 +596,7 @@ namespace crawler
         if (size_ == 0.)
           size_ = scale_;
         const bool is_graded = n.grading.levels > 0; // then all is chosen already
-        if (n.integrator == "radau 5" && n.mesh.tolerance == 0. && accuracy_ < radau_9_accuracy)
+        if (!jumps_move_ && n.integrator == "radau 5" && n.mesh.tolerance == 0. && accuracy_ < radau_9_accuracy)
           n.integrator = "radau 9";
         if (!parameters_.time.initial_step && !is_graded)
           n.initial_step = first_step(parameters_.time);
@@ -530,8 +606,10 @@ namespace crawler
         const double wanted  = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
         const double by_rule = std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
                                         std::max(1e-15 * scale_, smallest()));
-        n.tolerance          = user_tolerance_.value_or(is_collapse_ ? tolerance_ : is_graded ? n.tolerance : by_rule);
-        if (predicts && !is_collapse_ && !user_cells_ && !user_tolerance_ && !fixed &&
+        n.tolerance          = user_tolerance_.value_or(is_collapse_ || jumps_move_ ? tolerance_
+                                               : is_graded                 ? n.tolerance
+                                                                           : by_rule);
+        if (predicts && !is_collapse_ && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
           const double k       = n.mesh.tolerance > 0. ? scene_.body.elastic_modulus / natural_units(scene_).force : 1.;
@@ -540,11 +618,12 @@ namespace crawler
           choice_.promised_error =
             size_ * std::max(accuracy_ * (k < soft ? soft_factor : 1.), k < very_soft ? soft_error : 0.);
         }
-        if (is_collapse_ && predicts)
+        if ((is_collapse_ || jumps_move_) && predicts)
           choice_.wanted_error = accuracy_ * size_;
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         const std::string kind =
-          is_collapse_ ? "the stretch collapses: log stretch with degree 1, "
+          jumps_move_    ? "jumps of the active stress that move, "
+          : is_collapse_ ? "the stretch collapses: log stretch with degree 1, "
           : is_graded
             ? fmt::format("sudden stress, {} levels of cells smaller by {:g} each, ", n.grading.levels, n.grading.ratio)
           : n.mesh.tolerance > 0. ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
@@ -567,6 +646,8 @@ namespace crawler
         if (choice_.promised_error > 1.5 * accuracy_ * size_)
           choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
                                              choice_.promised_error / size_);
+        if (jumps_move_ && !choice_.advice.empty())
+          choice_.explanation += "; " + choice_.advice;
       }
 
       const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -584,8 +665,8 @@ namespace crawler
       NumericsChoice choice_;
       SimulationResult pilot_; ///< the last one that counts
       double tolerance_ = 0., size_ = 0.;
-      unsigned int n_pilots_  = 0;
-      bool is_collapse_       = false;
+      unsigned int n_pilots_ = 0;
+      bool is_collapse_ = false, jumps_move_ = false;
       double space_over_time_ = 1.; ///< errors as the rule expects them
       double inversion_error_ = 0.; ///< of the time of an inversion that the collapse has found
     };

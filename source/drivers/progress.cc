@@ -12,6 +12,22 @@ namespace crawler
   {
   }
 
+  PilotProgress::PilotProgress(Log &log)
+    : log_(log)
+    , start_(Clock::now())
+  {
+  }
+
+  void
+  PilotProgress::step()
+  {
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (seconds < next_)
+      return;
+    next_ += every;
+    log_.line(fmt::format("  pilot runs choose mesh and time steps ... {:.0f} s", seconds));
+  }
+
   void
   Progress::observe(const Snapshot &snapshot)
   {

@@ -150,7 +150,15 @@ namespace crawler
     const ModelChoice model = choose_model(input);
     if (!model.needs_mesh())
       return check_rung(input, model, log);
-    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, input.parameters, input.scene);
+    PilotProgress pilots(log);
+    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF,
+                                                   input.parameters,
+                                                   input.scene,
+                                                   [&]()
+                                                   {
+                                                     pilots.step();
+                                                     return true;
+                                                   });
     const Simulation simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);
     report_plan(log, input, model, choice);
     log.line(
@@ -187,11 +195,13 @@ namespace crawler
       return run_rung(communicator, options, input, model, stop_signal, start, log);
     input.parameters.model = model.model;
     // The linear rung (a = 0) is computed by what follows, as the nonlinear one.
+    PilotProgress pilots(log);
     const auto chosen = choose_numerics(MPI_COMM_SELF,
                                         parameters,
                                         input.scene,
                                         [&]()
                                         {
+                                          pilots.step();
                                           return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
                                         });
     if (stop_signal.arrived_anywhere(communicator))

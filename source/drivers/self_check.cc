@@ -14,7 +14,9 @@ namespace crawler
                               (parameters.time.integrator != "automatic" && parameters.time.integrator != "bdf") ||
                               parameters.time.order < 4 || parameters.time.step_control == "fixed";
     return parameters.output.ledger_tolerance.value_or(
-      own_numerics ? 0.1 : std::max(1e-8, (result.log_stretch_since ? 300. : 10.) * parameters.accuracy));
+      result.jumps_move ? 0.2
+      : own_numerics    ? 0.1
+                        : std::max(1e-8, (result.log_stretch_since ? 300. : 10.) * parameters.accuracy));
   }
 
   void

@@ -25,6 +25,8 @@ namespace crawler
     constexpr double nearly_zero              = 1e-6;
     /// The step after a change of mesh that settle() makes is this times the root of the tolerance.
     constexpr double settling_factor = 0.01;
+    /// Cells that come to rest faster than this, relative to the duration, turn round-off of the state into a velocity.
+    constexpr double fast_relaxation = 1e-9;
 
     double
     now()
@@ -139,6 +141,7 @@ namespace crawler
     integrals_            = {};
     largest_friction_     = 0.;
     largest_net_friction_ = 0.;
+    result_.jumps_move    = numerics_.jumps_move;
     if (options.ledger)
       result_.ledger.emplace();
     if (numerics_.formulation == FormulationChoice::log_stretch)
@@ -533,13 +536,17 @@ namespace crawler
   }
 
   /// Where friction vanishes (w -> 0 for a > 0) a state alone does not tell the velocity: the error of Newton's method
-  /// would be divided by the friction. The rate of the time stepper has no such error, so it is kept. That of the
+  /// would be divided by the friction; and the smallest cells of graded meshes turn its round-off into velocities, by
+  /// 1e-16 over their time of relaxation. The rate of the time stepper has no such error, so it is kept. That of the
   /// linear rung is the velocity, exactly.
   bool
   Simulation::keeps_rate() const
   {
-    return numerics_.linear ||
-           (scene_.friction_exponent() > 0. && assembler_->formulation() == Formulation::position && scene_.is_plain());
+    if (numerics_.linear)
+      return true;
+    const bool amplifies =
+      scene_.friction_exponent() > 0. || (numerics_.grading.levels > 0 && numerics_.initial_step < fast_relaxation);
+    return amplifies && assembler_->formulation() == Formulation::position && scene_.is_plain();
   }
 
   /// Keeps the rate of the latest residual at each of the latest times: those of the stages of a step, and its start.
@@ -628,196 +635,6 @@ namespace crawler
     changes_ = mark_for_joining(indicators_, *discretization_, numerics_.mesh);
     if (!changes_.empty())
       request_ = Request::mesh;
-  }
-
-  RateQuadrature::Rates
-  Simulation::rates(const double t,
-                    const CellIntegrals &sums,
-                    const std::span<const double> y,
-                    const std::span<const double> v)
-  {
-    return {
-      {sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, assembler_->end_power(t, y, v)}};
-  }
-
-  /// The rates integrated over the step by the formula of the integrator itself. The states within the step are looked
-  /// at for extremes of the stretch, too.
-  RateQuadrature::Rates
-  Simulation::integrate_step(const Step &step, const RateQuadrature::Rates &at_end)
-  {
-    RateQuadrature::Rates sum{};
-    if (step.size == 0.)
-      return sum;
-    y_inside_.resize(y_.size());
-    v_inside_.resize(v_.size());
-    for (const auto &point : stepper_->quadrature())
-    {
-      RateQuadrature::Rates inside = at_end;
-      if (point.place < 1.)
-      {
-        const double t = step.time - (1. - point.place) * step.size;
-        stepper_->interpolate(t, y_inside_);
-        velocity(t, step.size, y_inside_, v_inside_);
-        inside = rates(t, assembler_->integrals(t, y_inside_, v_inside_), y_inside_, v_inside_);
-        look_at_extremes(t, assembler_->stretch_range(y_inside_), /*is_first=*/false);
-      }
-      for (std::size_t i = 0; i < sum.size(); ++i)
-        sum[i] += step.size * point.weight * inside[i];
-    }
-    return sum;
-  }
-
-  /// Where somebody asks for the past: the stretch within the step, from the integrator's dense output.
-  void
-  Simulation::keep_history(const Step &step, const std::span<const double> y)
-  {
-    if (delay_ == 0. || step.size == 0.)
-      return;
-    // The step starts from the last accepted state, of which the integrator may know less than of what is inside.
-    StretchHistory::Step record{accepted_time_,
-                                step.time,
-                                history_cells_,
-                                &discretization_->element(),
-                                assembler_->formulation() == Formulation::log_stretch,
-                                {}};
-    std::vector<double> inside(y.size());
-    for (std::size_t i = 0; i < record.coefficients.size(); ++i)
-    {
-      const double place            = StretchHistory::places()[i];
-      std::span<const double> state = place == 0. ? std::span<const double>(accepted_) : y;
-      if (place > 0. && place < 1.)
-      {
-        stepper_->interpolate(record.from + place * (record.to - record.from), inside);
-        state = inside;
-      }
-      record.coefficients[i] = discretization_->gather(assembler_->stretch_coefficients(state));
-    }
-    history_.add(std::move(record), step.time - 2. * delay_);
-  }
-
-  void
-  Simulation::look_at_extremes(const double t, const StretchRange &range, const bool is_first)
-  {
-    const Extreme least{range.min.value, range.min.s, t}, most{range.max.value, range.max.s, t};
-    if (is_first)
-    {
-      min_history_.start(least);
-      max_history_.start(most);
-    }
-    else
-    {
-      min_history_.add(least);
-      max_history_.add(most);
-    }
-    result_.min_stretch = min_history_.extreme();
-    result_.max_stretch = max_history_.extreme();
-  }
-
-  /// Looks at the phases of a cycle that a step has passed: may the run end here?
-  bool
-  Simulation::cycle_repeats(const Step &step, const std::span<const double> y)
-  {
-    const auto see = [&](const std::span<const double> state)
-    {
-      const double extremes[] = {result_.min_stretch.value, result_.max_stretch.value};
-      double g[2];
-      scene_.friction->values(extremes, g);
-      return cycle_stop_->observe(assembler_->displacement_at(CycleStop::n_pieces, state),
-                                  assembler_->integrals(step.time, state, v_).displacement,
-                                  result_.ledger ? &*result_.ledger : nullptr,
-                                  scene_.body.elastic_modulus / std::max(g[0], g[1]));
-    };
-    y_inside_.resize(y_.size());
-    for (; !cycle_stop_->next_is_end() && cycle_stop_->next_time() <= step.time; see(y_inside_))
-      stepper_->interpolate(cycle_stop_->next_time(), y_inside_);
-    const bool is_end =
-      step.is_frame && cycle_stop_->next_is_end() && std::abs(cycle_stop_->next_time() - step.time) < 1e-6 * step.size;
-    return is_end && see(y);
-  }
-
-  /// A step shall end where the last stride starts, so that what it costs is known.
-  void
-  Simulation::prepare_gait()
-  {
-    const auto period = scene_.active_stress->period();
-    // To look for one costs a thousand looks at the state.
-    constexpr std::size_t most_unknowns = 10000;
-    if (!period && discretization_->n_unknowns() > most_unknowns)
-      return;
-    gait_meter_.emplace(period, cycle_stop_.has_value());
-    const auto start = gait_meter_->stride_start();
-    if (!start)
-      return;
-    const double time = *start * units_.time;
-    const auto place  = std::lower_bound(frames_.begin(), frames_.end(), time - 1e-12 * units_.time);
-    if (place != frames_.end() && *place <= time + 1e-12 * units_.time)
-      return;
-    hidden_frame_ = time;
-    frames_.insert(place, time);
-  }
-
-  /// Shows the gait's samples that a step has passed.
-  void
-  Simulation::watch_gait(const Step &step, const std::span<const double> y)
-  {
-    const auto see = [&](const std::span<const double> state)
-    {
-      const auto u = assembler_->displacement_at(GaitMeter::n_pieces, state);
-      gait_meter_->see(u, assembler_->integrals(step.time, state, v_).displacement);
-    };
-    y_inside_.resize(y_.size());
-    for (double time = gait_meter_->next_time(); time <= step.time; time = gait_meter_->next_time())
-      if (time >= step.time - 1e-12 || step.size == 0.)
-        see(y);
-      else
-      {
-        stepper_->interpolate(time, y_inside_);
-        see(y_inside_);
-      }
-    gait_meter_->see_step(
-      step.time, assembler_->integrals(step.time, y, v_).displacement, result_.ledger ? &*result_.ledger : nullptr);
-  }
-
-  /// Displacement, and if wanted the ledger, at an accepted state.
-  bool
-  Simulation::compute_integrals(const Step &step, const std::span<const double> y)
-  {
-    if (!options_.ledger && !has_observers_)
-      return true;
-    integrals_           = assembler_->integrals(step.time, y, v_);
-    result_.displacement = integrals_.displacement;
-    if (!options_.ledger && !step.is_frame && step.number != 0)
-      return true;
-    if (!std::isfinite(integrals_.dissipation))
-    {
-      diagnosis_ = {"failed",
-                    "nonfinite",
-                    fmt::format("the velocity at t = {:.6g} is not a finite number; the smallest stretch is {:.3g} at "
-                                "s = {:.6g}",
-                                step.time * units_.time,
-                                stretch_.min.value,
-                                stretch_.min.s * units_.length)};
-      return false;
-    }
-    if (!options_.ledger)
-      return true;
-    Ledger &ledger                  = *result_.ledger;
-    const RateQuadrature::Rates now = rates(step.time, integrals_, y, v_);
-    const RateQuadrature::Rates increment =
-      stepper_->quadrature().empty() ? quadrature_.advance(step.time, now) : integrate_step(step, now);
-    ledger.stress_power += increment[0];
-    ledger.dissipation += increment[1];
-    ledger.positive_power += increment[2];
-    ledger.exchanged += increment[3];
-    ledger.end_work += increment[4];
-    ledger.elastic_energy = integrals_.elastic_energy;
-    if (step.number == 0)
-      ledger.initial_energy = integrals_.elastic_energy;
-    largest_friction_     = std::max(largest_friction_, integrals_.abs_friction);
-    largest_net_friction_ = std::max(largest_net_friction_, std::abs(integrals_.net_friction));
-    if (largest_friction_ > 0.)
-      result_.net_friction = largest_net_friction_ / largest_friction_;
-    return true;
   }
 
   /// Frames have the times that were asked for, exactly.

@@ -89,7 +89,7 @@ namespace crawler
     stepper.smooth = assembler_->formulation() == Formulation::position || numerics_.degree > 1;
 
     stepper.exact_elimination =
-      scene_.active_stress->feedback() == nullptr || scene_.active_stress->feedback()->distance() == 0.;
+      scene_.active_stress->feedback() == nullptr || !scene_.active_stress->feedback()->sees_near();
 
     stepper.implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F)
     {

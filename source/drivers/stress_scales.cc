@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace crawler
 {
@@ -14,6 +15,69 @@ namespace crawler
     {
       const auto next = std::lower_bound(breaks.begin(), breaks.end(), from);
       return next != breaks.end() && *next <= to;
+    }
+
+    /// A place where m jumps by more than @p least at the time @p t, without being one of the breaks @p in_space: where
+    /// the largest difference of neighbours of a sampling does not become smaller when the neighbours come closer.
+    std::optional<double>
+    undeclared_jump(const Scene &scene, const std::vector<double> &in_space, const double t, const double least)
+    {
+      constexpr unsigned int n = 512, n_bisections = 30;
+      const double L = scene.body.length;
+      std::vector<double> points(n + 1), m(n + 1);
+      for (unsigned int i = 0; i <= n; ++i)
+        points[i] = L * i / n;
+      scene.active_stress->at(points)->values(t, m);
+      double left = 0., right = 0., m_left = 0., m_right = 0.;
+      for (unsigned int i = 0; i < n; ++i)
+        if (std::abs(m[i + 1] - m[i]) > std::abs(m_right - m_left) && !any_between(in_space, points[i], points[i + 1]))
+        {
+          left    = points[i];
+          right   = points[i + 1];
+          m_left  = m[i];
+          m_right = m[i + 1];
+        }
+      for (unsigned int i = 0; i < n_bisections && std::abs(m_right - m_left) > least; ++i)
+      {
+        const std::vector<double> middle = {0.5 * (left + right)};
+        std::vector<double> m_middle(1);
+        scene.active_stress->at(middle)->values(t, m_middle);
+        const bool in_left           = std::abs(m_middle[0] - m_left) > std::abs(m_right - m_middle[0]);
+        (in_left ? right : left)     = middle[0];
+        (in_left ? m_right : m_left) = m_middle[0];
+      }
+      return std::abs(m_right - m_left) > least ? std::optional(0.5 * (left + right)) : std::nullopt;
+    }
+
+    /// Are there such jumps that are elsewhere at another time?
+    bool
+    jumps_that_move(const Scene &scene, const std::vector<double> &in_space, const double least)
+    {
+      constexpr unsigned int n_times = 8;
+      constexpr double golden        = 0.6180339887498949; // no multiple of a period
+      const double L = scene.body.length, beside = 1e-6 * L;
+      struct Jump
+      {
+        double place, time;
+      };
+      const auto is_there = [&](const double place, const double t)
+      {
+        const std::vector<double> points = {std::max(0., place - beside), std::min(L, place + beside)};
+        std::vector<double> m(2);
+        scene.active_stress->at(points)->values(t, m);
+        return std::abs(m[1] - m[0]) > 0.5 * least;
+      };
+      std::vector<Jump> jumps;
+      for (unsigned int i = 1; i <= n_times; ++i)
+      {
+        const double t = scene.end_time * std::fmod(i * golden, 1.);
+        if (const auto place = undeclared_jump(scene, in_space, t, least))
+          jumps.push_back({*place, t});
+      }
+      for (std::size_t i = 1; i < jumps.size(); ++i)
+        if (!is_there(jumps[i].place, jumps[i - 1].time) && !is_there(jumps[i - 1].place, jumps[i].time))
+          return true;
+      return false;
     }
 
     struct SuddenChange
@@ -64,6 +128,7 @@ namespace crawler
   stress_scales(const Scene &scene)
   {
     constexpr unsigned int fine = 512, coarse = 16;
+    constexpr double jump_part = 0.05; // smaller jumps, relative to the largest |m|, are not looked for
     const double L = scene.body.length, T = scene.end_time;
     const std::vector<double> in_space = breaks_in_space(*scene.active_stress, L),
                               in_time  = TimePieces(*scene.active_stress, T).breaks();
@@ -93,12 +158,14 @@ namespace crawler
     look(coarse, fine);
     const SuddenChange change = largest > 0. ? largest_sudden_change(scene, in_space) : SuddenChange{0., 0.};
     const double unit         = largest > 0. ? largest : 1.;
+    const bool may_jump       = along * L / fine > jump_part * largest;
     return {std::min(largest * L / scene.body.elastic_modulus, largest * T / (L * scene.body.friction_coefficient)),
             along > 0. ? largest / along : L,
             over > 0. ? largest / over : T,
             std::max(change.at_start, change.later) / unit,
             change.later / unit,
             in_space.size(),
-            in_time.size()};
+            in_time.size(),
+            may_jump && jumps_that_move(scene, in_space, jump_part * largest)};
   }
 } // namespace crawler

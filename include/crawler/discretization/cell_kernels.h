@@ -98,7 +98,7 @@ namespace crawler
     // At the stretch points [cell][q]: the derivatives of N by log w, by w_t and by the stretch nearby; the last two
     // may be empty.
     std::vector<double> by_log, by_rate, by_near;
-    std::vector<double> near; ///< the stretch nearby
+    std::vector<double> near_slope; ///< see StretchElsewhere
   };
 
   /// The elimination of log w from the Jacobian of the log-stretch form, cell by cell; real or complex shifts.

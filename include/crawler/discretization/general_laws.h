@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/discretization/stretch_history.h>
+#include <crawler/discretization/stretch_means.h>
 #include <crawler/scene/scene.h>
 
 #include <memory>
@@ -82,20 +83,20 @@ namespace crawler
     void
     evaluate(double t, std::span<const double> own, bool is_log, const StretchHistory *history);
 
-    /// The change of the near stretch with that of the coefficients, for the state of evaluate() if log w is linear
-    /// there: with the near stretch @p near of that state; [points].
+    /// The change of the near stretch [points] with that of the coefficients, for the state of evaluate() that left
+    /// this @p slope, which is empty if the coefficients are strains.
     void
-    change_of_near(std::span<const double> own_change,
-                   std::span<const double> near,
-                   bool is_log,
-                   std::span<double> change) const;
+    change_of_near(std::span<const double> own_change, std::span<const double> slope, std::span<double> change) const;
 
     std::vector<double> near, delayed; ///< stretches; of size 0 if they are not used
+    /// Where the coefficients are log w: the stretch, dw/dlog w, at the places; with a sensor at the coefficients.
+    std::vector<double> near_slope;
 
   private:
     const Discretization &discretization_;
     const std::vector<double> points_;
     std::optional<StretchPlaces> near_places_;
+    std::optional<StretchMeans> sensors_;
     double delay_ = 0.;
     std::vector<double> at_start_; ///< w(s, 0)
     std::vector<double> coefficients_;

@@ -52,7 +52,7 @@ namespace crawler
     /// What the stretch at another place adds to a product with the Jacobian.
     struct Far
     {
-      std::vector<double> by_near, near;
+      std::vector<double> by_near;
     };
     Far
     far() const;

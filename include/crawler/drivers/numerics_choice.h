@@ -22,8 +22,11 @@ namespace crawler
     double wanted_error = std::numeric_limits<double>::quiet_NaN();
     /// The part of the error that is of the mesh, as far as the rule can tell; not a number if it cannot [1].
     double space_share = std::numeric_limits<double>::quiet_NaN();
-    /// Its promised error was measured with one mesh after the other: the stretch collapses.
-    bool is_collapse = false;
+    /// Its promised error was measured with one mesh after the other: the stretch collapses, or jumps of the active
+    /// stress move.
+    bool is_measured = false;
+    /// What helps if Accuracy is not met; empty if nothing special does.
+    std::string advice;
   };
 
   /**

@@ -4,8 +4,28 @@
 #include <crawler/drivers/log.h>
 #include <crawler/observers/observer.h>
 
+#include <chrono>
+
 namespace crawler
 {
+  /// A line every few seconds of the pilot runs that choose the numerics.
+  class PilotProgress
+  {
+  public:
+    explicit PilotProgress(Log &log);
+
+    /// To be called after every step of a pilot.
+    void
+    step();
+
+  private:
+    using Clock                   = std::chrono::steady_clock;
+    static constexpr double every = 3.; ///< [s]
+    Log &log_;
+    const Clock::time_point start_;
+    double next_ = every;
+  };
+
   /// A line at every tenth of the duration.
   class Progress : public Observer
   {

@@ -44,6 +44,7 @@ namespace crawler
     bool linear                   = false; ///< the rung for a = 0: radau, position form, uniform mesh
     std::string integrator        = "";    ///< what an automatic integrator is (time/integrators.h); empty: bdf
     Grading grading               = {};    ///< of the first mesh, which has n_cells cells without it
+    bool jumps_move               = false; ///< the active stress jumps at places that move through the cells
   };
 
   /// The ends of the cells of the first mesh, for a body of length 1: at the breaks in space, and graded as wished.
@@ -65,7 +66,8 @@ namespace crawler
     double unresolved = 0.;                 ///< Resolution: largest highest_mode over largest strain, if looked at
     double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]
     std::optional<Ledger> ledger;
-    double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
+    bool jumps_move     = false; ///< the ledger's integrals in time are not those of a smooth active stress
+    double net_friction = 0.;    ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
 
     using Extreme = crawler::Extreme;
     Extreme min_stretch, max_stretch;

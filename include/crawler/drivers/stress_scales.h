@@ -18,6 +18,8 @@ namespace crawler
     double sudden;
     double sudden_later;           ///< the same at the breaks in time alone [1]
     std::size_t in_space, in_time; ///< numbers of breaks
+    /// m jumps at places that are no breaks and not the same at all times: no cell can end there.
+    bool jumps_move;
   };
 
   StressScales

@@ -13,7 +13,8 @@ namespace crawler
   {
     std::span<const double> stretch; ///< w(s_i, t) [1]
     std::span<const double> rate;    ///< w_t(s_i, t) [1/time]
-    std::span<const double> near;    ///< w(s_i + distance, t) [1]; at the end of the body if that is beyond it
+    /// w(s_i + distance, t) [1], at the end of the body if that is beyond it; with a sensor its mean over the sensor
+    std::span<const double> near;
     std::span<const double> delayed; ///< w(s_i, t - delay) [1]; that of the start before t = 0
   };
 
@@ -49,12 +50,27 @@ namespace crawler
     virtual bool
     uses_rate() const = 0;
 
-    /// [length], either sign; 0 if the stretch of no other place is used.
+    /// [length], either sign; 0 if the stretch of no other place is used, or a sensor is at the place itself.
     virtual double
     distance() const = 0;
 
     /// [time], positive; 0 if no delayed stretch is used.
     virtual double
     delay() const = 0;
+
+    /// [length], b; if positive, the near stretch is the mean stretch of the piece of this length with its middle at
+    /// s + distance, moved inside where it would reach beyond the body: (zeta(right) - zeta(left))/b. 0: at the place.
+    virtual double
+    sensor_length() const
+    {
+      return 0.;
+    }
+
+    /// Is the near stretch used?
+    bool
+    sees_near() const
+    {
+      return distance() != 0. || sensor_length() != 0.;
+    }
   };
 } // namespace crawler

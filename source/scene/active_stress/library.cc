@@ -327,6 +327,7 @@ namespace crawler
         , uses_rate_(feedback.uses_rate())
         , distance_(feedback.distance())
         , delay_(feedback.delay())
+        , sensor_length_(feedback.sensor_length())
       {
       }
 
@@ -350,12 +351,17 @@ namespace crawler
       {
         return delay_;
       }
+      double
+      sensor_length() const override
+      {
+        return sensor_length_;
+      }
 
     private:
       const std::shared_ptr<LibraryFailures> failures_;
       const StretchFeedback &feedback_;
       const bool uses_rate_;
-      const double distance_, delay_;
+      const double distance_, delay_, sensor_length_;
     };
 
     /// The beginning of an ELF file; nothing if it is something else.

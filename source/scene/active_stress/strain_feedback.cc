@@ -77,10 +77,11 @@ namespace crawler
   class StrainFeedback::Feedback : public StretchFeedback
   {
   public:
-    Feedback(std::shared_ptr<const Formula> formula, const double distance, const double delay)
+    Feedback(std::shared_ptr<const Formula> formula, const double distance, const double delay, const double sensor)
       : formula_(std::move(formula))
       , distance_(distance)
       , delay_(delay)
+      , sensor_length_(sensor)
     {
     }
 
@@ -104,10 +105,15 @@ namespace crawler
     {
       return formula_->uses(w_delayed) ? delay_ : 0.;
     }
+    double
+    sensor_length() const override
+    {
+      return formula_->uses(w_near) ? sensor_length_ : 0.;
+    }
 
   private:
     const std::shared_ptr<const Formula> formula_;
-    const double distance_, delay_;
+    const double distance_, delay_, sensor_length_;
 
     friend class StrainFeedback;
   };
@@ -130,6 +136,12 @@ namespace crawler
                         any_number(),
                         "From s to the place whose stretch is w_near; positive towards s = L.",
                         "length");
+    declarations.number("Sensor length",
+                        sensor_length,
+                        Range{0., std::numeric_limits<double>::infinity(), true, false},
+                        "If positive, w_near is the mean stretch of the piece of this length around that place; at "
+                        "the ends of the body the piece is moved inside. 0: the stretch at the place.",
+                        "length");
     declarations.number("Delay",
                         delay,
                         Range{0., std::numeric_limits<double>::infinity(), true, false},
@@ -147,9 +159,18 @@ namespace crawler
       {"active stress", parameters.active_stress, parameters.constants, formula_entry, section + "Constants", names},
       length,
       end_time);
-    if (formula->uses(w_near) && !(parameters.distance != 0. && std::abs(parameters.distance) < length))
+    const double sensor = parameters.sensor_length;
+    if (formula->uses(w_near) && !(sensor == 0. || (sensor >= 1e-6 * length && sensor <= length)))
+      throw InputError(
+        fmt::format("the formula uses w_near and Sensor length is {:g}, but 0, or a number from 1e-6 L to "
+                    "L, L = {:g}, is expected",
+                    sensor,
+                    length),
+        section + "Sensor length");
+    if (formula->uses(w_near) &&
+        !((parameters.distance != 0. || sensor > 0.) && std::abs(parameters.distance) < length))
       throw InputError(fmt::format("the formula uses w_near and Distance is {:g}, but a number other than 0 between -L "
-                                   "and L, L = {:g}, is expected",
+                                   "and L, L = {:g}, or a Sensor length, is expected",
                                    parameters.distance,
                                    length),
                        section + "Distance");
@@ -160,7 +181,7 @@ namespace crawler
                     parameters.delay,
                     end_time),
         section + "Delay");
-    feedback_ = std::make_shared<const Feedback>(std::move(formula), parameters.distance, parameters.delay);
+    feedback_ = std::make_shared<const Feedback>(std::move(formula), parameters.distance, parameters.delay, sensor);
 
     constexpr unsigned int n = 16;
     std::vector<double> points(n + 1), m(n + 1);
@@ -195,8 +216,19 @@ namespace crawler
   StrainFeedback::breaks_in_space() const
   {
     constexpr int most    = 20; // more are not worth a cell each
-    const double distance = feedback_->distance();
+    const double distance = feedback_->distance(), sensor = feedback_->sensor_length();
     std::vector<double> places;
+    if (sensor * most >= length_)
+    {
+      // The near stretch has kinks where the sensor comes to an end of the body, and smoother ones where an end of the
+      // sensor comes to those.
+      for (const double kink : {0.5 * sensor - distance, length_ - 0.5 * sensor - distance})
+        if (kink > 0. && kink < length_)
+          for (const double place : {kink, kink - distance - 0.5 * sensor, kink - distance + 0.5 * sensor})
+            if (place > 0. && place < length_)
+              places.push_back(place);
+      return places;
+    }
     if (distance == 0. || std::abs(distance) * most < length_)
       return places;
     for (int i = 1; std::abs(i * distance) < length_; ++i)

@@ -290,8 +290,14 @@ namespace crawler
         if (const StretchFeedback *feedback = terms[i].stress->feedback())
         {
           uses_rate_ = uses_rate_ || feedback->uses_rate();
-          take(feedback->distance(), distance_, "distance", i);
-          take(feedback->delay(), delay_, "delay", i);
+          if (feedback->sees_near())
+          {
+            take(feedback->distance(), distance_, sees_near_, "distance", i);
+            take(feedback->sensor_length(), sensor_length_, sees_near_, "sensor length", i);
+            sees_near_ = true;
+          }
+          if (feedback->delay() != 0.)
+            take(feedback->delay(), delay_, delay_ != 0., "delay", i);
         }
     }
 
@@ -315,12 +321,17 @@ namespace crawler
     {
       return delay_;
     }
+    double
+    sensor_length() const override
+    {
+      return sensor_length_;
+    }
 
   private:
     static void
-    take(const double value, double &common, const char *name, const std::size_t i)
+    take(const double value, double &common, const bool is_known, const char *name, const std::size_t i)
     {
-      if (value != 0. && common != 0. && value != common)
+      if (is_known && value != common)
         throw InputError(
           fmt::format("term {} uses the stretch with the {} {:g}, but another term with {:g}; one {} for all "
                       "terms is expected",
@@ -330,13 +341,12 @@ namespace crawler
                       common,
                       name),
           fmt::format("{}Term {}/Generator", section, i + 1));
-      if (value != 0.)
-        common = value;
+      common = value;
     }
 
     const std::vector<SumTerm> &terms_;
-    bool uses_rate_  = false;
-    double distance_ = 0., delay_ = 0.;
+    bool uses_rate_ = false, sees_near_ = false;
+    double distance_ = 0., delay_ = 0., sensor_length_ = 0.;
   };
 
 

@@ -21,11 +21,12 @@ namespace
   };
 
   test::Settings
-  feedback(const std::string &formula)
+  feedback(const std::string &formula, const std::string &distance = "0.37", const std::string &sensor = "0")
   {
     return {{"Active stress/Generator", "strain feedback"},
             {"Active stress/Strain feedback/Active stress", formula},
-            {"Active stress/Strain feedback/Distance", "0.37"},
+            {"Active stress/Strain feedback/Distance", distance},
+            {"Active stress/Strain feedback/Sensor length", sensor},
             {"Active stress/Strain feedback/Delay", "0.1"}};
   }
 
@@ -43,14 +44,19 @@ namespace
       {"stretch", feedback("0.3*sin(w)*(1+s)")},
       {"rate", feedback("0.2*w_t+0.1*tanh(w_t)*w")},
       {"nearby", feedback("0.3*w_near^2*w")},
+      {"sensor", feedback("0.3*w_near^2*w", "-0.37", "0.28")},
+      {"sensor at the place", feedback("0.2*tanh(5*(w_near-1))*w", "0", "0.4")},
     };
     Feature all{"all", {}};
     for (const Feature &feature : list)
       if (feature.name != "Newtonian" && feature.name != "stretch" && feature.name != "rate" &&
-          feature.name != "nearby")
+          feature.name != "nearby" && feature.name.rfind("sensor", 0) != 0)
         all.settings.insert(all.settings.end(), feature.settings.begin(), feature.settings.end());
     for (const auto &setting : feedback("0.3*sin(w)*(1+s)+0.2*w_t*w+0.3*w_near*w_delayed+0.1*sin(t)"))
       all.settings.push_back(setting);
+    list.push_back(all);
+    all.name = "all with sensors";
+    all.settings.push_back({"Active stress/Strain feedback/Sensor length", "0.5"});
     list.push_back(all);
     return list;
   }
@@ -210,7 +216,7 @@ TEST(GeneralForms, ProductsMatchDifferences)
 
           // The elimination is the inverse, unless a stretch at another place is in the equation.
           const StretchFeedback *stress = test.scene.active_stress->feedback();
-          if (stress != nullptr && stress->distance() != 0.)
+          if (stress != nullptr && stress->sees_near())
             continue;
           std::vector<double> back(n);
           test.form->jacobian_vmult(x, product);
@@ -230,7 +236,7 @@ TEST(GeneralForms, ComplexSolutionsInvertTheProduct)
     {
       Case test(feature, formulation, 3);
       const StretchFeedback *stress = test.scene.active_stress->feedback();
-      if (stress != nullptr && stress->distance() != 0.)
+      if (stress != nullptr && stress->sees_near())
         continue;
       const std::size_t n = test.y.size();
       std::vector<double> real(n), imaginary(n), first(n), second(n), scaled(n);

@@ -171,4 +171,13 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   expect_message(feedback("w_delayed"), section + "Delay", "at least");
   expect_message(feedback("log(w-1)"), section + "Active stress", "finite number is expected");
   EXPECT_EQ(message(feedback("w_t*(w-1)")), "");
+  const auto sensor = [&](const std::string &length)
+  {
+    auto settings = feedback("w_near");
+    settings.push_back({section + "Sensor length", length});
+    return settings;
+  };
+  expect_message(sensor("1.5"), section + "Sensor length", "from 1e-6 L to L");
+  expect_message(sensor("1e-9"), section + "Sensor length", "from 1e-6 L to L");
+  EXPECT_EQ(message(sensor("0.3")), "");
 }

@@ -200,9 +200,10 @@ TEST(Sum, CombinesFeedback)
     }
     struct Answer : StretchFeedback
     {
-      Answer(const double distance, const double delay)
+      Answer(const double distance, const double delay, const double sensor_length)
         : distance_(distance)
         , delay_(delay)
+        , sensor_length_(sensor_length)
       {
       }
       std::unique_ptr<FeedbackAtPoints>
@@ -243,11 +244,16 @@ TEST(Sum, CombinesFeedback)
       {
         return delay_;
       }
-      const double distance_, delay_;
+      double
+      sensor_length() const override
+      {
+        return sensor_length_;
+      }
+      const double distance_, delay_, sensor_length_;
     };
-    Feedback(const double distance, const double delay)
+    Feedback(const double distance, const double delay, const double sensor_length = 0.)
       : inner_({"1.3", ""}, L, T)
-      , answer_(distance, delay)
+      , answer_(distance, delay, sensor_length)
     {
     }
 
@@ -309,6 +315,15 @@ TEST(Sum, CombinesFeedback)
   EXPECT_THROW(sum_of(term(std::make_unique<Feedback>(0.1, 0.)), term(std::make_unique<Feedback>(-0.1, 0.))),
                InputError);
   EXPECT_THROW(sum_of(term(std::make_unique<Feedback>(0., 1.)), term(std::make_unique<Feedback>(0., 2.))), InputError);
+  // A sensor and a point, or two lengths of sensors, have no common near stretch.
+  EXPECT_THROW(sum_of(term(std::make_unique<Feedback>(0.1, 0.)), term(std::make_unique<Feedback>(0.1, 0., 0.2))),
+               InputError);
+  EXPECT_THROW(sum_of(term(std::make_unique<Feedback>(0., 0., 0.3)), term(std::make_unique<Feedback>(0.1, 0., 0.3))),
+               InputError);
+  EXPECT_EQ(sum_of(term(std::make_unique<Feedback>(0., 0., 0.3)), term(std::make_unique<Feedback>(0., 1.)))
+              .feedback()
+              ->sensor_length(),
+            0.3);
 }
 
 TEST(Sum, RefusesWhatMakesNoSense)

@@ -17,6 +17,7 @@ namespace crawler
     std::string constants     = "";
     double distance           = 0.; ///< [length]
     double delay              = 0.; ///< [time]
+    double sensor_length      = 0.; ///< [length]
 
     void
     add_parameters(Declarations &declarations);
@@ -24,8 +25,9 @@ namespace crawler
 
   /**
    * An active stress that answers to the stretch (proprioception): a formula m(s, t, w, w_t, w_near, w_delayed) of the
-   * stretch w, its rate w_t, the stretch at the place s + distance (at the end of the body if that is beyond it) and
-   * the stretch of the time t - delay (the initial stretch before t = 0). Derivatives are exact.
+   * stretch w, its rate w_t, the stretch at the place s + distance (at the end of the body if that is beyond it), or
+   * its mean over a sensor around that place, and the stretch of the time t - delay (the initial stretch before
+   * t = 0). Derivatives are exact.
    */
   class StrainFeedback : public ActiveStress
   {
@@ -33,7 +35,7 @@ namespace crawler
     static constexpr const char *description =
       "a formula of s, t, the stretch, its rate, and stretches nearby and before";
 
-    /// Throws InputError if the formula, the constants, distance or delay do not make sense.
+    /// Throws InputError if the formula, the constants, the distance, the delay or the sensor do not make sense.
     StrainFeedback(const StrainFeedbackParameters &parameters, double length, double end_time);
 
     /// Of a body with the stretch 1 at rest.
@@ -42,7 +44,7 @@ namespace crawler
 
     ~StrainFeedback() override;
 
-    /// Where the place of w_near reaches the end of the body, and where that is seen from in turn.
+    /// Where the place of w_near, or the sensor, reaches the end of the body, and where that is seen from in turn.
     std::vector<double>
     breaks_in_space() const override;
 

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Robots switch: square actuation by automatic numerics, with its error bars.
+#include "../support/fused_runs.h"
+
+#include <crawler/drivers/error_estimate.h>
+#include <crawler/drivers/graded_choice.h>
+#include <crawler/drivers/stress_scales.h>
+
+#include <gtest/gtest.h>
+
+using namespace crawler;
+using test::Settings;
+
+namespace
+{
+  Settings
+  segments(const unsigned int n, const std::string &gap, const double end_time)
+  {
+    return {{"Active stress/Generator", "segments"},
+            {"Active stress/Segments/Number of segments", std::to_string(n)},
+            {"Active stress/Segments/Gap", gap},
+            {"Active stress/Segments/Phase lag", "0.125"},
+            {"Time/End time", test::text(end_time)}};
+  }
+
+  Settings
+  standing_wave(const double end_time)
+  {
+    return {{"Active stress/Generator", "standing wave"},
+            {"Active stress/Standing wave/Amplitude", "0.3"},
+            {"Active stress/Standing wave/Wave number", "0.5"},
+            {"Active stress/Standing wave/Duty cycle", "0.3"},
+            {"Active stress/Standing wave/Profile", "square"},
+            {"Active stress/Standing wave/Window start", "0.2"},
+            {"Active stress/Standing wave/Window end", "0.7"},
+            {"Time/End time", test::text(end_time)}};
+  }
+
+  Settings
+  travelling_wave(const std::string &profile, const double end_time)
+  {
+    return {{"Active stress/Generator", "travelling wave"},
+            {"Active stress/Travelling wave/Amplitude", "0.3"},
+            {"Active stress/Travelling wave/Wave number", "1.5"},
+            {"Active stress/Travelling wave/Profile", profile},
+            {"Time/End time", test::text(end_time)}};
+  }
+
+  bool
+  jumps_move(const Settings &settings)
+  {
+    return stress_scales(test::parameters_with(settings).create_scene()).jumps_move;
+  }
+
+  /// What `crawler run` computes, with its error bar, without files.
+  Answer
+  answer(const Settings &settings)
+  {
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    return run_as_promised(
+      MPI_COMM_SELF,
+      parameters,
+      scene,
+      *choose_numerics(MPI_COMM_SELF, parameters, scene),
+      [&](const NumericsChoice &choice)
+      {
+        return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics).run({}, {.ledger = true});
+      });
+  }
+
+  SimulationResult
+  with_numerics(const Settings &settings, const Numerics &numerics)
+  {
+    const Parameters parameters   = test::parameters_with(settings);
+    const Scene scene             = parameters.create_scene();
+    const SimulationResult result = Simulation(MPI_COMM_SELF, scene, parameters.time, numerics).run({}, {});
+    EXPECT_EQ(result.time.status, "finished") << result.time.message;
+    return result;
+  }
+
+  /// By levels and a tolerance that are far finer than what is chosen.
+  double
+  exact(const Settings &settings, const unsigned int n_cells)
+  {
+    Numerics n = {.degree = 8, .n_cells = n_cells, .tolerance = 1e-10, .integrator = "radau 9", .grading = {7, 0.4}};
+    n.initial_step = first_step_on_graded_mesh(test::parameters_with(settings).create_scene(), n);
+    return with_numerics(settings, n).displacement;
+  }
+} // namespace
+
+/// What moves is told from what switches where it is, and from what is steep.
+TEST(SquareActuation, MovingJumpsAreSeen)
+{
+  EXPECT_TRUE(jumps_move(travelling_wave("square", 1.)));
+  EXPECT_TRUE(jumps_move(travelling_wave("square", 16.)));
+  EXPECT_FALSE(jumps_move(travelling_wave("smoothed square", 1.)));
+  EXPECT_FALSE(jumps_move(travelling_wave("sine", 1.)));
+  EXPECT_FALSE(jumps_move(standing_wave(1.)));
+  EXPECT_FALSE(jumps_move(segments(8, "0.3", 1.)));
+  const std::string stress = "Active stress/Expression/Active stress";
+  const Settings any       = {{"Active stress/Generator", "expression"}};
+  EXPECT_TRUE(jumps_move(test::with(any, {{stress, "s < t ? 0.3 : 0.1"}})));
+  EXPECT_FALSE(jumps_move(test::with(any, {{stress, "(s < 0.37 ? 0.3 : 0.1)*cos(2*pi*t)"}})));
+  EXPECT_FALSE(jumps_move(test::with(any, {{stress, "0.3*tanh(1e4*(s - t))"}})));
+}
+
+/// Every method is of first order there; the bar holds, and where Accuracy is out of reach the run says so.
+TEST(SquareActuation, MovingJumpsHaveAnHonestBar)
+{
+  const Settings settings = travelling_wave("square", 0.5);
+  const auto on_mesh      = [&](const unsigned int n_cells)
+  {
+    return with_numerics(settings,
+                         {.degree       = 2,
+                          .n_cells      = n_cells,
+                          .tolerance    = 1e-2 / n_cells,
+                          .initial_step = 1e-5,
+                          .largest_step = 0.25 / n_cells,
+                          .integrator   = "radau 5"})
+      .displacement;
+  };
+  const double fine = on_mesh(512), limit = 2. * fine - on_mesh(256);
+  const auto good = answer(test::with(settings, {{"Accuracy", "1e-2"}}));
+  EXPECT_EQ(good.result.time.status, "finished") << good.result.time.message;
+  EXPECT_LT(std::abs(good.result.displacement - limit), good.result.error->total);
+  EXPECT_LT(good.result.error->total, 1e-2 * std::abs(limit));
+
+  const auto hopeless = answer(test::with(settings, {{"Accuracy", "1e-6"}}));
+  EXPECT_EQ(hopeless.result.time.reason, "accuracy_not_met");
+  EXPECT_NE(hopeless.result.time.message.find("smoothed square"), std::string::npos) << hopeless.result.time.message;
+  EXPECT_LT(std::abs(hopeless.result.displacement - limit), hopeless.result.error->total);
+  EXPECT_LT(hopeless.result.error->total, 0.03 * std::abs(limit));
+}
+
+/// More pieces between breaks than a coarse mesh has cells: each gets one, and more are tried.
+TEST(SquareActuation, SegmentsGetGradedMeshes)
+{
+  for (const auto &[n, gap, pieces] : {std::tuple(8u, "0", 8u), std::tuple(8u, "0.3", 15u), std::tuple(30u, "0", 30u)})
+  {
+    const auto settings = test::with(segments(n, gap, 0.3), {{"Accuracy", "1e-5"}});
+    const auto outcome  = answer(settings);
+    ASSERT_EQ(outcome.result.time.status, "finished") << outcome.result.time.message;
+    EXPECT_GE(outcome.choice.numerics.grading.levels, 2u);
+    EXPECT_GE(outcome.choice.numerics.n_cells, pieces);
+    const double error = std::abs(outcome.result.displacement - exact(settings, pieces));
+    EXPECT_LT(error, outcome.result.error->total) << n << " " << gap;
+    EXPECT_LT(error, 1e-5 * std::abs(outcome.result.displacement));
+  }
+}
+
+/// Cells of 1e-6 of the length turn round-off into velocities: the ledger takes those of the integrator.
+TEST(SquareActuation, LedgerClosesOnTinyCells)
+{
+  const auto outcome = answer(test::with(standing_wave(1.5), {{"Accuracy", "1e-8"}}));
+  EXPECT_EQ(outcome.result.time.status, "finished") << outcome.result.time.message;
+  EXPECT_LT(outcome.result.ledger->residual(), 1e-7);
+  EXPECT_LT(outcome.result.error->total, 1e-8 * std::abs(outcome.result.displacement));
+}
