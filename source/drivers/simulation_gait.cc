@@ -35,7 +35,7 @@ namespace crawler
   void
   Simulation::prepare_gait()
   {
-    const auto period = scene_.active_stress->period();
+    const auto period = stride_of(*scene_.active_stress);
     // To look for one costs a thousand looks at the state.
     constexpr std::size_t most_unknowns = 10000;
     if (!period && discretization_->n_unknowns() > most_unknowns)
