@@ -70,7 +70,10 @@ namespace crawler
         stepper_->interpolate(time, y_inside_);
         see(y_inside_);
       }
-    gait_meter_->see_step(
-      step.time, assembler_->integrals(step.time, y, v_).displacement, result_.ledger ? &*result_.ledger : nullptr);
+    // With a ledger or observers the displacement of this state is known already.
+    const bool is_known = options_.ledger || has_observers_;
+    gait_meter_->see_step(step.time,
+                          is_known ? result_.displacement : assembler_->integrals(step.time, y, v_).displacement,
+                          result_.ledger ? &*result_.ledger : nullptr);
   }
 } // namespace crawler
