@@ -20,6 +20,8 @@ namespace crawler
     constexpr unsigned int n_unknown = 1024, n_searched = n_unknown / 2;
     /// The stretch repeats if the mean square of its change is below this part of the largest such.
     constexpr double repeats = 1e-3;
+    /// Samples are close enough if it changes by less than this part of that from one to the next.
+    constexpr double smooth = 0.05;
 
     double
     square(const double x)
@@ -127,6 +129,34 @@ namespace crawler
     const double bound = F * std::sqrt(work * scene.end_time / (scene.body.friction_coefficient * scene.body.length));
     return min_stretch > 0. && bound > 0. && std::isfinite(bound) ? std::optional(std::abs(result.displacement) / bound)
                                                                   : std::nullopt;
+  }
+
+  std::optional<double>
+  stride_of(const ActiveStress &stress)
+  {
+    const auto period = stress.period(), stride = stress.stride();
+    if (period || !stride || !(*stride <= 0.5))
+      return period;
+    // Has the start been over for two strides?
+    constexpr unsigned int n_places = 9, n_times = 16;
+    constexpr double same = 1e-9;
+    std::vector<double> places, now(n_places), before(n_places);
+    for (unsigned int i = 0; i < n_places; ++i)
+      places.push_back((i + 0.37) / n_places);
+    const auto at_places = stress.at(places);
+    double largest = 0., change = 0.;
+    for (unsigned int j = 0; j < n_times; ++j)
+    {
+      const double t = 1. - *stride * (j + 0.28) / n_times;
+      at_places->values(t, now);
+      at_places->values(t - *stride, before);
+      for (unsigned int i = 0; i < n_places; ++i)
+      {
+        largest = std::max(largest, std::abs(now[i]));
+        change  = std::max(change, std::abs(now[i] - before[i]));
+      }
+    }
+    return change <= same * largest ? stride : std::nullopt;
   }
 
   GaitMeter::GaitMeter(const std::optional<double> period, const bool ends_early)
@@ -239,11 +269,16 @@ namespace crawler
     const double largest = *std::max_element(change.begin(), change.end());
     if (!(largest > square(1e-6)))
       return std::nullopt;
+    // Between samples that are too far apart anything could happen.
+    if (change[1] > smooth * largest)
+      return std::nullopt;
     for (std::size_t j = 2; j + 1 < change.size(); ++j)
-      if (change[j] <= change[j - 1] && change[j] <= change[j + 1] && change[j] < repeats * largest)
+      if (change[j] <= change[j - 1] && change[j] <= change[j + 1])
       {
-        const auto x = static_cast<double>(j);
-        return parabola_vertex(x - 1., change[j - 1], x, change[j], x + 1., change[j + 1]).first;
+        const auto x           = static_cast<double>(j);
+        const auto [vertex, y] = parabola_vertex(x - 1., change[j - 1], x, change[j], x + 1., change[j + 1]);
+        if (y < repeats * largest)
+          return vertex;
       }
     return std::nullopt;
   }

@@ -209,7 +209,7 @@ namespace crawler
   std::optional<Gait>
   Rung::gait() const
   {
-    const auto period = rungs_.scene().active_stress->period();
+    const auto period = stride_of(*rungs_.scene().active_stress);
     if (!period)
       return std::nullopt;
     GaitMeter meter(*period, false);

@@ -148,9 +148,9 @@ namespace crawler
     return true;
   }
 
-  /// Throws InputError, on all ranks, if a law was not positive on one of them.
-  void
-  Simulation::require_good_laws() const
+  /// Was a law not positive on one of the ranks? Then all say so.
+  bool
+  Simulation::law_failed()
   {
     const auto bad   = assembler_->bad_law(units_);
     const int n      = size_of(communicator_);
@@ -158,13 +158,17 @@ namespace crawler
     std::string text = bad ? bad->entry + "\n" + bad->message : "";
     MPI_Allreduce(MPI_IN_PLACE, &speaker, 1, MPI_INT, MPI_MIN, communicator_);
     if (speaker == n)
-      return;
+      return false;
     unsigned long length = text.size();
     MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, speaker, communicator_);
     text.resize(length);
     MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, speaker, communicator_);
     const auto end = text.find('\n');
-    throw InputError(text.substr(end + 1), text.substr(0, end));
+    diagnosis_     = {
+          "failed",
+          "law_not_positive",
+          fmt::format("{}: {}; at t = {:.6g}", text.substr(0, end), text.substr(end + 1), accepted_time_ * units_.time)};
+    return true;
   }
 
   /// What a failure of the time stepper means.
@@ -175,8 +179,8 @@ namespace crawler
       return;
     TimeOutcome &outcome = result_.time;
     const double t       = accepted_time_;
-    if (outcome.domain_error)
-      require_good_laws();
+    if (outcome.domain_error && law_failed())
+      return;
     // Very small steps may be the end of the model.
     const double reach = std::max(end_reach, 2. * outcome.step_size);
     if (outcome.reason != "petsc_error")

@@ -35,7 +35,7 @@ namespace crawler
   void
   Simulation::prepare_gait()
   {
-    const auto period = scene_.active_stress->period();
+    const auto period = stride_of(*scene_.active_stress);
     // To look for one costs a thousand looks at the state.
     constexpr std::size_t most_unknowns = 10000;
     if (!period && discretization_->n_unknowns() > most_unknowns)
@@ -70,7 +70,10 @@ namespace crawler
         stepper_->interpolate(time, y_inside_);
         see(y_inside_);
       }
-    gait_meter_->see_step(
-      step.time, assembler_->integrals(step.time, y, v_).displacement, result_.ledger ? &*result_.ledger : nullptr);
+    // With a ledger or observers the displacement of this state is known already.
+    const bool is_known = options_.ledger || has_observers_;
+    gait_meter_->see_step(step.time,
+                          is_known ? result_.displacement : assembler_->integrals(step.time, y, v_).displacement,
+                          result_.ledger ? &*result_.ledger : nullptr);
   }
 } // namespace crawler

@@ -80,6 +80,30 @@ namespace crawler
       return false;
     }
 
+    /// Is the active stress nearly 0 for more than a tenth of the time?
+    bool
+    is_often_quiet(const Scene &scene, const double largest)
+    {
+      constexpr unsigned int n = 128, n_places = 5;
+      constexpr double quiet = 1e-6, often = 0.1;
+      std::vector<double> places, m(n_places);
+      for (unsigned int i = 0; i < n_places; ++i)
+        places.push_back(scene.body.length * i / (n_places - 1));
+      const auto stress    = scene.active_stress->at(places);
+      unsigned int n_quiet = 0;
+      for (unsigned int j = 0; j < n; ++j)
+      {
+        stress->values(scene.end_time * j / n, m);
+        n_quiet += std::all_of(m.begin(),
+                               m.end(),
+                               [&](const double value)
+                               {
+                                 return std::abs(value) <= quiet * largest;
+                               });
+      }
+      return n_quiet > often * n;
+    }
+
     struct SuddenChange
     {
       double at_start, later;
@@ -127,7 +151,7 @@ namespace crawler
   StressScales
   stress_scales(const Scene &scene)
   {
-    constexpr unsigned int fine = 512, coarse = 16;
+    constexpr unsigned int fine = 512, coarse = 16, very_fine = 8192;
     constexpr double jump_part = 0.05; // smaller jumps, relative to the largest |m|, are not looked for
     const double L = scene.body.length, T = scene.end_time;
     const std::vector<double> in_space = breaks_in_space(*scene.active_stress, L),
@@ -156,6 +180,8 @@ namespace crawler
     };
     look(fine, coarse);
     look(coarse, fine);
+    if (is_often_quiet(scene, largest)) // and a short event may have been missed
+      look(coarse, very_fine);
     const SuddenChange change = largest > 0. ? largest_sudden_change(scene, in_space) : SuddenChange{0., 0.};
     const double unit         = largest > 0. ? largest : 1.;
     const bool may_jump       = along * L / fine > jump_part * largest;

@@ -237,6 +237,13 @@ namespace crawler
         return physical ? std::optional(*physical / units_.time) : std::nullopt;
       }
 
+      std::optional<double>
+      stride() const override
+      {
+        const auto physical = stress_.stride();
+        return physical ? std::optional(*physical / units_.time) : std::nullopt;
+      }
+
       void
       report(std::ostream &out) const override
       {
@@ -275,19 +282,19 @@ namespace crawler
     /// Looked for at some points and times; infinite if it is not a finite number at one of them. What a generator
     /// itself calls a failure is left out: the run ends there, if it comes so far.
     double
-    largest_active_stress(const Scene &scene)
+    largest_active_stress(const Scene &scene, const unsigned int n_times)
     {
-      constexpr unsigned int n = 37; // not a number of waves that somebody would choose
+      constexpr unsigned int n = 37;
       std::vector<double> points(n + 1), m(n + 1);
       for (unsigned int i = 0; i <= n; ++i)
         points[i] = scene.body.length * i / n;
       const auto stress = scene.active_stress->at(points);
       double largest    = 0.;
-      for (unsigned int j = 0; j <= n; ++j)
+      for (unsigned int j = 0; j <= n_times; ++j)
       {
         const auto *failures         = scene.active_stress->failures();
         const unsigned long n_before = failures != nullptr ? failures->count : 0;
-        stress->values(scene.end_time * j / n, m);
+        stress->values(scene.end_time * j / n_times, m);
         failures = scene.active_stress->failures();
         if (failures != nullptr && failures->count > n_before)
           continue;
@@ -385,8 +392,11 @@ namespace crawler
   require_computable_stress(const Scene &scene)
   {
     constexpr double weakest = 1e-20, strongest = 1e20;
-    const Units units   = natural_units(scene);
-    const double strain = largest_active_stress(scene) / std::max(scene.body.elastic_modulus, units.force);
+    const Units units = natural_units(scene);
+    const double unit = std::max(scene.body.elastic_modulus, units.force);
+    double strain     = largest_active_stress(scene, 37) / unit; // not a number of waves that somebody would choose
+    if (strain < weakest)                                        // it may be a short event
+      strain = largest_active_stress(scene, 8191) / unit;
     if (strain != 0. && !(strain >= weakest && strain <= strongest))
       throw InputError(fmt::format(
         "the largest active stress that sampling finds, relative to the larger of k and gamma L^2/T, is {:.3g}, "

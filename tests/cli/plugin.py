@@ -105,7 +105,7 @@ with tempfile.TemporaryDirectory() as folder:
 
     # The example, out of tree.
     shutil.copytree(PLUGIN_SOURCE, "source")
-    command(CMAKE, "-S", "source", "-B", "source/build", f"-DCMAKE_PREFIX_PATH={folder}/installed")
+    command(CMAKE, "-G", "Ninja", "-S", "source", "-B", "source/build", f"-DCMAKE_PREFIX_PATH={folder}/installed")
     command(CMAKE, "--build", "source/build")
     good = {"File": "source/build/libperistalsis.so", "Parameters": "height=0.4, waves=1, frequency=1, start=0.2"}
     formula = {"Active stress": "height*(1-cos(2*pi*(s+t)))/2*(1-exp(-t/start))", "Constants": "height=0.4, start=0.2"}

@@ -329,19 +329,14 @@ TEST(GeneralScenes, FormsAndIntegratorsAgree)
     expect_near(displacement(all + other), reference, 1e-5);
 }
 
-TEST(GeneralScenes, LawsThatAreNotPositiveAreInputErrors)
+TEST(GeneralScenes, LawsThatAreNotPositiveEndTheRunWithTheirName)
 {
   const auto message = [](const Settings &settings)
   {
-    try
-    {
-      test::run_with(settings);
-    }
-    catch (const InputError &error)
-    {
-      return std::string(error.what());
-    }
-    return std::string();
+    const auto result = test::run_with(settings).result;
+    EXPECT_EQ(result.time.status, "failed");
+    EXPECT_EQ(result.time.reason, "law_not_positive");
+    return result.time.message;
   };
   const Settings wave = test::wave(-1., 0.3);
   EXPECT_NE(message(wave + Settings{{"Ground/Friction law", "expression"}, {"Ground/Expression", "1.15-w"}})

@@ -11,6 +11,7 @@
 namespace crawler
 {
   struct Scene;
+  class ActiveStress;
   struct SimulationResult;
 
   /// A wave of stretch along the body, e(s - c t) as far as it is one; what does not change in time is no part of it.
@@ -74,6 +75,11 @@ namespace crawler
    */
   std::optional<double>
   gait_efficiency(const Scene &scene, const SimulationResult &result);
+
+  /// The period of the gait that an active stress for a body and a duration of 1 drives at the end of the run, if it
+  /// says it; what it says for the time after a start is looked at over the last two strides.
+  std::optional<double>
+  stride_of(const ActiveStress &stress);
 
   /**
    * Watches a run over (0, 1] and describes its last stride. A period that is known (of the active stress, or of what

@@ -201,8 +201,8 @@ namespace crawler
     locate_inversion(const Step &step);
     void
     explain_failure();
-    void
-    require_good_laws() const;
+    bool
+    law_failed();
     void
     inverted_at_end(double s, double t, const std::string &reason);
     void

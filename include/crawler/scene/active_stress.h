@@ -53,7 +53,14 @@ namespace crawler
       return std::nullopt;
     }
 
-    /// The same for the derivative m_t [force/time]; null if the generator does not know it.
+    /// The period of what m becomes once its start is over, a ramp for example [time]; that of the gait.
+    virtual std::optional<double>
+    stride() const
+    {
+      return period();
+    }
+
+    /// The same as at() for the derivative m_t [force/time]; null if the generator does not know it.
     virtual std::unique_ptr<ActiveStressAtPoints>
     rate_at([[maybe_unused]] const std::vector<double> &points) const
     {

@@ -318,6 +318,9 @@ namespace crawler
     , generator_(std::move(generator))
     , history_(create_history(parameters, body.length, end_time, generator_.get()))
   {
+    const double phase_rate = parameters.wave_number * parameters.wave_speed / body.length;
+    if (given_by_ == "wave" && parameters.amplitude != 0. && phase_rate != 0.)
+      wave_period_ = 1. / std::abs(phase_rate);
     if (generator_)
       require_usable_generator(end_time);
     require_admissible_strain(end_time);
@@ -376,7 +379,13 @@ namespace crawler
   std::optional<double>
   PrescribedStrain::period() const
   {
-    return generator_ ? generator_->period() : std::nullopt;
+    return generator_ ? generator_->period() : wave_period_;
+  }
+
+  std::optional<double>
+  PrescribedStrain::stride() const
+  {
+    return generator_ ? generator_->stride() : wave_period_;
   }
 
   std::vector<double>

@@ -171,11 +171,17 @@ namespace crawler
   }
 
   std::optional<double>
-  Pulse::period() const
+  Pulse::stride() const
   {
-    if (settings_.amplitude == 0. || settings_.period == 0. || settings_.envelope.has_ramp())
+    if (settings_.amplitude == 0. || settings_.period == 0.)
       return std::nullopt;
     return settings_.period;
+  }
+
+  std::optional<double>
+  Pulse::period() const
+  {
+    return settings_.envelope.has_ramp() ? std::nullopt : stride();
   }
 
   std::vector<double>

@@ -311,9 +311,15 @@ namespace crawler
   }
 
   std::optional<double>
+  Segments::stride() const
+  {
+    return 1. / parameters_.frequency;
+  }
+
+  std::optional<double>
   Segments::period() const
   {
-    return envelope_.has_ramp() ? std::nullopt : std::optional(1. / parameters_.frequency);
+    return envelope_.has_ramp() ? std::nullopt : stride();
   }
 
   std::vector<double>

@@ -107,11 +107,17 @@ namespace crawler
   }
 
   std::optional<double>
-  StandingWave::period() const
+  StandingWave::stride() const
   {
-    if (settings_.amplitude == 0. || settings_.frequency == 0. || settings_.envelope.has_ramp())
+    if (settings_.amplitude == 0. || settings_.frequency == 0.)
       return std::nullopt;
     return 1. / settings_.frequency;
+  }
+
+  std::optional<double>
+  StandingWave::period() const
+  {
+    return settings_.envelope.has_ramp() ? std::nullopt : stride();
   }
 
   std::vector<double>

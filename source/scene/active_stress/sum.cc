@@ -438,6 +438,17 @@ namespace crawler
     return *period_;
   }
 
+  /// Windows in t may open and close on the way: whoever uses it looks whether m repeats at the end.
+  std::optional<double>
+  Sum::stride() const
+  {
+    std::vector<double> strides;
+    for (const SumTerm &term : terms_)
+      if (const auto stride = term.stress->stride())
+        strides.push_back(*stride);
+    return strides.empty() ? period() : common_period(strides);
+  }
+
   std::vector<double>
   Sum::breaks_in_space() const
   {
@@ -453,7 +464,7 @@ namespace crawler
   {
     std::vector<double> all;
     for (const SumTerm &term : terms_)
-      for (const auto &list : {term.stress->breaks_in_time(), term.in_t.breaks()})
+      for (const auto &list : {term.stress->breaks_in_time(), term.in_t.ends()})
         all.insert(all.end(), list.begin(), list.end());
     return all;
   }

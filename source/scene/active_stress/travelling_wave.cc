@@ -184,11 +184,17 @@ namespace crawler
   }
 
   std::optional<double>
-  TravellingWave::period() const
+  TravellingWave::stride() const
   {
-    if (settings_.amplitude == 0. || settings_.phase_rate == 0. || settings_.envelope.has_ramp())
+    if (settings_.amplitude == 0. || settings_.phase_rate == 0.)
       return std::nullopt;
     return 1. / std::abs(settings_.phase_rate);
+  }
+
+  std::optional<double>
+  TravellingWave::period() const
+  {
+    return settings_.envelope.has_ramp() ? std::nullopt : stride();
   }
 
   std::vector<double>

@@ -72,6 +72,17 @@ namespace crawler
     return list;
   }
 
+  std::vector<double>
+  Window::ends() const
+  {
+    std::vector<double> places;
+    if (!is_everywhere_)
+      for (const double x : {from_, to_})
+        if (x > 0. && x < end_)
+          places.push_back(x);
+    return places;
+  }
+
   bool
   Window::is_whole() const
   {

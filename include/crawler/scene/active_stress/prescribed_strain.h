@@ -65,6 +65,8 @@ namespace crawler
     /// What the generator knows of these, if the strain is generated.
     std::optional<double>
     period() const override;
+    std::optional<double>
+    stride() const override;
     std::vector<double>
     breaks_in_space() const override;
     std::vector<double>
@@ -86,6 +88,7 @@ namespace crawler
     const Body body_;
     const std::string given_by_;
     const std::unique_ptr<const ActiveStress> generator_; ///< of the strain, if it is generated
+    std::optional<double> wave_period_;                   ///< if it is given as a wave
     std::unique_ptr<const StrainHistory> history_;
     StrainExtremes extremes_{};
     unsigned int n_panels_ = 1;

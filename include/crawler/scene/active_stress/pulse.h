@@ -50,6 +50,8 @@ namespace crawler
     rate_at(const std::vector<double> &points) const override;
     std::optional<double>
     period() const override;
+    std::optional<double>
+    stride() const override;
     std::vector<double>
     breaks_in_space() const override;
 

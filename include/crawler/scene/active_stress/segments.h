@@ -59,6 +59,8 @@ namespace crawler
     /// 1/f; none with a ramp.
     std::optional<double>
     period() const override;
+    std::optional<double>
+    stride() const override;
     std::vector<double>
     breaks_in_space() const override;
     std::vector<double>

@@ -48,6 +48,8 @@ namespace crawler
 
     std::optional<double>
     period() const override;
+    std::optional<double>
+    stride() const override;
     std::vector<double>
     breaks_in_space() const override;
     std::vector<double>

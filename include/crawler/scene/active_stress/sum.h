@@ -62,6 +62,8 @@ namespace crawler
     /// all terms know theirs, the sum's is looked for. Nothing if a window in time opens or closes.
     std::optional<double>
     period() const override;
+    std::optional<double>
+    stride() const override;
 
     std::vector<double>
     breaks_in_space() const override;

@@ -54,6 +54,8 @@ namespace crawler
 
     std::optional<double>
     period() const override;
+    std::optional<double>
+    stride() const override;
 
     /// Edges of the window, and the jumps of a square wave of frequency 0.
     std::vector<double>

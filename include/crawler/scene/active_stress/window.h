@@ -36,6 +36,10 @@ namespace crawler
     std::vector<double>
     breaks() const;
 
+    /// Where it begins and ends, in (0, end), with edges or without; between them nothing can be missed.
+    std::vector<double>
+    ends() const;
+
     /// Is it 1 on the whole range?
     bool
     is_whole() const;
