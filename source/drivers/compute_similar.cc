@@ -35,7 +35,7 @@ namespace crawler
     choose(const Task &task, const std::function<bool()> &keep_going)
     {
       const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
-      if (!choice || choice->is_collapse || !std::isfinite(choice->promised_error) ||
+      if (!choice || choice->is_measured || !std::isfinite(choice->promised_error) ||
           !fused_method(*task.scene, task.parameters.time, choice->numerics))
         return std::nullopt;
       return choice;

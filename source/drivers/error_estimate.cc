@@ -177,7 +177,7 @@ namespace crawler
   {
     if (result.time.status != "finished")
       return DisplacementError();
-    const bool is_measured = !choice.numerics.linear && !choice.is_collapse;
+    const bool is_measured = !choice.numerics.linear && !choice.is_measured;
     const double x =
       is_measured ? difference_to_finer_run(communicator, parameters, scene, choice, result, keep_going) : 0.;
     return error_from_difference(choice, result, x, scene);
