@@ -247,9 +247,10 @@ namespace crawler
       return flags;
     }
 
-    /// results.csv and summary.json, from results.h5 (rank 0).
+    /// results.csv and summary.json, from results.h5 (rank 0). Of the rows, @p n_before were there at the start.
     std::map<std::string, unsigned long>
     finish(const fs::path &folder,
+           const unsigned long n_before,
            const std::string &status,
            const std::string &reason,
            const double seconds,
@@ -276,6 +277,7 @@ namespace crawler
         {"status", status},
         {"reason", reason.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(reason)},
         {"points", n},
+        {"computed", n - n_before - (statuses.count("missing") > 0 ? statuses.at("missing") : 0)},
         {"statuses", statuses},
         {"reasons", reasons},
         {"seconds", seconds},
@@ -420,9 +422,9 @@ namespace crawler
     on_first_rank(communicator,
                   [&]()
                   {
-                    const double seconds = now() - start;
-                    const auto statuses =
-                      finish(folder, finished ? "finished" : "stopped", reason, seconds, n_ranks, options.command_line);
+                    const double seconds   = now() - start;
+                    const std::string word = finished ? "finished" : "stopped";
+                    const auto statuses = finish(folder, n_done, word, reason, seconds, n_ranks, options.command_line);
                     std::vector<std::string> words;
                     unsigned long not_finished = 0;
                     for (const auto &[status, count] : statuses)
