@@ -2,57 +2,113 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/work_queue.h>
 
+#include <thread>
+
 namespace crawler
 {
-  WorkQueue::WorkQueue(MPI_Comm communicator, const unsigned long size)
-    : size_(size)
+  namespace
   {
-    const bool first = rank_of(communicator) == 0;
-    MPI_Win_allocate(
-      first ? 3 * sizeof(unsigned long) : 0, sizeof(unsigned long), MPI_INFO_NULL, communicator, &counters_, &window_);
+    constexpr int owner = 0; // the rank that has the counters
+  }
+
+  WorkQueue::WorkQueue(MPI_Comm communicator, const unsigned long size)
+    : communicator_(communicator)
+    , size_(size)
+    , is_owner_(rank_of(communicator) == owner)
+    , has_others_(size_of(communicator) > 1)
+  {
+    MPI_Win_allocate(is_owner_ ? 3 * sizeof(unsigned long) : 0,
+                     sizeof(unsigned long),
+                     MPI_INFO_NULL,
+                     communicator,
+                     &counters_,
+                     &window_);
     MPI_Win_lock_all(0, window_);
-    if (first)
+    if (is_owner_)
     {
-      const unsigned long zero = 0;
-      for (const int counter : {handed_out, completed, failures})
-        MPI_Accumulate(&zero, 1, MPI_UNSIGNED_LONG, /*rank=*/0, counter, 1, MPI_UNSIGNED_LONG, MPI_REPLACE, window_);
-      MPI_Win_flush(/*rank=*/0, window_);
+      const unsigned long zeros[3] = {0, 0, 0};
+      MPI_Accumulate(zeros, 3, MPI_UNSIGNED_LONG, owner, handed_out, 3, MPI_UNSIGNED_LONG, MPI_REPLACE, window_);
+      MPI_Win_flush(owner, window_);
     }
     MPI_Barrier(communicator);
   }
 
   WorkQueue::~WorkQueue()
   {
+    MPI_Request all_are_here;
+    MPI_Ibarrier(communicator_, &all_are_here);
+    for (int are_here = 0;;)
+    {
+      serve();
+      MPI_Test(&all_are_here, &are_here, MPI_STATUS_IGNORE);
+      if (are_here != 0)
+        break;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     MPI_Win_unlock_all(window_);
     MPI_Win_free(&window_);
-  }
-
-  unsigned long
-  WorkQueue::add(const Counter counter, const unsigned long increment)
-  {
-    unsigned long before = 0;
-    MPI_Fetch_and_op(&increment, &before, MPI_UNSIGNED_LONG, /*rank=*/0, counter, MPI_SUM, window_);
-    MPI_Win_flush(/*rank=*/0, window_);
-    return before;
   }
 
   std::optional<unsigned long>
   WorkQueue::next()
   {
-    const unsigned long number = add(handed_out, 1);
+    const unsigned long one = 1;
+    unsigned long number    = 0;
+    MPI_Fetch_and_op(&one, &number, MPI_UNSIGNED_LONG, owner, handed_out, MPI_SUM, window_);
+    MPI_Win_flush(owner, window_);
     return number < size_ ? std::optional(number) : std::nullopt;
   }
 
-  WorkQueue::Done
+  void
   WorkQueue::done(const unsigned long n, const unsigned long failed)
   {
-    const unsigned long before = add(completed, n), failed_before = add(failures, failed);
-    return {before + n, failed_before + failed};
+    const unsigned long both[2] = {n, failed};
+    MPI_Accumulate(both, 2, MPI_UNSIGNED_LONG, owner, completed, 2, MPI_UNSIGNED_LONG, MPI_SUM, window_);
+    MPI_Win_flush_local(owner, window_); // nobody waits until it has arrived
+  }
+
+  WorkQueue::Done
+  WorkQueue::so_far()
+  {
+    unsigned long both[2] = {0, 0};
+    if (is_owner_)
+    {
+      MPI_Get_accumulate(nullptr,
+                         0,
+                         MPI_UNSIGNED_LONG,
+                         both,
+                         2,
+                         MPI_UNSIGNED_LONG,
+                         owner,
+                         completed,
+                         2,
+                         MPI_UNSIGNED_LONG,
+                         MPI_NO_OP,
+                         window_);
+      MPI_Win_flush(owner, window_);
+    }
+    return {both[0], both[1]};
+  }
+
+  void
+  WorkQueue::serve()
+  {
+    constexpr auto pause = std::chrono::microseconds(100);
+    if (!is_owner_ || !has_others_ || Clock::now() < served_ + pause)
+      return;
+    // Any call lets MPI work; Open MPI looks at TCP in one of eight.
+    for (int i = 0; i < 8; ++i)
+    {
+      int ignored = 0;
+      MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, communicator_, &ignored, MPI_STATUS_IGNORE);
+    }
+    served_ = Clock::now();
   }
 
   void
   WorkQueue::close()
   {
-    add(handed_out, size_);
+    MPI_Accumulate(&size_, 1, MPI_UNSIGNED_LONG, owner, handed_out, 1, MPI_UNSIGNED_LONG, MPI_SUM, window_);
+    MPI_Win_flush(owner, window_);
   }
 } // namespace crawler

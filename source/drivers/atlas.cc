@@ -169,8 +169,9 @@ namespace crawler
       const std::vector<double> first = numbers_of(axes.first, ""), second = numbers_of(axes.second, "");
       WorkQueue queue(communicator, axes.n_points());
       StudyProgress progress(log, axes.n_points(), "points");
-      const auto interrupted = [&stop_signal]()
+      const auto interrupted = [&]()
       {
+        queue.serve();
         return stop_signal.arrived_anywhere(MPI_COMM_SELF);
       };
       std::vector<AtlasPoint> points;
@@ -204,7 +205,8 @@ namespace crawler
           point.second      = second[point.index % second.size()];
           rows.write(point);
           points.push_back(point);
-          progress.report(queue.done().done);
+          queue.done();
+          progress.report(queue.so_far().done);
         }
       }
       return points;

@@ -29,11 +29,17 @@ namespace crawler
   {
   }
 
+  bool
+  StudyProgress::is_due() const
+  {
+    constexpr double pause = 5.; // seconds
+    return now() >= last_ + pause;
+  }
+
   void
   StudyProgress::report(const unsigned long done, const std::string &remark)
   {
-    constexpr double pause = 5.; // seconds
-    if (now() < last_ + pause)
+    if (!is_due())
       return;
     last_             = now();
     const double rate = done / (last_ - start_);

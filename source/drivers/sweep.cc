@@ -382,26 +382,32 @@ namespace crawler
     {
       return own.time_limit && now() - start > *own.time_limit;
     };
-    const std::function<bool()> interrupted = [&]()
-    {
-      return stop_signal->arrived_anywhere(MPI_COMM_SELF) || out_of_time();
-    };
     bool is_whole = true;
     {
       const std::vector<Block> blocks = in_order(blocks_of(design), points);
       RowFile results(communicator, folder / "results.h5", group, columns);
       WorkQueue queue(communicator, blocks.size());
       StudyProgress progress(log, design.n_points() - n_done, "points");
+      const auto report = [&]()
+      {
+        if (!first || !progress.is_due())
+          return;
+        const auto all = queue.so_far();
+        progress.report(all.done, all.failed > 0 ? fmt::format(", {} not finished", all.failed) : "");
+      };
+      const std::function<bool()> interrupted = [&]() // asked at every step of a run
+      {
+        queue.serve();
+        report();
+        return stop_signal->arrived_anywhere(MPI_COMM_SELF) || out_of_time();
+      };
       Worker worker(design, points, columns, done, results, interrupted);
-      unsigned long n_failed = 0;
       while (const auto number = queue.next())
         if (!worker.compute(blocks[*number],
                             [&](const unsigned long n, const unsigned long failed)
                             {
-                              const auto count = queue.done(n, failed);
-                              n_failed         = count.failed;
-                              progress.report(count.done,
-                                              n_failed > 0 ? fmt::format(", {} not finished", n_failed) : "");
+                              queue.done(n, failed);
+                              report();
                             }))
         {
           queue.close();

@@ -131,7 +131,8 @@ namespace crawler
           rows.push_back(*row);
           own.push_back(*row);
         }
-        progress.report(queue.done().done, fmt::format(" ({} settings on this rank)", own.size()));
+        queue.done();
+        progress.report(queue.so_far().done, fmt::format(" ({} settings on this rank)", own.size()));
       }
       return own;
     }

@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <chrono>
 #include <optional>
 
 namespace crawler
@@ -10,11 +11,13 @@ namespace crawler
   /**
    * Hands out the numbers 0, 1, ..., size-1 to all ranks, each number once, to whoever asks next. No rank manages: the
    * counters are in the memory of rank 0 and the others change them from outside (one-sided MPI, MPI_Fetch_and_op).
+   * Within a node and over networks with atomic operations they do so without rank 0. Elsewhere (TCP) their requests
+   * wait until rank 0 calls MPI, which serve() is for.
    */
   class WorkQueue
   {
   public:
-    /// Collective, and so is the destructor.
+    /// Collective, and so is the destructor: it waits for the other ranks, asleep rather than spinning.
     WorkQueue(MPI_Comm communicator, unsigned long size);
     ~WorkQueue();
     WorkQueue(const WorkQueue &) = delete;
@@ -23,15 +26,23 @@ namespace crawler
     std::optional<unsigned long>
     next();
 
+    /// Says that so much more is done, usually a number that next() gave, and how much of it failed.
+    void
+    done(unsigned long n = 1, unsigned long failed = 0);
+
     /// What all ranks together have done.
     struct Done
     {
       unsigned long done, failed; ///< failed: those that were said to be so
     };
 
-    /// Says that so much more is done, usually a number that next() gave, and how much of it failed.
+    /// On rank 0, which reports it; zeros on the others.
     Done
-    done(unsigned long n = 1, unsigned long failed = 0);
+    so_far();
+
+    /// To be called now and then while computing (at every step: it mostly returns at once).
+    void
+    serve();
 
     /// Nobody gets a number any more.
     void
@@ -44,11 +55,12 @@ namespace crawler
       completed  = 1,
       failures   = 2
     };
-    /// Adds to a counter and returns its value before.
-    unsigned long
-    add(Counter counter, unsigned long increment);
+    using Clock = std::chrono::steady_clock;
 
+    const MPI_Comm communicator_;
     const unsigned long size_;
+    const bool is_owner_, has_others_;
+    Clock::time_point served_;
     unsigned long *counters_ = nullptr; ///< on rank 0
     MPI_Win window_          = MPI_WIN_NULL;
   };

@@ -23,6 +23,10 @@ namespace crawler
     /// @param parts names the @p n_parts parts, as "points".
     StudyProgress(Log &log, unsigned long n_parts, std::string parts);
 
+    /// Whether report() would write.
+    bool
+    is_due() const;
+
     /// @p remark stands at the end of the line.
     void
     report(unsigned long done, const std::string &remark = "");
