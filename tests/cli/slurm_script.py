@@ -21,7 +21,7 @@ echo "$@" >> calls.txt
 if [ -z "${CODE:-}" ]; then exec "$@"; fi
 if [ -n "${ROWS:-}" ]; then
   mkdir -p output-sweep
-  echo "{\\"computed\\": $ROWS, }" > output-sweep/summary.json
+  echo "{\\"status\\": \\"$STATUS\\", \\"computed\\": $ROWS, }" > output-sweep/summary.json
   if [ "$ROWS" -gt 0 ]; then sleep 0.02; echo row >> output-sweep/results.h5; fi
 fi
 exit "$CODE"
@@ -55,9 +55,9 @@ class Cluster:
         """Writes sweep.prm."""
         (self.folder / "sweep.prm").write_text(f"subsection Sweep\n{entries}\nend\n", encoding="utf-8")
 
-    def start(self, *arguments, **plays):
+    def start(self, *arguments, status="stopped", **plays):
         """One start of the job: exit code, what it said, and whether it was put back into the queue."""
-        result = subprocess.run(["bash", SCRIPT, *arguments], cwd=self.folder, env={**self.environment, **plays},
+        result = subprocess.run(["bash", SCRIPT, *arguments], cwd=self.folder, env={**self.environment, "STATUS": status, **plays},
                                 capture_output=True, text=True, check=False, timeout=120)
         requeued = self.folder / "requeued.txt"
         lines = requeued.read_text(encoding="utf-8").splitlines() if requeued.exists() else []
@@ -83,13 +83,15 @@ def test_codes(folder):
     """Each exit code of crawler sweep."""
     cluster = Cluster(folder)
     cluster.write()
-    code, _, requeued = cluster.start("sweep.prm", "--set", "Accuracy=1e-3", CODE="0", ROWS="3")
+    code, _, requeued = cluster.start("sweep.prm", "--set", "Accuracy=1e-3", CODE="0", ROWS="3", status="finished")
     check(code == 0 and not requeued, "0: finished")
     check(cluster.calls() == ["crawler sweep sweep.prm --resume --set Accuracy=1e-3"], f"the command: {cluster.calls()}")
     code, words, requeued = cluster.start("sweep.prm", CODE="5", ROWS="2")
     check(code == 5 and requeued, f"5: back to the queue ({words.strip()})")
     code, words, requeued = cluster.start("sweep.prm", CODE="5", ROWS="0")
     check(code == 5 and not requeued and "too short" in words, f"5 without a new row: not again ({words.strip()})")
+    code, words, requeued = cluster.start("sweep.prm", CODE="0")
+    check(code == 1 and requeued, f"0 of an srun that launched nothing: not finished, again ({words.strip()})")
     for error in ("2", "3", "4", "6", "7", "8"):
         code, words, requeued = cluster.start("sweep.prm", CODE=error)
         check(code == int(error) and not requeued and "not put back" in words, f"{error}: an error stays one")
