@@ -101,6 +101,9 @@ def test_grid(program, mpirun, folder):
     check(two.returncode == 0 and same(rows, table(folder / "two")), "two ranks give the same table, bit for bit")
     many = call(program, folder, "sweep", "sweep.prm", "--output", "many", command=(mpirun, "--oversubscribe", "-n", "8"))
     check(many.returncode == 0 and same(rows, table(folder / "many")), "so do more ranks than points")
+    far = call(program, folder, "sweep", "sweep.prm", "--output", "far", command=(
+        mpirun, "--oversubscribe", "-n", "3", "--mca", "btl", "tcp,self", "--mca", "osc", "pt2pt"))
+    check(far.returncode == 0 and same(rows, table(folder / "far")), "so do ranks without shared memory")
 
 
 def test_designs(program, folder):
