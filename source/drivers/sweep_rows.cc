@@ -174,11 +174,23 @@ namespace crawler
                                      : PointStatus{time.status, time.reason, time.message};
   }
 
+  RowFile::Known
+  known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design)
+  {
+    return {1 + design.axes().size(),
+            [&](const std::size_t column, const unsigned long point) -> RowFile::Value
+            {
+              if (column == 0)
+                return static_cast<double>(point);
+              const std::string text = design.value(column - 1, point);
+              if (columns[column].width > 0)
+                return text;
+              return *to_number(text);
+            }};
+  }
+
   RowFile::Row
-  sweep_row(const std::vector<RowFile::Column> &columns,
-            const SweepDesign &design,
-            const unsigned long point,
-            const Task &task)
+  sweep_row(const std::vector<RowFile::Column> &columns, const SweepDesign &design, const Task &task)
   {
     std::map<std::string, Json> values;
     const PointStatus status = status_of(task);
@@ -198,20 +210,10 @@ namespace crawler
                      });
     }
     RowFile::Row row;
-    for (std::size_t i = 0; i < columns.size(); ++i)
+    for (std::size_t i = 1 + design.axes().size(); i < columns.size(); ++i)
     {
       const RowFile::Column &column = columns[i];
-      if (i == 0)
-        row.emplace_back(static_cast<double>(point));
-      else if (i <= design.axes().size())
-      {
-        const std::string &text = design.value(i - 1, point);
-        if (column.width > 0)
-          row.emplace_back(text);
-        else
-          row.emplace_back(*to_number(text));
-      }
-      else if (column.name == "seconds")
+      if (column.name == "seconds")
         row.emplace_back(task.seconds);
       else if (column.name == "status")
         row.emplace_back(status.status);
