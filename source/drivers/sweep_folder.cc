@@ -91,7 +91,7 @@ namespace crawler
   void
   SweepFolder::lock()
   {
-    constexpr std::chrono::milliseconds longest_wait(10000), pause(100);
+    constexpr std::chrono::milliseconds longest_wait(5000), pause(100);
     lock_.emplace(path_ / lock_name);
     FileLock::State state = lock_->lock();
     if (state == FileLock::State::of_another_process)

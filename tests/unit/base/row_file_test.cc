@@ -76,9 +76,9 @@ namespace
 
   TEST(RowFile, ColumnsThatAreKnownAreThereFromTheBeginning)
   {
+    const auto path = a_file();
     if (rank_of(MPI_COMM_WORLD) > 0)
       return;
-    const auto path       = a_file();
     const unsigned long n = 100000; // more than are written at once
     const std::string large(100000, 'x');
     RowFile::create(path,
