@@ -27,7 +27,7 @@ namespace crawler
     declarations.whole_number("Number of points",
                               n_points,
                               1,
-                              100000000,
+                              SweepDesign::most_points,
                               "Of a random or Latin hypercube design; the others count themselves.");
     declarations.whole_number("Seed",
                               seed,

@@ -295,7 +295,7 @@ def test_kills(program, mpirun, folder):
         process = subprocess.Popen([mpirun, "--oversubscribe", "-n", str(n_ranks), program, "sweep", "sweep.prm", "--output", "killed",
                                     "--resume"], cwd=folder, env=ENVIRONMENT, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL, start_new_session=True)
-        time.sleep(generator.uniform(0.1, 0.5 * duration))
+        time.sleep(generator.uniform(0.1, 0.7 if attempt % 4 == 0 else 0.5 * duration))
         ranks = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=False).stdout.split()
         if process.poll() is None:
             n_killed += 1

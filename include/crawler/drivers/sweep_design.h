@@ -33,7 +33,7 @@ namespace crawler
   class SweepDesign
   {
   public:
-    static constexpr unsigned int most_points = 100000000;
+    static constexpr unsigned int most_points = 10000000;
 
     /// Reads the axes, with the CSV files that they name. Throws InputError in the name of the entry Sweep/Axes if they
     /// do not make sense, if the axes of a zip have different lengths or if there are more than

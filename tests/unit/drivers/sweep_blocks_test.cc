@@ -31,7 +31,9 @@ namespace
         ASSERT_EQ(block.first, next);
         ASSERT_TRUE(block.size >= 1 && block.size <= 64);
         if (chi > 1)
+        {
           ASSERT_EQ(block.first / chi, (block.first + block.size - 1) / chi);
+        }
         next += block.size;
       }
       EXPECT_EQ(next, design.n_points());
