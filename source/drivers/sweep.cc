@@ -97,10 +97,11 @@ namespace crawler
         const SweepBlocks blocks(points.design());
         const SweepOrder order(blocks, points);
         const auto n_known = static_cast<std::ptrdiff_t>(known_columns(columns, points.design()).n_columns);
-        RowFile results(communicator, folder / "results.h5", sweep_group, {columns.begin() + n_known, columns.end()});
+        const std::vector<RowFile::Column> written(columns.begin() + n_known, columns.end());
+        RowFile results(communicator, folder / "results.h5", sweep_group, written);
         WorkQueue queue(communicator, blocks.size());
         StudyProgress progress(log, static_cast<unsigned long>(std::count(done.begin(), done.end(), false)), "points");
-        SweepWorker worker(points, columns, done, results, interrupted);
+        SweepWorker worker(points, written, done, results, interrupted);
         const auto see = [&](const unsigned long n, const unsigned long failed)
         {
           const auto count = queue.done(n, failed);

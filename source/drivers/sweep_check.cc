@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/drivers/compute_similar.h>
-#include <crawler/drivers/input.h>
 #include <crawler/drivers/study.h>
 #include <crawler/drivers/sweep_blocks.h>
 #include <crawler/drivers/sweep_check.h>
@@ -24,9 +23,8 @@ namespace crawler
   }
 
   bool
-  check_sweep(MPI_Comm communicator, const CommandOptions &options, Log &log)
+  check_sweep(MPI_Comm communicator, const ParameterFile &file, Log &log)
   {
-    const ParameterFile file = read_file(communicator, options.file, options.overrides);
     if (std::none_of(file.assignments().begin(),
                      file.assignments().end(),
                      [](const Assignment &assignment)

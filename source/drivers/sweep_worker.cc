@@ -37,7 +37,10 @@ namespace crawler
       return true;
     std::vector<Task> tasks(block.size);
     for (unsigned long i = 0; i < block.size; ++i)
+    {
       tasks[i].parameters = points_.parameters(block.first + i);
+      tasks[i].gait       = true;
+    }
     const double limit          = tasks.front().parameters.sweep.point_time_limit.value_or(HUGE_VAL);
     const std::vector<bool> one = compute_similar(tasks, missing, limit, interrupted_);
     if (interrupted_())
@@ -61,7 +64,10 @@ namespace crawler
         break;
       std::vector<Task> few(some.size());
       for (std::size_t j = 0; j < some.size(); ++j)
+      {
         few[j].parameters = tasks[some[j]].parameters;
+        few[j].gait       = true;
+      }
       const double before = now();
       compute_all(few, limit, interrupted_);
       if (interrupted_())
@@ -90,7 +96,7 @@ namespace crawler
     {
       if (i < block.size && ready[i])
       {
-        rows.push_back(sweep_row(columns_, points_.design(), tasks[i]));
+        rows.push_back(sweep_row(columns_, tasks[i]));
         ++n;
         failed += status_of(tasks[i]).status != "finished";
         continue;

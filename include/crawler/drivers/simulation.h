@@ -8,6 +8,7 @@
 #include <crawler/drivers/cycle_stop.h>
 #include <crawler/drivers/displacement_error.h>
 #include <crawler/drivers/gait.h>
+#include <crawler/drivers/number_errors.h>
 #include <crawler/fused/fused_stepper.h>
 #include <crawler/fused/linear_stepper.h>
 #include <crawler/observers/observer.h>
@@ -62,6 +63,7 @@ namespace crawler
     /// How: an integrator of time/integrators.h; petsc, fused, or "fused, petsc" where the fused engine gave up.
     std::string integrator, engine;
     std::optional<DisplacementError> error; ///< of the displacement
+    std::optional<NumberErrors> errors;     ///< of other numbers, if a finer run measured them
     double largest_u  = 0.;                 ///< root mean square of u over the body, largest over time [length]
     double unresolved = 0.;                 ///< Resolution: largest highest_mode over largest strain, if looked at
     double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]
@@ -79,6 +81,14 @@ namespace crawler
 
     std::optional<double> log_stretch_since;       ///< time from which on the log-stretch form was used [time]
     unsigned int mesh_changes = 0, most_cells = 0; ///< of an adaptive mesh
+    /// The last mesh; nothing if there was none.
+    struct Mesh
+    {
+      unsigned int n_cells, degree;
+      std::size_t n_unknowns;
+      bool is_shared; ///< by several ranks
+    };
+    std::optional<Mesh> mesh;
     double largest_indicator = 0.; ///< largest sum of the error indicators of an accepted state [length]
     double setup_seconds = 0., solve_seconds = 0., output_seconds = 0.;
     double estimate_seconds  = 0.; ///< that the error took (error_estimate.h)
@@ -93,13 +103,20 @@ namespace crawler
   class Simulation
   {
   public:
+    /// Of the last stride (SimulationResult::gait): none, if the active stress says how long it is, or in any case.
+    enum class GaitWish
+    {
+      none,
+      declared,
+      any
+    };
     /// What is computed at each accepted step besides the state.
     struct Options
     {
       bool ledger                     = false; ///< works, energies, net friction
       bool resolution                 = false; ///< SimulationResult::unresolved
       std::optional<CycleWish> cycles = {};    ///< end the run when its cycles repeat; not with frames
-      bool gait                       = false; ///< SimulationResult::gait
+      GaitWish gait                   = GaitWish::none;
     };
 
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);

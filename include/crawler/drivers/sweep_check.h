@@ -2,16 +2,19 @@
 #pragma once
 
 #include <crawler/drivers/log.h>
-#include <crawler/drivers/run.h>
-#include <crawler/drivers/sweep_parameters.h>
+
+#include <mpi.h>
+
+#include <string>
 
 namespace crawler
 {
+  class ParameterFile;
   class SweepDesign;
 
   /// Does the parameter file declare a sweep? Then says how large it is and how long it will take (`crawler check`).
   bool
-  check_sweep(MPI_Comm communicator, const CommandOptions &options, Log &log);
+  check_sweep(MPI_Comm communicator, const ParameterFile &file, Log &log);
 
   /// "6 points, grid over Body/Length (2 values), ..."
   std::string

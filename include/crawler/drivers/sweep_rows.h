@@ -21,9 +21,9 @@ namespace crawler
   RowFile::Known
   known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design);
 
-  /// The row of a point that has been computed, in the columns after the known ones.
+  /// The row of a point that has been computed, in @p columns, those after the known ones.
   RowFile::Row
-  sweep_row(const std::vector<RowFile::Column> &columns, const SweepDesign &design, const Task &task);
+  sweep_row(const std::vector<RowFile::Column> &columns, const Task &task);
 
   /// What has become of a point, in a word, and why.
   struct PointStatus

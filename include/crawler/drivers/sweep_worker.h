@@ -14,8 +14,7 @@ namespace crawler
   class SweepWorker
   {
   public:
-    /// @p done: which points have a row already. @p columns: all of the table, of which @p file has those that are not
-    /// known from the beginning.
+    /// @p done: which points have a row already. @p columns: those of @p file.
     SweepWorker(SweepPoints &points,
                 const std::vector<RowFile::Column> &columns,
                 const std::vector<bool> &done,
