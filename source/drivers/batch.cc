@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/extreme_history.h>
 #include <crawler/drivers/batch.h>
+#include <crawler/drivers/gait.h>
+#include <crawler/drivers/lane_sampler.h>
 #include <crawler/time/integrators.h>
 #include <crawler/time/radau_tableau.h>
 
@@ -52,6 +54,7 @@ namespace crawler
         , options_(options)
         , keep_going_(keep_going)
         , results_(results)
+        , sampler_(tables_.setup, tableau_, GaitMeter::n_pieces)
       {
       }
 
@@ -76,7 +79,9 @@ namespace crawler
         double k = 0.; ///< in natural units
         Units units;
         TimePieces pieces;
-        std::vector<double> frames;                   ///< ends of the pieces
+        std::vector<double> frames;          ///< ends of the pieces, and where the last stride starts
+        std::vector<unsigned char> restarts; ///< which of them are where a new piece starts
+        std::optional<GaitMeter> gait;
         std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
         std::unique_ptr<ActiveStressAtPoints> ends;   ///< at the ends alone
         std::vector<double> m;
@@ -112,7 +117,10 @@ namespace crawler
         lane.units               = natural_units(scene);
         lane.pieces              = TimePieces(*scene.active_stress, scene.end_time);
         lane.frames              = lane.pieces.breaks();
+        lane.restarts.assign(lane.frames.size(), 1);
         lane.frames.push_back(1.);
+        lane.restarts.push_back(0);
+        start_gait(lane, scene);
         std::vector<double> points = tables_.points;
         for (double &s : points)
           s *= lane.units.length;
@@ -142,7 +150,50 @@ namespace crawler
                .start         = nullptr,
                .frames        = lane.frames.data(),
                .n_frames      = static_cast<unsigned int>(lane.frames.size()),
-               .restarts      = true};
+               .restarts      = lane.restarts.data()};
+      }
+
+      /// The run starts from rest, which may be where the last stride starts, too.
+      void
+      start_gait(Lane &lane, const Scene &scene) const
+      {
+        lane.gait.reset();
+        if (options_.gait == Simulation::GaitWish::none)
+          return;
+        const auto period = stride_of(*scene.active_stress, lane.units.length, lane.units.time);
+        if (!period)
+          return;
+        lane.gait.emplace(period, /*ends_early=*/false);
+        if (const auto start = lane.gait->stride_start())
+        {
+          const auto place = std::lower_bound(lane.frames.begin(), lane.frames.end(), *start - 1e-12);
+          if (*place > *start + 1e-12)
+          {
+            lane.restarts.insert(lane.restarts.begin() + (place - lane.frames.begin()), 0);
+            lane.frames.insert(place, *start);
+          }
+        }
+        const Ledger none;
+        const std::vector<double> rest(GaitMeter::n_pieces + 1, 0.);
+        if (lane.gait->next_time() == 0.)
+          lane.gait->see(rest, 0.);
+        lane.gait->see_step(0., 0., options_.ledger ? &none : nullptr);
+      }
+
+      /// Shows the gait's samples that a step has passed.
+      void
+      watch_gait(Lane &lane, const LaneStep &step)
+      {
+        for (double time = lane.gait->next_time(); time <= step.time; time = lane.gait->next_time())
+        {
+          sampler_.sample(step, time);
+          lane.gait->see(sampler_.displacement(), sampler_.mean_displacement());
+        }
+        if (!step.is_frame)
+          return;
+        sampler_.sample(step, step.time);
+        lane.gait->see_step(
+          step.time, sampler_.mean_displacement(), lane.result.ledger ? &*lane.result.ledger : nullptr);
       }
 
       /// The engine asks for m at the start of a run or piece, and then in all stages of each step that it tries.
@@ -209,7 +260,7 @@ namespace crawler
 
       /// False if the run is for a Simulation.
       bool
-      look_at_step(Lane &lane, const LaneStep &step) const
+      look_at_step(Lane &lane, const LaneStep &step)
       {
         if (end_inverts(lane, step))
           return false;
@@ -225,7 +276,9 @@ namespace crawler
         }
         if (lane.result.ledger)
           lane.result.ledger->elastic_energy = step.elastic_energy;
-        if (step.is_frame && !lane.pieces.is_last())
+        if (lane.gait)
+          watch_gait(lane, step);
+        if (step.is_frame && !lane.pieces.is_last() && step.time == lane.pieces.end())
         {
           lane.pieces.go_on();
           lane.least.interrupt();
@@ -328,7 +381,8 @@ namespace crawler
         result.time.newton_iterations = outcome.newton_iterations;
         result.displacement           = outcome.displacement * units.length;
         result.most_cells             = tables_.setup.n_cells;
-        const auto in_units           = [&units](const Extreme &extreme)
+        result.mesh = {result.most_cells, tables_.setup.degree, result.most_cells * tables_.setup.degree + 1, false};
+        const auto in_units = [&units](const Extreme &extreme)
         {
           return Extreme{extreme.value, extreme.s * units.length, extreme.t * units.time};
         };
@@ -336,6 +390,14 @@ namespace crawler
         result.max_stretch = in_units(lane.most.extreme());
         if (result.ledger)
           result.ledger = result.ledger->scaled(units.energy());
+        if (lane.gait)
+          result.gait = lane.gait->gait();
+        if (result.gait)
+          result.gait = result.gait->in_units(units);
+        result.gait_efficiency = gait_efficiency(*runs_[lane.run].scene, result);
+        result.integrator      = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
+                                                                                 : runs_[lane.run].time->integrator;
+        result.engine          = "fused";
         return result;
       }
 
@@ -347,6 +409,7 @@ namespace crawler
       const Simulation::Options options_;
       const std::function<bool()> &keep_going_;
       Results &results_;
+      LaneSampler sampler_;
       std::vector<Lane> lanes_;
       std::size_t next_ = 0;
       bool interrupted_ = false;

@@ -2,6 +2,7 @@
 #include <crawler/drivers/batch.h>
 #include <crawler/drivers/compute.h>
 #include <crawler/drivers/error_estimate.h>
+#include <crawler/drivers/gait.h>
 #include <crawler/drivers/model_choice.h>
 #include <crawler/drivers/rung.h>
 #include <crawler/drivers/self_check.h>
@@ -17,14 +18,23 @@ namespace crawler
     simulate(const Parameters &parameters,
              const Scene &scene,
              const Numerics &numerics,
+             const Simulation::GaitWish gait,
              const std::function<bool()> &keep_going)
     {
       Simulation simulation(MPI_COMM_SELF, scene, parameters.time, numerics);
-      return simulation.run(
-        {},
-        {.ledger = parameters.output.ledger, .resolution = false, .cycles = cycle_wish(parameters, scene, 0)},
-        {},
-        keep_going);
+      return simulation.run({},
+                            {.ledger     = parameters.output.ledger,
+                             .resolution = false,
+                             .cycles     = cycle_wish(parameters, scene, 0),
+                             .gait       = gait},
+                            {},
+                            keep_going);
+    }
+
+    Simulation::GaitWish
+    gait_wish(const Task &task)
+    {
+      return task.gait ? Simulation::GaitWish::declared : Simulation::GaitWish::none;
     }
 
     class Clock
@@ -74,9 +84,15 @@ namespace crawler
                 task.parameters.model   = model.model;
                 if (!model.needs_mesh())
                 {
-                  task.computed.result =
-                    Rung(*task.scene, model.model)
-                      .compute(task.parameters.accuracy, task.parameters.output.ledger, keep_going);
+                  Rung rung(*task.scene, model.model);
+                  SimulationResult &result = task.computed.result;
+                  result = rung.compute(task.parameters.accuracy, task.parameters.output.ledger, keep_going);
+                  if (task.gait && result.time.status == "finished")
+                  {
+                    result.gait = rung.gait();
+                    if (result.ledger)
+                      result.gait_efficiency = gait_efficiency(*task.scene, result);
+                  }
                   return;
                 }
                 const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
@@ -112,7 +128,7 @@ namespace crawler
         const double n = static_cast<double>(runs[ledger].size());
         const Clock clock;
         auto results = run_batch(runs[ledger],
-                                 {.ledger = ledger},
+                                 {.ledger = ledger, .gait = gait_wish(tasks.front())},
                                  [&]()
                                  {
                                    return clock.seconds() <= n * time_limit && !interrupted();
@@ -146,7 +162,7 @@ namespace crawler
         {
           return std::exchange(is_computed, false)
                       ? task.computed.result
-                      : simulate(task.parameters, *task.scene, choice.numerics, keep_going);
+                      : simulate(task.parameters, *task.scene, choice.numerics, gait_wish(task), keep_going);
         },
         keep_going);
       task.computed = {std::move(answer.result), std::move(answer.choice)};

@@ -142,7 +142,10 @@ namespace crawler
           runs.push_back({&*tasks[i].scene, &tasks[i].parameters.time, &shared->numerics});
         }
       const bool ledger = tasks.front().parameters.output.ledger;
-      auto results      = run_batch(runs, {.ledger = ledger}, is_in_time);
+      auto results      = run_batch(
+        runs,
+        {.ledger = ledger, .gait = tasks.front().gait ? Simulation::GaitWish::declared : Simulation::GaitWish::none},
+        is_in_time);
       std::vector<std::size_t> finished;
       std::vector<BatchRun> finer_runs;
       for (std::size_t i = 0; i < members.size(); ++i)

@@ -132,22 +132,24 @@ namespace crawler
   }
 
   std::optional<double>
-  stride_of(const ActiveStress &stress)
+  stride_of(const ActiveStress &stress, const double length, const double duration)
   {
     const auto period = stress.period(), stride = stress.stride();
-    if (period || !stride || !(*stride <= 0.5))
-      return period;
+    if (period)
+      return *period / duration;
+    if (!stride || !(*stride <= 0.5 * duration))
+      return std::nullopt;
     // Has the start been over for two strides?
     constexpr unsigned int n_places = 9, n_times = 16;
     constexpr double same = 1e-9;
     std::vector<double> places, now(n_places), before(n_places);
     for (unsigned int i = 0; i < n_places; ++i)
-      places.push_back((i + 0.37) / n_places);
+      places.push_back(length * (i + 0.37) / n_places);
     const auto at_places = stress.at(places);
     double largest = 0., change = 0.;
     for (unsigned int j = 0; j < n_times; ++j)
     {
-      const double t = 1. - *stride * (j + 0.28) / n_times;
+      const double t = duration - *stride * (j + 0.28) / n_times;
       at_places->values(t, now);
       at_places->values(t - *stride, before);
       for (unsigned int i = 0; i < n_places; ++i)
@@ -156,7 +158,7 @@ namespace crawler
         change  = std::max(change, std::abs(now[i] - before[i]));
       }
     }
-    return change <= same * largest ? stride : std::nullopt;
+    return change <= same * largest ? std::optional(*stride / duration) : std::nullopt;
   }
 
   GaitMeter::GaitMeter(const std::optional<double> period, const bool ends_early)

@@ -139,7 +139,12 @@ namespace crawler
   Input
   read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides)
   {
-    const ParameterFile file = read_file(communicator, file_name, overrides);
+    return read_input(read_file(communicator, file_name, overrides));
+  }
+
+  Input
+  read_input(ParameterFile file)
+  {
     Parameters parameters;
     Declarations declarations;
     parameters.count_terms(file);
@@ -150,8 +155,8 @@ namespace crawler
     try
     {
       Scene scene = parameters.create_scene();
-      return {
-        file, parameters, effective.str(), std::move(scene), settings_without_effect(file, parameters, declarations)};
+      auto unused = settings_without_effect(file, parameters, declarations);
+      return {std::move(file), parameters, effective.str(), std::move(scene), std::move(unused)};
     }
     catch (const InputError &error)
     {

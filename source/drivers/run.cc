@@ -144,9 +144,10 @@ namespace crawler
   check(MPI_Comm communicator, const CommandOptions &options)
   {
     Log log(rank_of(communicator) == 0, /*quiet=*/false);
-    if (check_sweep(communicator, options, log))
+    ParameterFile file = read_file(communicator, options.file, options.overrides);
+    if (check_sweep(communicator, file, log))
       return ExitCode::finished;
-    const Input input       = read_input(communicator, options.file, options.overrides);
+    const Input input       = read_input(std::move(file));
     const ModelChoice model = choose_model(input);
     if (!model.needs_mesh())
       return check_rung(input, model, log);
@@ -270,7 +271,7 @@ namespace crawler
                              {.ledger     = output.ledger,
                               .resolution = false,
                               .cycles     = cycle_wish(parameters, input.scene, output.n_snapshots),
-                              .gait       = true},
+                              .gait       = Simulation::GaitWish::any},
                              create_observers(),
                              keep_going);
     };
@@ -293,11 +294,7 @@ namespace crawler
                   [&]()
                   {
                     write_file(folder / "summary.json",
-                               summary_json(result,
-                                            parameters,
-                                            SummaryMesh::of(simulation->discretization()),
-                                            size_of(communicator),
-                                            options.command_line));
+                               summary_json(result, parameters, size_of(communicator), options.command_line));
                     return "";
                   });
     for (const std::string &line : summary_lines(result, parameters))

@@ -119,67 +119,67 @@ namespace crawler
     const OutputParameters &output = input.parameters.output;
     const auto folder              = output_folder(options.output, options.file);
     int code                       = 0;
-    on_first_rank(
-      communicator,
-      [&]()
-      {
-        using Clock             = std::chrono::steady_clock;
-        const auto seconds_from = [](const Clock::time_point from)
-        {
-          return std::chrono::duration<double>(Clock::now() - from).count();
-        };
-        prepare(folder);
-        if (output.n_snapshots > 0)
-          std::filesystem::create_directories(folder / "solution");
-        write_file(folder / "original.prm", input.file.text());
-        write_file(folder / "parameters.prm", input.effective);
-        log.open(folder / "log.txt");
-        write_stress_table(log, input, folder);
-        report_scene(log, input);
-        log.line(choice.explanation);
+    on_first_rank(communicator,
+                  [&]()
+                  {
+                    using Clock             = std::chrono::steady_clock;
+                    const auto seconds_from = [](const Clock::time_point from)
+                    {
+                      return std::chrono::duration<double>(Clock::now() - from).count();
+                    };
+                    prepare(folder);
+                    if (output.n_snapshots > 0)
+                      std::filesystem::create_directories(folder / "solution");
+                    write_file(folder / "original.prm", input.file.text());
+                    write_file(folder / "parameters.prm", input.effective);
+                    log.open(folder / "log.txt");
+                    write_stress_table(log, input, folder);
+                    report_scene(log, input);
+                    log.line(choice.explanation);
 
-        Parameters parameters = input.parameters;
-        parameters.model      = choice.model;
-        const double setup    = seconds_from(start);
-        Rung rung(input.scene, choice.model);
-        SimulationResult result = rung.compute(parameters.accuracy,
-                                               output.ledger,
-                                               [&]()
-                                               {
-                                                 return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
-                                               });
-        result.setup_seconds    = setup;
-        if (result.time.status == "finished")
-          result.gait = rung.gait();
-        if (result.time.status == "finished" && result.ledger)
-          result.gait_efficiency = gait_efficiency(input.scene, result);
-        if (std::isfinite(result.net_friction)) // the series has no balance to check
-          check_identities(result, parameters);
-        log.line(rung.description());
+                    Parameters parameters = input.parameters;
+                    parameters.model      = choice.model;
+                    const double setup    = seconds_from(start);
+                    Rung rung(input.scene, choice.model);
+                    SimulationResult result = rung.compute(parameters.accuracy,
+                                                           output.ledger,
+                                                           [&]()
+                                                           {
+                                                             return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
+                                                           });
+                    result.setup_seconds    = setup;
+                    if (result.time.status == "finished")
+                      result.gait = rung.gait();
+                    if (result.time.status == "finished" && result.ledger)
+                      result.gait_efficiency = gait_efficiency(input.scene, result);
+                    if (std::isfinite(result.net_friction)) // the series has no balance to check
+                      check_identities(result, parameters);
+                    log.line(rung.description());
 
-        const auto before = Clock::now();
-        if (result.error && (output.n_snapshots > 0 || output.statistics) &&
-            !write_pictures(rung, input, folder, stop_signal))
-          result.time.status = "stopped";
-        result.output_seconds = seconds_from(before);
-        if (result.time.status == "stopped")
-        {
-          result.time.reason  = "signal";
-          result.time.message = "stopped by a signal";
-        }
-        write_file(folder / "summary.json",
-                   summary_json(result, parameters, std::nullopt, size_of(communicator), options.command_line));
-        for (const std::string &line : summary_lines(result, parameters))
-          log.line(line);
-        if (result.time.status != "finished")
-          log.warn(result.time.reason + ": " + result.time.message);
-        log.line(output.n_snapshots > 0 && result.error ? fmt::format("Results are in {}/; open {} in ParaView.",
-                                                                      folder.string(),
-                                                                      (folder / "solution.pvd").string())
-                                                        : fmt::format("Results are in {}/.", folder.string()));
-        code = static_cast<int>(exit_code(result.time));
-        return "";
-      });
+                    const auto before = Clock::now();
+                    if (result.error && (output.n_snapshots > 0 || output.statistics) &&
+                        !write_pictures(rung, input, folder, stop_signal))
+                      result.time.status = "stopped";
+                    result.output_seconds = seconds_from(before);
+                    if (result.time.status == "stopped")
+                    {
+                      result.time.reason  = "signal";
+                      result.time.message = "stopped by a signal";
+                    }
+                    write_file(folder / "summary.json",
+                               summary_json(result, parameters, size_of(communicator), options.command_line));
+                    for (const std::string &line : summary_lines(result, parameters))
+                      log.line(line);
+                    if (result.time.status != "finished")
+                      log.warn(result.time.reason + ": " + result.time.message);
+                    log.line(output.n_snapshots > 0 && result.error
+                               ? fmt::format("Results are in {}/; open {} in ParaView.",
+                                             folder.string(),
+                                             (folder / "solution.pvd").string())
+                               : fmt::format("Results are in {}/.", folder.string()));
+                    code = static_cast<int>(exit_code(result.time));
+                    return "";
+                  });
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
     return static_cast<ExitCode>(code);
   }

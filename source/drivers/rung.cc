@@ -209,7 +209,7 @@ namespace crawler
   std::optional<Gait>
   Rung::gait() const
   {
-    const auto period = stride_of(*rungs_.scene().active_stress);
+    const auto period = stride_of(*rungs_.scene().active_stress, 1., 1.);
     if (!period)
       return std::nullopt;
     GaitMeter meter(*period, false);

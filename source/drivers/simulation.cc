@@ -166,7 +166,7 @@ namespace crawler
 
     gait_meter_.reset();
     hidden_frame_.reset();
-    if (options.gait)
+    if (options.gait != GaitWish::none)
       prepare_gait();
 
     result_.time           = integrate(observers, keep_going);
@@ -207,6 +207,10 @@ namespace crawler
 
     for (const auto &observer : observers)
       observer->end();
+    result_.mesh          = {discretization().n_cells(),
+                             discretization().element().degree,
+                             discretization().n_unknowns(),
+                             discretization().n_ranks() > 1};
     result_.integrator    = time_.integrator;
     result_.engine        = !fused_stepper_ ? "petsc" : fused_gave_up_ || petsc_stepper_ ? "fused, petsc" : "fused";
     result_.solve_seconds = now() - start - result_.output_seconds;

@@ -35,10 +35,10 @@ namespace crawler
   void
   Simulation::prepare_gait()
   {
-    const auto period = stride_of(*scene_.active_stress);
+    const auto period = stride_of(*scene_.active_stress, 1., 1.);
     // To look for one costs a thousand looks at the state.
     constexpr std::size_t most_unknowns = 10000;
-    if (!period && discretization_->n_unknowns() > most_unknowns)
+    if (!period && (options_.gait == GaitWish::declared || discretization_->n_unknowns() > most_unknowns))
       return;
     gait_meter_.emplace(period, cycle_stop_.has_value());
     const auto start = gait_meter_->stride_start();

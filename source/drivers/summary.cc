@@ -136,22 +136,10 @@ namespace crawler
     }
   } // namespace
 
-  SummaryMesh
-  SummaryMesh::of(const Discretization &discretization)
+  nlohmann::ordered_json
+  summary_of(const SimulationResult &result, const Parameters &parameters)
   {
-    return {discretization.n_cells(),
-            discretization.element().degree,
-            discretization.n_unknowns(),
-            discretization.n_ranks() > 1};
-  }
-
-  std::string
-  summary_json(const SimulationResult &result,
-               const Parameters &parameters,
-               const std::optional<SummaryMesh> &mesh,
-               const unsigned int n_ranks,
-               const std::string &command_line)
-  {
+    const auto &mesh  = result.mesh;
     const auto ledger = [&](auto value)
     {
       return result.ledger ? Json(value(*result.ledger)) : Json(nullptr);
@@ -215,7 +203,6 @@ namespace crawler
     json["steps"]              = result.time.steps;
     json["rejected_steps"]     = result.time.rejected_steps;
     json["newton_iterations"]  = result.time.newton_iterations;
-    json["ranks"]              = n_ranks;
     json["cells_shared"]       = mesh && mesh->is_shared;
     json["refinements"]        = result.refinements;
     json["integrator"]         = result.integrator.empty() ? Json(nullptr) : Json(result.integrator);
@@ -224,8 +211,19 @@ namespace crawler
                                   {"solve", result.solve_seconds},
                                   {"output", result.output_seconds},
                                   {"error", result.estimate_seconds}};
-    json["versions"]           = versions();
-    json["command_line"]       = command_line;
+    return json;
+  }
+
+  std::string
+  summary_json(const SimulationResult &result,
+               const Parameters &parameters,
+               const unsigned int n_ranks,
+               const std::string &command_line)
+  {
+    Json json            = summary_of(result, parameters);
+    json["ranks"]        = n_ranks;
+    json["versions"]     = versions();
+    json["command_line"] = command_line;
     return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
   }
 

@@ -120,7 +120,10 @@ namespace crawler
           return true;
         std::vector<Task> tasks(block.size);
         for (unsigned long i = 0; i < block.size; ++i)
+        {
           tasks[i].parameters = points_.parameters(block.first + i);
+          tasks[i].gait       = true;
+        }
         const double limit          = tasks.front().parameters.sweep.point_time_limit.value_or(HUGE_VAL);
         const std::vector<bool> one = compute_similar(tasks, missing, limit, interrupted_);
         if (interrupted_())
@@ -143,7 +146,10 @@ namespace crawler
             break;
           std::vector<Task> few(some.size());
           for (std::size_t j = 0; j < some.size(); ++j)
+          {
             few[j].parameters = tasks[some[j]].parameters;
+            few[j].gait       = true;
+          }
           const double before = now();
           compute_all(few, limit, interrupted_);
           if (interrupted_())
@@ -454,9 +460,8 @@ namespace crawler
   }
 
   bool
-  check_sweep(MPI_Comm communicator, const CommandOptions &options, Log &log)
+  check_sweep(MPI_Comm communicator, const ParameterFile &file, Log &log)
   {
-    const ParameterFile file = read_file(communicator, options.file, options.overrides);
     if (std::none_of(file.assignments().begin(),
                      file.assignments().end(),
                      [](const Assignment &assignment)

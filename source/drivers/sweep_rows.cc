@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace crawler
@@ -15,6 +16,7 @@ namespace crawler
   {
     using Json = nlohmann::ordered_json;
 
+    constexpr double not_known        = std::numeric_limits<double>::quiet_NaN();
     constexpr unsigned int word_width = 24, reason_width = 32, message_width = 192, most_axis_width = 256;
 
     /// What is said of the process, not of the point, or has a column of its own.
@@ -60,7 +62,8 @@ namespace crawler
       result.gait              = Gait{1., true, 1., 1., StretchWave{1., 1.}, Ledger{}};
       result.gait_efficiency   = 1.;
       result.log_stretch_since = 0.;
-      return Json::parse(summary_json(result, Parameters(), SummaryMesh{1, 1, 1, false}, 1, ""));
+      result.mesh              = SimulationResult::Mesh{1, 1, 1, false};
+      return summary_of(result, Parameters());
     }
 
     /// Units of the keys, as in doc/user_guide.md.
@@ -105,7 +108,7 @@ namespace crawler
         return json.is_string() ? json.get<std::string>() : std::string();
       if (json.is_boolean())
         return json.get<bool>() ? 1. : 0.;
-      return json.is_number() ? json.get<double>() : std::numeric_limits<double>::quiet_NaN();
+      return json.is_number() ? json.get<double>() : not_known;
     }
   } // namespace
 
@@ -180,51 +183,42 @@ namespace crawler
             const unsigned long point,
             const Task &task)
   {
-    std::map<std::string, Json> values;
     const PointStatus status = status_of(task);
-    const bool is_known      = !task.error && !task.computed.result.time.status.empty();
-    if (is_known)
+    RowFile::Row row;
+    for (const RowFile::Column &column : columns)
+      row.push_back(column.width > 0 ? RowFile::Value(std::string()) : RowFile::Value(not_known));
+    row[0] = static_cast<double>(point);
+    for (std::size_t i = 0; i < design.axes().size(); ++i)
     {
-      const Numerics &n = task.computed.choice.numerics;
-      const auto mesh =
-        n.n_cells > 0 ? std::optional(SummaryMesh{n.n_cells, n.degree, n.n_cells * n.degree + 1, false}) : std::nullopt;
-      SimulationResult result = task.computed.result;
-      result.time.status      = status.status;
-      for_each_value(Json::parse(summary_json(result, task.parameters, mesh, 1, "")),
+      const std::string &text = design.value(i, point);
+      if (columns[1 + i].width > 0)
+        row[1 + i] = text;
+      else
+        row[1 + i] = *to_number(text);
+    }
+    const auto column = [&](const std::string &name, std::size_t first)
+    {
+      while (first < columns.size() && columns[first].name != name)
+        ++first;
+      return first;
+    };
+    // The keys come in the order of the columns; a part that is not known as a whole has none.
+    std::size_t next = 1 + design.axes().size();
+    if (!task.error && !task.computed.result.time.status.empty())
+      for_each_value(summary_of(task.computed.result, task.parameters),
                      "",
                      [&](const std::string &key, const Json &value)
                      {
-                       values.emplace(key, value);
+                       const std::size_t found = column(key, next);
+                       if (found == columns.size())
+                         return;
+                       row[found] = value_of(value, columns[found].width > 0);
+                       next       = found + 1;
                      });
-    }
-    RowFile::Row row;
-    for (std::size_t i = 0; i < columns.size(); ++i)
-    {
-      const RowFile::Column &column = columns[i];
-      if (i == 0)
-        row.emplace_back(static_cast<double>(point));
-      else if (i <= design.axes().size())
-      {
-        const std::string &text = design.value(i - 1, point);
-        if (column.width > 0)
-          row.emplace_back(text);
-        else
-          row.emplace_back(*to_number(text));
-      }
-      else if (column.name == "seconds")
-        row.emplace_back(task.seconds);
-      else if (column.name == "status")
-        row.emplace_back(status.status);
-      else if (column.name == "reason")
-        row.emplace_back(status.reason);
-      else if (column.name == "message")
-        row.emplace_back(status.message);
-      else
-      {
-        const auto found = values.find(column.name);
-        row.push_back(value_of(found == values.end() ? Json(nullptr) : found->second, column.width > 0));
-      }
-    }
+    row[column("seconds", next)] = task.seconds;
+    row[column("reason", next)]  = status.reason;
+    row[column("message", next)] = status.message;
+    row[column("status", next)]  = status.status;
     return row;
   }
 } // namespace crawler

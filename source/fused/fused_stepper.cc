@@ -42,7 +42,7 @@ namespace crawler
                 .start         = y.data(),
                 .frames        = frames_.data(),
                 .n_frames      = static_cast<unsigned int>(frames_.size()),
-                .restarts      = false}; // a solve for each piece
+                .restarts      = nullptr}; // a solve for each piece
     started_ = false;
     y_       = &y;
     outcome_ = {};

@@ -131,6 +131,18 @@ namespace crawler::test
     return result;
   }
 
+  inline std::vector<double>
+  numbers_of(const Gait &gait)
+  {
+    std::vector<double> result = {gait.period, gait.n_strides, gait.displacement, gait.length};
+    if (gait.wave)
+      result.insert(result.end(), {gait.wave->speed, gait.wave->coherence});
+    if (gait.ledger)
+      for (double Ledger::*energy : Ledger::energies())
+        result.push_back((*gait.ledger).*energy);
+    return result;
+  }
+
   /// The same to the last bit; signs of zeros and what is not a number included.
   inline bool
   same_bits(const std::vector<double> &a, const std::vector<double> &b)
@@ -143,6 +155,7 @@ namespace crawler::test
   {
     return a.has_value() == b.has_value() &&
            (!a || (a->time.status == b->time.status && a->inversion.has_value() == b->inversion.has_value() &&
-                   same_bits(numbers_of(*a), numbers_of(*b))));
+                   same_bits(numbers_of(*a), numbers_of(*b)) && a->gait.has_value() == b->gait.has_value() &&
+                   (!a->gait || same_bits(numbers_of(*a->gait), numbers_of(*b->gait)))));
   }
 } // namespace crawler::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Gait numbers of runs against theory.md: sections 4, 5 and 10.
-#include "../support/run_text.h"
+#include "../support/fused_runs.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,9 @@ namespace
   stride(test::Settings settings, const bool with_cycle_stop = false)
   {
     settings.emplace_back("Accuracy", "1e-8");
-    const Simulation::Options options{
-      .ledger = true, .cycles = with_cycle_stop ? std::optional(CycleWish{1., 1e-8}) : std::nullopt, .gait = true};
+    const Simulation::Options options{.ledger = true,
+                                      .cycles = with_cycle_stop ? std::optional(CycleWish{1., 1e-8}) : std::nullopt,
+                                      .gait   = Simulation::GaitWish::any};
     return test::run_with(settings, options).result;
   }
 } // namespace
@@ -72,4 +73,42 @@ TEST(GaitNumbers, TheEnergiesOfAStrideAddUpWithThoseBefore)
   EXPECT_NEAR(whole.gait->displacement, whole.displacement - before.displacement, 1e-9);
   EXPECT_NEAR(whole.gait->ledger->stress_power, whole.ledger->stress_power - before.ledger->stress_power, 1e-8);
   EXPECT_NEAR(whole.gait->ledger->positive_power, whole.ledger->positive_power - before.ledger->positive_power, 1e-4);
+}
+
+/// Side by side with others the last stride is the same as alone: in other units, where it starts in the middle of a
+/// run, and where the active stress jumps before.
+TEST(GaitNumbers, SideBySideTheyAreTheSame)
+{
+  const test::Settings units = {
+    {"Body/Length", "2.5"}, {"Body/Friction coefficient", "0.3"}, {"Active stress/Optimal wave/Wave speed", "2.5"}};
+  const test::Settings travelling = {{"Active stress/Generator", "travelling wave"},
+                                     {"Active stress/Travelling wave/Amplitude", "0.3"},
+                                     {"Active stress/Travelling wave/Ramp duration", "0.5"}};
+  const Numerics numerics         = {.degree = 6, .n_cells = 8, .tolerance = 1e-8, .initial_step = 1e-4};
+  test::FusedRuns runs;
+  const auto add = [&](const test::Settings &settings)
+  {
+    runs.push_back(std::make_unique<test::FusedRun>(settings, "radau 9", numerics));
+  };
+  add(test::wave(-1., 0.3));
+  add(test::wave(-1., 0.3, 1., 2.5));
+  add(test::with(test::wave(2., 0.2, -1., 3.), units));
+  add(test::with(test::wave(-1., 0.3, 1., 4.), travelling));
+  add(test::wave(-1., 0.3, 1., 0.7)); // no whole stride
+  const Simulation::Options options{.ledger = true, .gait = Simulation::GaitWish::declared};
+  const auto together = run_batch(test::entries(runs), options);
+  for (std::size_t i = 0; i < runs.size(); ++i)
+  {
+    const auto alone = runs[i]->simulate("automatic", options);
+    ASSERT_TRUE(together[i]) << i;
+    ASSERT_EQ(together[i]->gait.has_value(), alone.gait.has_value()) << i;
+    EXPECT_EQ(alone.gait.has_value(), i < 4) << i;
+    EXPECT_NEAR(*together[i]->gait_efficiency, *alone.gait_efficiency, 1e-6);
+    if (!alone.gait)
+      continue;
+    const auto here = test::numbers_of(*together[i]->gait), there = test::numbers_of(*alone.gait);
+    ASSERT_EQ(here.size(), there.size());
+    for (std::size_t j = 0; j < here.size(); ++j)
+      EXPECT_NEAR(here[j], there[j], 2e-6 * std::max(1., std::abs(there[j]))) << i << ", number " << j;
+  }
 }

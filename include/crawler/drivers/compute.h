@@ -23,6 +23,8 @@ namespace crawler
   struct Task
   {
     Parameters parameters;
+    /// Of interest is the last stride, too, if the active stress says how long it is; the same for all tasks of a call.
+    bool gait = false;
     std::optional<Scene> scene;
     Computed computed;
     std::exception_ptr error;    ///< what was thrown instead

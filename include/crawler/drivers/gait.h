@@ -76,10 +76,11 @@ namespace crawler
   std::optional<double>
   gait_efficiency(const Scene &scene, const SimulationResult &result);
 
-  /// The period of the gait that an active stress for a body and a duration of 1 drives at the end of the run, if it
-  /// says it; what it says for the time after a start is looked at over the last two strides.
+  /// The period of the gait that an active stress drives at the end of a run of this @p duration [time], in units of
+  /// that, if the stress says it; what it says for the time after a start is looked at over the last two strides, at
+  /// places on a body of this @p length [length].
   std::optional<double>
-  stride_of(const ActiveStress &stress);
+  stride_of(const ActiveStress &stress, double length, double duration);
 
   /**
    * Watches a run over (0, 1] and describes its last stride. A period that is known (of the active stress, or of what

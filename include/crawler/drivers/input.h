@@ -28,4 +28,6 @@ namespace crawler
   /// The same, understood: the scene is built too.
   Input
   read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides);
+  Input
+  read_input(ParameterFile file);
 } // namespace crawler

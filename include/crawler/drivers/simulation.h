@@ -79,6 +79,14 @@ namespace crawler
 
     std::optional<double> log_stretch_since;       ///< time from which on the log-stretch form was used [time]
     unsigned int mesh_changes = 0, most_cells = 0; ///< of an adaptive mesh
+    /// The last mesh; nothing if there was none.
+    struct Mesh
+    {
+      unsigned int n_cells, degree;
+      std::size_t n_unknowns;
+      bool is_shared; ///< by several ranks
+    };
+    std::optional<Mesh> mesh;
     double largest_indicator = 0.; ///< largest sum of the error indicators of an accepted state [length]
     double setup_seconds = 0., solve_seconds = 0., output_seconds = 0.;
     double estimate_seconds  = 0.; ///< that the error took (error_estimate.h)
@@ -93,13 +101,20 @@ namespace crawler
   class Simulation
   {
   public:
+    /// Of the last stride (SimulationResult::gait): none, if the active stress says how long it is, or in any case.
+    enum class GaitWish
+    {
+      none,
+      declared,
+      any
+    };
     /// What is computed at each accepted step besides the state.
     struct Options
     {
       bool ledger                     = false; ///< works, energies, net friction
       bool resolution                 = false; ///< SimulationResult::unresolved
       std::optional<CycleWish> cycles = {};    ///< end the run when its cycles repeat; not with frames
-      bool gait                       = false; ///< SimulationResult::gait
+      GaitWish gait                   = GaitWish::none;
     };
 
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);

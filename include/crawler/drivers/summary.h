@@ -4,28 +4,22 @@
 #include <crawler/drivers/parameters.h>
 #include <crawler/drivers/simulation.h>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <string>
 #include <vector>
 
 namespace crawler
 {
-  /// The last mesh of a run.
-  struct SummaryMesh
-  {
-    unsigned int n_cells, degree;
-    std::size_t n_unknowns;
-    bool is_shared; ///< by several ranks
+  /// What summary.json says of a result but for the process that made it (ranks, versions, command line): keys are a
+  /// contract (doc/user_guide.md). What is not known is null or not a number, which is written as null.
+  nlohmann::ordered_json
+  summary_of(const SimulationResult &result, const Parameters &parameters);
 
-    static SummaryMesh
-    of(const Discretization &discretization);
-  };
-
-  /// The text of summary.json. Its keys are a contract (doc/user_guide.md); what is not known is null. @p
-  /// mesh: nothing if there was none.
+  /// The text of summary.json.
   std::string
   summary_json(const SimulationResult &result,
                const Parameters &parameters,
-               const std::optional<SummaryMesh> &mesh,
                unsigned int n_ranks,
                const std::string &command_line);
 

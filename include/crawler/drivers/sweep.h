@@ -5,6 +5,8 @@
 
 namespace crawler
 {
+  class ParameterFile;
+
   /**
    * crawler sweep: a run without files for each point of section Sweep, shared among all ranks; the results are a
    * table, results.h5 and results.csv (collective). A point that goes wrong is a row with status and reason. With
@@ -15,5 +17,5 @@ namespace crawler
 
   /// Does the parameter file declare a sweep? Then says how large it is and how long it will take (`crawler check`).
   bool
-  check_sweep(MPI_Comm communicator, const CommandOptions &options, Log &log);
+  check_sweep(MPI_Comm communicator, const ParameterFile &file, Log &log);
 } // namespace crawler

@@ -44,7 +44,8 @@ namespace crawler
     const double *start;  ///< [unknowns] displacement at start_time; null: rest
     const double *frames; ///< ascending times after start_time where steps must end; the run ends with the last
     unsigned int n_frames;
-    bool restarts; ///< all frames but the last are times when the active stress jumps: the body starts anew there
+    /// [n_frames] is the frame a time when the active stress jumps, so the body starts anew there? Null: none is.
+    const unsigned char *restarts;
   };
 
   /// Of a stage of an accepted step (the last one is its end).

@@ -101,7 +101,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       lane       = Lane();
       lane.busy  = host_.next(host_.context, static_cast<unsigned int>(l), lane.job);
       if (!lane.busy)
-        lane.job = {1., 0., 1., 1., 1., 0, 0., 0., nullptr, nullptr, 0, false};
+        lane.job = {1., 0., 1., 1., 1., 0, 0., 0., nullptr, nullptr, 0, nullptr};
       lane.t    = lane.job.start_time;
       lane.next = lane.job.initial_step;
       set_lane(mesh_.k, l, lane.job.k);
@@ -354,7 +354,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         end(l, LaneOutcome::finished);
       else if (!go_on || lane.steps >= lane.job.most_steps)
         end(l, LaneOutcome::stopped);
-      else if (is_frame && lane.job.restarts)
+      else if (is_frame && lane.job.restarts != nullptr && lane.job.restarts[lane.frame - 1] != 0)
       {
         lane.start_anew();
         stress(l, lane.t, m_start_);

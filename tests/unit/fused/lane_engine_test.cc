@@ -70,13 +70,14 @@ TEST(LaneEngine, AResultDoesNotDependOnWhatSharesTheBatch)
     for (const std::string integrator : {"radau 5", "radau 9"})
       for (const bool ledger : {true, false})
       {
-        const FusedRuns runs  = mixture(integrator);
+        const FusedRuns runs = mixture(integrator);
+        const Simulation::Options options{.ledger = ledger, .gait = Simulation::GaitWish::declared};
         const auto all        = test::entries(runs);
-        const auto together   = run_batch(all, {.ledger = ledger}, {}, *engine);
+        const auto together   = run_batch(all, options, {}, *engine);
         unsigned int finished = 0;
         for (std::size_t i = 0; i < runs.size(); ++i)
         {
-          const auto alone = test::run_alone(*runs[i], {.ledger = ledger}, *engine);
+          const auto alone = test::run_alone(*runs[i], options, *engine);
           EXPECT_TRUE(test::same_bits(alone, together[i])) << engine->instruction_set << ", run " << i;
           finished += alone.has_value();
         }
@@ -88,7 +89,7 @@ TEST(LaneEngine, AResultDoesNotDependOnWhatSharesTheBatch)
         std::vector<BatchRun> shuffled;
         for (const std::size_t i : order)
           shuffled.push_back(all[i]);
-        const auto mixed = run_batch(shuffled, {.ledger = ledger}, {}, *engine);
+        const auto mixed = run_batch(shuffled, options, {}, *engine);
         for (std::size_t i = 0; i < order.size(); ++i)
           EXPECT_TRUE(test::same_bits(mixed[i], together[order[i]])) << engine->instruction_set << ", run " << order[i];
       }
