@@ -27,7 +27,7 @@ try:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy as np
-    from matplotlib import colors, patches
+    from matplotlib import colors, patches, ticker
     from matplotlib.path import Path
 except ImportError as missing:
     sys.exit(f"sweep.py: {missing}; on Debian: apt install python3-h5py python3-matplotlib")
@@ -37,6 +37,7 @@ LINES = (("#0072B2", "o", "-"), ("#D55E00", "s", "--"), ("#009E73", "^", "-."), 
 # What became of points without a value: grey, hatch, marker in line plots.
 MARKS = (("0.88", "////", "x"), ("0.72", "....", "+"), ("0.80", "\\\\\\\\", "1"), ("0.60", "xxxx", "2"),
          ("0.94", "++", "3"), ("0.50", "oo", "4"))
+STATUS_COLOURS = {"finished": "#FFFFFF", "inverted": "#E69F00", "failed": "#D55E00", "stopped": "#CC79A7", "not": "0.75"}
 MOST_LINES, MOST_PANELS = 60, 4  # lines in a picture; small pictures in a row or column
 
 
@@ -62,13 +63,11 @@ class Sweep:
         except (OSError, KeyError) as error:
             raise Problem(f'"{path}" is not a table of crawler sweep ({error})') from error
         self.data = described
-        self.design = next((line.split("=")[1].strip() for line in settings.split("subsection Sweep", 1)[-1].splitlines()
+        self.design = next((line.split("=")[1].split("#")[0].strip() for line in settings.split("subsection Sweep", 1)[-1].splitlines()
                             if line.split("=")[0].split() == ["set", "Design"]), "grid")
-        computed = described["status"][()] != b""  # the others have no values, not even of their axes
-        self.chosen, self.n_missing = np.flatnonzero(computed), np.count_nonzero(~computed)
-        if not computed.any():
-            raise Problem(f'no point of "{path}" has been computed yet')
-        self.fixed = []
+        self.chosen = np.flatnonzero(np.isfinite(described["index"][()]))
+        if len(self.chosen) == 0:
+            raise Problem(f'"{path}" has no rows')
         self.axes.sort(key=settings[max(settings.find("set Axes"), 0):].find)  # as in the file
 
     def column(self, name):
@@ -116,7 +115,6 @@ class Sweep:
         if not mine.any():
             raise Problem(f'no point has {axis} = {text}; values {"near it " if self.is_number(axis) else ""}are {known}')
         self.chosen = self.chosen[mine]
-        self.fixed.append(axis)
 
     def label(self, name, unit=True):
         """The last words of a name, more if an axis has the same ones, and its unit."""
@@ -134,31 +132,44 @@ class Sweep:
 class Marks:
     """What became of each chosen point that has no value to be drawn: an index into names, or -1."""
 
-    def __init__(self, sweep, values):
+    def __init__(self, sweep, values, alone):
+        self.alone = alone  # --value status
         status, reason = sweep.column("status"), sweep.column("reason")
         finished = status == b"finished"
         known = np.isfinite(values)
         self.note = ""
         if not (known & finished).any() and known.any():  # as inversion.t
             finished = known
-            self.note = "points that did not finish"
+            self.note = "values of points that did not finish"
         self.drawn = finished & known
         names = np.full(len(status), "", dtype=object)
         names[finished & ~known] = "finished, value not known"
         rest = ~finished
         for pair in set(zip(status[rest], reason[rest])):
             word, why = as_text(pair[0]), as_text(pair[1]).replace("_", " ")
-            text = f"{word} ({why})" if why and why not in word else word
+            text = "not computed yet" if not word else f"{word} ({why})" if why and why not in word else word
             names[rest & (status == pair[0]) & (reason == pair[1])] = text
         self.names = [name for name in sorted(set(names)) if name]
         self.of = np.full(len(status), -1)
         for i, name in enumerate(self.names):
             self.of[names == name] = i
         self.counts = [np.count_nonzero(self.of == i) for i in range(len(self.names))]
-        if sweep.n_missing > 0:  # the last one; cells of a grid that have no row
-            self.names.append("not computed yet")
-            self.counts.append(sweep.n_missing)
-        self.missing = len(self.names) - 1 if sweep.n_missing > 0 else -1
+
+    def face(self, i):
+        """The colour of cells."""
+        return STATUS_COLOURS.get(self.names[i].split(" ")[0], "white") if self.alone else MARKS[i % len(MARKS)][0]
+
+    def hatch(self, i):
+        """The hatch of cells."""
+        return "" if self.alone and self.names[i].startswith("finished") else MARKS[i % len(MARKS)][1]
+
+    def ink(self, i):
+        """The colour of points."""
+        return self.face(i) if self.alone and not self.names[i].startswith("finished") else "0.45"
+
+    def marker(self, i):
+        """Of points."""
+        return "o" if self.alone and self.names[i].startswith("finished") else MARKS[i % len(MARKS)][2]
 
     def in_words(self):
         """For a message."""
@@ -212,15 +223,17 @@ class Axis:
             edges = np.concatenate(([1.5 * at[0] - 0.5 * at[1]], middle, [1.5 * at[-1] - 0.5 * at[-2]]))
         return np.exp(edges) if self.log else edges
 
-    def draw(self, set_scale, set_ticks, set_label, long=True):
-        """Scale, ticks and label of the horizontal or vertical axis of a picture."""
+    def draw(self, axes, which, long):
+        """Scale, ticks and, if long, the label of the "x" or "y" axis of a picture."""
+        direction = getattr(axes, which + "axis")
         if self.log:
-            set_scale("log")
+            getattr(axes, f"set_{which}scale")("log")
+            direction.set_minor_formatter(ticker.LogFormatterSciNotation(minor_thresholds=(1.5, 0.6)))
         if not self.is_number or len(self.values) <= 6:
-            set_ticks(self.at, self.texts())
-            set_ticks([], minor=True)
+            direction.set_ticks(self.at, self.texts())
+            direction.set_ticks([], minor=True)
         if long:
-            set_label(self.label)
+            direction.set_label_text(self.label)
 
 
 def norm_of(values, scale):
@@ -239,9 +252,8 @@ def norm_of(values, scale):
     return "cividis", colors.Normalize(low - margin, high + margin)
 
 
-def hatch_cells(axes, x_edges, y_edges, mask, mark):
-    """The cells of the mask, in grey with a hatch; cells side by side in a row at once."""
-    grey, hatch, _ = MARKS[mark % len(MARKS)]
+def hatch_cells(axes, x_edges, y_edges, mask, face, hatch):
+    """The cells of the mask, with a hatch; cells side by side in a row at once."""
     vertices, codes = [], []
     for row in range(mask.shape[0]):
         steps = np.diff(np.concatenate(([0], mask[row].astype(int), [0])))
@@ -250,7 +262,7 @@ def hatch_cells(axes, x_edges, y_edges, mask, mark):
             vertices += [(left, low), (right, low), (right, high), (left, high), (left, low)]
             codes += [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
     if vertices:
-        axes.add_patch(patches.PathPatch(Path(vertices, codes), facecolor=grey, edgecolor="0.35", hatch=hatch, linewidth=0,
+        axes.add_patch(patches.PathPatch(Path(vertices, codes), facecolor=face, edgecolor="0.35", hatch=hatch, linewidth=0,
                                          rasterized=len(codes) > 5000))
 
 
@@ -260,7 +272,7 @@ def heat_map(axes, x, y, mine, values, marks, look):
     place = y.index[mine] * shape[1] + x.index[mine]
     if len(np.unique(place)) < len(place):
         raise Problem(f'several points have the same "{x.name}" and "{y.name}"; --where AXIS=VALUE chooses among them')
-    grid, reasons = np.full(shape, np.nan), np.full(shape, marks.missing)
+    grid, reasons = np.full(shape, np.nan), np.full(shape, -1)
     drawn = marks.drawn[mine]
     grid.flat[place[drawn]] = values[mine][drawn]
     reasons.flat[place] = marks.of[mine]
@@ -272,7 +284,7 @@ def heat_map(axes, x, y, mine, values, marks, look):
             if np.nanmin(grid) < 0 < np.nanmax(grid):
                 axes.contour(x.at, y.at, grid, [0.], colors="black", linewidths=1)
     for i in range(len(marks.names)):
-        hatch_cells(axes, x_edges, y_edges, reasons == i, i)
+        hatch_cells(axes, x_edges, y_edges, reasons == i, marks.face(i), marks.hatch(i))
     axes.set_xlim(x_edges[0], x_edges[-1])
     axes.set_ylim(y_edges[0], y_edges[-1])
     return mesh
@@ -285,7 +297,7 @@ def scatter(axes, x, y, mine, values, marks, look):
     size = float(np.clip(8000 / max(mine.sum(), 1), 1, 30))
     for i in range(len(marks.names)):
         some = mine & (marks.of == i)
-        axes.scatter(at[0][some], at[1][some], s=size, c="0.45", marker=MARKS[i % len(MARKS)][2], linewidths=0.8, rasterized=True)
+        axes.scatter(at[0][some], at[1][some], s=size, c=marks.ink(i), marker=marks.marker(i), linewidths=0.8, rasterized=True)
     if look is None:
         return None
     return axes.scatter(at[0][drawn], at[1][drawn], s=size, c=values[drawn], cmap=look[0], norm=look[1], edgecolors="0.4",
@@ -308,10 +320,12 @@ def lines(axes, x, mine, values, errors, marks, other, look, options):
         some = some[np.argsort(x.at[x.index[some]], kind="stable")]
         at, y = x.at[x.index[some]], np.where(marks.drawn[some], values[some], np.nan)
         colour, marker, style = LINES[number % len(LINES)]
+        if not x.is_number:
+            style = ""
         if look is not None:
-            colour, marker, style = plt.get_cmap(look[0])(look[1](other.values[key])), "", "-"
+            colour, marker, style = plt.get_cmap(look[0])(look[1](other.values[key])), "" if style else "o", style and "-"
         known = np.isfinite(y)
-        text = f"{other.label.split(' [')[0]} = {other.texts()[key]}" if other and look is None else ""
+        text = f"{other.label.split(' [')[0]} = {other.texts()[key]}" if other and (look is None or options.fit) else ""
         if options.fit:
             factor, power = power_law(at[known], y[known], options.value)
             said = f"{factor:.3g} x^{power:.4f}"
@@ -319,7 +333,7 @@ def lines(axes, x, mine, values, errors, marks, other, look, options):
             print(f"{options.value} = {factor:.6g} * ({x.name})^{power:.6f}" +
                   (f" at {other.name} = {other.texts()[key]}" if other else ""))
         points = len(at) <= 60
-        axes.plot(at, y, color=colour, marker=marker if points or options.dots else "", linestyle="" if options.dots else style,
+        axes.plot(at, y, color=colour, marker=marker if points or options.dots else "", linestyle="" if options.dots else style or "",
                   markersize=4 if points else 2.5, linewidth=1.2, label=text or None)
         if errors is not None and not options.dots:
             bar = np.where(known, errors[some], np.nan)
@@ -330,7 +344,7 @@ def lines(axes, x, mine, values, errors, marks, other, look, options):
     for i in range(len(marks.names)):  # along the lower edge
         at = np.unique(x.at[x.index[mine & (marks.of == i)]])
         axes.plot(at, np.full(len(at), 0.02 + 0.03 * i), transform=axes.get_xaxis_transform(), linestyle="",
-                  marker=MARKS[i % len(MARKS)][2], color="0.35", markersize=5, clip_on=False)
+                  marker=marks.marker(i), color="0.35", markersize=5, clip_on=False)
     axes.grid(alpha=0.3)
 
 
@@ -393,7 +407,7 @@ def draw(sweep, options):
     else:
         options.value = sweep.find(options.value, [name for name in sweep.data if sweep.is_number(name)], "column of numbers")
         values = sweep.column(options.value)
-    marks = Marks(sweep, values)
+    marks = Marks(sweep, values, by_status)
     if by_status:
         marks.names = [name.replace("finished, value not known", "finished") for name in marks.names]
     elif not marks.drawn.any():
@@ -452,11 +466,11 @@ def draw(sweep, options):
             else:
                 mesh = scatter(axes, x, y, mine, values, marks, look)
             x.log = x.log or (options.fit and x.is_number)
-            x.draw(axes.set_xscale, axes.set_xticks, axes.set_xlabel, row == len(high) - 1)
+            x.draw(axes, "x", row == len(high) - 1)
             if not x.is_number and max(map(len, x.texts())) * len(x.values) * len(wide) > 60:
                 axes.tick_params(axis="x", labelrotation=30)
             if not as_lines:
-                y.draw(axes.set_yscale, axes.set_yticks, axes.set_ylabel, column == 0)
+                y.draw(axes, "y", column == 0)
             elif column == 0:
                 axes.set_ylabel(sweep.label(options.value))
             if rest:
@@ -474,10 +488,10 @@ def draw(sweep, options):
         fill = not as_lines and sweep.design == "grid"
         handles = []
         for i, name in enumerate(marks.names):
-            grey, hatch, marker = MARKS[i % len(MARKS)]
             text = f"{name}: {marks.counts[i]}"
-            handles.append(patches.Patch(facecolor=grey, edgecolor="0.35", hatch=hatch, linewidth=0, label=text) if fill else
-                           plt.Line2D([], [], linestyle="", marker=marker, color="0.35", label=text))
+            handles.append(patches.Patch(facecolor=marks.face(i), edgecolor="0.35", hatch=marks.hatch(i),
+                                         linewidth=0.5, label=text) if fill else
+                           plt.Line2D([], [], linestyle="", marker=marks.marker(i), color=marks.ink(i), label=text))
         legend_rows = (len(handles) + 1) // 2
         figure.get_layout_engine().set(rect=(0, 0.055 * legend_rows * 4.8 / size[1], 1, 1 - 0.055 * legend_rows * 4.8 / size[1]))
         figure.legend(handles=handles, loc="lower center", ncols=2, fontsize=8, frameon=False, handlelength=2.5)
@@ -507,7 +521,7 @@ def main():
         try:
             figure.savefig(picture, dpi=160)
         except (OSError, ValueError) as error:
-            raise Problem(f'cannot write "{picture}": {error}') from error
+            raise Problem(f'cannot write "{picture}": {getattr(error, "strerror", None) or error}') from error
         print(f"wrote {picture}")
 
 
