@@ -158,6 +158,19 @@ def test_bad_input(folder):
               f"{' '.join(arguments)}: {result.returncode}, {lines[0] if len(lines) == 1 else lines[-3:]}")
 
 
+def test_columns(folder):
+    """The user guide's table of columns has each with its unit."""
+    guide = (SCRIPT.parents[2] / "doc" / "user_guide.md").read_text(encoding="utf-8")
+    rows = re.search(r"\| columns \| unit \|\n\|---\|---\|\n((?:\|.*\n)+)", guide)[1].splitlines()
+    told = {name: unit.strip() for names, unit in (row.strip("|").rsplit("|", 1) for row in rows)
+            for name in re.findall(r"`([^`]+)`", names)}
+    with h5py.File(folder / "line" / "results.h5", "r") as file:
+        found = {data.attrs["name"].decode(): "texts" if data.dtype.kind == "S" else data.attrs["unit"].decode()
+                 for data in file["results"].values() if data.attrs["description"] != b"axis of the sweep"}
+    wrong = sorted(name for name in told.keys() | found.keys() if told.get(name) != found.get(name))
+    check(not wrong and len(found) > 50, f"{len(found)} columns are in the user guide with their units {wrong or ''}")
+
+
 def main():
     """Makes the sweeps and draws them."""
     with tempfile.TemporaryDirectory() as name:
@@ -172,6 +185,7 @@ def main():
         test_pictures(folder)
         test_fit(folder)
         test_bad_input(folder)
+        test_columns(folder)
     sys.exit(failures > 0)
 
 
