@@ -141,11 +141,10 @@ namespace crawler
                              time_of_finer_run(tasks[i].parameters.time)});
           runs.push_back({&*tasks[i].scene, &tasks[i].parameters.time, &shared->numerics});
         }
-      const bool ledger = tasks.front().parameters.output.ledger;
-      auto results      = run_batch(
-        runs,
-        {.ledger = ledger, .gait = tasks.front().gait ? Simulation::GaitWish::declared : Simulation::GaitWish::none},
-        is_in_time);
+      const Simulation::Options options = {.ledger = tasks.front().parameters.output.ledger,
+                                           .gait   = tasks.front().gait ? Simulation::GaitWish::declared
+                                                                        : Simulation::GaitWish::none};
+      auto results                      = run_batch(runs, options, is_in_time);
       std::vector<std::size_t> finished;
       std::vector<BatchRun> finer_runs;
       for (std::size_t i = 0; i < members.size(); ++i)
@@ -155,7 +154,7 @@ namespace crawler
           finished.push_back(i);
           finer_runs.push_back({&*tasks[members[i].task].scene, &members[i].finer_time, &members[i].finer});
         }
-      const auto finer_results = run_batch(finer_runs, {}, is_in_time);
+      const auto finer_results = run_batch(finer_runs, options, is_in_time);
       for (std::size_t j = 0; j < finished.size(); ++j)
       {
         const std::size_t i = finished[j];
@@ -166,8 +165,7 @@ namespace crawler
         NumericsChoice choice    = *shared;
         choice.wanted_error      = task.parameters.accuracy * std::abs(result.displacement);
         choice.promised_error    = choice.wanted_error;
-        result.error             = error_from_difference(
-          choice, result, std::abs(finer_results[j]->displacement - result.displacement), *task.scene);
+        set_errors(choice, result, &*finer_results[j], task.parameters, *task.scene);
         check_identities(result, task.parameters);
         if (result.time.status != "finished" || !(result.error->total <= choice.wanted_error))
           continue;

@@ -91,32 +91,29 @@ namespace crawler
       return next;
     }
 
-    /// The difference of the displacement to that of the finer run; not a number if that did not finish.
-    double
-    difference_to_finer_run(MPI_Comm communicator,
-                            const Parameters &parameters,
-                            const Scene &scene,
-                            const NumericsChoice &choice,
-                            const SimulationResult &result,
-                            const std::function<bool()> &keep_going)
+    /// What the finer run gives; it may not have finished.
+    SimulationResult
+    finer_run(MPI_Comm communicator,
+              const Parameters &parameters,
+              const Scene &scene,
+              const NumericsChoice &choice,
+              const SimulationResult &result,
+              const std::function<bool()> &keep_going)
     {
       const TimeParameters time = time_of_finer_run(parameters.time);
       const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene);
       const auto cycles         = cycle_wish(parameters, scene, 0);
-      SimulationResult better;
+      const auto options        = options_of_finer_run(result, cycles);
       // Most runs fit the fused engine; then nothing else has to be built.
       if (!cycles && size_of(communicator) == 1 && fused_method(scene, time, numerics))
       {
         const BatchRun run = {&scene, &time, &numerics};
-        if (const auto result_of_engine = run_batch({&run, 1}, {}, keep_going, single_engine()).front())
-          better = *result_of_engine;
-        else if (keep_going && !keep_going())
-          return DisplacementError::unknown;
+        if (auto finer = run_batch({&run, 1}, options, keep_going, single_engine()).front())
+          return std::move(*finer);
+        if (keep_going && !keep_going())
+          return {};
       }
-      if (better.time.status.empty())
-        better = Simulation(communicator, scene, time, numerics).run({}, {.cycles = cycles}, {}, keep_going);
-      return better.time.status == "finished" ? std::abs(better.displacement - result.displacement)
-                                              : DisplacementError::unknown;
+      return Simulation(communicator, scene, time, numerics).run({}, options, {}, keep_going);
     }
   } // namespace
 
@@ -138,49 +135,68 @@ namespace crawler
     return finer(choice, time.integrator == "automatic" ? choice.numerics.integrator : time.integrator, scene);
   }
 
-  DisplacementError
-  error_from_difference(const NumericsChoice &choice,
-                        const SimulationResult &result,
-                        const double difference,
-                        const Scene &scene)
+  Simulation::Options
+  options_of_finer_run(const SimulationResult &result, const std::optional<CycleWish> &cycles)
   {
-    DisplacementError error;
-    double total = choice.promised_error;
+    using Wish = Simulation::GaitWish;
+    return {.ledger = result.ledger.has_value(),
+            .cycles = cycles,
+            .gait   = !result.gait               ? Wish::none
+                      : result.gait->is_declared ? Wish::declared
+                                                 : Wish::any};
+  }
+
+  void
+  set_errors(const NumericsChoice &choice,
+             SimulationResult &result,
+             const SimulationResult *const finer,
+             const Parameters &parameters,
+             const Scene &scene)
+  {
+    DisplacementError &error = result.error.emplace();
+    double total             = choice.promised_error;
     if (choice.numerics.linear) // the centre of mass stays where it is, whatever the other errors are
       total = 0.;
-    else if (!choice.is_measured)
+    else if (finer != nullptr)
     {
-      const double part = choice.numerics.mesh.tolerance > 0.  ? promised_part_if_adaptive
-                          : choice.numerics.grading.levels > 0 ? promised_part_if_graded
-                                                               : promised_part;
-      total             = is_promised(choice, scene) ? measured_factor * difference + part * choice.promised_error
-                                                     : factor_without_promise * difference;
+      if (finer->time.status != "finished")
+        return;
+      const bool promised = is_promised(choice, scene);
+      const double part   = !promised                             ? 0.
+                            : choice.numerics.mesh.tolerance > 0. ? promised_part_if_adaptive
+                            : choice.numerics.grading.levels > 0  ? promised_part_if_graded
+                                                                  : promised_part;
+      const double factor = promised ? measured_factor : factor_without_promise;
+      total               = factor * std::abs(finer->displacement - result.displacement);
+      if (promised)
+        total += part * choice.promised_error;
+      result.errors = number_errors(result, *finer, factor, part * parameters.accuracy);
     }
     if (!std::isfinite(total))
-      return error;
+      return;
     const double cycles = result.cycles ? result.cycles->bound : 0.;
     const double rest   = std::max(total, round_off * scene.body.length);
     error.total         = rest + cycles;
     error.space         = choice.numerics.linear ? 0. : choice.space_share * rest;
     error.time          = error.total - error.space;
     error.model         = 0.;
-    return error;
   }
 
-  DisplacementError
-  estimate_error(MPI_Comm communicator,
-                 const Parameters &parameters,
-                 const Scene &scene,
-                 const NumericsChoice &choice,
-                 const SimulationResult &result,
-                 const std::function<bool()> &keep_going)
+  void
+  estimate_errors(MPI_Comm communicator,
+                  const Parameters &parameters,
+                  const Scene &scene,
+                  const NumericsChoice &choice,
+                  SimulationResult &result,
+                  const std::function<bool()> &keep_going)
   {
-    if (result.time.status != "finished")
-      return DisplacementError();
-    const bool is_measured = !choice.numerics.linear && !choice.is_measured;
-    const double x =
-      is_measured ? difference_to_finer_run(communicator, parameters, scene, choice, result, keep_going) : 0.;
-    return error_from_difference(choice, result, x, scene);
+    if (choice.numerics.linear || choice.is_measured)
+      set_errors(choice, result, nullptr, parameters, scene);
+    else
+    {
+      const SimulationResult finer = finer_run(communicator, parameters, scene, choice, result, keep_going);
+      set_errors(choice, result, &finer, parameters, scene);
+    }
   }
 
   Answer
@@ -204,7 +220,7 @@ namespace crawler
       if (!parameters.error_estimate || result.time.status != "finished")
         return answer;
       const auto start = Clock::now();
-      result.error     = estimate_error(communicator, parameters, scene, answer.choice, result, keep_going);
+      estimate_errors(communicator, parameters, scene, answer.choice, result, keep_going);
       answer.estimate_seconds += std::chrono::duration<double>(Clock::now() - start).count();
       const double total = result.error->total;
       // A ledger that does not close asks for a finer run, too; if that does not help it is the self-check's business.

@@ -105,6 +105,33 @@ namespace crawler
       return json;
     }
 
+    /// Error bars of other numbers than the displacement, under their keys.
+    Json
+    error_bars(const NumberErrors &errors)
+    {
+      Json json;
+      for (std::size_t i = 0; i < NumberErrors::n; ++i)
+      {
+        const std::string key = NumberErrors::keys()[i];
+        Json *place           = &json;
+        std::size_t from = 0, dot = 0;
+        for (; (dot = key.find('.', from)) != std::string::npos; from = dot + 1)
+          place = &(*place)[key.substr(from, dot - from)];
+        (*place)[key.substr(from)] = number(errors.values[i]);
+      }
+      return json;
+    }
+
+    /// " +- 1e-6", if the error of the number under this key is known.
+    std::string
+    bar(const SimulationResult &result, const std::string &key)
+    {
+      for (std::size_t i = 0; result.errors && i < NumberErrors::n; ++i)
+        if (NumberErrors::keys()[i] == key && std::isfinite(result.errors->values[i]))
+          return fmt::format(" +- {:.2g}", result.errors->values[i]);
+      return "";
+    }
+
     void
     add_gait_lines(const SimulationResult &result, std::vector<std::string> &lines)
     {
@@ -130,8 +157,9 @@ namespace crawler
       if (!cost)
         return;
       const auto positive = gait.cost_of_transport(gait.ledger->positive_power);
-      lines.push_back(fmt::format("  cost of transport {:.4g} (work per distance{})",
+      lines.push_back(fmt::format("  cost of transport {:.4g}{} (work per distance{})",
                                   *cost,
+                                  bar(result, "gait.cost_of_transport.stress_power"),
                                   positive ? fmt::format("; {:.4g} if it cannot be recovered", *positive) : ""));
     }
   } // namespace
@@ -193,6 +221,7 @@ namespace crawler
     json["min_stretch"]        = extreme(result.min_stretch);
     json["max_stretch"]        = extreme(result.max_stretch);
     json["gait"]               = gait_numbers(result);
+    json["errors"]             = error_bars(result.errors.value_or(NumberErrors()));
     json["log_stretch_since"]  = result.log_stretch_since ? Json(*result.log_stretch_since) : Json(nullptr);
     json["mesh_changes"]       = result.mesh_changes;
     json["most_cells"]         = std::max(result.most_cells, mesh ? mesh->n_cells : 0);
@@ -263,7 +292,8 @@ namespace crawler
                     result.cycles->bound));
     if (result.ledger)
     {
-      lines.push_back(fmt::format("  stress power      {:.10g}", result.ledger->stress_power));
+      lines.push_back(
+        fmt::format("  stress power      {:.10g}{}", result.ledger->stress_power, bar(result, "stress_power")));
       lines.push_back(fmt::format("  dissipation       {:.10g}", result.ledger->dissipation));
       lines.push_back(fmt::format(
         "  ledger residual   {:.2e} (relative), net friction {}",

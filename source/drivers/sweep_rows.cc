@@ -52,10 +52,11 @@ namespace crawler
     full_summary()
     {
       SimulationResult result;
-      result.displacement      = 0.;
-      result.integrator        = "radau 9";
-      result.engine            = "fused";
-      result.error             = DisplacementError{0., 0., 0., 0.};
+      result.displacement = 0.;
+      result.integrator   = "radau 9";
+      result.engine       = "fused";
+      result.error        = DisplacementError{0., 0., 0., 0.};
+      result.errors.emplace();
       result.ledger            = Ledger{};
       result.inversion         = SimulationResult::Extreme{};
       result.cycles            = Cycles{1., 1, 1, 0.};
@@ -70,6 +71,9 @@ namespace crawler
     std::string
     unit_of_key(const std::string &key)
     {
+      const std::string error = "errors.";
+      if (key.starts_with(error))
+        return unit_of_key(key.substr(error.size()));
       static const std::map<std::string, std::string> units = {{"displacement", "length"},
                                                                {"displacement_error.total", "length"},
                                                                {"displacement_error.space", "length"},

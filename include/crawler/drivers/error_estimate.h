@@ -9,38 +9,43 @@
 namespace crawler
 {
   /**
-   * The error of the displacement of @p result, which a Simulation with @p choice gave (collective). A second, finer
-   * run tells it (doc/numerics.md, "Error bars"): with x the difference of both displacements and w the error that the
-   * choice promises,
+   * Sets the errors of @p result, which a Simulation with @p choice gave and which finished (collective). A second,
+   * finer run tells that of the displacement (doc/numerics.md, "Error bars"): with x the difference of both
+   * displacements and w the error that the choice promises,
    *
    *   total = 1.3 x + w/4   (w/2 on adaptive meshes, 0.15 w on graded ones; without a promise 2 x), and at least 1e-15
    * L, the error of round-off.
    *
    * It is split into space and time as the rule that chose the numerics expects it. Where the stretch collapses the
-   * choice has measured the error, and no second run is made. Nothing is known of a result that is not finished, or
-   * if the finer run did not finish or was stopped by @p keep_going.
+   * choice has measured the error, and no second run is made. The error is unknown if the finer run did not finish or
+   * was stopped by @p keep_going. Other numbers have errors by number_errors(), with the same factors and Accuracy as
+   * what is promised, if there was a second run.
    */
-  DisplacementError
-  estimate_error(MPI_Comm communicator,
-                 const Parameters &parameters,
-                 const Scene &scene,
-                 const NumericsChoice &choice,
-                 const SimulationResult &result,
-                 const std::function<bool()> &keep_going = {});
+  void
+  estimate_errors(MPI_Comm communicator,
+                  const Parameters &parameters,
+                  const Scene &scene,
+                  const NumericsChoice &choice,
+                  SimulationResult &result,
+                  const std::function<bool()> &keep_going = {});
 
-  /// The finer run that measures the error of a run with @p choice: what it does with entries of section Time, and its
-  /// numerics.
+  /// The finer run that measures the errors of a run with @p choice: what it does with entries of section Time, its
+  /// numerics, and what it computes.
   TimeParameters
   time_of_finer_run(const TimeParameters &time);
   Numerics
   numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, const Scene &scene);
 
-  /// The error of a finished result from its @p difference to the finer run (not a number: unknown).
-  DisplacementError
-  error_from_difference(const NumericsChoice &choice,
-                        const SimulationResult &result,
-                        double difference,
-                        const Scene &scene);
+  Simulation::Options
+  options_of_finer_run(const SimulationResult &result, const std::optional<CycleWish> &cycles);
+
+  /// Sets the errors of a finished @p result from the finer run; null if there was none since the choice knows.
+  void
+  set_errors(const NumericsChoice &choice,
+             SimulationResult &result,
+             const SimulationResult *finer,
+             const Parameters &parameters,
+             const Scene &scene);
 
   /// A run with its error, and how it was found.
   struct Answer

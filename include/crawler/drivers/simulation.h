@@ -8,6 +8,7 @@
 #include <crawler/drivers/cycle_stop.h>
 #include <crawler/drivers/displacement_error.h>
 #include <crawler/drivers/gait.h>
+#include <crawler/drivers/number_errors.h>
 #include <crawler/fused/fused_stepper.h>
 #include <crawler/fused/linear_stepper.h>
 #include <crawler/observers/observer.h>
@@ -62,6 +63,7 @@ namespace crawler
     /// How: an integrator of time/integrators.h; petsc, fused, or "fused, petsc" where the fused engine gave up.
     std::string integrator, engine;
     std::optional<DisplacementError> error; ///< of the displacement
+    std::optional<NumberErrors> errors;     ///< of other numbers, if a finer run measured them
     double largest_u  = 0.;                 ///< root mean square of u over the body, largest over time [length]
     double unresolved = 0.;                 ///< Resolution: largest highest_mode over largest strain, if looked at
     double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]

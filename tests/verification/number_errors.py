@@ -1,0 +1,88 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Are the error bars of works, stretches and gait numbers larger than the errors? (doc/numerics.md, "Error bars")
+
+    python3 number_errors.py PATH_TO_CRAWLER [POINTS] [SEED]
+
+Random sweeps over four kinds of crawlers, POINTS of each, at three accuracies, against the same sweep with many cells and
+Accuracy 1e-9. Prints a table; fails if a number is above its bar in more than 1 % of all points.
+"""
+import csv
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+BODY = "Body/Anchoring exponent : uniform(1.5, 4); Body/Elastic modulus : "
+WAVE = "Active stress/Optimal wave/"
+SCENES = {  # settings, axes
+    "a stride of the optimal wave": ([WAVE + "Choose wave by=wave speed"],
+                                     BODY + f"loguniform(0.9, 1.1); {WAVE}Perturbation parameter : uniform(0.05, 0.45)"),
+    "optimal waves of any duration": ([WAVE + "Choose wave by=wave speed"],
+                                      BODY + f"loguniform(0.3, 30); {WAVE}Perturbation parameter : uniform(0.05, 0.45);"
+                                      " Time/End time : uniform(0.5, 4)"),
+    "travelling waves with a ramp": (["Active stress/Generator=travelling wave", "Time/End time=3",
+                                      "Active stress/Travelling wave/Ramp duration=1"],
+                                     BODY + "loguniform(0.7, 10); Active stress/Travelling wave/Amplitude : uniform(0.05, 0.4)"),
+    "pulses": (["Active stress/Generator=pulse", "Time/End time=2"], BODY + "loguniform(0.7, 10)"),
+}
+ACCURACIES = ("1e-3", "1e-4", "1e-6")
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
+                   OPENBLAS_NUM_THREADS="1")
+
+
+def sweep(program, folder, settings, axes, points, seed, accuracy, more=()):
+    """The rows of a sweep."""
+    text = (f"set Accuracy = {accuracy}\nsubsection Sweep\n  set Design = latin hypercube\n  set Number of points = {points}\n"
+            f"  set Seed = {seed}\n  set Axes = {axes}\nend\n")
+    (folder / "sweep.prm").write_text(text, encoding="utf-8")
+    arguments = [word for setting in (*settings, *more) for word in ("--set", setting)]
+    subprocess.run([program, "sweep", "sweep.prm", "--output", "out", "--overwrite", "--quiet", *arguments], cwd=folder,
+                   env=ENVIRONMENT, stdin=subprocess.DEVNULL, timeout=600, check=True)
+    with open(folder / "out" / "results.csv", newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def judge(rows, reference, judged):
+    """Adds (accuracy, bar, error) of each number."""
+    for row, exact in zip(rows, reference):
+        if row["status"] != "finished" or exact["status"] != "finished":
+            continue
+        for key in row:
+            name = "displacement" if key == "displacement_error.total" else key.removeprefix("errors.")
+            if name == key or not row[key]:
+                continue
+            column = name + ".value" if name.endswith("_stretch") else name
+            judged.setdefault(name, []).append((float(row[key]), abs(float(row[column]) - float(exact[column])),
+                                                abs(float(exact[column]))))
+
+
+def main():
+    """Runs, prints, judges."""
+    program = str(pathlib.Path(sys.argv[1]).resolve())
+    points, seed = (int(sys.argv[i]) if len(sys.argv) > i else default for i, default in ((2, 40), (3, 1)))
+    judged = {}
+    with tempfile.TemporaryDirectory() as name:
+        for settings, axes in SCENES.values():
+            reference = sweep(program, pathlib.Path(name), settings, axes, points, seed, "1e-9",
+                              ["Discretization/Number of cells=24"])
+            for accuracy in ACCURACIES:
+                judge(sweep(program, pathlib.Path(name), settings, axes, points, seed, accuracy), reference, judged)
+    failures = 0
+    print(f"{'number':40s} {'judged':>7s} {'covered':>9s} {'bar/error':>10s} {'worst':>8s} {'largest relative error':>23s}")
+    for number, rows in judged.items():
+        ratios = sorted(bar / max(error, 1e-300) for bar, error, _ in rows)
+        covered = sum(ratio >= 1 for ratio in ratios) / len(ratios)
+        largest = max(error / size for _, error, size in rows if size > 0)
+        failures += covered < 0.99 or len(rows) < points
+        print(f"{number:40s} {len(rows):7d} {100 * covered:7.2f} % {ratios[len(ratios) // 2]:10.3g} {ratios[0]:8.2g} "
+              f"{largest:23.1e}{'' if covered >= 0.99 else '   FAILED: 99 % are wanted'}")
+    if len(judged) < 17:
+        print(f"FAILED: {len(judged)} numbers have error bars, 17 are expected")
+        failures += 1
+    sys.exit(failures > 0)
+
+
+if __name__ == "__main__":
+    main()
