@@ -18,6 +18,7 @@ import argparse
 import difflib
 import os
 import pathlib
+import re
 import sys
 
 os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a sweep under way may be looked at
@@ -37,7 +38,8 @@ LINES = (("#0072B2", "o", "-"), ("#D55E00", "s", "--"), ("#009E73", "^", "-."), 
 # What became of points without a value: grey, hatch, marker in line plots.
 MARKS = (("0.88", "////", "x"), ("0.72", "....", "+"), ("0.80", "\\\\\\\\", "1"), ("0.60", "xxxx", "2"),
          ("0.94", "++", "3"), ("0.50", "oo", "4"))
-STATUS_COLOURS = {"finished": "#FFFFFF", "inverted": "#E69F00", "failed": "#D55E00", "stopped": "#CC79A7", "not": "0.75"}
+STATUS_COLOURS = {"finished": "#FFFFFF", "inverted": "#E69F00", "failed": "#D55E00", "stopped": "#CC79A7",
+                  "not": "0.75"}
 MOST_LINES, MOST_PANELS = 60, 4  # lines in a picture; small pictures in a row or column
 
 
@@ -63,8 +65,7 @@ class Sweep:
         except (OSError, KeyError) as error:
             raise Problem(f'"{path}" is not a table of crawler sweep ({error})') from error
         self.data = described
-        self.design = next((line.split("=")[1].split("#")[0].strip() for line in settings.split("subsection Sweep", 1)[-1].splitlines()
-                            if line.split("=")[0].split() == ["set", "Design"]), "grid")
+        self.design = re.search(r"subsection Sweep\n(?:.*\n)*?\s+set Design\s*= (\w+)|$", settings)[1] or "grid"
         self.chosen = np.flatnonzero(np.isfinite(described["index"][()]))
         if len(self.chosen) == 0:
             raise Problem(f'"{path}" has no rows')
@@ -262,8 +263,8 @@ def hatch_cells(axes, x_edges, y_edges, mask, face, hatch):
             vertices += [(left, low), (right, low), (right, high), (left, high), (left, low)]
             codes += [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
     if vertices:
-        axes.add_patch(patches.PathPatch(Path(vertices, codes), facecolor=face, edgecolor="0.35", hatch=hatch, linewidth=0,
-                                         rasterized=len(codes) > 5000))
+        axes.add_patch(patches.PathPatch(Path(vertices, codes), facecolor=face, edgecolor="0.35", hatch=hatch,
+                                         linewidth=0, rasterized=len(codes) > 5000))
 
 
 def heat_map(axes, x, y, mine, values, marks, look):
@@ -297,11 +298,12 @@ def scatter(axes, x, y, mine, values, marks, look):
     size = float(np.clip(8000 / max(mine.sum(), 1), 1, 30))
     for i in range(len(marks.names)):
         some = mine & (marks.of == i)
-        axes.scatter(at[0][some], at[1][some], s=size, c=marks.ink(i), marker=marks.marker(i), linewidths=0.8, rasterized=True)
+        axes.scatter(at[0][some], at[1][some], s=size, c=marks.ink(i), marker=marks.marker(i), linewidths=0.8,
+                     rasterized=True)
     if look is None:
         return None
-    return axes.scatter(at[0][drawn], at[1][drawn], s=size, c=values[drawn], cmap=look[0], norm=look[1], edgecolors="0.4",
-                        linewidths=0.3 if size > 4 else 0, rasterized=True)
+    return axes.scatter(at[0][drawn], at[1][drawn], s=size, c=values[drawn], cmap=look[0], norm=look[1],
+                        edgecolors="0.4", linewidths=0.3 if size > 4 else 0, rasterized=True)
 
 
 def power_law(x, y, name):
@@ -323,7 +325,8 @@ def lines(axes, x, mine, values, errors, marks, other, look, options):
         if not x.is_number:
             style = ""
         if look is not None:
-            colour, marker, style = plt.get_cmap(look[0])(look[1](other.values[key])), "" if style else "o", style and "-"
+            colour, marker = plt.get_cmap(look[0])(look[1](other.values[key])), "" if style else "o"
+            style = style and "-"
         known = np.isfinite(y)
         text = f"{other.label.split(' [')[0]} = {other.texts()[key]}" if other and (look is None or options.fit) else ""
         if options.fit:
@@ -333,8 +336,8 @@ def lines(axes, x, mine, values, errors, marks, other, look, options):
             print(f"{options.value} = {factor:.6g} * ({x.name})^{power:.6f}" +
                   (f" at {other.name} = {other.texts()[key]}" if other else ""))
         points = len(at) <= 60
-        axes.plot(at, y, color=colour, marker=marker if points or options.dots else "", linestyle="" if options.dots else style or "",
-                  markersize=4 if points else 2.5, linewidth=1.2, label=text or None)
+        axes.plot(at, y, color=colour, marker=marker if points or options.dots else "",
+                  linestyle="" if options.dots else style, markersize=4 if points else 2.5, linewidth=1.2, label=text or None)
         if errors is not None and not options.dots:
             bar = np.where(known, errors[some], np.nan)
             if points:
@@ -405,7 +408,8 @@ def draw(sweep, options):
     if by_status:
         values = np.full(len(sweep.chosen), np.nan)
     else:
-        options.value = sweep.find(options.value, [name for name in sweep.data if sweep.is_number(name)], "column of numbers")
+        numbers = [name for name in sweep.data if sweep.is_number(name)]
+        options.value = sweep.find(options.value, numbers, "column of numbers")
         values = sweep.column(options.value)
     marks = Marks(sweep, values, by_status)
     if by_status:
@@ -443,9 +447,10 @@ def draw(sweep, options):
                 y.index = np.array([keep.index(i) if i in keep else -1 for i in range(y.index.max() + 1)])[y.index]
             line_look = ("viridis", colors.LogNorm(y.values[0], y.values[-1]) if y.log else
                          colors.Normalize(y.values[0], y.values[-1]))
-        bars = f"{options.value}_error.total"
+        names = (f"{options.value}_error.total", "errors." + options.value.removesuffix(".value"))
+        bars = next((name for name in names if name in sweep.data), None)
         log = isinstance(look[1], (colors.LogNorm, colors.SymLogNorm)) or options.fit
-        if bars in sweep.data:
+        if bars:
             errors = sweep.column(bars)
             own = errors[marks.drawn]
             visible = own > (0.02 * np.abs(drawn) if log else 0.003 * (drawn.max() - drawn.min()))
@@ -493,7 +498,8 @@ def draw(sweep, options):
                                          linewidth=0.5, label=text) if fill else
                            plt.Line2D([], [], linestyle="", marker=marks.marker(i), color=marks.ink(i), label=text))
         legend_rows = (len(handles) + 1) // 2
-        figure.get_layout_engine().set(rect=(0, 0.055 * legend_rows * 4.8 / size[1], 1, 1 - 0.055 * legend_rows * 4.8 / size[1]))
+        below = 0.264 * legend_rows / size[1]
+        figure.get_layout_engine().set(rect=(0, below, 1, 1 - below))
         figure.legend(handles=handles, loc="lower center", ncols=2, fontsize=8, frameon=False, handlelength=2.5)
     if title := title_of(sweep, options, x, y, marks):
         figure.suptitle(title, fontsize=9)
@@ -517,7 +523,8 @@ def main():
     for condition in options.where:
         sweep.where(condition)
     figure = draw(sweep, options)
-    for picture in [options.output] if options.output else [options.folder / name for name in ("results.png", "results.svg")]:
+    pictures = [options.folder / name for name in ("results.png", "results.svg")]
+    for picture in [options.output] if options.output else pictures:
         try:
             figure.savefig(picture, dpi=160)
         except (OSError, ValueError) as error:
