@@ -167,6 +167,9 @@ def test_columns(folder):
     with h5py.File(folder / "line" / "results.h5", "r") as file:
         found = {data.attrs["name"].decode(): "texts" if data.dtype.kind == "S" else data.attrs["unit"].decode()
                  for data in file["results"].values() if data.attrs["description"] != b"axis of the sweep"}
+        ascii_only = all(data.id.get_type().get_cset() == h5py.h5t.CSET_ASCII for data in file["results"].values()
+                         if data.dtype.kind == "S")
+    check(ascii_only, "texts have the label that Octave can read")
     bars = {name for name in found if name.startswith("errors.")}  # by a rule
     for name in bars:
         of = name.removeprefix("errors.")
