@@ -85,7 +85,7 @@ def test_grid(program, mpirun, folder):
     check(list(lines[0])[:3] == ["index", P, CHI], "columns start with index and axes")
     try:
         import pandas
-        frame = pandas.read_csv(folder / "grid" / "results.csv")
+        frame = pandas.read_csv(folder / "grid" / "results.csv", float_precision="round_trip")
         from_h5 = pandas.DataFrame(rows)
         check(np.array_equal(frame["displacement"], from_h5["displacement"]) and len(frame.columns) == len(from_h5.columns),
               "pandas reads both files")
