@@ -170,7 +170,10 @@ namespace crawler
       total               = factor * std::abs(finer->displacement - result.displacement);
       if (promised)
         total += part * choice.promised_error;
-      result.errors = number_errors(result, *finer, factor, part * parameters.accuracy);
+      // Works of cycles that were extrapolated are so far off as the displacement is.
+      const double cycles =
+        result.cycles && result.displacement != 0. ? result.cycles->bound / std::abs(result.displacement) : 0.;
+      result.errors = number_errors(result, *finer, factor, part * parameters.accuracy + cycles);
     }
     if (!std::isfinite(total))
       return;
