@@ -2,10 +2,14 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 
+#include <boost/crc.hpp>
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <vector>
 
 namespace crawler
 {
@@ -34,5 +38,22 @@ namespace crawler
     if (!in)
       throw FileError("cannot read \"" + path.string() + "\"");
     return text;
+  }
+
+  std::string
+  fingerprint(const std::filesystem::path &path)
+  {
+    std::ifstream in(path, std::ios::binary);
+    boost::crc_32_type checksum;
+    std::size_t n = 0;
+    for (std::vector<char> piece(1 << 16); in;)
+    {
+      in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+      checksum.process_bytes(piece.data(), static_cast<std::size_t>(in.gcount()));
+      n += static_cast<std::size_t>(in.gcount());
+    }
+    if (!in.eof())
+      throw FileError("cannot read \"" + path.string() + "\"");
+    return fmt::format("{} bytes, CRC-32 {:08x}", n, checksum.checksum());
   }
 } // namespace crawler

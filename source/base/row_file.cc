@@ -83,11 +83,6 @@ namespace crawler
       return size;
     }
 
-    struct OpenFile
-    {
-      Hdf5Handle file, group;
-    };
-
     Hdf5Handle
     open_to_read(const std::filesystem::path &path)
     {
@@ -95,17 +90,34 @@ namespace crawler
       return {checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), path, "open"), H5Fclose};
     }
 
-    std::vector<std::string>
-    texts_of(const hid_t dataset, const hid_t type, const std::size_t n, const std::filesystem::path &path)
+    /// Rows @p first to @p first + @p n - 1 of a column; @p value gives the value of row @p first + i.
+    template <typename Function>
+    void
+    write_values(const hid_t dataset,
+                 const unsigned int width,
+                 const unsigned long first,
+                 const unsigned long n,
+                 const Function &value,
+                 const hid_t transfer,
+                 const std::filesystem::path &path)
     {
-      const std::size_t width = H5Tget_size(type);
-      std::vector<char> data(n * width);
-      if (n > 0)
-        checked(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()), path, "read");
-      std::vector<std::string> texts;
-      for (std::size_t i = 0; i < n; ++i)
-        texts.emplace_back(&data[i * width], strnlen(&data[i * width], width));
-      return texts;
+      const hsize_t start = first, count = n;
+      const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose), space(H5Dget_space(dataset), H5Sclose),
+        type(width == 0 ? H5Tcopy(H5T_NATIVE_DOUBLE) : text_type(width), H5Tclose);
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
+      std::vector<char> data(n * (width == 0 ? sizeof(double) : width), '\0');
+      for (unsigned long i = 0; i < n; ++i)
+      {
+        const RowFile::Value &one = value(i);
+        if (width == 0)
+          std::memcpy(&data[i * sizeof(double)], &std::get<double>(one), sizeof(double));
+        else
+        {
+          const std::string &text = std::get<std::string>(one);
+          std::copy_n(text.begin(), cut(text, width), data.begin() + static_cast<std::ptrdiff_t>(i * width));
+        }
+      }
+      checked(H5Dwrite(dataset, type, memory, space, transfer, data.data()), path, "write");
     }
 
     std::size_t
@@ -123,7 +135,8 @@ namespace crawler
                   const std::string &group_name,
                   const std::vector<Column> &columns,
                   const unsigned long n_rows,
-                  const std::map<std::string, std::string> &attributes)
+                  const std::map<std::string, std::string> &attributes,
+                  const Known &known)
   {
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
     // HDF5 cannot close a file that it could not write (it crashes at the end of the process), so first see if it can.
@@ -141,8 +154,10 @@ namespace crawler
                                   static_cast<double>(left) / 1e6));
     const std::filesystem::path temporary = path.string() + ".part";
     {
-      const Hdf5Handle file(
-        checked(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), path, "create"), H5Fclose);
+      const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+      H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18); // attributes may be larger than 64 KB
+      const Hdf5Handle file(checked(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), path, "create"),
+                            H5Fclose);
       const Hdf5Handle order(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
       H5Pset_link_creation_order(order, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
       const Hdf5Handle group(H5Gcreate(file, group_name.c_str(), H5P_DEFAULT, order, H5P_DEFAULT), H5Gclose);
@@ -151,11 +166,13 @@ namespace crawler
         write_attribute(group, name, text, path);
       const hsize_t size = n_rows;
       const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-      for (const Column &column : columns)
+      for (std::size_t number = 0; number < columns.size(); ++number)
       {
+        const Column &column = columns[number];
+        const bool is_known  = number < known.n_columns;
         const Hdf5Handle type(type_of(column), H5Tclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
         H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
-        H5Pset_fill_time(creation, H5D_FILL_TIME_ALLOC);
+        H5Pset_fill_time(creation, is_known ? H5D_FILL_TIME_NEVER : H5D_FILL_TIME_ALLOC);
         const double nan = std::numeric_limits<double>::quiet_NaN();
         if (column.width == 0)
           H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &nan);
@@ -167,6 +184,19 @@ namespace crawler
         write_attribute(dataset, "name", column.name, path);
         write_attribute(dataset, "unit", column.unit, path);
         write_attribute(dataset, "description", column.description, path);
+        constexpr unsigned long together = 1 << 16;
+        for (unsigned long first = 0; is_known && first < n_rows; first += together)
+          write_values(
+            dataset,
+            column.width,
+            first,
+            std::min(together, n_rows - first),
+            [&](const unsigned long i)
+            {
+              return known.value(number, first + i);
+            },
+            H5P_DEFAULT,
+            path);
       }
       checked(H5Fflush(file, H5F_SCOPE_GLOBAL), path, "write");
     }
@@ -179,7 +209,7 @@ namespace crawler
   struct RowFile::Handles
   {
     Hdf5Handle file, transfer;
-    std::vector<std::unique_ptr<Hdf5Handle>> datasets, types;
+    std::vector<std::unique_ptr<Hdf5Handle>> datasets;
   };
 
   RowFile::RowFile(MPI_Comm communicator,
@@ -194,7 +224,6 @@ namespace crawler
     checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
     handles_.reset(new Handles{{checked(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), path, "open"), H5Fclose},
                                {H5Pcreate(H5P_DATASET_XFER), H5Pclose},
-                               {},
                                {}});
     H5Pset_dxpl_mpio(handles_->transfer, H5FD_MPIO_INDEPENDENT);
     for (const Column &column : columns_)
@@ -202,8 +231,6 @@ namespace crawler
       const std::string name = "/" + group + "/" + dataset_name(column.name);
       handles_->datasets.push_back(std::make_unique<Hdf5Handle>(
         checked(H5Dopen(handles_->file, name.c_str(), H5P_DEFAULT), path, "open"), H5Dclose));
-      handles_->types.push_back(std::make_unique<Hdf5Handle>(
-        column.width == 0 ? H5Tcopy(H5T_NATIVE_DOUBLE) : text_type(column.width), H5Tclose));
     }
   }
 
@@ -214,77 +241,121 @@ namespace crawler
   {
     if (rows.empty())
       return;
-    const hsize_t start = first, count = rows.size();
-    const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
-    std::vector<double> numbers(rows.size());
-    std::vector<char> texts;
     for (std::size_t i = 0; i < columns_.size(); ++i)
-    {
-      const Hdf5Handle space(H5Dget_space(*handles_->datasets[i]), H5Sclose);
-      H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
-      const void *data = numbers.data();
-      if (const unsigned int width = columns_[i].width; width == 0)
-        for (std::size_t row = 0; row < rows.size(); ++row)
-          numbers[row] = std::get<double>(rows[row][i]);
-      else
-      {
-        texts.assign(rows.size() * width, '\0');
-        for (std::size_t row = 0; row < rows.size(); ++row)
+      write_values(
+        *handles_->datasets[i],
+        columns_[i].width,
+        first,
+        rows.size(),
+        [&](const unsigned long row) -> const Value &
         {
-          const std::string &text = std::get<std::string>(rows[row][i]);
-          std::copy_n(text.begin(), cut(text, width), texts.begin() + static_cast<std::ptrdiff_t>(row * width));
-        }
-        data = texts.data();
-      }
-      checked(
-        H5Dwrite(*handles_->datasets[i], *handles_->types[i], memory, space, handles_->transfer, data), path_, "write");
-    }
+          return rows[row][i];
+        },
+        handles_->transfer,
+        path_);
   }
 
-  Table
-  read_table(const std::filesystem::path &path, const std::string &group_name)
+  struct RowReader::Handles
   {
-    const Hdf5Handle file = open_to_read(path);
-    const Hdf5Handle group(checked(H5Gopen(file, group_name.c_str(), H5P_DEFAULT), path, "read"), H5Gclose);
+    Hdf5Handle file;
+    std::unique_ptr<Hdf5Handle> group                 = nullptr;
+    std::vector<std::unique_ptr<Hdf5Handle>> datasets = {}, types = {};
+  };
+
+  RowReader::RowReader(MPI_Comm communicator, const std::filesystem::path &path, const std::string &group_name)
+    : path_(path)
+  {
+    H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
+    handles_.reset(new Handles{{checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), path, "open"), H5Fclose}});
+    const hid_t group = checked(H5Gopen(handles_->file, group_name.c_str(), H5P_DEFAULT), path, "read");
+    handles_->group   = std::make_unique<Hdf5Handle>(group, H5Gclose);
     H5G_info_t info;
     H5Gget_info(group, &info);
-    Table table;
     for (hsize_t i = 0; i < info.nlinks; ++i)
     {
       char name[1024];
       checked(H5Lget_name_by_idx(group, ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, name, sizeof(name), H5P_DEFAULT),
               path,
               "read");
-      const Hdf5Handle dataset(H5Dopen(group, name, H5P_DEFAULT), H5Dclose), type(H5Dget_type(dataset), H5Tclose);
+      const hid_t dataset = checked(H5Dopen(group, name, H5P_DEFAULT), path, "read");
+      handles_->datasets.push_back(std::make_unique<Hdf5Handle>(dataset, H5Dclose));
+      handles_->types.push_back(std::make_unique<Hdf5Handle>(H5Dget_type(dataset), H5Tclose));
+      columns_.push_back({read_attribute_of(dataset, "name", path),
+                          read_attribute_of(dataset, "unit", path),
+                          read_attribute_of(dataset, "description", path),
+                          {}});
       const std::size_t n = length_of(dataset);
-      Column column{read_attribute_of(dataset, "name", path),
-                    read_attribute_of(dataset, "unit", path),
-                    read_attribute_of(dataset, "description", path),
-                    {}};
-      if (H5Tget_class(type) == H5T_STRING)
-        column.values = texts_of(dataset, type, n, path);
-      else
-      {
-        std::vector<double> numbers(n);
-        if (n > 0)
-          checked(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()), path, "read");
-        column.values = std::move(numbers);
-      }
-      table.push_back(std::move(column));
+      if (i > 0 && n != n_rows_)
+        throw FileError("\"" + path.string() + "\" has columns of different lengths");
+      n_rows_ = n;
     }
+  }
+
+  RowReader::~RowReader() = default;
+
+  std::size_t
+  RowReader::n_columns() const
+  {
+    return columns_.size();
+  }
+
+  std::size_t
+  RowReader::index_of(const std::string &name) const
+  {
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+      if (columns_[i].name == name)
+        return i;
+    throw FileError(fmt::format("\"{}\" has no column \"{}\"", path_.string(), name));
+  }
+
+  crawler::Column
+  RowReader::read(const std::size_t number, const unsigned long first, const unsigned long n) const
+  {
+    crawler::Column column = columns_[number];
+    const hid_t dataset = *handles_->datasets[number], type = *handles_->types[number];
+    const hsize_t start = first, count = n;
+    const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose), space(H5Dget_space(dataset), H5Sclose);
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
+    const auto fill = [&](const hid_t memory_type, void *data)
+    {
+      checked(H5Dread(dataset, memory_type, memory, space, H5P_DEFAULT, data), path_, "read");
+    };
+    if (H5Tget_class(type) == H5T_STRING)
+    {
+      const std::size_t width = H5Tget_size(type);
+      std::vector<char> data(n * width);
+      fill(type, data.data());
+      std::vector<std::string> texts;
+      texts.reserve(n);
+      for (std::size_t i = 0; i < n; ++i)
+        texts.emplace_back(&data[i * width], strnlen(&data[i * width], width));
+      column.values = std::move(texts);
+    }
+    else
+    {
+      std::vector<double> numbers(n);
+      fill(H5T_NATIVE_DOUBLE, numbers.data());
+      column.values = std::move(numbers);
+    }
+    return column;
+  }
+
+  Table
+  RowReader::read(const unsigned long first, const unsigned long n) const
+  {
+    Table table;
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+      table.push_back(read(i, first, n));
     return table;
   }
 
-  std::vector<std::string>
-  read_texts(const std::filesystem::path &path, const std::string &group, const std::string &column)
+  Table
+  read_table(const std::filesystem::path &path, const std::string &group)
   {
-    const Hdf5Handle file  = open_to_read(path);
-    const std::string name = "/" + group + "/" + dataset_name(column);
-    const Hdf5Handle dataset(checked(H5Dopen(file, name.c_str(), H5P_DEFAULT), path, "read"), H5Dclose);
-    const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
-    if (H5Tget_class(type) != H5T_STRING)
-      throw FileError("\"" + path.string() + "\" has no texts in \"" + name + "\"");
-    return texts_of(dataset, type, length_of(dataset), path);
+    const RowReader reader(MPI_COMM_SELF, path, group);
+    return reader.read(0, reader.n_rows());
   }
 
   std::string

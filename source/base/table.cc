@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace crawler
 {
@@ -15,24 +16,31 @@ namespace crawler
     using Numbers = std::vector<double>;
     using Texts   = std::vector<std::string>;
 
-    std::string
-    quoted(const std::string &text)
+    void
+    append(const std::string &text, fmt::memory_buffer &out)
     {
       if (text.find_first_of(",\"\r\n") == std::string::npos)
-        return text;
-      std::string result = "\"";
+      {
+        out.append(text);
+        return;
+      }
+      out.push_back('"');
       for (const char c : text)
-        result += c == '"' ? std::string("\"\"") : std::string(1, c);
-      return result + "\"";
+      {
+        if (c == '"')
+          out.push_back('"');
+        out.push_back(c);
+      }
+      out.push_back('"');
     }
 
-    std::string
-    cell(const Column &column, const std::size_t row)
+    void
+    append(const Column &column, const std::size_t row, fmt::memory_buffer &out)
     {
       if (const auto *texts = std::get_if<Texts>(&column.values))
-        return quoted((*texts)[row]);
-      const double value = std::get<Numbers>(column.values)[row];
-      return std::isnan(value) ? "" : fmt::format("{}", value);
+        append((*texts)[row], out);
+      else if (const double value = std::get<Numbers>(column.values)[row]; !std::isnan(value))
+        fmt::format_to(std::back_inserter(out), "{}", value);
     }
 
     std::size_t
@@ -115,19 +123,40 @@ namespace crawler
   } // namespace
 
   std::string
-  csv(const Table &table)
+  csv_names(const Table &table)
   {
-    std::string text;
-    for (const Column &column : table)
-      text += (text.empty() ? "" : ",") + quoted(column.name);
-    text += '\n';
+    fmt::memory_buffer text;
+    for (std::size_t i = 0; i < table.size(); ++i)
+    {
+      if (i > 0)
+        text.push_back(',');
+      append(table[i].name, text);
+    }
+    text.push_back('\n');
+    return fmt::to_string(text);
+  }
+
+  std::string
+  csv_rows(const Table &table)
+  {
+    fmt::memory_buffer text;
     for (std::size_t row = 0; row < (table.empty() ? 0 : size_of(table[0])); ++row)
     {
       for (std::size_t i = 0; i < table.size(); ++i)
-        text += (i == 0 ? "" : ",") + cell(table[i], row);
-      text += '\n';
+      {
+        if (i > 0)
+          text.push_back(',');
+        append(table[i], row, text);
+      }
+      text.push_back('\n');
     }
-    return text;
+    return fmt::to_string(text);
+  }
+
+  std::string
+  csv(const Table &table)
+  {
+    return csv_names(table) + csv_rows(table);
   }
 
   void

@@ -97,7 +97,7 @@ namespace crawler
     const auto n_wanted   = std::count(wanted.begin(), wanted.end(), true);
     const auto is_in_time = [&]()
     {
-      return now() - start <= static_cast<double>(tasks.size()) * time_limit && !interrupted();
+      return now() - start <= time_limit && !interrupted();
     };
     if (tasks.size() < fewest || n_wanted == 0 ||
         !std::all_of(tasks.begin(),

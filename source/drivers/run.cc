@@ -14,7 +14,7 @@
 #include <crawler/drivers/self_check.h>
 #include <crawler/drivers/simulation.h>
 #include <crawler/drivers/summary.h>
-#include <crawler/drivers/sweep.h>
+#include <crawler/drivers/sweep_check.h>
 #include <crawler/observers/active_stress_table.h>
 #include <crawler/observers/kymograph_writer.h>
 #include <crawler/observers/statistics_writer.h>

@@ -57,16 +57,23 @@ namespace crawler
     return stride;
   }
 
+  std::string
+  without_comments(const std::string &parameters)
+  {
+    std::string bare;
+    std::istringstream lines(parameters);
+    for (std::string line; std::getline(lines, line);)
+      if (const std::string text = trimmed(line); !text.empty() && text[0] != '#')
+        bare += line + "\n";
+    return bare;
+  }
+
   std::map<std::string, std::string>
   provenance(const std::string &effective, const std::string &command_line)
   {
     // Without comments: HDF5 allows an attribute 64 KB.
-    std::string bare;
-    std::istringstream lines(effective);
-    for (std::string line; std::getline(lines, line);)
-      if (const std::string text = trimmed(line); !text.empty() && text[0] != '#')
-        bare += line + "\n";
-    std::map<std::string, std::string> attributes = {{"parameters.prm", bare}, {"command line", command_line}};
+    std::map<std::string, std::string> attributes = {{"parameters.prm", without_comments(effective)},
+                                                     {"command line", command_line}};
     for (const auto &[name, version] : versions())
       attributes["version of " + name] = version;
     return attributes;

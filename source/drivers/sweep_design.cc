@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
-#include <numeric>
 #include <optional>
-#include <random>
 #include <sstream>
 
 namespace crawler
@@ -22,7 +22,6 @@ namespace crawler
   namespace
   {
     const std::string entry_name = "Sweep/Axes";
-    constexpr double most_points = 1e8;
 
     std::vector<std::string>
     split(const std::string &text, const char separator)
@@ -32,6 +31,29 @@ namespace crawler
       for (std::string item; std::getline(in, item, separator);)
         items.push_back(trimmed(item));
       return items;
+    }
+
+    /// The cells of a line of a CSV file; a cell in quotes may have commas in it, and two quotes for one.
+    std::vector<std::string>
+    csv_cells(const std::string &line)
+    {
+      std::vector<std::string> cells(1);
+      bool is_quoted = false;
+      for (std::size_t i = 0; i < line.size(); ++i)
+        if (line[i] == '"')
+        {
+          if (is_quoted && i + 1 < line.size() && line[i + 1] == '"')
+            cells.back() += line[i++];
+          else
+            is_quoted = !is_quoted;
+        }
+        else if (line[i] == ',' && !is_quoted)
+          cells.emplace_back();
+        else
+          cells.back() += line[i];
+      for (std::string &cell : cells)
+        cell = trimmed(cell);
+      return cells;
     }
 
     /// "function(a, b)" -> its name and arguments; nothing if the text is something else.
@@ -66,7 +88,7 @@ namespace crawler
         throw InputError(fmt::format("\"{}\": cannot read the CSV file \"{}\"", entry_name, file), entry_name);
       if (line.starts_with("\xef\xbb\xbf"))
         line.erase(0, 3);
-      const auto names = split(line, ',');
+      const auto names = csv_cells(line);
       const auto found = std::find(names.begin(), names.end(), name);
       if (found == names.end())
         throw InputError(fmt::format("\"{}\": \"{}\" has no column \"{}\", but one of {} is expected",
@@ -81,7 +103,7 @@ namespace crawler
       {
         if (trimmed(line).empty())
           continue;
-        const auto cells = split(line, ',');
+        const auto cells = csv_cells(line);
         if (cells.size() <= column || cells[column].empty())
           throw InputError(
             fmt::format("\"{}\": row {} of \"{}\" has no value in column \"{}\"", entry_name, row, file, name),
@@ -93,82 +115,103 @@ namespace crawler
       return values;
     }
 
-    /// Where a random design draws from.
-    struct Source
-    {
-      std::vector<std::string> list; ///< or, if that is empty,
-      bool logarithmic = false;
-      double from = 0., to = 0.;
-
-      /// @p x in [0, 1).
-      std::string
-      value(const double x) const
-      {
-        if (!list.empty())
-          return list[std::min(static_cast<std::size_t>(x * static_cast<double>(list.size())), list.size() - 1)];
-        return to_text(logarithmic ? from * std::pow(to / from, x) : from + (to - from) * x);
-      }
-    };
-
-    Source
+    /// The ends of uniform(from, to) or loguniform(from, to).
+    std::vector<std::string>
     read_range(const Call &call)
     {
-      Source source;
-      source.logarithmic = call.function == "loguniform";
+      const bool is_logarithmic = call.function == "loguniform";
       std::vector<double> ends;
       for (const std::string &argument : call.arguments)
         if (const auto number = to_number(argument))
           ends.push_back(*number);
-      if (call.arguments.size() != 2 || ends.size() != 2 || !(ends[0] < ends[1]) ||
-          (source.logarithmic && !(ends[0] > 0.)))
+      if (call.arguments.size() != 2 || ends.size() != 2 || !(ends[0] < ends[1]) || (is_logarithmic && !(ends[0] > 0.)))
         throw InputError(
           fmt::format("\"{}\": found \"{}({})\", but {}(from, to) with two {}increasing numbers is expected",
                       entry_name,
                       call.function,
                       fmt::join(call.arguments, ", "),
                       call.function,
-                      source.logarithmic ? "positive, " : ""),
+                      is_logarithmic ? "positive, " : ""),
           entry_name);
-      source.from = ends[0];
-      source.to   = ends[1];
-      return source;
+      return {to_text(ends[0]), to_text(ends[1])};
     }
 
-    /// Numbers in [0, 1) that are the same on every machine.
-    class Random
+    /// The generator SplitMix64 (Steele, Lea, Flood 2014), whose n-th number is computed without the ones before it.
+    std::uint64_t
+    mixed(std::uint64_t x)
     {
-    public:
-      explicit Random(const unsigned int seed)
-        : generator_(seed)
-      {
-      }
+      x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+      x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+      return x ^ (x >> 31);
+    }
 
-      double
-      next()
-      {
-        return static_cast<double>(generator_() >> 11) * 0x1p-53;
-      }
+    std::uint64_t
+    random_bits(const std::uint64_t state, const std::uint64_t n)
+    {
+      return mixed(state + (n + 1) * 0x9e3779b97f4a7c15u);
+    }
 
-      std::vector<unsigned long>
-      permutation(const unsigned long n)
-      {
-        std::vector<unsigned long> list(n);
-        std::iota(list.begin(), list.end(), 0ul);
-        for (unsigned long i = n; i > 1; --i)
-          std::swap(list[i - 1], list[static_cast<unsigned long>(next() * static_cast<double>(i))]);
-        return list;
-      }
+    /// The n-th number in [0, 1) of a sequence, the same on every machine.
+    double
+    random_number(const std::uint64_t state, const std::uint64_t n)
+    {
+      return static_cast<double>(random_bits(state, n) >> 11) * 0x1p-53;
+    }
 
-    private:
-      std::mt19937_64 generator_;
-    };
+    /// Where @p i goes in a random permutation of 0, ..., @p n - 1: a Feistel network, which permutes the numbers of 2
+    /// b bits, as often as it takes to come back below n.
+    std::uint64_t
+    permuted(const std::uint64_t state, std::uint64_t i, const std::uint64_t n)
+    {
+      constexpr unsigned int rounds = 8;
+      const unsigned int bits       = (std::bit_width(n - 1) + 1) / 2;
+      const std::uint64_t half      = (std::uint64_t(1) << bits) - 1;
+      do
+      {
+        std::uint64_t left = i >> bits, right = i & half;
+        for (unsigned int round = 0; round < rounds; ++round)
+        {
+          const std::uint64_t next = left ^ (random_bits(random_bits(state, round), right) & half);
+          left                     = right;
+          right                    = next;
+        }
+        i = left << bits | right;
+      } while (i >= n);
+      return i;
+    }
   } // namespace
 
-  SweepDesign::SweepDesign(const SweepParameters &parameters)
-    : is_grid_(parameters.design == "grid")
+  SweepAxis
+  SweepDesign::read_axis(const std::string &entry, const std::string &text, const std::string &design) const
   {
-    const bool is_random = parameters.design == "random" || parameters.design == "latin hypercube";
-    std::vector<std::string> texts;
+    SweepAxis axis{entry, {}};
+    const auto call = read_call(text);
+    if (call && (call->function == "uniform" || call->function == "loguniform"))
+    {
+      if (kind_ == Kind::grid || kind_ == Kind::zip)
+        throw InputError(fmt::format("\"{}\": {} belongs to a random or latin hypercube design, and this is a {}",
+                                     entry_name,
+                                     call->function,
+                                     design),
+                         entry_name);
+      axis.values         = read_range(*call);
+      axis.is_range       = true;
+      axis.is_logarithmic = call->function == "loguniform";
+    }
+    else if (call && call->function == "column")
+      axis.values = read_column(*call);
+    else
+      axis.values = parse_values(text, entry_name, /*distinct=*/kind_ == Kind::grid);
+    return axis;
+  }
+
+  SweepDesign::SweepDesign(const SweepParameters &parameters)
+    : kind_(parameters.design == "grid"     ? Kind::grid
+            : parameters.design == "zip"    ? Kind::zip
+            : parameters.design == "random" ? Kind::random
+                                            : Kind::latin_hypercube)
+    , seed_(parameters.seed)
+  {
     for (const std::string &text : split(parameters.axes, ';'))
     {
       const std::size_t colon = text.find(':');
@@ -178,93 +221,68 @@ namespace crawler
         throw InputError(fmt::format("\"{}\": found \"{}\", but {} is expected", entry_name, text, sweep_syntax),
                          entry_name);
       const std::string path = fmt::format("{}", fmt::join(split_path(entry), "/"));
-      for (const SweepAxis &axis : axes_)
-        if (axis.entry == path)
-          throw InputError(
-            fmt::format("\"{}\": \"{}\" varies twice, but different entries are expected", entry_name, path),
-            entry_name);
-      axes_.push_back({path, {}, {}});
-      texts.push_back(rest);
+      if (varies(path))
+        throw InputError(
+          fmt::format("\"{}\": \"{}\" varies twice, but different entries are expected", entry_name, path), entry_name);
+      axes_.push_back(read_axis(path, rest, parameters.design));
     }
     if (axes_.empty())
       throw InputError(fmt::format("\"{}\" is empty, but {} is expected", entry_name, sweep_syntax), entry_name);
-    if (is_random)
-    {
-      draw(parameters, texts);
-      return;
-    }
 
-    double n = is_grid_ ? 1. : 0.;
-    for (std::size_t i = 0; i < axes_.size(); ++i)
-    {
-      const auto call = read_call(texts[i]);
-      if (call && (call->function == "uniform" || call->function == "loguniform"))
-        throw InputError(fmt::format("\"{}\": {} belongs to a random or latin hypercube design, and this is a {}",
-                                     entry_name,
-                                     call->function,
-                                     parameters.design),
-                         entry_name);
-      auto &values        = axes_[i].values;
-      values              = call && call->function == "column" ? read_column(*call)
-                                                               : parse_values(texts[i], entry_name, /*distinct=*/is_grid_);
-      axes_[i].admissible = values;
-      if (is_grid_)
-        n *= static_cast<double>(values.size());
-      else if (i > 0 && values.size() != axes_[0].values.size())
+    double n = kind_ == Kind::grid ? 1. : kind_ == Kind::zip ? axes_[0].values.size() : parameters.n_points;
+    for (const SweepAxis &axis : axes_)
+      if (kind_ == Kind::grid)
+        n *= static_cast<double>(axis.values.size());
+      else if (kind_ == Kind::zip && axis.values.size() != axes_[0].values.size())
         throw InputError(
           fmt::format("\"{}\": a zip has as many values on each axis, but \"{}\" has {} and \"{}\" has {}",
                       entry_name,
                       axes_[0].entry,
                       axes_[0].values.size(),
-                      axes_[i].entry,
-                      values.size()),
+                      axis.entry,
+                      axis.values.size()),
           entry_name);
-      else
-        n = static_cast<double>(values.size());
-    }
     if (n > most_points)
       throw InputError(
-        fmt::format("\"{}\" makes {:.3g} points, but at most {:g} are expected", entry_name, n, most_points),
+        fmt::format("\"{}\" makes {:.3g} points, but at most {:g} are expected", entry_name, n, double(most_points)),
         entry_name);
     n_points_ = static_cast<unsigned long>(n);
   }
 
-  void
-  SweepDesign::draw(const SweepParameters &parameters, const std::vector<std::string> &texts)
+  std::string
+  SweepDesign::value(const std::size_t number, const unsigned long point) const
   {
-    n_points_ = parameters.n_points;
-    Random random(parameters.seed);
-    for (std::size_t i = 0; i < axes_.size(); ++i)
+    const SweepAxis &axis = axes_[number];
+    if (kind_ == Kind::zip)
+      return axis.values[point];
+    if (kind_ == Kind::grid)
     {
-      const auto call = read_call(texts[i]);
-      Source source;
-      if (call && (call->function == "uniform" || call->function == "loguniform"))
-        source = read_range(*call);
-      else
-        source.list = call && call->function == "column" ? read_column(*call)
-                                                         : parse_values(texts[i], entry_name, /*distinct=*/false);
-      // Of a Latin hypercube each of n equal parts of an axis has one point.
-      std::vector<unsigned long> part;
-      if (parameters.design == "latin hypercube")
-        part = random.permutation(n_points_);
-      const auto n = static_cast<double>(n_points_);
-      for (unsigned long point = 0; point < n_points_; ++point)
-      {
-        const double x = random.next();
-        axes_[i].values.push_back(source.value(part.empty() ? x : (static_cast<double>(part[point]) + x) / n));
-      }
-      axes_[i].admissible = source.list.empty() ? std::vector{to_text(source.from), to_text(source.to)} : source.list;
+      unsigned long stride = 1;
+      for (std::size_t i = number + 1; i < axes_.size(); ++i)
+        stride *= axes_[i].values.size();
+      return axis.values[point / stride % axis.values.size()];
     }
+    const std::uint64_t state = random_bits(random_bits(seed_, number), 0);
+    double x                  = random_number(state, point);
+    if (kind_ == Kind::latin_hypercube) // each of n equal parts of an axis has one point
+      x = (static_cast<double>(permuted(~state, point, n_points_)) + x) / static_cast<double>(n_points_);
+    if (!axis.is_range)
+    {
+      const std::size_t n = axis.values.size();
+      return axis.values[std::min(static_cast<std::size_t>(x * static_cast<double>(n)), n - 1)];
+    }
+    const double from = *to_number(axis.values[0]), to = *to_number(axis.values[1]);
+    return to_text(axis.is_logarithmic ? from * std::pow(to / from, x) : from + (to - from) * x);
   }
 
-  const std::string &
-  SweepDesign::value(const std::size_t axis, const unsigned long point) const
+  bool
+  SweepDesign::varies(const std::string &entry) const
   {
-    if (!is_grid_)
-      return axes_[axis].values[point];
-    unsigned long stride = 1;
-    for (std::size_t i = axis + 1; i < axes_.size(); ++i)
-      stride *= axes_[i].values.size();
-    return axes_[axis].values[point / stride % axes_[axis].values.size()];
+    return std::any_of(axes_.begin(),
+                       axes_.end(),
+                       [&](const SweepAxis &axis)
+                       {
+                         return axis.entry == entry;
+                       });
   }
 } // namespace crawler

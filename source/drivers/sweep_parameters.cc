@@ -23,11 +23,12 @@ namespace crawler
                       "What varies. VALUES is a list, linspace(first, last, count), logspace(first exponent, last "
                       "exponent, count), or column(file.csv, name), the values in a column of a CSV file; for random "
                       "designs also uniform(from, to) and loguniform(from, to). The name \"File\" instead of an entry "
-                      "stands for parameter files whose entries replace those of this one.");
+                      "stands for parameter files whose entries replace those of this one. Names of files count from "
+                      "the folder in which crawler is started.");
     declarations.whole_number("Number of points",
                               n_points,
                               1,
-                              100000000,
+                              SweepDesign::most_points,
                               "Of a random or Latin hypercube design; the others count themselves.");
     declarations.whole_number("Seed",
                               seed,

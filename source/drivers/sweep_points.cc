@@ -63,7 +63,7 @@ namespace crawler
         if (design_->axes()[i].is_file())
           file_axis_ = i;
       if (file_axis_ < design_->axes().size())
-        for (const std::string &name : design_->axes()[file_axis_].admissible)
+        for (const std::string &name : design_->axes()[file_axis_].values)
           if (scenes_.count(name) == 0)
             scenes_.emplace(name, read_file(communicator, name, {}));
       forms_[""] = std::move(base);
@@ -95,11 +95,21 @@ namespace crawler
     return forms_.at("")->declarations;
   }
 
+  std::map<std::string, const Declarations *>
+  SweepPoints::scene_declarations() const
+  {
+    std::map<std::string, const Declarations *> list;
+    for (const auto &[name, scene] : scenes_)
+      list.emplace(name, &forms_.at(name)->declarations);
+    return list;
+  }
+
   void
   SweepPoints::require_admissible_values()
   {
-    for (const SweepAxis &axis : design_->axes())
+    for (std::size_t number = 0; number < design_->axes().size(); ++number)
     {
+      const SweepAxis &axis = design_->axes()[number];
       if (axis.is_file())
         continue;
       for (const char *section : {"Sweep/", "Atlas/", "Tradeoff/"})
@@ -108,7 +118,9 @@ namespace crawler
             fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),
             axes_entry);
       Form scratch(file_, nullptr);
-      require_valid({axis.entry, axis.admissible}, axes_entry, scratch.declarations);
+      require_valid({axis.entry, axis.values}, axes_entry, scratch.declarations);
+      if (axis.is_range) // most numbers in it are not whole
+        require_valid({axis.entry, {design_->value(number, 0)}}, axes_entry, scratch.declarations);
     }
   }
 

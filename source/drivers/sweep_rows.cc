@@ -181,25 +181,28 @@ namespace crawler
                                      : PointStatus{time.status, time.reason, time.message};
   }
 
+  RowFile::Known
+  known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design)
+  {
+    return {1 + design.axes().size(),
+            [&](const std::size_t column, const unsigned long point) -> RowFile::Value
+            {
+              if (column == 0)
+                return static_cast<double>(point);
+              const std::string text = design.value(column - 1, point);
+              if (columns[column].width > 0)
+                return text;
+              return *to_number(text);
+            }};
+  }
+
   RowFile::Row
-  sweep_row(const std::vector<RowFile::Column> &columns,
-            const SweepDesign &design,
-            const unsigned long point,
-            const Task &task)
+  sweep_row(const std::vector<RowFile::Column> &columns, const Task &task)
   {
     const PointStatus status = status_of(task);
     RowFile::Row row;
     for (const RowFile::Column &column : columns)
       row.push_back(column.width > 0 ? RowFile::Value(std::string()) : RowFile::Value(not_known));
-    row[0] = static_cast<double>(point);
-    for (std::size_t i = 0; i < design.axes().size(); ++i)
-    {
-      const std::string &text = design.value(i, point);
-      if (columns[1 + i].width > 0)
-        row[1 + i] = text;
-      else
-        row[1 + i] = *to_number(text);
-    }
     const auto column = [&](const std::string &name, std::size_t first)
     {
       while (first < columns.size() && columns[first].name != name)
@@ -207,7 +210,7 @@ namespace crawler
       return first;
     };
     // The keys come in the order of the columns; a part that is not known as a whole has none.
-    std::size_t next = 1 + design.axes().size();
+    std::size_t next = 0;
     if (!task.error && !task.computed.result.time.status.empty())
       for_each_value(summary_of(task.computed.result, task.parameters),
                      "",

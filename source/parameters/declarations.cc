@@ -369,6 +369,17 @@ namespace crawler
   }
 
   void
+  Declarations::file(const std::string &name,
+                     std::string &value,
+                     const std::string &expected,
+                     const std::string &documentation,
+                     const std::string &unit)
+  {
+    text(name, value, expected, documentation, unit);
+    entries_.back().names_file = true;
+  }
+
+  void
   Declarations::set(const std::string &path, const std::string &value)
   {
     const std::vector<std::string> words = split_path(path);

@@ -25,17 +25,17 @@ namespace crawler
                         "stretched part grips (snail); at p = 1 no wave moves the body.",
                         "1");
     const std::string expected = "a formula of s, or a CSV file (a name that ends in .csv) with the header s,value";
-    declarations.text("Elastic modulus profile",
+    declarations.file("Elastic modulus profile",
                       elastic_modulus_profile,
                       expected,
                       "Factor of the elastic modulus along the body; s is the material coordinate, L the body length.",
                       "1");
-    declarations.text("Friction profile",
+    declarations.file("Friction profile",
                       friction_profile,
                       expected,
                       "Factor of the friction coefficient along the body, for example of a belly with scales.",
                       "1");
-    declarations.text("Initial stretch",
+    declarations.file("Initial stretch",
                       initial_stretch,
                       expected,
                       "Stretch of the body at t = 0; its centre of mass starts where that of the unstretched body "

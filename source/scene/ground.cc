@@ -84,7 +84,7 @@ namespace crawler
       names.push_back(law.name);
     }
     declarations.enter("Ground");
-    declarations.text("Profile",
+    declarations.file("Profile",
                       profile,
                       "a formula of x, or a CSV file (a name that ends in .csv) with the header x,value",
                       "Factor of the friction along the ground; x is the place on the ground, where the body lies from "

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""crawler sweep: designs, its table in h5py and pandas, resume after kill -9 at random moments, limits and bad input.
+"""crawler sweep: designs, its table in h5py and pandas, resume after kill -9 at random moments and after changes, limits
+and bad input.
 
     python3 sweep.py PATH_TO_CRAWLER MPIRUN
 """
 import csv
+import fcntl
 import json
 import math
 import os
@@ -148,6 +150,128 @@ def test_rows_that_fail(program, folder):
           f"a point that takes too long is a row ({rows['status'][1]}, {rows['reason'][1]})")
 
 
+def refused(program, folder, output, words, what):
+    """--resume is refused with one sentence that has these words, and the table stays as it is."""
+    before = (folder / output / "results.h5").read_bytes()
+    result = call(program, folder, "sweep", "sweep.prm", "--output", output, "--resume")
+    lines = result.stderr.splitlines()
+    check(result.returncode == 2 and len(lines) == 1 and all(word in lines[0] for word in words) and
+          (folder / output / "results.h5").read_bytes() == before, f"{what} is refused: {result.stderr.strip()}")
+
+
+def test_changed_inputs(program, folder):
+    """What changes the answers is noticed by --resume: values of axes, scene files, data files."""
+    def resumes(output, what):
+        result = call(program, folder, "sweep", "sweep.prm", "--output", output, "--resume")
+        check(result.returncode == 0, f"{what} goes on ({result.returncode}) {result.stderr.strip()}")
+
+    (folder / "values.csv").write_text("p,chi\n2,0.1\n3,0.2\n", encoding="utf-8")
+    write(folder, f"{P} : column(values.csv, p); {CHI} : column(values.csv, chi)", "set Design = zip")
+    call(program, folder, "sweep", "sweep.prm", "--output", "axes")
+    (folder / "values.csv").write_text("remark,p,chi\n\"a, b\",2.0,0.1\nc,3,0.20\n", encoding="utf-8")
+    resumes("axes", "a CSV file with the same values")
+    (folder / "values.csv").write_text("p,chi\n2,0.1\n3.5,0.2\n", encoding="utf-8")
+    refused(program, folder, "axes", (f'{P} of point 1 was "3" and is "3.5"',), "a changed value of a CSV file")
+    (folder / "values.csv").write_text("p,chi\n2,0.1\n3,0.2\n4,0.2\n", encoding="utf-8")
+    refused(program, folder, "axes", ("number of points was 2 and is 3",), "another number of values")
+
+    def scene(name, modulus, more=""):
+        (folder / name).write_text(f"{more}\nsubsection Body\n set Elastic modulus = {modulus}\nend\n", encoding="utf-8")
+
+    scene("soft.prm", 5)
+    scene("stiff.prm", 10)
+    write(folder, f"File : soft.prm, stiff.prm; {CHI} : 0.3")
+    call(program, folder, "sweep", "sweep.prm", "--output", "scenes")
+    scene("soft.prm", 5, "# a remark")
+    resumes("scenes", "a scene file with another comment")
+    scene("stiff.prm", 11)
+    refused(program, folder, "scenes", ('Body/Elastic modulus in stiff.prm was "10" and is "11"',), "a changed scene file")
+    scene("stiff.prm", 10, "set Accuracy = 1e-5")
+    refused(program, folder, "scenes", ('Accuracy in stiff.prm was not set and is "1e-5"',), "an entry more in a scene file")
+
+    (folder / "ground.csv").write_text("x,value\n-5,1\n0,2\n2,1.5\n5,1\n", encoding="utf-8")
+    (folder / "sweep.prm").write_text(BASE + "subsection Ground\n set Profile = ground.csv\nend\n"
+                                      f"subsection Sweep\n set Axes = {CHI} : 0.1, 0.2\nend\n", encoding="utf-8")
+    first = call(program, folder, "sweep", "sweep.prm", "--output", "data")
+    resumes("data", "a data file that is the same")
+    (folder / "ground.csv").write_text("x,value\n-5,1\n0,3\n2,1.5\n5,1\n", encoding="utf-8")
+    refused(program, folder, "data", ('the file "ground.csv" was', "CRC-32"), f"a changed data file ({first.returncode})")
+
+
+def test_begun(program, folder):
+    """What a kill can leave behind before there is a table, or at the end; folders of others; two sweeps at once."""
+    write(folder, f"{P} : 2, 3; {CHI} : 0.1, 0.2")
+    whole = folder / "begun_whole"
+    call(program, folder, "sweep", "sweep.prm", "--output", "begun_whole")
+    reference = table(whole)
+    check(not (whole / "sweep.lock").exists(), "no lock stays behind")
+    for files in (("sweep.lock",), ("sweep.lock", "original.prm.part"),
+                  ("sweep.lock", "original.prm", "parameters.prm", "log.txt", "results.h5.part")):
+        begun = folder / "begun"
+        shutil.rmtree(begun, ignore_errors=True)
+        begun.mkdir()
+        for name in files:
+            (begun / name).write_bytes((whole / name).read_bytes() if (whole / name).exists() else b"")
+        plain = call(program, folder, "sweep", "sweep.prm", "--output", "begun")
+        result = call(program, folder, "sweep", "sweep.prm", "--output", "begun", "--resume")
+        check(plain.returncode == 2 and result.returncode == 0 and same(reference, table(begun)),
+              f"a sweep that had made {files[-1]} begins anew with --resume")
+    for name in ("results.csv", "summary.json"):
+        (whole / name).rename(whole / (name + ".part"))
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "begun_whole", "--resume")
+    check(result.returncode == 0 and (whole / "results.csv").is_file() and (whole / "summary.json").is_file() and
+          not (whole / "results.csv.part").exists(), "a sweep that was killed while it made results.csv makes it")
+    call(program, folder, "run", "sweep.prm", "--output", "not_a_sweep")
+    (folder / "of_others").mkdir()
+    (folder / "of_others" / "original.prm").write_text("mine", encoding="utf-8")
+    for name in ("not_a_sweep", "of_others"):
+        before = {file: file.read_bytes() for file in (folder / name).rglob("*") if file.is_file()}
+        result = call(program, folder, "sweep", "sweep.prm", "--output", name, "--resume")
+        after = {file: file.read_bytes() for file in (folder / name).rglob("*") if file.is_file()}
+        check(result.returncode == 2 and before == after, f"--resume leaves {name} alone: {result.stderr.strip()}")
+    with open(whole / "sweep.lock", "wb") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        result = call(program, folder, "sweep", "sweep.prm", "--output", "begun_whole", "--resume")
+        check(result.returncode == 2 and "another sweep writes to" in result.stderr,
+              f"two sweeps at once are refused: {result.stderr.strip()}")
+        with subprocess.Popen([program, "sweep", "sweep.prm", "--output", "begun_whole", "--resume"], cwd=folder,
+                              env=ENVIRONMENT, stdout=subprocess.DEVNULL) as process:
+            time.sleep(1)
+            fcntl.flock(lock, fcntl.LOCK_UN)
+            check(process.wait(timeout=60) == 0, "but one that is about to end is waited for")
+
+
+def test_signals(program, mpirun, folder):
+    """SIGTERM and Ctrl-C while a point takes long; a second signal; a rank that cannot write."""
+    write(folder, f"{P} : 2, 3; {CHI} : 0.3", "set Seed = 1")
+    long = ("--set", "Time/End time=30000", "--set", "Time/Cycle stop=off", "--set", "Output/Number of snapshots=0")
+    for name, signals in (("SIGTERM", [signal.SIGTERM]), ("Ctrl-C", [signal.SIGINT]), ("SIGTERM twice", [signal.SIGTERM] * 2)):
+        with subprocess.Popen([program, "sweep", "sweep.prm", "--output", name, *long], cwd=folder,
+                              env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+            while not (folder / name / "results.h5").exists():
+                time.sleep(0.1)
+            time.sleep(1)
+            start = time.time()
+            for number in signals:
+                process.send_signal(number)
+                time.sleep(0.01)
+            code = process.wait(timeout=60)
+        expected = (5,) if len(signals) == 1 else (5, -signal.SIGTERM)
+        check(code in expected and time.time() - start < 2. and len(table(folder / name)["status"]) == 2,
+              f"{name} within a long point: code {code} after {time.time() - start:.2f} s")
+    write(folder, f"{P} : linspace(1.5, 4, 40); {CHI} : linspace(0.05, 0.5, 40)")
+    one = (program, "sweep", "sweep.prm", "--output", "rank", "--resume")
+    # No file of rank 1 may grow beyond 300 blocks of 512 bytes; without the signal that would be an error of write.
+    limited = ("sh", "-c", "trap '' XFSZ; ulimit -f 300; exec \"$0\" \"$@\"", *one)
+    result = subprocess.run([mpirun, "--oversubscribe", "-n", "1", *one, ":", "-n", "1", *limited], cwd=folder, env=ENVIRONMENT,
+                            capture_output=True, text=True, timeout=120, check=False)
+    check(result.returncode == 6 and "--resume" in result.stderr, f"a rank that cannot write ends all ({result.returncode}): "
+          f"{next((line for line in result.stderr.splitlines() if line.startswith('crawler')), result.stderr[:200])}")
+    again = call(*one[:1], folder, *one[1:])
+    call(program, folder, "sweep", "sweep.prm", "--output", "rank_whole")
+    check(again.returncode == 0 and same(table(folder / "rank_whole"), table(folder / "rank")), "and --resume makes the rest")
+
+
 def test_kills(program, mpirun, folder):
     """kill -9 of a rank or of mpirun at random moments; SIGTERM; nothing is lost, nothing computed twice."""
     write(folder, f"{P} : linspace(1.5, 4, 16); {CHI} : linspace(0.05, 0.5, 48)")
@@ -167,10 +291,11 @@ def test_kills(program, mpirun, folder):
     before, n_killed = {}, 0
     for attempt in range(KILLS):
         victim = generator.choice(("mpirun", "rank", "term"))
-        process = subprocess.Popen([mpirun, "--oversubscribe", "-n", "2", program, "sweep", "sweep.prm", "--output", "killed",
+        n_ranks = 4 if attempt == KILLS // 2 else 2
+        process = subprocess.Popen([mpirun, "--oversubscribe", "-n", str(n_ranks), program, "sweep", "sweep.prm", "--output", "killed",
                                     "--resume"], cwd=folder, env=ENVIRONMENT, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL, start_new_session=True)
-        time.sleep(generator.uniform(0.1, 0.5 * duration))
+        time.sleep(generator.uniform(0.1, 0.7 if attempt % 4 == 0 else 0.5 * duration))
         ranks = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True, check=False).stdout.split()
         if process.poll() is None:
             n_killed += 1
@@ -188,8 +313,7 @@ def test_kills(program, mpirun, folder):
                 pass
         time.sleep(0.2)
         if not (folder / "killed" / "results.h5").is_file():
-            shutil.rmtree(folder / "killed", ignore_errors=True)
-            continue
+            continue  # killed before there was a table: the next one begins anew
         now = table(folder / "killed")
         done = now["status"] != ""
         order += not all(done[i] for i in before)
@@ -198,7 +322,7 @@ def test_kills(program, mpirun, folder):
     check(n_killed >= KILLS // 3, f"{n_killed} of {KILLS} runs were killed or stopped under way")
     check(order == 0 and lost == 0, "after each kill the file is valid, and no row is lost or computed again")
     last = call(program, folder, "sweep", "sweep.prm", "--output", "killed", "--resume",
-                command=(mpirun, "--oversubscribe", "-n", "2"))
+                command=(mpirun, "--oversubscribe", "-n", "3"))
     check(last.returncode == 0 and same(reference, table(folder / "killed")),
           "the table in the end is that of the unbroken sweep, bit for bit")
     before = table(folder / "killed")
@@ -218,13 +342,28 @@ def test_limits(program, folder):
           f"the time limit ends it with exit code 5 ({result.returncode}), with rows")
     disk = folder / "disk"
     disk.mkdir()
-    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "tmpfs", disk], capture_output=True, check=False).returncode:
+
+    def size(text):
+        """A small disk, or the same with another size."""
+        mounted = ("-o", f"remount,size={text}") if os.path.ismount(disk) else ("-t", "tmpfs", "-o", f"size={text}", "tmpfs")
+        return subprocess.run(["mount", *mounted, disk], capture_output=True, check=False).returncode == 0
+
+    if not size("400k"):
         print("skip   a full disk: only root can make a small one")
         return
     try:
         full = call(program, folder, "sweep", "sweep.prm", "--output", "disk/full")
         check(full.returncode == 6 and "full" in full.stderr,
               f"a full disk is a file error ({full.returncode}): {full.stderr.strip()[:120]}")
+        needed = (folder / "limit" / "results.h5").stat().st_size // 1024 + 400  # too little for results.csv
+        size(f"{needed}k")
+        end = call(program, folder, "sweep", "sweep.prm", "--output", "disk/full", "--resume", "--set", "Sweep/Time limit=100")
+        check(end.returncode == 6 and "results.h5 is whole" in end.stderr and all(table(disk / "full")["status"] != ""),
+              f"a disk that is full at the end ({end.returncode}): {end.stderr.strip()}")
+        size("16M")
+        more = call(program, folder, "sweep", "sweep.prm", "--output", "disk/full", "--resume")
+        with open(disk / "full" / "results.csv", newline="", encoding="utf-8") as file:
+            check(more.returncode == 0 and len(list(csv.reader(file))) == 1601, "and --resume makes results.csv")
     finally:
         subprocess.run(["umount", disk], check=True)
 
@@ -262,6 +401,9 @@ def main():
         test_designs(program, folder)
         test_rows_that_fail(program, folder)
         test_limits(program, folder)
+        test_changed_inputs(program, folder)
+        test_begun(program, folder)
+        test_signals(program, mpirun, folder)
         if "--quick" in sys.argv:
             sys.exit(failures > 0)
         test_kills(program, mpirun, folder)

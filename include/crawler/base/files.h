@@ -14,4 +14,9 @@ namespace crawler
   /// The whole text of a file. Throws FileError.
   std::string
   read_whole_file(const std::filesystem::path &path);
+
+  /// What tells a changed file from the old one: "12 bytes, CRC-32 0a1b2c3d" (the checksum of zlib and of `crc32`).
+  /// Throws FileError.
+  std::string
+  fingerprint(const std::filesystem::path &path);
 } // namespace crawler

@@ -7,6 +7,7 @@
 #include <mpi.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -33,15 +34,25 @@ namespace crawler
     using Value = std::variant<double, std::string>; ///< texts that are too long are cut
     using Row   = std::vector<Value>;                ///< one for each column
 
-    /// Creates the file: @p n_rows empty rows. @p attributes are those of the group @p group. Throws FileError.
+    /// What the first columns have in their rows from the beginning.
+    struct Known
+    {
+      std::size_t n_columns;
+      std::function<Value(std::size_t column, unsigned long row)> value;
+    };
+
+    /// Creates the file: @p n_rows rows, empty but for what is @p known. @p attributes are those of the group @p group.
+    /// Throws FileError.
     static void
     create(const std::filesystem::path &path,
            const std::string &group,
            const std::vector<Column> &columns,
            unsigned long n_rows,
-           const std::map<std::string, std::string> &attributes);
+           const std::map<std::string, std::string> &attributes,
+           const Known &known = {});
 
-    /// Opens a file that create() has made, for writing (collective, and so is the destructor). Throws FileError.
+    /// Opens a file that create() has made, for writing into these of its columns (collective, and so is the
+    /// destructor). Throws FileError.
     RowFile(MPI_Comm communicator,
             const std::filesystem::path &path,
             const std::string &group,
@@ -61,14 +72,45 @@ namespace crawler
     std::unique_ptr<Handles> handles_;
   };
 
-  /// All columns of the group of a file that RowFile or write_hdf5() has made, in the order in which they were made
-  /// (one process). Throws FileError.
+  /// Reads parts of a table that RowFile has made, so that a large one need not fit into the memory.
+  class RowReader
+  {
+  public:
+    /// Collective, and so is the destructor. Throws FileError.
+    RowReader(MPI_Comm communicator, const std::filesystem::path &path, const std::string &group);
+    ~RowReader();
+    RowReader(const RowReader &) = delete;
+
+    unsigned long
+    n_rows() const
+    {
+      return n_rows_;
+    }
+    std::size_t
+    n_columns() const;
+
+    /// The number of the column of this name. Throws FileError if there is none.
+    std::size_t
+    index_of(const std::string &column) const;
+
+    /// @p n rows from row @p first on, of one column or of all in the order in which they were made (this rank alone).
+    /// Throws FileError.
+    crawler::Column
+    read(std::size_t column, unsigned long first, unsigned long n) const;
+    Table
+    read(unsigned long first, unsigned long n) const;
+
+  private:
+    struct Handles;
+    const std::filesystem::path path_;
+    std::unique_ptr<Handles> handles_;
+    Table columns_; ///< without values
+    unsigned long n_rows_ = 0;
+  };
+
+  /// All of it (one process).
   Table
   read_table(const std::filesystem::path &path, const std::string &group);
-
-  /// One column of texts. Throws FileError if there is none of this name.
-  std::vector<std::string>
-  read_texts(const std::filesystem::path &path, const std::string &group, const std::string &column);
 
   /// An attribute of the group; FileError if there is none.
   std::string

@@ -23,6 +23,12 @@ namespace crawler
   std::string
   csv(const Table &table);
 
+  /// Its two parts: the line of names, and the lines of the rows.
+  std::string
+  csv_names(const Table &table);
+  std::string
+  csv_rows(const Table &table);
+
   /**
    * Writes the table as an HDF5 file: group @p group with a dataset for each column, its unit and description as
    * attributes; texts are UTF-8, a number that is not known is NaN. In names "/" becomes ".", since HDF5 keeps "/" for

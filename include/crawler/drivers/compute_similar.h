@@ -16,7 +16,7 @@ namespace crawler
    *
    * @p wanted: which tasks to compute, as many as @p tasks; the others are there for the choice of the numerics only,
    * so that an answer does not depend on which are wanted. Returns which have been computed. Nothing is thrown. Runs
-   * are given up when @p interrupted says so, and after @p time_limit [s] for each.
+   * are given up when @p interrupted says so, and after @p time_limit [s] for all together, so that none takes longer.
    */
   std::vector<bool>
   compute_similar(std::span<Task> tasks,

@@ -41,6 +41,10 @@ namespace crawler
   unsigned long
   golden_stride(unsigned long n);
 
+  /// The lines of a parameter file that set something.
+  std::string
+  without_comments(const std::string &parameters);
+
   /// Where the effective parameters, versions and command come from: attributes of the HDF5 file.
   std::map<std::string, std::string>
   provenance(const std::string &effective, const std::string &command_line);

@@ -16,9 +16,11 @@ namespace crawler
   {
     static constexpr const char *file = "File";
 
-    std::string entry;                   ///< "Section/Entry", or "File"
-    std::vector<std::string> values;     ///< of a grid: the different ones; otherwise one for each point
-    std::vector<std::string> admissible; ///< what has to be looked at before: all values that may occur
+    std::string entry; ///< "Section/Entry", or "File"
+    /// Of a grid each value once, of a zip one for each point, of a random design those that it draws from, of a range
+    /// its two ends: in any case what has to be admissible.
+    std::vector<std::string> values;
+    bool is_range = false, is_logarithmic = false;
 
     bool
     is_file() const
@@ -31,8 +33,11 @@ namespace crawler
   class SweepDesign
   {
   public:
+    static constexpr unsigned int most_points = 10000000;
+
     /// Reads the axes, with the CSV files that they name. Throws InputError in the name of the entry Sweep/Axes if they
-    /// do not make sense, if the axes of a zip have different lengths or if there are more than 1e8 points.
+    /// do not make sense, if the axes of a zip have different lengths or if there are more than
+    /// most_points.
     explicit SweepDesign(const SweepParameters &parameters);
 
     unsigned long
@@ -46,23 +51,36 @@ namespace crawler
       return axes_;
     }
 
-    /// Of a grid the last axis varies fastest.
-    const std::string &
+    /// Of a grid the last axis varies fastest. Nothing is kept for random points: they are computed.
+    std::string
     value(std::size_t axis, unsigned long point) const;
+
+    /// Does the entry vary from point to point?
+    bool
+    varies(const std::string &entry) const;
 
     /// So many points in succession differ in the last axis only: its length for a grid, otherwise 1.
     unsigned long
     run_length() const
     {
-      return is_grid_ ? axes_.back().values.size() : 1;
+      return kind_ == Kind::grid ? axes_.back().values.size() : 1;
     }
 
   private:
-    void
-    draw(const SweepParameters &parameters, const std::vector<std::string> &texts);
+    enum class Kind
+    {
+      grid,
+      zip,
+      random,
+      latin_hypercube
+    };
+
+    SweepAxis
+    read_axis(const std::string &entry, const std::string &text, const std::string &design) const;
 
     std::vector<SweepAxis> axes_;
-    bool is_grid_;
+    Kind kind_;
+    unsigned int seed_;
     unsigned long n_points_ = 0;
   };
 } // namespace crawler

@@ -41,6 +41,10 @@ namespace crawler
     const Declarations &
     declarations() const;
 
+    /// Those of the files on the file axis, by their names.
+    std::map<std::string, const Declarations *>
+    scene_declarations() const;
+
     /// All entries as they are used, but for the axes, as a .prm file.
     const std::string &
     effective() const

@@ -17,12 +17,13 @@ namespace crawler
   std::vector<RowFile::Column>
   sweep_columns(const SweepDesign &design, const Declarations &declarations);
 
-  /// The row of a point that has been computed. @p seconds [s]: what it took.
+  /// Of these columns the index and the axes, which are known before anything is computed.
+  RowFile::Known
+  known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design);
+
+  /// The row of a point that has been computed, in @p columns, those after the known ones.
   RowFile::Row
-  sweep_row(const std::vector<RowFile::Column> &columns,
-            const SweepDesign &design,
-            unsigned long point,
-            const Task &task);
+  sweep_row(const std::vector<RowFile::Column> &columns, const Task &task);
 
   /// What has become of a point, in a word, and why.
   struct PointStatus

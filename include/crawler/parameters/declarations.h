@@ -45,6 +45,7 @@ namespace crawler
     std::string expected; ///< the admissible values in words
     std::string unit;     ///< empty for words and counts
     std::string documentation;
+    bool names_file = false; ///< its value is, or may be, the name of a file that is read
   };
 
   /**
@@ -103,6 +104,13 @@ namespace crawler
     flag(const std::string &name, bool &value, const std::string &documentation);
     void
     text(const std::string &name,
+         std::string &value,
+         const std::string &expected,
+         const std::string &documentation,
+         const std::string &unit = "");
+    /// A text that is, or may be, the name of a file, from the folder in which the program is started.
+    void
+    file(const std::string &name,
          std::string &value,
          const std::string &expected,
          const std::string &documentation,

@@ -485,7 +485,7 @@ namespace crawler
   LibraryParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Library");
-    declarations.text(
+    declarations.file(
       "File",
       file,
       "the name of a shared object",

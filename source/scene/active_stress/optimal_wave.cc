@@ -107,7 +107,7 @@ namespace crawler
                       "length/time");
     declarations.text(
       "Shape constants", shape_constants, "a list name=number, name=number", "Constants that the formula may use.");
-    declarations.text(
+    declarations.file(
       "Shape file",
       shape_file,
       "the name of a CSV file",

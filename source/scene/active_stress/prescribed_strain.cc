@@ -299,7 +299,7 @@ namespace crawler
     declarations.number(
       "Wave speed", wave_speed, any_number(), "Wave speed c; a positive one runs from s = L to s = 0.", "length/time");
     declarations.number("Phase", phase, any_number(), "Phase of the wave at s = 0, t = 0, in radians.", "1");
-    declarations.text(
+    declarations.file(
       "File",
       file,
       "the name of a CSV or HDF5 file",

@@ -151,7 +151,7 @@ namespace crawler
   TableParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Table");
-    declarations.text("File",
+    declarations.file("File",
                       file,
                       "the name of a CSV or HDF5 file",
                       "CSV with the header s,t,m and a row for each point of a full grid, in any order; or HDF5 with "

@@ -63,8 +63,49 @@ namespace
       EXPECT_EQ(word[4 * r + 1], "gr\xc3\xbc\xc3\x9f"); // cut, but not within a character
       EXPECT_TRUE(std::isnan(index[4 * r + 2]) && std::isnan(x[4 * r + 2]) && word[4 * r + 2].empty());
     }
-    EXPECT_EQ(read_texts(path, "results", "word"), word);
-    EXPECT_THROW(read_texts(path, "results", "nothing"), FileError);
+    {
+      const RowReader reader(MPI_COMM_SELF, path, "results");
+      EXPECT_EQ(reader.n_rows(), n);
+      EXPECT_THROW(reader.index_of("nothing"), FileError);
+      const auto words = std::get<std::vector<std::string>>(reader.read(reader.index_of("word"), 1, 3).values);
+      EXPECT_EQ(words, std::vector<std::string>(word.begin() + 1, word.begin() + 4));
+      EXPECT_EQ(csv_names(table) + csv_rows(reader.read(0, 2)) + csv_rows(reader.read(2, n - 2)), csv(table));
+    }
+    std::filesystem::remove(path);
+  }
+
+  TEST(RowFile, ColumnsThatAreKnownAreThereFromTheBeginning)
+  {
+    const auto path = a_file();
+    if (rank_of(MPI_COMM_WORLD) > 0)
+      return;
+    const unsigned long n = 100000; // more than are written at once
+    const std::string large(100000, 'x');
+    RowFile::create(path,
+                    "results",
+                    {columns[0], columns[2], columns[1]},
+                    n,
+                    {{"large", large}},
+                    {2,
+                     [](const std::size_t column, const unsigned long row) -> RowFile::Value
+                     {
+                       if (column == 0)
+                         return static_cast<double>(row);
+                       return std::to_string(row);
+                     }});
+    {
+      RowFile file(MPI_COMM_SELF, path, "results", {columns[1]}); // the others stay as they are
+      file.write(n - 1, std::vector<RowFile::Row>{{2.5}});
+    }
+    EXPECT_EQ(read_attribute(path, "results", "large"), large);
+    const Table table = read_table(path, "results");
+    const auto &x     = std::get<std::vector<double>>(table[2].values);
+    for (unsigned long i = 0; i < n; ++i)
+    {
+      ASSERT_EQ(std::get<std::vector<double>>(table[0].values)[i], static_cast<double>(i));
+      ASSERT_EQ(std::get<std::vector<std::string>>(table[1].values)[i], std::to_string(i));
+      ASSERT_TRUE(i + 1 == n ? x[i] == 2.5 : std::isnan(x[i]));
+    }
     std::filesystem::remove(path);
   }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace
@@ -59,6 +60,36 @@ namespace
     EXPECT_EQ(y.size(), n);
     EXPECT_EQ(*x.begin(), 0);
     EXPECT_EQ(*x.rbegin(), static_cast<int>(n) - 1);
+  }
+
+  TEST(SweepDesign, RandomNumbersAreEvenAndIndependent)
+  {
+    for (const char *kind : {"random", "latin hypercube"})
+    {
+      const unsigned int n       = 20000;
+      const SweepDesign design_2 = design(kind, "A/x : uniform(0, 1); A/y : uniform(0, 1); A/w : a, b, c, d", n);
+      double x = 0., xx = 0., xy = 0., neighbours = 0., last = 0.5;
+      std::map<std::string, unsigned int> words;
+      for (unsigned long i = 0; i < n; ++i)
+      {
+        const double dx = std::stod(design_2.value(0, i)) - 0.5, dy = std::stod(design_2.value(1, i)) - 0.5;
+        ASSERT_TRUE(dx >= -0.5 && dx < 0.5);
+        x += dx / n;
+        xx += 12. * dx * dx / n;
+        xy += 12. * dx * dy / n;
+        neighbours += 12. * dx * last / n;
+        last = dx;
+        ++words[design_2.value(2, i)];
+      }
+      // Four standard deviations of a mean, a variance and a correlation.
+      const double deviation = 4. / std::sqrt(n);
+      EXPECT_NEAR(x, 0., deviation / std::sqrt(12.)) << kind;
+      EXPECT_NEAR(xx, 1., deviation * std::sqrt(0.8)) << kind;
+      EXPECT_NEAR(xy, 0., deviation) << kind;
+      EXPECT_NEAR(neighbours, 0., deviation) << kind;
+      for (const auto &[word, count] : words)
+        EXPECT_NEAR(count / double(n), 0.25, deviation * std::sqrt(0.25 * 0.75)) << kind << word;
+    }
   }
 
   TEST(SweepDesign, RandomPointsDependOnTheSeedAlone)
