@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws the scaling of speed and cost of transport from a sweep over prm/studies/scaling.prm, and prints the exponents.
 
-    python3 scaling.py OUTPUT_FOLDER SCALING_CSV [--output scaling.png]
+    python3 scaling.py OUTPUT_FOLDER SCALING_CSV [--output scaling.png] [--require PERCENT]
 
-Needs numpy and matplotlib (Debian: python3-matplotlib).
+--require: exit code 1 if an exponent is off theory by more. Needs numpy and matplotlib (Debian: python3-matplotlib).
 """
 import argparse
 import csv
@@ -14,8 +14,20 @@ import sys
 
 def read(path):
     """The rows of a CSV file."""
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+    except OSError as error:
+        sys.exit(f"scaling.py: cannot read {path}: {error.strerror}")
+
+
+# Family of the table, x, y, exponent in theory.
+LAWS = (("mass", "mass", "speed", 1 / 3), ("material", "mass", "speed", 1 / 3), ("frequency", "frequency", "U", 1),
+        ("similar", "frequency", "U", 1), ("frequency", "frequency", "COT", 1), ("similar", "frequency", "COT", 1))
+LABELS = {"mass": "mass $M$ [g]", "frequency": r"stride frequency $\nu$ [1/s]", "speed": "speed [mm/s]",
+          "U": "speed $U$ [body lengths/s]", "COT": "cost of transport [mN/g = J/(kg m)]"}
+LOOKS = {"mass": ("#0072B2", "o", r"$k \propto M$"), "material": ("#D55E00", "x", r"$k \propto M^{2/3}$, same material"),
+         "frequency": ("#0072B2", "o", "same $k$"), "similar": ("#D55E00", "x", r"$k \propto \nu$")}
 
 
 def main():
@@ -24,6 +36,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("table", type=pathlib.Path)
     parser.add_argument("--output", type=pathlib.Path)
+    parser.add_argument("--require", type=float, metavar="PERCENT")
     arguments = parser.parse_args()
     import matplotlib
     matplotlib.use("Agg")
@@ -31,32 +44,41 @@ def main():
     import numpy as np
 
     worms, results = read(arguments.table), read(arguments.folder / "results.csv")
-    if len(worms) != len(results) or any(row["status"] != "finished" for row in results):
+    if not worms or len(worms) != len(results) or any(row["status"] != "finished" for row in results):
         sys.exit("scaling.py: a finished sweep over all rows of the table is expected")
     column = {name: np.array([float(row[name]) for row in worms]) for name in ("mass", "frequency", "end_time", "length")}
     displacement, work = (np.array([float(row[name]) for row in results]) for name in ("displacement", "stress_power"))
-    speed = displacement / column["end_time"]
-    body_speed, cost = speed / column["length"], work / (column["mass"] * displacement)
-    by_mass = np.array([row["family"] == "mass" for row in worms])
+    column["speed"] = displacement / column["end_time"]
+    column["U"] = column["speed"] / column["length"]
+    column["COT"] = work / (column["mass"] * displacement)
+    family = np.array([row["family"] for row in worms])
 
-    figure, panels = plt.subplots(1, 3, figsize=(10, 3.4), layout="constrained")
-    for panel, x, y, mask, names, unit, exponent in (
-            (panels[0], column["mass"], speed, by_mass, ("mass $M$", "speed"), ("g", "mm/s"), 1 / 3),
-            (panels[1], column["frequency"], body_speed, ~by_mass, (r"stride frequency $\nu$", "speed $U$"), ("1/s", "body lengths/s"), 1),
-            (panels[2], column["frequency"], cost, ~by_mass, (r"stride frequency $\nu$", "cost of transport"), ("1/s", "mN/g"), 1)):
-        x, y = x[mask], y[mask]
+    figure, panels = plt.subplots(1, 3, figsize=(10.5, 3.6), layout="constrained")
+    panel_of = dict(zip(("speed", "U", "COT"), panels))
+    masses = np.array([0.012, 8.5])
+    panel_of["speed"].loglog(masses, 3.8 * masses**0.33, "-", color="#E69F00", linewidth=5, alpha=0.5,
+                             label="paper's fit to earthworms, $3.8\\, M^{0.33}$")
+    worst = 0.0
+    for name, x_name, y_name, exponent in LAWS:
+        x, y = column[x_name][family == name], column[y_name][family == name]
         power, shift = np.polyfit(np.log(x), np.log(y), 1)
-        print(f"{names[1].replace('$', '')} ~ {names[0].split('$')[1]}^{power:.5f} (theory {exponent:.5f}, off by {100 * abs(power / exponent - 1):.3f} %)")
-        panel.loglog(x, y, "o", color="#0072B2", markersize=5, label="sweep")
-        panel.loglog(x, np.exp(shift) * x**power, "-", color="#0072B2", linewidth=1, label=f"fit: exponent {power:.4f}")
-        if panel is panels[0]:
-            panel.loglog(x, 3.8 * x**0.33, "--", color="#D55E00", linewidth=1.2, label="paper's fit to earthworms, 3.8 $M^{0.33}$")
-        panel.set(xlabel=f"{names[0]} [{unit[0]}]", ylabel=f"{names[1]} [{unit[1]}]")
+        off = 100 * abs(power / exponent - 1)
+        worst = max(worst, off)
+        print(f"{name}: {y_name} = {np.exp(shift):.5g} * {x_name}^{power:.6f} (theory {exponent:.6f}, off by {off:.6f} %)")
+        colour, marker, label = LOOKS[name]
+        panel = panel_of[y_name]
+        panel.loglog(x, y, marker, color=colour, markersize=5, label=f"{label}: exponent {power:.4f}",
+                     markerfacecolor="none")
+        panel.loglog(x, np.exp(shift) * x**power, "-" if marker == "o" else ":", color=colour, linewidth=1)
+        panel.set(xlabel=LABELS[x_name], ylabel=LABELS[y_name])
+    for panel in panels:
         panel.legend(fontsize=7)
         panel.grid(alpha=0.3, which="both")
     output = arguments.output or arguments.folder / "scaling.png"
     figure.savefig(output, dpi=150)
     print(f"wrote {output}")
+    if arguments.require is not None and not worst <= arguments.require:
+        sys.exit(f"scaling.py: an exponent is off by {worst:.3f} %, but at most {arguments.require:g} % are expected")
 
 
 if __name__ == "__main__":

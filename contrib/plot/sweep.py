@@ -1,22 +1,46 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Draws the table of crawler sweep: a heat map over two axes, or lines over one.
+"""Draws the table of crawler sweep: a heat map over two axes, lines over one, points for random designs.
 
-    python3 sweep.py OUTPUT_FOLDER [--x ENTRY] [--y ENTRY] [--value COLUMN] [--log] [--fit] [--output PICTURE]
+    python3 sweep.py OUTPUT_FOLDER [--x AXIS] [--y AXIS | --lines] [--value COLUMN] [--where AXIS=VALUE ...]
+                     [--scale auto|linear|log] [--fit] [--output PICTURE]
 
-Reads results.h5 of the folder and writes results.png and results.svg there (or PICTURE). ENTRY is an axis of the sweep,
-as "Body/Length", or its last words; without --x and --y the last axis is x and the one before it y. COLUMN is any column
-of numbers. Lines: --y "" or a sweep with one axis; further axes give a line each. --log: logarithmic axes. --fit: the
-power law through the points of each line, in its label. Needs numpy, h5py and matplotlib (Debian: python3-h5py,
+Reads results.h5 of the folder and writes results.png and results.svg there (or PICTURE). AXIS is an axis of the sweep,
+as "Body/Length", or its last words. Without --x the last axis is x; without --y the one before it is y, the next two
+make the columns and rows of small pictures. --lines: x alone, a line for each value of the next axis. --where keeps the
+points with this value of an axis. COLUMN is any column of numbers (displacement), or status: what became of the points.
+--scale is that of the values; auto: logarithmic if they are positive and differ by more than a factor of 1000. Axes whose
+values have equal ratios are logarithmic. --fit: the power law through the points of each line, in its label. Values of
+points that did not finish are not drawn, but which and why. Needs numpy, h5py and matplotlib (Debian: python3-h5py,
 python3-matplotlib). Colours are safe for colour-blind readers.
 """
 import argparse
+import difflib
+import os
 import pathlib
+import re
 import sys
 
-UNKNOWN = "0.85"
+os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a sweep under way may be looked at
+try:
+    import h5py
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    import numpy as np
+    from matplotlib import colors, patches, ticker
+    from matplotlib.path import Path
+except ImportError as missing:
+    sys.exit(f"sweep.py: {missing}; on Debian: apt install python3-h5py python3-matplotlib")
+
 LINES = (("#0072B2", "o", "-"), ("#D55E00", "s", "--"), ("#009E73", "^", "-."), ("#CC79A7", "D", ":"),
          ("#E69F00", "v", "-"), ("#56B4E9", "P", "--"), ("#000000", "X", "-."))
+# What became of points without a value: grey, hatch, marker in line plots.
+MARKS = (("0.88", "////", "x"), ("0.72", "....", "+"), ("0.80", "\\\\\\\\", "1"), ("0.60", "xxxx", "2"),
+         ("0.94", "++", "3"), ("0.50", "oo", "4"))
+STATUS_COLOURS = {"finished": "#FFFFFF", "inverted": "#E69F00", "failed": "#D55E00", "stopped": "#CC79A7",
+                  "not": "0.75"}
+MOST_LINES, MOST_PANELS = 60, 4  # lines in a picture; small pictures in a row or column
 
 
 class Problem(Exception):
@@ -24,148 +48,487 @@ class Problem(Exception):
 
 
 class Sweep:
-    """The columns of results.h5."""
+    """The table of a sweep; columns are read when they are needed. The points may be narrowed by where()."""
 
     def __init__(self, folder):
-        import h5py
         path = folder / "results.h5"
         if not path.is_file():
-            raise Problem(f"{path} does not exist; the output folder of crawler sweep is expected")
-        self.columns, self.units, self.axes = {}, {}, []
-        with h5py.File(path, "r") as file:
-            for dataset in file["results"].values():
-                name = dataset.attrs["name"]
-                name = name.decode() if isinstance(name, bytes) else name
-                text = dataset.dtype.kind == "S"
-                self.columns[name] = dataset.asstr()[:] if text else dataset[:]
-                self.units[name] = as_text(dataset.attrs["unit"])
-                if as_text(dataset.attrs["description"]) == "axis of the sweep":
-                    self.axes.append(name)
+            raise Problem(f'there is no "{path}"; the output folder of crawler sweep is expected')
+        try:
+            file = h5py.File(path, "r")
+            self.group = file["results"]
+            described = {as_text(data.attrs["name"]): data for data in self.group.values()}
+            self.axes = [name for name, data in described.items()
+                         if as_text(data.attrs["description"]) == "axis of the sweep"]
+            self.units = {name: as_text(data.attrs["unit"]) for name, data in described.items()}
+            settings = as_text(self.group.attrs["parameters.prm"])
+        except (OSError, KeyError) as error:
+            raise Problem(f'"{path}" is not a table of crawler sweep ({error})') from error
+        self.data = described
+        self.design = re.search(r"subsection Sweep\n(?:.*\n)*?\s+set Design\s*= (\w+)|$", settings)[1] or "grid"
+        self.chosen = np.flatnonzero(np.isfinite(described["index"][()]))
+        if len(self.chosen) == 0:
+            raise Problem(f'"{path}" has no rows')
+        self.axes.sort(key=settings[max(settings.find("set Axes"), 0):].find)  # as in the file
+
+    def column(self, name):
+        """The values of the chosen points; texts as bytes."""
+        return self.data[name][()][self.chosen]
+
+    def is_number(self, name):
+        """Whether a column holds numbers."""
+        return self.data[name].dtype.kind == "f"
+
+    def varying(self):
+        """The axes with more than one value among the chosen points."""
+        return [axis for axis in self.axes if len(np.unique(self.column(axis))) > 1]
 
     def find(self, name, among, what):
-        """The one column whose name is or ends with this."""
+        """The one column whose name is, or ends with, this."""
         if name in among:
             return name
         found = [column for column in among if column.lower().endswith(name.lower())]
-        if len(found) != 1:
-            raise Problem(f'"{name}" names {"several" if found else "no"} {what}; one of {", ".join(among)} is expected')
-        return found[0]
+        whole = [column for column in found if column.lower()[:-len(name)].endswith(("/", ".", "_"))]
+        found = whole if len(whole) == 1 else found
+        if len(found) == 1:
+            return found[0]
+        alike = found or difflib.get_close_matches(name, among, 4, 0.3) or among
+        raise Problem(f'"{name}" names {"several" if found else "no"} {what}; one of {", ".join(alike[:8])} is expected')
 
-    def numbers(self):
-        """The columns that may be drawn."""
-        return [name for name, values in self.columns.items() if values.dtype.kind == "f"]
+    def where(self, condition):
+        """Keeps the points with AXIS=VALUE."""
+        name, equals, text = condition.rpartition("=")
+        if not equals:
+            raise Problem(f'found --where "{condition}", but AXIS=VALUE is expected')
+        axis = self.find(name.strip(), self.axes, "axis")
+        values, text = self.column(axis), text.strip()
+        if self.is_number(axis):
+            try:
+                number = float(text)
+            except ValueError:
+                raise Problem(f'--where "{condition}": found "{text}", but a number is expected') from None
+            mine = np.isclose(values, number, rtol=1e-6, atol=0)
+            known = sorted(np.unique(values), key=lambda value: abs(value - number))[:3]
+            known = ", ".join(f"{value:.7g}" for value in sorted(known))
+        else:
+            mine = values == text.encode()
+            known = ", ".join(dict.fromkeys(value.decode() for value in values[:10000]))
+        if not mine.any():
+            raise Problem(f'no point has {axis} = {text}; values {"near it " if self.is_number(axis) else ""}are {known}')
+        self.chosen = self.chosen[mine]
 
-    def label(self, name):
-        """A column with its unit."""
-        unit = self.units[name]
-        short = name.split("/")[-1].replace("_", " ")
-        return f"{short} [{unit}]" if unit not in ("", "1") else short
+    def label(self, name, unit=True):
+        """The last words of a name, more if an axis has the same ones, and its unit."""
+        parts = name.split("/")
+        short = "/".join(parts[-1:])
+        for n in range(1, len(parts) + 1):
+            short = "/".join(parts[-n:])
+            if sum(("/" + axis).endswith("/" + short) for axis in self.axes) < 2:
+                break
+        short = short.replace("_", " ").replace(".", ", ")
+        of = self.units[name] if unit else ""
+        return f"{short} [{of}]" if of not in ("", "1") else short
+
+
+class Marks:
+    """What became of each chosen point that has no value to be drawn: an index into names, or -1."""
+
+    def __init__(self, sweep, values, alone):
+        self.alone = alone  # --value status
+        status, reason = sweep.column("status"), sweep.column("reason")
+        finished = status == b"finished"
+        known = np.isfinite(values)
+        self.note = ""
+        if not (known & finished).any() and known.any():  # as inversion.t
+            finished = known
+            self.note = "values of points that did not finish"
+        self.drawn = finished & known
+        names = np.full(len(status), "", dtype=object)
+        names[finished & ~known] = "finished, value not known"
+        rest = ~finished
+        for pair in set(zip(status[rest], reason[rest])):
+            word, why = as_text(pair[0]), as_text(pair[1]).replace("_", " ")
+            text = "not computed yet" if not word else f"{word} ({why})" if why and why not in word else word
+            names[rest & (status == pair[0]) & (reason == pair[1])] = text
+        self.names = [name for name in sorted(set(names)) if name]
+        self.of = np.full(len(status), -1)
+        for i, name in enumerate(self.names):
+            self.of[names == name] = i
+        self.counts = [np.count_nonzero(self.of == i) for i in range(len(self.names))]
+
+    def face(self, i):
+        """The colour of cells."""
+        return STATUS_COLOURS.get(self.names[i].split(" ")[0], "white") if self.alone else MARKS[i % len(MARKS)][0]
+
+    def hatch(self, i):
+        """The hatch of cells."""
+        return "" if self.alone and self.names[i].startswith("finished") else MARKS[i % len(MARKS)][1]
+
+    def ink(self, i):
+        """The colour of points."""
+        return self.face(i) if self.alone and not self.names[i].startswith("finished") else "0.45"
+
+    def marker(self, i):
+        """Of points."""
+        return "o" if self.alone and self.names[i].startswith("finished") else MARKS[i % len(MARKS)][2]
+
+    def in_words(self):
+        """For a message."""
+        return ", ".join(f"{count} {name}" for count, name in zip(self.counts, self.names))
 
 
 def as_text(value):
-    """Attributes are bytes in older versions of h5py."""
-    return value.decode() if isinstance(value, bytes) else str(value)
+    """Attributes and texts are bytes."""
+    return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
 
 
 def is_logarithmic(values):
-    """Whether the ratios of neighbours are alike, and not their differences."""
-    if len(values) < 3 or values[0] <= 0:
+    """Whether these positive numbers, in order, spread evenly by their ratios rather than by their differences."""
+    if len(values) < 3 or values[0] <= 0 or values[-1] < 3 * values[0]:
         return False
-    ratios = [b / a for a, b in zip(values, values[1:])]
-    return max(ratios) / min(ratios) < 1.05 and max(ratios) > 1.1
+    even = np.linspace(0, 1, len(values))
+    logs = np.log(values)
+    far = [np.abs((v - v[0]) / (v[-1] - v[0]) - even).max() for v in (logs, values)]
+    return bool(far[0] < 0.5 * far[1])
 
 
-def heat_map(axes, figure, sweep, x, y, value, log):
-    """Every point a cell; grey where the value is not known. Values of further axes are averaged away: refused."""
-    import numpy as np
-    from matplotlib.colors import LogNorm
+class Axis:
+    """The values of an axis and their places in a picture: numbers as they are, words one after the other."""
 
-    xs, ys = np.unique(sweep.columns[x]), np.unique(sweep.columns[y])
-    grid = np.full((len(ys), len(xs)), np.nan)
-    i, j = np.searchsorted(ys, sweep.columns[y]), np.searchsorted(xs, sweep.columns[x])
-    if len(set(zip(i, j))) < len(i):
-        raise Problem(f'several points have the same "{x}" and "{y}"; a sweep over these two is expected, or --y ""')
-    if len(i) < grid.size / 2:
-        raise Problem('the points are no grid; --y "" draws them as lines')
-    grid[i, j] = sweep.columns[value]
-    axes.set_facecolor(UNKNOWN)
-    positive = grid[np.isfinite(grid)]
-    norm = LogNorm() if log and len(positive) and positive.min() > 0 else None
-    mesh = axes.pcolormesh(xs, ys, grid, shading="nearest", cmap="cividis", norm=norm, rasterized=True)
-    figure.colorbar(mesh, ax=axes, label=sweep.label(value))
-    for name, values, scale in ((x, xs, axes.set_xscale), (y, ys, axes.set_yscale)):
-        if is_logarithmic(list(values)):
-            scale("log")
-    axes.set_xlabel(sweep.label(x))
-    axes.set_ylabel(sweep.label(y))
-    if np.isnan(grid).any():
-        axes.set_title("grey: not known (see column status)", fontsize=9)
+    def __init__(self, sweep, name):
+        self.name, self.label, self.is_number = name, sweep.label(name), sweep.is_number(name)
+        column = sweep.column(name)
+        self.values, first, self.index = np.unique(column, return_index=True, return_inverse=True)
+        if not self.is_number:  # words in the order of the file
+            order = np.argsort(first)
+            self.values, self.index = self.values[order], np.argsort(order)[self.index]
+        self.log = self.is_number and is_logarithmic(self.values)
+        self.at = self.values if self.is_number else np.arange(len(self.values), dtype=float)
+
+    def texts(self):
+        """The values as words, without what paths have in common."""
+        if self.is_number:
+            return [f"{value:.4g}" for value in self.values]
+        texts = [as_text(value) for value in self.values]
+        short = [pathlib.PurePath(text).name.removesuffix(".prm") for text in texts]
+        return short if len(set(short)) == len(texts) and all(text.endswith(".prm") for text in texts) else texts
+
+    def edges(self):
+        """Of the cells around the values."""
+        at = np.log(self.at) if self.log else self.at
+        if len(at) == 1:
+            half = 0.5 if self.log or at[0] == 0 else 0.1 * abs(at[0])
+            edges = np.array([at[0] - half, at[0] + half])
+        else:
+            middle = 0.5 * (at[1:] + at[:-1])
+            edges = np.concatenate(([1.5 * at[0] - 0.5 * at[1]], middle, [1.5 * at[-1] - 0.5 * at[-2]]))
+        return np.exp(edges) if self.log else edges
+
+    def draw(self, axes, which, long):
+        """Scale, ticks and, if long, the label of the "x" or "y" axis of a picture."""
+        direction = getattr(axes, which + "axis")
+        if self.log:
+            getattr(axes, f"set_{which}scale")("log")
+            direction.set_minor_formatter(ticker.LogFormatterSciNotation(minor_thresholds=(1.5, 0.6)))
+        if not self.is_number or len(self.values) <= 6:
+            direction.set_ticks(self.at, self.texts())
+            direction.set_ticks([], minor=True)
+        if long:
+            direction.set_label_text(self.label)
 
 
-def lines(axes, sweep, x, value, log, fit):
-    """A line over x for each combination of the other axes."""
-    import numpy as np
+def norm_of(values, scale):
+    """Colour map and norm."""
+    low, high = values.min(), values.max()
+    log = scale == "log" or (scale == "auto" and low > 0 and high > 1000 * low)
+    if low < 0 < high:
+        most = max(-low, high)
+        near = max(np.quantile(np.abs(values[values != 0]), 0.1), 1e-12 * most)
+        return "PuOr", colors.SymLogNorm(near, vmin=-most, vmax=most) if log else colors.CenteredNorm(halfrange=most)
+    if log and low > 0 and high > low:
+        return "cividis", colors.LogNorm(low, high)
+    if log and high < 0 and high > low:
+        return "cividis", colors.SymLogNorm(-high, vmin=low, vmax=high)
+    margin = 0 if high > low else 0.01 * abs(high) or 1.
+    return "cividis", colors.Normalize(low - margin, high + margin)
 
-    others = [axis for axis in sweep.axes if axis != x]
-    keys = list(zip(*(sweep.columns[axis] for axis in others))) or [()] * len(sweep.columns[x])
-    different = sorted(set(keys))
-    if len(different) > 40:
-        raise Problem(f"{len(different)} lines are too many to tell apart; a sweep over fewer axes is expected")
-    for number, key in enumerate(different):
-        mine = np.array([other == key for other in keys])
-        order = np.argsort(sweep.columns[x][mine])
-        xs, values = sweep.columns[x][mine][order], sweep.columns[value][mine][order]
+
+def hatch_cells(axes, x_edges, y_edges, mask, face, hatch):
+    """The cells of the mask, with a hatch; cells side by side in a row at once."""
+    vertices, codes = [], []
+    for row in range(mask.shape[0]):
+        steps = np.diff(np.concatenate(([0], mask[row].astype(int), [0])))
+        for start, end in zip(np.flatnonzero(steps == 1), np.flatnonzero(steps == -1)):
+            left, right, low, high = x_edges[start], x_edges[end], y_edges[row], y_edges[row + 1]
+            vertices += [(left, low), (right, low), (right, high), (left, high), (left, low)]
+            codes += [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
+    if vertices:
+        axes.add_patch(patches.PathPatch(Path(vertices, codes), facecolor=face, edgecolor="0.35", hatch=hatch,
+                                         linewidth=0, rasterized=len(codes) > 5000))
+
+
+def heat_map(axes, x, y, mine, values, marks, look):
+    """Every point a cell; without a value grey, with a hatch that says why."""
+    shape = (len(y.values), len(x.values))
+    place = y.index[mine] * shape[1] + x.index[mine]
+    if len(np.unique(place)) < len(place):
+        raise Problem(f'several points have the same "{x.name}" and "{y.name}"; --where AXIS=VALUE chooses among them')
+    grid, reasons = np.full(shape, np.nan), np.full(shape, -1)
+    drawn = marks.drawn[mine]
+    grid.flat[place[drawn]] = values[mine][drawn]
+    reasons.flat[place] = marks.of[mine]
+    x_edges, y_edges = x.edges(), y.edges()
+    mesh = None
+    if look is not None:
+        mesh = axes.pcolormesh(x_edges, y_edges, grid, cmap=look[0], norm=look[1], rasterized=True)
+        if isinstance(look[1], (colors.CenteredNorm, colors.SymLogNorm)) and min(shape) > 2 and look[0] == "PuOr":
+            if np.nanmin(grid) < 0 < np.nanmax(grid):
+                axes.contour(x.at, y.at, grid, [0.], colors="black", linewidths=1)
+    for i in range(len(marks.names)):
+        hatch_cells(axes, x_edges, y_edges, reasons == i, marks.face(i), marks.hatch(i))
+    axes.set_xlim(x_edges[0], x_edges[-1])
+    axes.set_ylim(y_edges[0], y_edges[-1])
+    return mesh
+
+
+def scatter(axes, x, y, mine, values, marks, look):
+    """Every point a dot; without a value a grey mark that says why."""
+    drawn = mine & marks.drawn
+    at = (x.at[x.index], y.at[y.index])
+    size = float(np.clip(8000 / max(mine.sum(), 1), 1, 30))
+    for i in range(len(marks.names)):
+        some = mine & (marks.of == i)
+        axes.scatter(at[0][some], at[1][some], s=size, c=marks.ink(i), marker=marks.marker(i), linewidths=0.8,
+                     rasterized=True)
+    if look is None:
+        return None
+    return axes.scatter(at[0][drawn], at[1][drawn], s=size, c=values[drawn], cmap=look[0], norm=look[1],
+                        edgecolors="0.4", linewidths=0.3 if size > 4 else 0, rasterized=True)
+
+
+def power_law(x, y, name):
+    """Factor and exponent of y = factor * x^exponent; y of one sign."""
+    if len(x) < 2 or x.min() <= 0 or not (y.min() > 0 or y.max() < 0):
+        raise Problem(f'--fit: two points or more with a positive axis and values "{name}" of one sign are expected')
+    power, shift = np.polyfit(np.log(x), np.log(np.abs(y)), 1)
+    return np.exp(shift) * np.sign(y[0]), power
+
+
+def lines(axes, x, mine, values, errors, marks, other, look, options):
+    """A line for each value of the axis other (or one), with gaps where points have no value."""
+    keys = range(len(other.values)) if other else [None]
+    for number, key in enumerate(keys):
+        some = np.flatnonzero(mine & (other.index == key) if other else mine)
+        some = some[np.argsort(x.at[x.index[some]], kind="stable")]
+        at, y = x.at[x.index[some]], np.where(marks.drawn[some], values[some], np.nan)
         colour, marker, style = LINES[number % len(LINES)]
-        label = ", ".join(f"{axis.split('/')[-1].lower()} = {one:g}" if isinstance(one, float) else f"{one}"
-                          for axis, one in zip(others, key))
-        known = np.isfinite(values)
-        if fit:
-            power, shift = np.polyfit(np.log(xs[known]), np.log(np.abs(values[known])), 1)
-            label += ("; " if label else "") + f"{np.exp(shift):.3g} x^{power:.4f}"
-            print(f"{value} = {np.exp(shift):.6g} * {x}^{power:.6f}{' for ' + str(key) if key else ''}")
-        axes.plot(xs, values, color=colour, marker=marker if len(xs) <= 60 else "", linestyle=style, markersize=4,
-                  linewidth=1.2, label=label)
-    if log or is_logarithmic(sorted(set(sweep.columns[x]))):
-        axes.set_xscale("log")
-    if log:
-        axes.set_yscale("log")
-    if different != [()] or fit:
-        axes.legend(fontsize=8)
-    axes.set_xlabel(sweep.label(x))
-    axes.set_ylabel(sweep.label(value))
+        if not x.is_number:
+            style = ""
+        if look is not None:
+            colour, marker = plt.get_cmap(look[0])(look[1](other.values[key])), "" if style else "o"
+            style = style and "-"
+        known = np.isfinite(y)
+        text = f"{other.label.split(' [')[0]} = {other.texts()[key]}" if other and (look is None or options.fit) else ""
+        if options.fit:
+            factor, power = power_law(at[known], y[known], options.value)
+            said = f"{factor:.3g} x^{power:.4f}"
+            text += ("; " if text else "") + said
+            print(f"{options.value} = {factor:.6g} * ({x.name})^{power:.6f}" +
+                  (f" at {other.name} = {other.texts()[key]}" if other else ""))
+        points = len(at) <= 60
+        axes.plot(at, y, color=colour, marker=marker if points or options.dots else "",
+                  linestyle="" if options.dots else style, markersize=4 if points else 2.5, linewidth=1.2, label=text or None)
+        if errors is not None and not options.dots:
+            bar = np.where(known, errors[some], np.nan)
+            if points:
+                axes.errorbar(at, y, bar, fmt="none", ecolor=colour, elinewidth=0.8, capsize=2.5)
+            else:
+                axes.fill_between(at, y - bar, y + bar, color=colour, alpha=0.25, linewidth=0)
+    for i in range(len(marks.names)):  # along the lower edge
+        at = np.unique(x.at[x.index[mine & (marks.of == i)]])
+        axes.plot(at, np.full(len(at), 0.02 + 0.03 * i), transform=axes.get_xaxis_transform(), linestyle="",
+                  marker=marks.marker(i), color="0.35", markersize=5, clip_on=False)
     axes.grid(alpha=0.3)
+
+
+def spread(axis, most, what):
+    """Some of the values of an axis, evenly spread, all if they are few."""
+    n = len(axis.values)
+    if n <= most:
+        return list(range(n))
+    some = sorted({round(i * (n - 1) / (most - 1)) for i in range(most)})
+    print(f"{axis.name}: {len(some)} of {n} values are drawn ({what}); --where chooses others")
+    return some
+
+
+def choose(sweep, options):
+    """The axes x, y (or None) and those of the small pictures, from the command line and the design."""
+    varying = sweep.varying()
+    if not sweep.axes:
+        raise Problem("the table has no axes")
+    x = sweep.find(options.x, sweep.axes, "axis") if options.x else (varying or sweep.axes)[-1]
+    y = sweep.find(options.y, sweep.axes, "axis") if options.y else None
+    if x == y:
+        raise Problem(f'"{x}" is both --x and --y; two axes are expected')
+    if sweep.design == "grid":
+        rest = [axis for axis in varying if axis not in (x, y)]
+        y = y or (rest.pop() if rest else None)
+        if len(rest) > 2:
+            raise Problem(f'{len(rest) + 2} axes are too many for a picture; choose values of {", ".join(rest[:-2])} '
+                          'or others by --where AXIS=VALUE')
+        return x, y, rest[::-1]
+    if sweep.design == "zip" and not y and not options.x:
+        x = (varying or sweep.axes)[0]
+    elif sweep.design != "zip" and not y and not options.lines:
+        others = [axis for axis in varying if axis != x]
+        y = others[-1] if others else None
+    return x, y, []
+
+
+def title_of(sweep, options, x, y, marks):
+    """What does not vary, and how the other axes do."""
+    words = []
+    for axis in sweep.axes:
+        values = np.unique(sweep.column(axis))
+        if len(values) == 1 and axis not in (x.name, y and y.name):
+            value = values[0]
+            words.append(f"{sweep.label(axis, False)} = {value:.4g}" if sweep.is_number(axis) else
+                         f"{sweep.label(axis, False)} = {as_text(value)}")
+    others = [axis for axis in sweep.varying() if axis not in (x.name, y and y.name)]
+    if sweep.design != "grid" and others:
+        words.append(f"{', '.join(sweep.label(axis, False) for axis in others)} var{'y' if len(others) > 1 else 'ies'}, too")
+    if marks.note and options.value != "status":
+        words.append(marks.note)
+    return "; ".join(words)
+
+
+def draw(sweep, options):
+    """The whole picture."""
+    by_status = options.value == "status"
+    if by_status:
+        values = np.full(len(sweep.chosen), np.nan)
+    else:
+        numbers = [name for name in sweep.data if sweep.is_number(name)]
+        options.value = sweep.find(options.value, numbers, "column of numbers")
+        values = sweep.column(options.value)
+    marks = Marks(sweep, values, by_status)
+    if by_status:
+        marks.names = [name.replace("finished, value not known", "finished") for name in marks.names]
+    elif not marks.drawn.any():
+        raise Problem(f'no point has a {options.value} ({marks.in_words()}); --value status shows what became of the points')
+    x, y, rest = choose(sweep, options)
+    as_lines = options.lines or options.fit or not y
+    if as_lines and sweep.design == "grid" and not by_status:
+        if len(rest) > 1:
+            raise Problem(f'{len(rest) + 2} axes are too many for lines; choose values of {rest[-1]} by --where AXIS=VALUE')
+    elif by_status and as_lines:
+        raise Problem("--value status needs two axes")
+    elif as_lines:
+        y = None
+    x, y, rest = Axis(sweep, x), Axis(sweep, y) if y else None, [Axis(sweep, name) for name in rest]
+    options.dots = sweep.design not in ("grid", "zip")
+
+    wide = spread(rest[0], MOST_PANELS, "a picture each") if rest else [None]
+    high = spread(rest[1], MOST_PANELS, "a row of pictures each") if len(rest) > 1 else [None]
+    small = len(wide) * len(high) > 1
+    size = (2.4 + 2.3 * len(wide), 1.2 + 2.2 * len(high)) if small else (6.4, 4.8)
+    figure, panels = plt.subplots(len(high), len(wide), figsize=size, sharex=True, sharey=True, squeeze=False,
+                                  layout="constrained")
+    drawn = values[marks.drawn]
+    look = None if by_status else norm_of(drawn, options.scale)
+    line_look, errors = None, None
+    if as_lines:
+        if y and len(y.values) > len(LINES):
+            if len(y.values) > MOST_LINES or not y.is_number:
+                if not y.is_number:
+                    raise Problem(f'{len(y.values)} lines are too many to tell apart; choose by --where "{y.name}=VALUE"')
+                keep = spread(y, MOST_LINES, "a line each")
+                y.values, y.at = y.values[keep], y.at[keep]
+                y.index = np.array([keep.index(i) if i in keep else -1 for i in range(y.index.max() + 1)])[y.index]
+            line_look = ("viridis", colors.LogNorm(y.values[0], y.values[-1]) if y.log else
+                         colors.Normalize(y.values[0], y.values[-1]))
+        names = (f"{options.value}_error.total", "errors." + options.value.removesuffix(".value"))
+        bars = next((name for name in names if name in sweep.data), None)
+        log = isinstance(look[1], (colors.LogNorm, colors.SymLogNorm)) or options.fit
+        if bars:
+            errors = sweep.column(bars)
+            own = errors[marks.drawn]
+            visible = own > (0.02 * np.abs(drawn) if log else 0.003 * (drawn.max() - drawn.min()))
+            errors = errors if visible.any() else None
+    mesh = None
+    for row, j in enumerate(high):
+        for column, i in enumerate(wide):
+            axes, mine = panels[row][column], np.ones(len(values), dtype=bool)
+            for axis, which in zip(rest, (i, j)):
+                mine &= axis.index == which
+            if as_lines:
+                lines(axes, x, mine, values, errors, marks, y, line_look, options)
+                if log:
+                    axes.set_yscale("symlog" if drawn.min() < 0 else "log", **(
+                        {"linthresh": np.quantile(np.abs(drawn[drawn != 0]), 0.1)} if drawn.min() < 0 else {}))
+            elif sweep.design == "grid":
+                mesh = heat_map(axes, x, y, mine, values, marks, look)
+            else:
+                mesh = scatter(axes, x, y, mine, values, marks, look)
+            x.log = x.log or (options.fit and x.is_number)
+            x.draw(axes, "x", row == len(high) - 1)
+            if not x.is_number and max(map(len, x.texts())) * len(x.values) * len(wide) > 60:
+                axes.tick_params(axis="x", labelrotation=30)
+            if not as_lines:
+                y.draw(axes, "y", column == 0)
+            elif column == 0:
+                axes.set_ylabel(sweep.label(options.value))
+            if rest:
+                axes.set_title(", ".join(f"{axis.label.split(' [')[0]} = {axis.texts()[which]}"
+                                         for axis, which in zip(rest, (i, j))), fontsize=8)
+    if mesh is not None:
+        bar = figure.colorbar(mesh, ax=panels, label=sweep.label(options.value))
+        if look[0] == "PuOr" and not options.dots:
+            bar.ax.axhline(0., color="black", linewidth=1)  # as the line in the map
+    elif line_look:
+        figure.colorbar(plt.cm.ScalarMappable(line_look[1], line_look[0]), ax=panels, label=y.label)
+    if as_lines and (y or options.fit) and not (line_look and not options.fit) and len(panels[0][0].get_lines()) < 20:
+        panels[0][0].legend(fontsize=7)
+    if marks.names:
+        fill = not as_lines and sweep.design == "grid"
+        handles = []
+        for i, name in enumerate(marks.names):
+            text = f"{name}: {marks.counts[i]}"
+            handles.append(patches.Patch(facecolor=marks.face(i), edgecolor="0.35", hatch=marks.hatch(i),
+                                         linewidth=0.5, label=text) if fill else
+                           plt.Line2D([], [], linestyle="", marker=marks.marker(i), color=marks.ink(i), label=text))
+        legend_rows = (len(handles) + 1) // 2
+        below = 0.264 * legend_rows / size[1]
+        figure.get_layout_engine().set(rect=(0, below, 1, 1 - below))
+        figure.legend(handles=handles, loc="lower center", ncols=2, fontsize=8, frameon=False, handlelength=2.5)
+    if title := title_of(sweep, options, x, y, marks):
+        figure.suptitle(title, fontsize=9)
+    return figure
 
 
 def main():
     """Reads the arguments, draws and writes."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--x")
-    parser.add_argument("--y")
-    parser.add_argument("--value", default="displacement")
-    parser.add_argument("--log", action="store_true")
+    parser.add_argument("--x", metavar="AXIS")
+    parser.add_argument("--y", metavar="AXIS")
+    parser.add_argument("--lines", action="store_true")
+    parser.add_argument("--value", metavar="COLUMN", default="displacement")
+    parser.add_argument("--where", metavar="AXIS=VALUE", action="append", default=[])
+    parser.add_argument("--scale", choices=("auto", "linear", "log"), default="auto")
     parser.add_argument("--fit", action="store_true")
-    parser.add_argument("--output", type=pathlib.Path)
-    arguments = parser.parse_args()
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    sweep = Sweep(arguments.folder)
-    value = sweep.find(arguments.value, sweep.numbers(), "column of numbers")
-    drawable = [axis for axis in sweep.axes if axis in sweep.numbers()]
-    x = sweep.find(arguments.x, drawable + sweep.numbers(), "axis") if arguments.x else drawable[-1]
-    rest = [axis for axis in drawable if axis != x]
-    y = arguments.y if arguments.y is not None else (rest[-1] if len(rest) == 1 and len(sweep.axes) == 2 else "")
-    y = sweep.find(y, drawable, "axis") if y else ""
-    figure, axes = plt.subplots(figsize=(6.4, 4.6), constrained_layout=True)
-    if y and not arguments.fit:
-        heat_map(axes, figure, sweep, x, y, value, arguments.log)
-    else:
-        lines(axes, sweep, x, value, arguments.log, arguments.fit)
-    pictures = [arguments.output] if arguments.output else [arguments.folder / name for name in ("results.png", "results.svg")]
-    for picture in pictures:
-        figure.savefig(picture, dpi=160)
+    parser.add_argument("--output", type=pathlib.Path, metavar="PICTURE")
+    options = parser.parse_args()
+    sweep = Sweep(options.folder)
+    for condition in options.where:
+        sweep.where(condition)
+    figure = draw(sweep, options)
+    pictures = [options.folder / name for name in ("results.png", "results.svg")]
+    for picture in [options.output] if options.output else pictures:
+        try:
+            figure.savefig(picture, dpi=160)
+        except (OSError, ValueError) as error:
+            raise Problem(f'cannot write "{picture}": {getattr(error, "strerror", None) or error}') from error
         print(f"wrote {picture}")
 
 

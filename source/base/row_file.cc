@@ -30,13 +30,15 @@ namespace crawler
       return name;
     }
 
+    /// UTF-8, but labelled ASCII: Octave cannot read a group with texts that are labelled UTF-8, and to texts that are
+    /// in fact ASCII, all but names of files, it makes no difference.
     hid_t
     text_type(const std::size_t width)
     {
       const hid_t type = H5Tcopy(H5T_C_S1);
       H5Tset_size(type, width);
       H5Tset_strpad(type, H5T_STR_NULLPAD);
-      H5Tset_cset(type, H5T_CSET_UTF8);
+      H5Tset_cset(type, H5T_CSET_ASCII);
       return type;
     }
 

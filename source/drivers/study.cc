@@ -22,6 +22,19 @@ namespace crawler
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   }
 
+  std::string
+  duration_in_words(const double seconds)
+  {
+    return seconds <= 0.       ? "0 s"
+           : seconds < 0.01    ? fmt::format("{:.2g} ms", 1e3 * seconds)
+           : seconds < 1.      ? fmt::format("{:.0f} ms", 1e3 * seconds)
+           : seconds < 10.     ? fmt::format("{:.1f} s", seconds)
+           : seconds < 120.    ? fmt::format("{:.0f} s", seconds)
+           : seconds < 7200.   ? fmt::format("{:.0f} min", seconds / 60.)
+           : seconds < 172800. ? fmt::format("{:.1f} h", seconds / 3600.)
+                               : fmt::format("{:.1f} days", seconds / 86400.);
+  }
+
   StudyProgress::StudyProgress(Log &log, const unsigned long n_parts, std::string parts)
     : log_(log)
     , n_parts_(n_parts)
@@ -43,14 +56,14 @@ namespace crawler
       return;
     last_             = now();
     const double rate = done / (last_ - start_);
-    log_.line(fmt::format("  {:3.0f} %  {} of {} {}, {:.3g} {}/s, {:.0f} s left{}",
+    log_.line(fmt::format("  {:3.0f} %  {} of {} {}, {:.3g} {}/s, {}{}",
                           100. * done / n_parts_,
                           done,
                           n_parts_,
                           parts_,
                           rate,
                           parts_,
-                          (n_parts_ - done) / rate,
+                          done > 0 ? duration_in_words((n_parts_ - done) / rate) + " left" : "time left not known yet",
                           remark));
   }
 

@@ -52,6 +52,21 @@ namespace crawler
       return all != 0;
     }
 
+    /// What went wrong with the files of any rank is a FileError on all of them.
+    void
+    throw_on_all_ranks(MPI_Comm communicator, const std::string &problem)
+    {
+      const auto problems = gather(problem, communicator);
+      on_first_rank(communicator,
+                    [&]()
+                    {
+                      for (const std::string &one : problems)
+                        if (!one.empty())
+                          throw FileError(one + "; the rows that were written are there, and --resume makes the rest");
+                      return "";
+                    });
+    }
+
     /// The folders points/NUMBER of the points whose fields are kept, by `crawler run` with their values.
     bool
     keep_fields(MPI_Comm communicator,
@@ -62,6 +77,7 @@ namespace crawler
                 const std::vector<unsigned long> &kept)
     {
       bool all = true;
+      std::string problem;
       for (std::size_t i = rank_of(communicator); i < kept.size(); i += size_of(communicator))
       {
         const fs::path place = folder / "points" / fmt::format("{}", kept[i]);
@@ -74,9 +90,22 @@ namespace crawler
         one.overwrite = one.quiet = true;
         one.resume                = false;
         one.overrides             = points.overrides(design, kept[i]);
-        fs::create_directories(place);
-        all = run(MPI_COMM_SELF, one) != ExitCode::stopped && all;
+        try
+        {
+          fs::create_directories(place);
+          all = run(MPI_COMM_SELF, one) != ExitCode::stopped && all;
+        }
+        catch (const InputError &) // values that do not fit together: the row says so, and there are no fields
+        {
+          std::error_code error;
+          fs::remove(place, error); // if it is empty
+        }
+        catch (const std::exception &error)
+        {
+          problem = error.what();
+        }
       }
+      throw_on_all_ranks(communicator, problem);
       return on_all_ranks(communicator, all);
     }
 
@@ -136,15 +165,7 @@ namespace crawler
         if (!is_whole || !problem.empty())
           queue.close();
       }
-      const auto problems = gather(problem, communicator);
-      on_first_rank(communicator,
-                    [&]()
-                    {
-                      for (const std::string &one : problems)
-                        if (!one.empty())
-                          throw FileError(one + "; the rows that were written are there, and --resume makes the rest");
-                      return "";
-                    });
+      throw_on_all_ranks(communicator, problem);
       return on_all_ranks(communicator, is_whole);
     }
 

@@ -13,6 +13,17 @@
 
 namespace crawler
 {
+  namespace
+  {
+    std::string
+    size_in_words(const double bytes)
+    {
+      return bytes < 1e6   ? fmt::format("{:.3g} kB", bytes / 1e3)
+             : bytes < 1e9 ? fmt::format("{:.3g} MB", bytes / 1e6)
+                           : fmt::format("{:.3g} GB", bytes / 1e9);
+    }
+  } // namespace
+
   std::string
   in_words(const SweepDesign &design, const std::string &design_name)
   {
@@ -37,14 +48,16 @@ namespace crawler
     std::size_t bytes         = 0;
     for (const RowFile::Column &column : sweep_columns(design, points.declarations()))
       bytes += column.width == 0 ? sizeof(double) : column.width;
-    // The time of a few blocks, spread over the sweep.
-    constexpr unsigned long n_samples = 3;
+    // The time of some blocks, spread over the sweep.
+    constexpr unsigned long most_samples = 32;
+    constexpr double long_enough         = 2.; // seconds
     const SweepBlocks blocks(design);
-    const double before      = now();
+    const unsigned long stride = golden_stride(blocks.size());
+    const double limit = points.sweep().point_time_limit.value_or(HUGE_VAL), before = now();
     unsigned long n_computed = 0;
-    for (unsigned long i = 0; i < std::min<unsigned long>(n_samples, blocks.size()); ++i)
+    for (unsigned long i = 0; i < std::min(most_samples, blocks.size()) && now() - before < long_enough; ++i)
     {
-      const SweepBlock block = blocks[i * (blocks.size() - 1) / std::max(n_samples - 1, 1ul)];
+      const SweepBlock block = blocks[(i + 1) * stride % blocks.size()];
       std::vector<Task> tasks(block.size);
       for (unsigned long j = 0; j < block.size; ++j)
         tasks[j].parameters = points.parameters(block.first + j);
@@ -52,24 +65,25 @@ namespace crawler
       {
         return false;
       };
-      auto done = compute_similar(tasks, std::vector<bool>(block.size, true), HUGE_VAL, never);
+      auto done = compute_similar(tasks, std::vector<bool>(block.size, true), limit, never);
       for (unsigned long j = 0; j < block.size; ++j)
         if (!done[j])
-          compute_all({&tasks[j], 1}, HUGE_VAL, never);
+          compute_all({&tasks[j], 1}, limit, never);
       n_computed += block.size;
     }
     const double each = (now() - before) / static_cast<double>(n_computed);
     log.line(fmt::format("Sweep: {}.", in_words(design, points.sweep().design)));
-    log.line(fmt::format(
-      "  About {:.2g} s a point (from {} of them): {:.3g} s on one rank{}; results.h5 will have {:.3g} MB.",
-      each,
-      n_computed,
-      each * static_cast<double>(design.n_points()),
-      size_of(communicator) > 1 ? fmt::format(", {:.3g} s on {}",
-                                              each * static_cast<double>(design.n_points()) / size_of(communicator),
-                                              size_of(communicator))
-                                : "",
-      static_cast<double>(bytes * design.n_points()) / 1e6));
+    const double all = each * static_cast<double>(design.n_points());
+    log.line(
+      fmt::format("  About {} a point (measured on {} of them): {} on one rank{}; results.h5 will have {}, results.csv "
+                  "somewhat less.",
+                  duration_in_words(each),
+                  n_computed,
+                  duration_in_words(all),
+                  size_of(communicator) > 1
+                    ? fmt::format(", {} on {}", duration_in_words(all / size_of(communicator)), size_of(communicator))
+                    : "",
+                  size_in_words(static_cast<double>(bytes * design.n_points()))));
     log.line(file.name() + " is in order: all swept names and values are admissible. Nothing was written.");
     return true;
   }

@@ -16,6 +16,10 @@ namespace crawler
   double
   now();
 
+  /// "0.83 ms", "83 s", "12 min", "3.4 h", "2.1 days".
+  std::string
+  duration_in_words(double seconds);
+
   /// A line every few seconds at most: parts done, speed, time left.
   class StudyProgress
   {

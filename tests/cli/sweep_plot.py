@@ -1,0 +1,200 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""contrib/plot/sweep.py on small sweeps of each design: which pictures it makes, and what it says to bad input.
+
+    python3 sweep_plot.py PATH_TO_CRAWLER
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import matplotlib.image
+import numpy as np
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "plot" / "sweep.py"
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+CHI, P, K = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent", "Body/Elastic modulus"
+BASE = """
+set Accuracy = {accuracy}
+subsection Active stress
+  subsection Optimal wave
+    set Choose wave by = wave speed
+  end
+end
+subsection Sweep
+  set Axes = {axes}
+  {more}
+end
+"""
+# Name: axes, other entries, accuracy.
+SWEEPS = {
+    "line": (f"{CHI} : linspace(0.1, 0.3, 5)", "", 1e-2),
+    "grid": (f"{P} : 0, 1, 2; {CHI} : linspace(0.1, 0.3, 5)", "", 1e-3),
+    "log": (f"{K} : 1, 4; {CHI} : logspace(-3, -0.6, 7)", "", 1e-3),
+    "three": (f"{K} : 1, 4; {P} : 2, 3; {CHI} : 0.1, 0.2, 0.3", "", 1e-3),
+    "four": (f"Time/End time : 1, 2; {K} : 1, 2, 3, 4, 5; {P} : 2, 3; {CHI} : 0.1, 0.2", "", 1e-2),
+    "five": (f"Body/Length : 1, 2; Time/End time : 1, 2; {K} : 1, 2; {P} : 2, 3; {CHI} : 0.1, 0.2", "", 1e-2),
+    "one": (f"Body/Length : 1; {P} : 2, 3; {CHI} : 0.1, 0.2", "", 1e-2),
+    "zip": (f"{P} : 2, 2.5, 3; {CHI} : 0.1, 0.15, 0.2", "set Design = zip", 1e-2),
+    "random": (f"{P} : uniform(2, 4); {CHI} : loguniform(0.01, 0.3)", "set Design = random\n  set Number of points = 20", 1e-2),
+    "files": (f"File : soft.prm, stiff.prm; {CHI} : 0.1, 0.2, 0.3", "", 1e-2),
+    "failed": (f"{P} : 0, 0.5; {CHI} : 0.1, 0.3, 0.6", "", 1e-2),
+    "unfinished": (f"{P} : linspace(1.5, 4, 40); {CHI} : linspace(0.05, 0.5, 40)", "set Time limit = 0.1", 1e-4),
+}
+failures = 0
+
+
+def check(condition, what):
+    """Prints what was checked and counts failures."""
+    global failures
+    failures += not condition
+    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
+
+
+def draw(folder, name, *arguments):
+    """Calls the script."""
+    return subprocess.run([sys.executable, SCRIPT, name, *arguments], cwd=folder, env=ENVIRONMENT, capture_output=True, text=True,
+                          timeout=120, check=False)
+
+
+def words(picture):
+    """The texts of a picture in SVG (matplotlib leaves them as comments)."""
+    return re.findall(r"<!-- (.*?) -->", picture.read_text(encoding="utf-8"), re.DOTALL)
+
+
+def expect_picture(folder, name, wanted, *arguments):
+    """A picture in both formats, in which certain words stand."""
+    for old in ("results.png", "results.svg"):
+        (folder / name / old).unlink(missing_ok=True)
+    result = draw(folder, name, *arguments)
+    said = " ".join([name, *arguments])
+    if result.returncode != 0:
+        check(False, f"{said}: {result.returncode} {result.stderr.strip()}")
+        return []
+    image = matplotlib.image.imread(folder / name / "results.png")[:, :, :3]
+    texts = words(folder / name / "results.svg")
+    missing = [word for word in wanted if not any(word in text for text in texts)]
+    check(result.stderr == "" and min(image.shape[:2]) > 300 and image.std() > 0.02 and not missing,
+          f"{said}: {image.shape[1]} x {image.shape[0]} {result.stderr.strip()} {'without ' + str(missing) if missing else ''}")
+    return texts
+
+
+def test_pictures(folder):
+    """Each design."""
+    texts = expect_picture(folder, "line", ["Perturbation parameter", "displacement [length]"])
+    check("Anchoring exponent" not in texts, "what is no axis is not named")
+    expect_picture(folder, "grid", ["Perturbation parameter", "Anchoring exponent", "displacement [length]"])
+    expect_picture(folder, "grid", ["Anchoring exponent = 0", "Anchoring exponent = 2"], "--lines")
+    expect_picture(folder, "grid", ["Perturbation parameter", "Anchoring exponent"], "--x", P)
+    expect_picture(folder, "grid", ["Anchoring exponent = 2"], "--where", "exponent=2")
+    expect_picture(folder, "grid", ["net friction"], "--value", "net_friction")
+    expect_picture(folder, "grid", ["finished: 15"], "--value", "status")
+    expect_picture(folder, "grid", ["mesh changes"], "--value", "mesh_changes")  # constant
+    expect_picture(folder, "grid", ["displacement [length]"], "--scale", "log")  # both signs
+    expect_picture(folder, "log", ["Perturbation parameter", "Elastic modulus [force]"])
+    expect_picture(folder, "three", ["Elastic modulus = 1", "Elastic modulus = 4"])
+    expect_picture(folder, "three", ["Elastic modulus = 1", "Anchoring exponent = 2"], "--lines")
+    expect_picture(folder, "four", ["Elastic modulus = 5, End time = 2"])
+    expect_picture(folder, "four", ["Elastic modulus = 3", "End time = 1"], "--where", "modulus=3", "--where", "End time=1")
+    expect_picture(folder, "five", ["Length = 2"], "--where", "Length=2")
+    expect_picture(folder, "one", ["Length = 1"])
+    expect_picture(folder, "zip", ["Anchoring exponent", "Perturbation parameter varies, too"])
+    expect_picture(folder, "zip", ["Anchoring exponent", "Perturbation parameter"], "--x", CHI, "--y", P)
+    expect_picture(folder, "random", ["Anchoring exponent", "Perturbation parameter", "displacement [length]"])
+    expect_picture(folder, "random", ["Anchoring exponent varies, too"], "--lines")
+    expect_picture(folder, "files", ["soft", "stiff"])
+    expect_picture(folder, "files", ["soft", "stiff"], "--lines", "--x", "File")
+    expect_picture(folder, "failed", ["inverted (inverted inside): 2"])
+    expect_picture(folder, "failed", ["inverted (inverted inside): 2"], "--lines")
+    expect_picture(folder, "failed", ["inversion, t [time]", "finished: 4"], "--value", "inversion.t")
+    texts = expect_picture(folder, "unfinished", ["not computed yet"])
+    with h5py.File(folder / "unfinished" / "results.h5", "r") as file:
+        missing = np.count_nonzero(file["results/status"][:] == b"")
+    check(f"not computed yet: {missing}" in texts and missing > 0, f"{missing} points that are missing are counted")
+
+
+def test_fit(folder):
+    """The displacement of small waves grows as chi^2; one that is a power exactly comes out exactly."""
+    result = draw(folder, "log", "--fit", "--where", "modulus=1")
+    match = re.search(r"displacement = (\S+) \* \(.*\)\^(\S+)", result.stdout)
+    check(match and abs(float(match[2]) - 2) < 0.01 and abs(float(match[1]) - 0.5) < 0.02,
+          f"displacement = chi^2/2: {result.stdout.splitlines()[0]}")
+    shutil.copytree(folder / "log", folder / "power")
+    with h5py.File(folder / "power" / "results.h5", "r+") as file:
+        group = file["results"]
+        group["displacement"][:] = -3 * group[CHI.replace("/", ".")][:] ** -1.5
+    result = draw(folder, "power", "--fit", "--where", "modulus=4")
+    check("displacement = -3 * " in result.stdout and "^-1.500000" in result.stdout, f"-3 x^-1.5: {result.stdout.splitlines()[0]}")
+
+
+def test_bad_input(folder):
+    """One sentence, exit code 1 (2 for the command line), no picture."""
+    (folder / "broken").mkdir()
+    (folder / "broken" / "results.h5").write_text("no HDF5", encoding="utf-8")
+    (folder / "other").mkdir()
+    with h5py.File(folder / "other" / "results.h5", "w") as file:
+        file["x"] = [1.0]
+    shutil.copytree(folder / "line", folder / "unknown")
+    with h5py.File(folder / "unknown" / "results.h5", "r+") as file:
+        file["results/displacement"][:] = np.nan
+    cases = [(("nowhere",), 'no "nowhere/results.h5"'), (("broken",), "not a table"), (("other",), "not a table"),
+             (("unknown",), "no point has a displacement (5 finished"), (("grid", "--value", "displacment"), "displacement"),
+             (("grid", "--value", "engine"), "column of numbers"), (("grid", "--x", "Length"), "one of"),
+             (("grid", "--x", P, "--y", P), "two axes"), (("grid", "--where", "exponent=7"), "near it are 0, 1, 2"),
+             (("grid", "--where", "exponent"), "AXIS=VALUE"), (("grid", "--where", "exponent=two"), "number"),
+             (("files", "--where", "File=hard.prm"), "soft.prm, stiff.prm"), (("five",), "--where"),
+             (("four", "--lines"), "--where"), (("grid", "--fit"), "one sign"),
+             (("grid", "--output", "picture.xyz"), "picture.xyz"), (("grid", "--output", "no/picture.png"), "no/picture.png"),
+             (("line", "--value", "status"), "two axes")]
+    for arguments, word in cases:
+        result = draw(folder, *arguments)
+        lines = result.stderr.splitlines()
+        check(result.returncode == 1 and len(lines) == 1 and word in lines[0] and "wrote" not in result.stdout,
+              f"{' '.join(arguments)}: {result.returncode}, {lines[0] if len(lines) == 1 else lines[-3:]}")
+
+
+def test_columns(folder):
+    """The user guide's table of columns has each with its unit."""
+    guide = (SCRIPT.parents[2] / "doc" / "user_guide.md").read_text(encoding="utf-8")
+    rows = re.search(r"\| columns \| unit \|\n\|---\|---\|\n((?:\|.*\n)+)", guide)[1].splitlines()
+    told = {name: unit.strip() for names, unit in (row.strip("|").rsplit("|", 1) for row in rows if "errors.NAME" not in row)
+            for name in re.findall(r"`([^`]+)`", names)}
+    with h5py.File(folder / "line" / "results.h5", "r") as file:
+        found = {data.attrs["name"].decode(): "texts" if data.dtype.kind == "S" else data.attrs["unit"].decode()
+                 for data in file["results"].values() if data.attrs["description"] != b"axis of the sweep"}
+        ascii_only = all(data.id.get_type().get_cset() == h5py.h5t.CSET_ASCII for data in file["results"].values()
+                         if data.dtype.kind == "S")
+    check(ascii_only, "texts have the label that Octave can read")
+    bars = {name for name in found if name.startswith("errors.")}  # by a rule
+    for name in bars:
+        of = name.removeprefix("errors.")
+        told[name] = found.get(of, found.get(of + ".value"))
+    wrong = sorted(name for name in told.keys() | found.keys() if told.get(name) != found.get(name))
+    check(not wrong and len(found) > 50, f"{len(found)} columns are in the user guide with their units {wrong or ''}")
+
+
+def main():
+    """Makes the sweeps and draws them."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for scene, modulus in (("soft", 1), ("stiff", 10)):
+            (folder / f"{scene}.prm").write_text(f"subsection Body\n  set Elastic modulus = {modulus}\nend\n", encoding="utf-8")
+        for sweep, (axes, more, accuracy) in SWEEPS.items():
+            (folder / f"{sweep}.prm").write_text(BASE.format(axes=axes, more=more, accuracy=accuracy), encoding="utf-8")
+            result = subprocess.run([pathlib.Path(sys.argv[1]).resolve(), "sweep", f"{sweep}.prm", "--output", sweep], cwd=folder,
+                                    env=ENVIRONMENT, capture_output=True, text=True, timeout=120, check=False)
+            check(result.returncode == (5 if sweep == "unfinished" else 0), f"sweep {sweep}: {result.returncode} {result.stderr.strip()}")
+        test_pictures(folder)
+        test_fit(folder)
+        test_bad_input(folder)
+        test_columns(folder)
+    sys.exit(failures > 0)
+
+
+if __name__ == "__main__":
+    main()

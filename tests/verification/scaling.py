@@ -1,0 +1,56 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The scaling study of doc/theory.md as a sweep: exponents within 1 % of theory, and exact where the worms are similar.
+
+    python3 scaling.py PATH_TO_CRAWLER
+"""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+TABLE = ROOT / "prm" / "studies" / "scaling.csv"
+EXACT = 1e-4  # per cent; Accuracy of the runs is 1e-6
+failures = 0
+
+
+def check(condition, what):
+    """Prints what was checked and counts failures."""
+    global failures
+    failures += not condition
+    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
+
+
+def call(*command):
+    """Runs a command in the root of the repository, whose paths the study has."""
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=200, check=False)
+
+
+def main():
+    """Runs the sweep and the fits."""
+    made = call(sys.executable, "contrib/scaling_table.py")
+    check(made.stdout == TABLE.read_text(encoding="utf-8"), "scaling.csv is what contrib/scaling_table.py makes")
+    with tempfile.TemporaryDirectory() as name:
+        sweep = call(str(pathlib.Path(sys.argv[1]).resolve()), "sweep", "prm/studies/scaling.prm", "--output", name, "--strict")
+        check(sweep.returncode == 0, f"the sweep finishes ({sweep.returncode}) {sweep.stderr.strip()}")
+        plot = call(sys.executable, "contrib/plot/scaling.py", name, str(TABLE), "--require", "1")
+        check(plot.returncode == 0, f"all exponents within 1 % ({plot.returncode}) {plot.stderr.strip()}")
+        laws = re.findall(r"(\w+): (\w+) = (\S+) \* (\w+)\^(\S+) \(theory (\S+), off by (\S+) %\)", plot.stdout)
+        check(len(laws) == 6, f"{len(laws)} laws")
+        for family, y, factor, x, power, theory, off in laws:
+            wanted = EXACT if family in ("mass", "similar") else 1.0
+            check(float(off) <= wanted and abs(float(power) / float(theory) - 1) <= 0.01 * wanted,
+                  f"{family}: {y} ~ {x}^{power}, theory {theory}")
+            if (family, y) == ("mass", "speed"):
+                check(abs(float(factor) / 3.8 - 1) < 0.01, f"a worm of 1 g goes {factor} mm/s")
+        picture = pathlib.Path(name, "scaling.png")
+        check(picture.is_file() and picture.stat().st_size > 20000, "the picture is there")
+        strict = call(sys.executable, "contrib/plot/scaling.py", name, str(TABLE), "--require", "0.01")
+        check(strict.returncode == 1 and "at most 0.01 %" in strict.stderr, "--require ends with 1 if an exponent is off by more")
+    sys.exit(failures > 0)
+
+
+if __name__ == "__main__":
+    main()
