@@ -72,7 +72,7 @@ def main():
         panel.loglog(x, np.exp(shift) * x**power, "-" if marker == "o" else ":", color=colour, linewidth=1)
         panel.set(xlabel=LABELS[x_name], ylabel=LABELS[y_name])
     for panel in panels:
-        panel.legend(fontsize=7)
+        panel.legend(fontsize=7, loc="lower right")
         panel.grid(alpha=0.3, which="both")
     output = arguments.output or arguments.folder / "scaling.png"
     figure.savefig(output, dpi=150)
