@@ -143,15 +143,21 @@ namespace crawler
     return list;
   }
 
-  void
-  draw(const std::string &script, const std::filesystem::path &folder, Log &log)
+  std::string
+  plot_script(const std::string &name)
   {
     // Beside an installed program, else in the folder of the source code.
     std::error_code ignored;
     const auto program   = std::filesystem::read_symlink("/proc/self/exe", ignored);
-    const auto installed = program.parent_path().parent_path() / CRAWLER_INSTALLED_PLOTS / script;
-    const std::string path =
-      std::filesystem::exists(installed, ignored) ? installed.string() : CRAWLER_SOURCE_DIR "/contrib/plot/" + script;
+    const auto installed = program.parent_path().parent_path() / CRAWLER_INSTALLED_PLOTS / name;
+    return std::filesystem::exists(installed, ignored) ? installed.string()
+                                                       : CRAWLER_SOURCE_DIR "/contrib/plot/" + name;
+  }
+
+  void
+  draw(const std::string &script, const std::filesystem::path &folder, Log &log)
+  {
+    const std::string path    = plot_script(script);
     const std::string debians = "/usr/bin/python3";
     for (const std::string &python : {debians, std::string("python3")})
       if (run_silently({python, path, folder.string()}))
