@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws an atlas of crawler: the outcome of every point, and how the measured error compares with the reported one.
 
-    python3 atlas.py OUTPUT_FOLDER
+    contrib/plot/atlas.py OUTPUT_FOLDER
 
 Reads atlas.csv and parameters.prm of the folder and writes atlas.png and atlas.svg there; needs numpy and matplotlib
 (Debian: python3-matplotlib). Colours are those of Okabe and Ito, safe for colour-blind readers.

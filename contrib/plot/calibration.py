@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws the study of error bars: the error that runs reported over their true error.
 
-    python3 calibration.py TABLE.csv [--output calibration.png]
+    contrib/plot/calibration.py TABLE.csv [--output calibration.png]
 
 Reads the table of build/tests/calibration; needs numpy and matplotlib (Debian: python3-matplotlib). Colours are those of
 Okabe and Ito, safe for colour-blind readers; each accuracy has a marker of its own.

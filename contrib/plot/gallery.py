@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs all parameter files of a folder and draws them on one sheet: the body on the ground, coloured by its stretch.
 
-    python3 gallery.py PATH_TO_CRAWLER [--examples prm/examples] [--output doc/images/gallery.png]
+    contrib/plot/gallery.py PATH_TO_CRAWLER [--examples prm/examples] [--output doc/images/gallery.png]
 
 Needs matplotlib (Debian: python3-matplotlib). Each panel has its own colours, from the smallest stretch (dark) to the
 largest (bright), which stand in its title with the displacement.
@@ -56,7 +56,10 @@ def main():
     parser.add_argument("--examples", type=pathlib.Path, default=root / "prm" / "examples")
     parser.add_argument("--output", type=pathlib.Path, default=root / "doc" / "images" / "gallery.png")
     options = parser.parse_args()
-    import matplotlib
+    try:
+        import matplotlib
+    except ImportError:
+        raise Problem("matplotlib is missing; install it (Debian: apt install python3-matplotlib)") from None
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 

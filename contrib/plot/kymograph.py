@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws a run of crawler: the moving body, its stretch over s and t, and its displacement.
 
-    python3 kymograph.py OUTPUT_FOLDER [--output picture.png] [--stress]
+    contrib/plot/kymograph.py OUTPUT_FOLDER [--output picture.png] [--stress]
 
 With --stress the active stress over s and t comes first.
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws the scaling of speed and cost of transport from a sweep over prm/studies/scaling.prm, and prints the exponents.
 
-    python3 scaling.py OUTPUT_FOLDER SCALING_CSV [--output scaling.png] [--require PERCENT]
+    contrib/plot/scaling.py OUTPUT_FOLDER SCALING_CSV [--output scaling.png] [--require PERCENT]
 
 --require: exit code 1 if an exponent is off theory by more. Needs numpy and matplotlib (Debian: python3-matplotlib).
 """
@@ -10,6 +10,14 @@ import argparse
 import csv
 import pathlib
 import sys
+
+try:
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    import numpy as np
+except ImportError as missing:
+    sys.exit(f"scaling.py: {missing}; on Debian: apt install python3-matplotlib")
 
 
 def read(path):
@@ -38,11 +46,6 @@ def main():
     parser.add_argument("--output", type=pathlib.Path)
     parser.add_argument("--require", type=float, metavar="PERCENT")
     arguments = parser.parse_args()
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    import numpy as np
-
     worms, results = read(arguments.table), read(arguments.folder / "results.csv")
     if not worms or len(worms) != len(results) or any(row["status"] != "finished" for row in results):
         sys.exit("scaling.py: a finished sweep over all rows of the table is expected")
@@ -53,7 +56,7 @@ def main():
     column["COT"] = work / (column["mass"] * displacement)
     family = np.array([row["family"] for row in worms])
 
-    figure, panels = plt.subplots(1, 3, figsize=(10.5, 3.6), layout="constrained")
+    figure, panels = plt.subplots(1, 3, figsize=(10.5, 4.0), layout="constrained")
     panel_of = dict(zip(("speed", "U", "COT"), panels))
     masses = np.array([0.012, 8.5])
     panel_of["speed"].loglog(masses, 3.8 * masses**0.33, "-", color="#E69F00", linewidth=5, alpha=0.5,
@@ -72,7 +75,7 @@ def main():
         panel.loglog(x, np.exp(shift) * x**power, "-" if marker == "o" else ":", color=colour, linewidth=1)
         panel.set(xlabel=LABELS[x_name], ylabel=LABELS[y_name])
     for panel in panels:
-        panel.legend(fontsize=7, loc="lower right")
+        panel.legend(fontsize=8, loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False)  # covers no points
         panel.grid(alpha=0.3, which="both")
     output = arguments.output or arguments.folder / "scaling.png"
     figure.savefig(output, dpi=150)

@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws the table of crawler sweep: a heat map over two axes, lines over one, points for random designs.
 
-    python3 sweep.py OUTPUT_FOLDER [--x AXIS] [--y AXIS | --lines] [--value COLUMN] [--where AXIS=VALUE ...]
-                     [--scale auto|linear|log] [--fit] [--output PICTURE]
+    contrib/plot/sweep.py OUTPUT_FOLDER [--x AXIS] [--y AXIS | --lines] [--value COLUMN] [--where AXIS=VALUE ...]
+                          [--scale auto|linear|log] [--fit] [--output PICTURE]
 
 Reads results.h5 of the folder and writes results.png and results.svg there (or PICTURE). AXIS is an axis of the sweep,
 as "Body/Length", or its last words. Without --x the last axis is x; without --y the one before it is y, the next two
 make the columns and rows of small pictures. --lines: x alone, a line for each value of the next axis. --where keeps the
 points with this value of an axis. COLUMN is any column of numbers (displacement), or status: what became of the points.
 --scale is that of the values; auto: logarithmic if they are positive and differ by more than a factor of 1000. Axes whose
-values have equal ratios are logarithmic. --fit: the power law through the points of each line, in its label. Values of
-points that did not finish are not drawn, but which and why. Needs numpy, h5py and matplotlib (Debian: python3-h5py,
-python3-matplotlib). Colours are safe for colour-blind readers.
+values have equal ratios are logarithmic. --fit: the power law through the points of each line, in its label; lines that
+change sign are drawn without. Values of points that did not finish are not drawn, but which and why. Needs numpy,
+h5py and matplotlib (Debian: python3-h5py, python3-matplotlib). Colours are safe for colour-blind readers.
 """
 import argparse
 import difflib
@@ -20,6 +20,7 @@ import os
 import pathlib
 import re
 import sys
+import textwrap
 
 os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a sweep under way may be looked at
 try:
@@ -84,16 +85,25 @@ class Sweep:
         return [axis for axis in self.axes if len(np.unique(self.column(axis))) > 1]
 
     def find(self, name, among, what):
-        """The one column whose name is, or ends with, this."""
-        if name in among:
-            return name
+        """The one column whose name is, or ends with, this; a whole name before the end of another, also of texts."""
+        whole = name if name in self.data else next((own for own in self.data if own.lower() == name.lower()), None)
+        if whole in among:
+            return whole
+        if whole and not self.is_number(whole):
+            raise Problem(f'the column "{whole}" holds texts, which cannot be drawn; '
+                          f'{"an" if what == "axis" else "a"} {what} is expected')
         found = [column for column in among if column.lower().endswith(name.lower())]
         whole = [column for column in found if column.lower()[:-len(name)].endswith(("/", ".", "_"))]
         found = whole if len(whole) == 1 else found
         if len(found) == 1:
             return found[0]
-        alike = found or difflib.get_close_matches(name, among, 4, 0.3) or among
-        raise Problem(f'"{name}" names {"several" if found else "no"} {what}; one of {", ".join(alike[:8])} is expected')
+        if found:
+            listed = ", ".join(found[:8]) + (f" and {len(found) - 8} others" if len(found) > 8 else "")
+            raise Problem(f'"{name}" ends several names: {listed}; more of the one that is meant is expected')
+        if len(among) <= 8:
+            raise Problem(f'"{name}" is no {what}; one of {", ".join(among)} is expected')
+        raise Problem(f'"{name}" is no {what}; the nearest of {len(among)} names are {", ".join(nearest(name, among))}; '
+                      'the first line of results.csv has all')
 
     def where(self, condition):
         """Keeps the points with AXIS=VALUE."""
@@ -180,6 +190,14 @@ class Marks:
 def as_text(value):
     """Attributes and texts are bytes."""
     return value.decode(errors="replace") if isinstance(value, bytes) else str(value)
+
+
+def nearest(name, among):
+    """The four names that are most like this one, as a whole or by their last words."""
+    def likeness(column):
+        ends = [column[match.end():] for match in re.finditer("^|[/._]", column)]
+        return max(difflib.SequenceMatcher(None, name.lower(), end.lower()).ratio() for end in ends)
+    return sorted(among, key=likeness, reverse=True)[:4]
 
 
 def is_logarithmic(values):
@@ -306,16 +324,20 @@ def scatter(axes, x, y, mine, values, marks, look):
                         edgecolors="0.4", linewidths=0.3 if size > 4 else 0, rasterized=True)
 
 
-def power_law(x, y, name):
-    """Factor and exponent of y = factor * x^exponent; y of one sign."""
-    if len(x) < 2 or x.min() <= 0 or not (y.min() > 0 or y.max() < 0):
-        raise Problem(f'--fit: two points or more with a positive axis and values "{name}" of one sign are expected')
+def power_law(x, y):
+    """Factor and exponent of y = factor * x^exponent; None unless two points or more have positive x and y of one sign."""
+    if len(x) < 2 or x.min() <= 0 or x.min() == x.max() or not (y.min() > 0 or y.max() < 0):
+        return None
     power, shift = np.polyfit(np.log(x), np.log(np.abs(y)), 1)
     return np.exp(shift) * np.sign(y[0]), power
 
 
-def lines(axes, x, mine, values, errors, marks, other, look, options):
-    """A line for each value of the axis other (or one), with gaps where points have no value."""
+def lines(axes, x, mine, values, errors, marks, other, look, options, panel):
+    """A line for each value of the axis other (or one), with gaps where points have no value.
+
+    Returns the power laws: which line (other and panel in words), the law or None, the least size of its values.
+    """
+    laws = []
     keys = range(len(other.values)) if other else [None]
     for number, key in enumerate(keys):
         some = np.flatnonzero(mine & (other.index == key) if other else mine)
@@ -330,11 +352,10 @@ def lines(axes, x, mine, values, errors, marks, other, look, options):
         known = np.isfinite(y)
         text = f"{other.label.split(' [')[0]} = {other.texts()[key]}" if other and (look is None or options.fit) else ""
         if options.fit:
-            factor, power = power_law(at[known], y[known], options.value)
-            said = f"{factor:.3g} x^{power:.4f}"
-            text += ("; " if text else "") + said
-            print(f"{options.value} = {factor:.6g} * ({x.name})^{power:.6f}" +
-                  (f" at {other.name} = {other.texts()[key]}" if other else ""))
+            law = power_law(at[known], y[known])
+            laws.append((", ".join(([f"{other.name} = {other.texts()[key]}"] if other else []) + panel), law,
+                         np.abs(y[known]).min(initial=np.inf)))
+            text += ("; " if text else "") + (f"{law[0]:.3g} x^{law[1]:.4f}" if law else "no power law")
         points = len(at) <= 60
         axes.plot(at, y, color=colour, marker=marker if points or options.dots else "",
                   linestyle="" if options.dots else style, markersize=4 if points else 2.5, linewidth=1.2, label=text or None)
@@ -349,6 +370,36 @@ def lines(axes, x, mine, values, errors, marks, other, look, options):
         axes.plot(at, np.full(len(at), 0.02 + 0.03 * i), transform=axes.get_xaxis_transform(), linestyle="",
                   marker=marks.marker(i), color="0.35", markersize=5, clip_on=False)
     axes.grid(alpha=0.3)
+    return laws
+
+
+def scale_lines(axes, values, fitted):
+    """A logarithmic scale of values; of both signs: linear below the least of the lines with a fit, else of most values."""
+    if values.min() > 0:
+        axes.set_yscale("log")
+        return
+    sizes = np.abs(values[values != 0])
+    least = min(fitted, default=max(np.quantile(sizes, 0.1), 1e-12 * sizes.max()))
+    decade = np.floor(np.log10(least))
+    axes.set_yscale("symlog", linthresh=1.001 * 10**decade)
+    most = np.floor(np.log10(sizes.max()))
+    powers = 10 ** np.arange(decade, most + 1)[::int(1 + (most - decade) // 6)]
+    axes.yaxis.set_major_locator(ticker.FixedLocator(np.concatenate((-powers[::-1], [0.], powers))))
+    axes.yaxis.set_minor_locator(ticker.NullLocator())
+    axes.margins(y=0.05)  # of this scale
+
+
+def tell_laws(laws, x, value):
+    """Prints the power laws and, in a sentence, which lines have none."""
+    without = [line for line, law, _ in laws if law is None]
+    needed = f'two points or more with a positive axis and values "{value}" of one sign'
+    if len(without) == len(laws):
+        raise Problem(f"--fit: no line has {needed}, which are expected")
+    for line, law, _ in laws:
+        if law:
+            print(f"{value} = {law[0]:.6g} * ({x.name})^{law[1]:.6f}" + (f" at {line}" if line else ""))
+    if without:
+        print(f"drawn without a fit, which needs {needed}: {len(without)} of {len(laws)} lines ({'; '.join(without)})")
 
 
 def spread(axis, most, what):
@@ -409,7 +460,7 @@ def draw(sweep, options):
         values = np.full(len(sweep.chosen), np.nan)
     else:
         numbers = [name for name in sweep.data if sweep.is_number(name)]
-        options.value = sweep.find(options.value, numbers, "column of numbers")
+        options.value = sweep.find(options.value, numbers, "column of numbers (or status)")
         values = sweep.column(options.value)
     marks = Marks(sweep, values, by_status)
     if by_status:
@@ -455,22 +506,20 @@ def draw(sweep, options):
             own = errors[marks.drawn]
             visible = own > (0.02 * np.abs(drawn) if log else 0.003 * (drawn.max() - drawn.min()))
             errors = errors if visible.any() else None
-    mesh = None
+    mesh, laws = None, []
     for row, j in enumerate(high):
         for column, i in enumerate(wide):
             axes, mine = panels[row][column], np.ones(len(values), dtype=bool)
             for axis, which in zip(rest, (i, j)):
                 mine &= axis.index == which
             if as_lines:
-                lines(axes, x, mine, values, errors, marks, y, line_look, options)
-                if log:
-                    axes.set_yscale("symlog" if drawn.min() < 0 else "log", **(
-                        {"linthresh": np.quantile(np.abs(drawn[drawn != 0]), 0.1)} if drawn.min() < 0 else {}))
+                panel = [f"{axis.name} = {axis.texts()[which]}" for axis, which in zip(rest, (i, j))]
+                laws += lines(axes, x, mine, values, errors, marks, y, line_look, options, panel)
             elif sweep.design == "grid":
                 mesh = heat_map(axes, x, y, mine, values, marks, look)
             else:
                 mesh = scatter(axes, x, y, mine, values, marks, look)
-            x.log = x.log or (options.fit and x.is_number)
+            x.log = x.log or (options.fit and x.is_number and x.at.min() > 0)
             x.draw(axes, "x", row == len(high) - 1)
             if not x.is_number and max(map(len, x.texts())) * len(x.values) * len(wide) > 60:
                 axes.tick_params(axis="x", labelrotation=30)
@@ -479,15 +528,28 @@ def draw(sweep, options):
             elif column == 0:
                 axes.set_ylabel(sweep.label(options.value))
             if rest:
-                axes.set_title(", ".join(f"{axis.label.split(' [')[0]} = {axis.texts()[which]}"
-                                         for axis, which in zip(rest, (i, j))), fontsize=8)
+                titles = [f"{axis.label.split(' [')[0]} = {axis.texts()[which]}" for axis, which in zip(rest, (i, j))]
+                axes.set_title("\n".join(textwrap.fill(title, 34) for title in titles), fontsize=8)
+    if options.fit:
+        tell_laws(laws, x, options.value)
+    if as_lines and log:
+        for axes in panels.flat:
+            scale_lines(axes, drawn, [least for _, law, least in laws if law])
     if mesh is not None:
         bar = figure.colorbar(mesh, ax=panels, label=sweep.label(options.value))
         if look[0] == "PuOr" and not options.dots:
             bar.ax.axhline(0., color="black", linewidth=1)  # as the line in the map
     elif line_look:
         figure.colorbar(plt.cm.ScalarMappable(line_look[1], line_look[0]), ax=panels, label=y.label)
-    if as_lines and (y or options.fit) and not (line_look and not options.fit) and len(panels[0][0].get_lines()) < 20:
+    n_lines = len(panels[0][0].get_legend_handles_labels()[1]) if as_lines else 0
+    if options.fit and 0 < n_lines < 20:  # the laws differ from picture to picture: each has its legend, below
+        columns = 1 if small else 2
+        size = (size[0], size[1] + 0.16 * -(-n_lines // columns) * len(high))
+        figure.set_size_inches(size)
+        for axes in panels.flat:
+            axes.legend(fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.24 if small else -0.12), ncols=columns,
+                        frameon=False, handlelength=3)
+    elif 0 < n_lines < 20:
         panels[0][0].legend(fontsize=7)
     if marks.names:
         fill = not as_lines and sweep.design == "grid"

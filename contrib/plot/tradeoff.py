@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws a tradeoff of crawler: the error of every setting over its processor time, and the Pareto fronts.
 
-    python3 tradeoff.py OUTPUT_FOLDER
+    contrib/plot/tradeoff.py OUTPUT_FOLDER
 
 Reads tradeoff.csv and summary.json of the folder and writes tradeoff.png and tradeoff.svg there; needs numpy and
 matplotlib (Debian: python3-matplotlib). Colours are those of Okabe and Ito, safe for colour-blind readers; integrators

@@ -264,6 +264,7 @@ namespace crawler
                   [&]()
                   {
                     require_usable(folder, options.overwrite);
+                    require_no_sweep(folder);
                     prepare(folder);
                     std::filesystem::remove_all(folder / "rows"); // of an atlas that was killed
                     std::filesystem::create_directories(folder / "rows");

@@ -184,9 +184,10 @@ namespace crawler
       void
       watch_gait(Lane &lane, const LaneStep &step)
       {
-        for (double time = lane.gait->next_time(); time <= step.time; time = lane.gait->next_time())
+        constexpr double same_time = 1e-12;
+        for (double time = lane.gait->next_time(); time <= step.time + same_time; time = lane.gait->next_time())
         {
-          sampler_.sample(step, time);
+          sampler_.sample(step, std::min(time, step.time));
           lane.gait->see(sampler_.displacement(), sampler_.mean_displacement());
         }
         if (!step.is_frame)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/file_lock.h>
 #include <crawler/drivers/output_folder.h>
 
 #include <cerrno>
@@ -45,6 +46,20 @@ namespace crawler
     if (!overwrite && !fs::is_empty(folder, error))
       throw InputError("the output folder \"" + folder.string() +
                        "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
+  }
+
+  const std::string sweep_lock_name = "sweep.lock";
+
+  void
+  require_no_sweep(const fs::path &folder)
+  {
+    std::error_code error;
+    if (!fs::exists(folder / sweep_lock_name, error))
+      return;
+    FileLock lock(folder / sweep_lock_name);
+    if (lock.lock() == FileLock::State::of_another_process)
+      throw InputError("a sweep writes to \"" + folder.string() +
+                       "\"; another folder is expected for --output, or that the sweep has ended");
   }
 
   void

@@ -188,6 +188,7 @@ namespace crawler
                   [&]()
                   {
                     require_usable(folder, options.overwrite);
+                    require_no_sweep(folder);
                     return "";
                   });
 

@@ -62,8 +62,9 @@ namespace crawler
       gait_meter_->see(u, assembler_->integrals(step.time, state, v_).displacement);
     };
     y_inside_.resize(y_.size());
-    for (double time = gait_meter_->next_time(); time <= step.time; time = gait_meter_->next_time())
-      if (time >= step.time - 1e-12 || step.size == 0.)
+    constexpr double same_time = 1e-12;
+    for (double time = gait_meter_->next_time(); time <= step.time + same_time; time = gait_meter_->next_time())
+      if (time >= step.time - same_time || step.size == 0.)
         see(y);
       else
       {

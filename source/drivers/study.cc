@@ -114,6 +114,14 @@ namespace crawler
         list.emplace(declarations.entries()[i].path, declarations.value(i));
       return list;
     };
+    const auto are_same_number = [](const std::string &a, const std::string &b)
+    {
+      const auto number = [](const std::string &quoted)
+      {
+        return quoted.size() < 2 ? std::nullopt : to_number(quoted.substr(1, quoted.size() - 2));
+      };
+      return number(a) && number(a) == number(b);
+    };
     const auto old_values = values(before), new_values = values(after);
     std::vector<std::string> list;
     const auto compare = [&](const std::string &entry)
@@ -124,7 +132,7 @@ namespace crawler
         return found == all.end() ? std::string("not there") : "\"" + found->second + "\"";
       };
       const std::string was = value_in(old_values), is = value_in(new_values);
-      if (was != is && std::find(others.begin(), others.end(), entry) == others.end())
+      if (was != is && !are_same_number(was, is) && std::find(others.begin(), others.end(), entry) == others.end())
         list.push_back(fmt::format("{} was {} and is {}", entry, was, is));
     };
     for (const auto &[entry, value] : old_values)

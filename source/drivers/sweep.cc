@@ -67,7 +67,8 @@ namespace crawler
                     });
     }
 
-    /// The folders points/NUMBER of the points whose fields are kept, by `crawler run` with their values.
+    /// The folders points/NUMBER of the points whose fields are kept, by `crawler run` with their values. Points that
+    /// were given up have none.
     bool
     keep_fields(MPI_Comm communicator,
                 const CommandOptions &options,
@@ -78,10 +79,14 @@ namespace crawler
     {
       bool all = true;
       std::string problem;
+      const RowReader table(MPI_COMM_SELF, folder / "results.h5", sweep_group);
+      const std::size_t reason = table.index_of("reason");
       for (std::size_t i = rank_of(communicator); i < kept.size(); i += size_of(communicator))
       {
         const fs::path place = folder / "points" / fmt::format("{}", kept[i]);
-        if (fs::exists(place / "summary.json"))
+        const Column row     = table.read(reason, kept[i], 1);
+        if (fs::exists(place / "summary.json") ||
+            std::get<std::vector<std::string>>(row.values).front() == time_limit_reason)
           continue;
         CommandOptions one = options;
         if (one.file == "-")

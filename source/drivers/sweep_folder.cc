@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <set>
 #include <thread>
 
@@ -23,7 +24,6 @@ namespace crawler
   {
     namespace fs = std::filesystem;
 
-    const std::string lock_name = "sweep.lock";
 
     /// How a value of the table is shown.
     std::string
@@ -58,6 +58,25 @@ namespace crawler
         }
       return "";
     }
+    /// The folders of points, but for files that are not the program's.
+    void
+    remove_kept_fields(const fs::path &points)
+    {
+      std::error_code error;
+      if (!fs::is_directory(points, error))
+        return;
+      std::vector<fs::path> folders;
+      for (const auto &entry : fs::directory_iterator(points))
+        if (entry.is_directory() && to_number(entry.path().filename().string()))
+          folders.push_back(entry.path());
+      for (const fs::path &folder : folders)
+      {
+        prepare(folder);
+        fs::remove(folder / "solution", error); // these if they are empty
+        fs::remove(folder, error);
+      }
+      fs::remove(points, error);
+    }
   } // namespace
 
   SweepFolder::SweepFolder(fs::path path, const CommandOptions &options, Log &log)
@@ -70,7 +89,7 @@ namespace crawler
   SweepFolder::State
   SweepFolder::state() const
   {
-    static const std::set<std::string> early = {lock_name,
+    static const std::set<std::string> early = {sweep_lock_name,
                                                 "original.prm",
                                                 "original.prm.part",
                                                 "parameters.prm",
@@ -82,7 +101,7 @@ namespace crawler
       return State::empty;
     if (fs::exists(path_ / "results.h5", error))
       return State::computed;
-    bool is_begun = fs::exists(path_ / lock_name, error);
+    bool is_begun = fs::exists(path_ / sweep_lock_name, error);
     for (const auto &file : fs::directory_iterator(path_))
       is_begun = is_begun && early.contains(file.path().filename().string());
     return is_begun ? State::begun : State::foreign;
@@ -92,7 +111,7 @@ namespace crawler
   SweepFolder::lock()
   {
     constexpr std::chrono::milliseconds longest_wait(5000), pause(100);
-    lock_.emplace(path_ / lock_name);
+    lock_.emplace(path_ / sweep_lock_name);
     FileLock::State state = lock_->lock();
     if (state == FileLock::State::of_another_process)
       log_.line(fmt::format("Another sweep writes to \"{}\"; it may be about to end: waiting for {} s at most",
@@ -141,7 +160,7 @@ namespace crawler
       return done;
     }
     prepare(path_);
-    fs::remove_all(path_ / "points"); // of an earlier sweep
+    remove_kept_fields(path_ / "points"); // of an earlier sweep
     write_file(path_ / "original.prm", file.text());
     write_file(path_ / "parameters.prm", points.effective());
     log_.open(path_ / "log.txt");
@@ -183,14 +202,21 @@ namespace crawler
                                 was,
                                 version));
 
+    // What ran out of a time limit that is larger now is computed again.
+    constexpr double larger          = 1.2;
     constexpr unsigned long together = 1 << 16;
-    const std::size_t status         = table.index_of("status");
+    const double limit               = points.sweep().point_time_limit.value_or(HUGE_VAL);
     std::vector<bool> done;
     for (unsigned long first = 0; first < table.n_rows(); first += together)
     {
-      const Column column = table.read(status, first, std::min(together, table.n_rows() - first));
-      for (const std::string &word : std::get<std::vector<std::string>>(column.values))
-        done.push_back(!word.empty());
+      const unsigned long n = std::min(together, table.n_rows() - first);
+      const Column status   = table.read(table.index_of("status"), first, n),
+                   reason   = table.read(table.index_of("reason"), first, n),
+                   seconds  = table.read(table.index_of("seconds"), first, n);
+      for (unsigned long i = 0; i < n; ++i)
+        done.push_back(!text_of(status, i).empty() &&
+                       !(text_of(reason, i) == time_limit_reason &&
+                         limit > larger * std::get<std::vector<double>>(seconds.values)[i]));
     }
     return done;
   }

@@ -12,7 +12,8 @@
 
 namespace crawler
 {
-  const std::vector<std::string> free_sweep_entries = {"Sweep/Time limit", "Sweep/Keep fields"};
+  const std::vector<std::string> free_sweep_entries = {
+    "Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"};
 
   namespace
   {

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <sstream>
 
 namespace crawler
@@ -78,6 +79,7 @@ namespace crawler
         forms_[name] = std::make_unique<Form>(file, &scene);
       }
       require_admissible_values();
+      require_words();
       require_scene();
       kept_points();
     }
@@ -122,6 +124,33 @@ namespace crawler
       if (axis.is_range) // most numbers in it are not whole
         require_valid({axis.entry, {design_->value(number, 0)}}, axes_entry, scratch.declarations);
     }
+  }
+
+  /// Words are looked at by what they make of the scene: a formula with an unknown name, a table that is not there.
+  void
+  SweepPoints::require_words()
+  {
+    for (const SweepAxis &axis : design_->axes())
+      if (!axis.is_file())
+        for (const std::string &word : std::set<std::string>(axis.values.begin(), axis.values.end()))
+        {
+          if (to_number(word))
+            continue;
+          parameters(0);
+          Form &form = *forms_.at(file_axis_ < design_->axes().size() ? design_->value(file_axis_, 0) : "");
+          form.declarations.set(axis.entry, word);
+          try
+          {
+            form.parameters.create_scene();
+          }
+          catch (const InputError &error) // of another entry: it may fit at other points
+          {
+            if (error.entry == axis.entry)
+              throw InputError(
+                fmt::format("\"{}\", value \"{}\" of \"{}\": {}", axes_entry, word, axis.entry, error.what()),
+                axes_entry);
+          }
+        }
   }
 
   /// Values that do not fit together at one point are a row that failed; if they do so at the first, the middle and

@@ -17,7 +17,7 @@ namespace crawler
     using Json = nlohmann::ordered_json;
 
     constexpr double not_known        = std::numeric_limits<double>::quiet_NaN();
-    constexpr unsigned int word_width = 24, reason_width = 32, message_width = 192, most_axis_width = 256;
+    constexpr unsigned int word_width = 24, reason_width = 32, message_width = 256, most_axis_width = 256;
 
     /// What is said of the process, not of the point, or has a column of its own.
     bool
@@ -105,6 +105,19 @@ namespace crawler
       return found == units.end() ? "1" : found->second;
     }
 
+    /// A text that is too long ends with dots.
+    std::string
+    shortened(const std::string &text, const std::size_t width)
+    {
+      if (text.size() <= width)
+        return text;
+      const std::string dots = "...";
+      std::size_t size       = width - dots.size();
+      while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80) // not within a character
+        --size;
+      return text.substr(0, size) + dots;
+    }
+
     RowFile::Value
     value_of(const Json &json, const bool is_text)
     {
@@ -154,6 +167,8 @@ namespace crawler
     return columns;
   }
 
+  const std::string time_limit_reason = "time_limit";
+
   PointStatus
   status_of(const Task &task)
   {
@@ -175,7 +190,12 @@ namespace crawler
         return {"failed", "exception", error.what()};
       }
     if (task.is_out_of_time)
-      return {"stopped", "time_limit", "it took longer than Sweep/Time limit per point"};
+      return {
+        "stopped",
+        time_limit_reason,
+        task.computed.result.time.status == "finished"
+          ? "it took longer than Sweep/Time limit per point when its errors were measured; the run itself is whole"
+          : "it took longer than Sweep/Time limit per point"};
     const TimeOutcome &time = task.computed.result.time;
     return time.status == "finished" ? PointStatus{time.status, "", ""}
                                      : PointStatus{time.status, time.reason, time.message};
@@ -224,7 +244,7 @@ namespace crawler
                      });
     row[column("seconds", next)] = task.seconds;
     row[column("reason", next)]  = status.reason;
-    row[column("message", next)] = status.message;
+    row[column("message", next)] = shortened(status.message, message_width);
     row[column("status", next)]  = status.status;
     return row;
   }

@@ -44,6 +44,7 @@ namespace crawler
       if (!options.resume || !fs::exists(folder, error) || fs::is_empty(folder, error))
       {
         require_usable(folder, options.overwrite);
+        require_no_sweep(folder);
         return Start::anew;
       }
       require_usable(folder, /*overwrite=*/true);

@@ -47,22 +47,21 @@ class Cluster:
         for name, text in (("srun", SRUN), ("scontrol", SCONTROL)):
             (folder / "bin" / name).write_text(text, encoding="utf-8")
             (folder / "bin" / name).chmod(0o755)
-        self.environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "SLURM_JOB_ID": "17",
-                            "CRAWLER": program, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        self.environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "CRAWLER": program, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
         self.environment.pop("CRAWLER_LAUNCHER", None)
 
     def write(self, entries="  set Axes = Body/Anchoring exponent : 1.5, 2, 3"):
         """Writes sweep.prm."""
         (self.folder / "sweep.prm").write_text(f"subsection Sweep\n{entries}\nend\n", encoding="utf-8")
 
-    def start(self, *arguments, status="stopped", **plays):
+    def start(self, *arguments, status="stopped", job="17", **plays):
         """One start of the job: exit code, what it said, and whether it was put back into the queue."""
-        result = subprocess.run(["bash", SCRIPT, *arguments], cwd=self.folder, env={**self.environment, "STATUS": status, **plays},
-                                capture_output=True, text=True, check=False, timeout=120)
+        result = subprocess.run(["bash", SCRIPT, *arguments], cwd=self.folder, capture_output=True, text=True, check=False,
+                                env={**self.environment, "STATUS": status, "SLURM_JOB_ID": job, **plays}, timeout=120)
         requeued = self.folder / "requeued.txt"
         lines = requeued.read_text(encoding="utf-8").splitlines() if requeued.exists() else []
         requeued.unlink(missing_ok=True)
-        check(lines in ([], ["requeue 17"]), f"at most one request, for this job ({lines})")
+        check(lines in ([], [f"requeue {job}"]), f"at most one request, for this job ({lines})")
         return result.returncode, result.stdout + result.stderr, bool(lines)
 
     def calls(self):
@@ -106,6 +105,9 @@ def test_crashes(folder):
     for rows, again in ((4, True), (0, True), (0, False), (0, False), (1, True), (1, True), (1, True), (0, True), (0, False)):
         code, words, requeued = cluster.start("sweep.prm", CODE="137", ROWS=str(rows))
         check(code == 137 and requeued == again, f"dies after {rows} new rows: {'again' if again else 'no more'}")
+    for job, again in (("18", True), ("18", True), ("18", False), ("19", True)):  # job 17 has three such lines in the file
+        code, words, requeued = cluster.start("sweep.prm", CODE="137", ROWS="0", job=job)
+        check(code == 137 and requeued == again, f"job {job} of the same folder dies: {'again' if again else 'no more'}")
     code, words, requeued = cluster.start("sweep.prm", "--output", "elsewhere", CODE="1")
     check(code == 1 and not requeued, "--output FOLDER is the folder that it looks at")
     code, words, requeued = cluster.start("sweep.prm", "--output=output-sweep", CODE="1", ROWS="1")

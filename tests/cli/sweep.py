@@ -159,11 +159,28 @@ def test_rows_that_fail(program, folder):
     check((folder / "some" / "points" / "1" / "solution.pvd").is_file(), "the fields of a point are kept")
     strict = call(program, folder, "sweep", "sweep.prm", "--output", "strict", "--strict")
     check(strict.returncode == 8, f"--strict: exit code 8 ({strict.returncode})")
-    write(folder, f"{P} : 2; {CHI} : 0.1, 0.7", "set Time limit per point = 0.05\n set Design = grid")
-    result = call(program, folder, "sweep", "sweep.prm", "--output", "slow", "--set", "Accuracy=1e-7")
+    write(folder, f"{P} : 2; {CHI} : 0.1, 0.8", "set Time limit per point = 0.1\n set Design = grid")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "slow", "--set", "Accuracy=1e-3")
     rows = table(folder / "slow")
     check(result.returncode == 0 and rows["status"][1] == "stopped" and rows["reason"][1] == "time_limit",
           f"a point that takes too long is a row ({rows['status'][1]}, {rows['reason'][1]})")
+    again = call(program, folder, "sweep", "sweep.prm", "--output", "slow", "--resume", "--set", "Accuracy=0.001", "--set",
+                 "Sweep/Time limit per point=100", "--set", "Sweep/Keep fields=1")
+    now = table(folder / "slow")
+    check(again.returncode == 0 and now["status"][1] == "finished" and now["seconds"][0] == rows["seconds"][0],
+          f"with a larger limit --resume computes it, and nothing else ({again.stderr.strip()})")
+    check((folder / "slow" / "points" / "1" / "summary.json").is_file(), "and now its fields are kept")
+    (folder / "slow" / "points" / "1" / "mine.txt").write_text("mine", encoding="utf-8")
+    call(program, folder, "sweep", "sweep.prm", "--output", "slow", "--overwrite")
+    left = sorted(path.name for path in (folder / "slow" / "points").rglob("*"))
+    check(left == ["1", "mine.txt"], f"--overwrite removes the fields, and nothing of others ({left})")
+    write(folder, "Active stress/Optimal wave/Energy : 0.001, 1", "set Keep fields = 0, 1")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "refused", "--set",
+                  "Active stress/Optimal wave/Choose wave by=energy")
+    rows = table(folder / "refused")
+    kept = [path.name for path in (folder / "refused" / "points").iterdir()]
+    check(result.returncode == 0 and rows["reason"][0] == "refused" and "0.5" in rows["message"][0] and kept == ["1"],
+          f"values that do not fit together are a row without fields ({rows['reason'][0]}, {kept})")
 
 
 def refused(program, folder, output, words, what):
@@ -440,6 +457,8 @@ def test_bad_input(program, folder):
         "File : missing.prm": ("missing.prm", "No such file"),
         "File : measured.prm, mesured.prm": ("mesured.prm", 'the nearest name is "measured.prm"'),
         "File : a_folder": ("a_folder", "is a folder"),
+        "Body/Friction profile : 1, 1+x": ("1+x",),
+        "Active stress/Generator : optimal wave, plse": ("pulse",),
     }
     for axes, words in cases.items():
         write(folder, axes)

@@ -99,7 +99,8 @@ def test_pictures(folder):
     expect_picture(folder, "log", ["Perturbation parameter", "Elastic modulus [force]"])
     expect_picture(folder, "three", ["Elastic modulus = 1", "Elastic modulus = 4"])
     expect_picture(folder, "three", ["Elastic modulus = 1", "Anchoring exponent = 2"], "--lines")
-    expect_picture(folder, "four", ["Elastic modulus = 5, End time = 2"])
+    expect_picture(folder, "four", ["Elastic modulus = 5", "End time = 2"])
+    test_titles(folder)
     expect_picture(folder, "four", ["Elastic modulus = 3", "End time = 1"], "--where", "modulus=3", "--where", "End time=1")
     expect_picture(folder, "five", ["Length = 2"], "--where", "Length=2")
     expect_picture(folder, "one", ["Length = 1"])
@@ -118,6 +119,17 @@ def test_pictures(folder):
     check(f"not computed yet: {missing}" in texts and missing > 0, f"{missing} points that are missing are counted")
 
 
+def test_titles(folder):
+    """Those of small maps over two lines each, one below the other and none over its neighbour, by their places in the SVG."""
+    text = (folder / "four" / "results.svg").read_text(encoding="utf-8")
+    places = {}
+    for words_, x, y in re.findall(r"<!-- ((?:Elastic modulus|End time) = .*?) -->\s*<g [^>]*translate\((\S+) (\S+)\)", text):
+        places.setdefault(float(y), []).append((float(x), len(words_)))
+    apart = [right[0] - left[0] > 4.5 * left[1]  # a letter is about 4.5 pt wide
+             for row in places.values() for left, right in zip(sorted(row), sorted(row)[1:])]
+    check(len(places) == 4 and len(apart) == 12 and all(apart), f"titles of 8 maps lie side by side ({len(places)} rows, {len(apart)} gaps)")
+
+
 def test_fit(folder):
     """The displacement of small waves grows as chi^2; one that is a power exactly comes out exactly."""
     result = draw(folder, "log", "--fit", "--where", "modulus=1")
@@ -129,7 +141,16 @@ def test_fit(folder):
         group = file["results"]
         group["displacement"][:] = -3 * group[CHI.replace("/", ".")][:] ** -1.5
     result = draw(folder, "power", "--fit", "--where", "modulus=4")
-    check("displacement = -3 * " in result.stdout and "^-1.500000" in result.stdout, f"-3 x^-1.5: {result.stdout.splitlines()[0]}")
+    lines = result.stdout.splitlines()
+    check("displacement = -3 * " in result.stdout and "^-1.500000" in result.stdout, f"-3 x^-1.5: {lines[0]}")
+    texts = expect_picture(folder, "grid", ["Anchoring exponent = 0; -0.", "Anchoring exponent = 1; no power law",
+                                            "Anchoring exponent = 2; 0."], "--fit", "--lines", "--value", "gait.speed")
+    lines = draw(folder, "grid", "--fit", "--lines", "--value", "gait.speed").stdout.splitlines()
+    check(texts and [line.rpartition(" at ")[2] for line in lines[:2]] == [f"{P} = 0", f"{P} = 2"] and
+          lines[2].startswith("drawn without a fit") and lines[2].endswith(f": 1 of 3 lines ({P} = 1)"),
+          f"p = 1 does not move: {lines[2]}")
+    lines = draw(folder, "three", "--fit").stdout.splitlines()
+    check(lines[3].endswith(f" at {P} = 3, {K} = 4"), f"small pictures are named: {lines[3]}")
 
 
 def test_bad_input(folder):
@@ -142,13 +163,18 @@ def test_bad_input(folder):
     shutil.copytree(folder / "line", folder / "unknown")
     with h5py.File(folder / "unknown" / "results.h5", "r+") as file:
         file["results/displacement"][:] = np.nan
+    with h5py.File(folder / "grid" / "results.h5", "r") as file:
+        numbers = sum(data.dtype.kind == "f" for data in file["results"].values())
     cases = [(("nowhere",), 'no "nowhere/results.h5"'), (("broken",), "not a table"), (("other",), "not a table"),
              (("unknown",), "no point has a displacement (5 finished"), (("grid", "--value", "displacment"), "displacement"),
-             (("grid", "--value", "engine"), "column of numbers"), (("grid", "--x", "Length"), "one of"),
+             (("grid", "--value", "engine"), "column of numbers"),
+             (("grid", "--value", "model"), '"model" holds texts'), (("grid", "--value", "MODEL"), '"model" holds texts'),
+             (("grid", "--value", "gait.spede"), "names are gait.speed, "), (("grid", "--value", "nix"), "first line of results.csv"),
+             (("grid", "--value", "total_"), f"nearest of {numbers} names"), (("grid", "--value", "speed"), "several names: gait."), (("grid", "--x", "Length"), "one of"),
              (("grid", "--x", P, "--y", P), "two axes"), (("grid", "--where", "exponent=7"), "near it are 0, 1, 2"),
              (("grid", "--where", "exponent"), "AXIS=VALUE"), (("grid", "--where", "exponent=two"), "number"),
              (("files", "--where", "File=hard.prm"), "soft.prm, stiff.prm"), (("five",), "--where"),
-             (("four", "--lines"), "--where"), (("grid", "--fit"), "one sign"),
+             (("four", "--lines"), "--where"), (("grid", "--fit", "--where", "exponent=1"), "one sign"),
              (("grid", "--output", "picture.xyz"), "picture.xyz"), (("grid", "--output", "no/picture.png"), "no/picture.png"),
              (("line", "--value", "status"), "two axes")]
     for arguments, word in cases:
@@ -156,6 +182,18 @@ def test_bad_input(folder):
         lines = result.stderr.splitlines()
         check(result.returncode == 1 and len(lines) == 1 and word in lines[0] and "wrote" not in result.stdout,
               f"{' '.join(arguments)}: {result.returncode}, {lines[0] if len(lines) == 1 else lines[-3:]}")
+
+
+def test_without_matplotlib(folder):
+    """Every script here says what to install."""
+    (folder / "blind").mkdir()
+    (folder / "blind" / "matplotlib.py").write_text("raise ImportError(\"No module named 'matplotlib'\")\n", encoding="utf-8")
+    for script in sorted(SCRIPT.parent.glob("*.py")):
+        arguments = ["grid", "table.csv"] if script.name == "scaling.py" else ["grid"]
+        result = subprocess.run([sys.executable, script, *arguments], cwd=folder, capture_output=True, text=True, timeout=120,
+                                env={**ENVIRONMENT, "PYTHONPATH": str(folder / "blind")}, check=False)
+        check(result.returncode == 1 and len(result.stderr.splitlines()) == 1 and "apt install python3-" in result.stderr
+              and os.access(script, os.X_OK), f"{script.name} can be called; without matplotlib: {result.stderr.strip()[-300:]}")
 
 
 def test_columns(folder):
@@ -192,6 +230,7 @@ def main():
         test_pictures(folder)
         test_fit(folder)
         test_bad_input(folder)
+        test_without_matplotlib(folder)
         test_columns(folder)
     sys.exit(failures > 0)
 

@@ -48,6 +48,18 @@ TEST(GaitNumbers, ThoseOfFigure2)
   EXPECT_NEAR(early.gait->ledger->positive_power, gait.ledger->positive_power, 1e-5); // kinks
 }
 
+/// A run that ends early does so at the end of a stride, whatever rounding makes of that time.
+TEST(GaitNumbers, RunsThatEndEarlyHaveALastStride)
+{
+  for (const double end_time : {5., 35., 36., 37., 65., 125., 300.})
+  {
+    const auto result = stride(test::wave(-1., 0.4, 1., end_time), /*with_cycle_stop=*/true);
+    ASSERT_TRUE(result.cycles || end_time < 6.) << end_time;
+    ASSERT_TRUE(result.gait) << end_time;
+    EXPECT_NEAR(result.gait->displacement, 0.090100, 1e-6) << end_time;
+  }
+}
+
 TEST(GaitNumbers, TheDirectionSwitchesWithA)
 {
   for (const double a : {-1., 1.})

@@ -4,6 +4,7 @@
 
     python3 scaling.py PATH_TO_CRAWLER
 """
+import os
 import pathlib
 import re
 import subprocess
@@ -23,9 +24,9 @@ def check(condition, what):
     print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
 
 
-def call(*command):
+def call(*command, env=None):
     """Runs a command in the root of the repository, whose paths the study has."""
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=200, check=False)
+    return subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True, timeout=200, check=False)
 
 
 def main():
@@ -45,6 +46,12 @@ def main():
                   f"{family}: {y} ~ {x}^{power}, theory {theory}")
             if (family, y) == ("mass", "speed"):
                 check(abs(float(factor) / 3.8 - 1) < 0.01, f"a worm of 1 g goes {factor} mm/s")
+        blind = pathlib.Path(name, "blind")
+        blind.mkdir()
+        (blind / "matplotlib.py").write_text("raise ImportError(\"No module named 'matplotlib'\")\n", encoding="utf-8")
+        without = call(sys.executable, "contrib/plot/scaling.py", name, str(TABLE), env={**os.environ, "PYTHONPATH": str(blind)})
+        check(without.returncode == 1 and "apt install python3-matplotlib" in without.stderr and without.stderr.count("\n") == 1,
+              f"without matplotlib: {without.stderr.strip()}")
         picture = pathlib.Path(name, "scaling.png")
         check(picture.is_file() and picture.stat().st_size > 20000, "the picture is there")
         strict = call(sys.executable, "contrib/plot/scaling.py", name, str(TABLE), "--require", "0.01")

@@ -70,6 +70,8 @@ namespace crawler
     void
     require_admissible_values();
     void
+    require_words();
+    void
     require_scene();
 
     const ParameterFile &file_;

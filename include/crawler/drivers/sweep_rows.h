@@ -25,6 +25,9 @@ namespace crawler
   RowFile::Row
   sweep_row(const std::vector<RowFile::Column> &columns, const Task &task);
 
+  /// The reason of a point that took longer than the time limit.
+  extern const std::string time_limit_reason;
+
   /// What has become of a point, in a word, and why.
   struct PointStatus
   {
