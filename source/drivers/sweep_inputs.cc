@@ -110,7 +110,17 @@ namespace crawler
   std::vector<std::string>
   differences(const SweepInputs &before, const SweepInputs &now)
   {
-    auto list           = differences(before.effective, now.effective, free_sweep_entries);
+    std::vector<std::string> list;
+    try
+    {
+      list = differences(before.effective, now.effective, free_sweep_entries);
+    }
+    catch (const InputError &) // what it says may be bytes that no terminal can show
+    {
+      throw InputError(
+        "the parameters that are kept in results.h5 cannot be read: it is damaged, or of another version "
+        "of crawler; a whole one is expected");
+    }
     const auto scene_in = [](const SweepInputs &inputs, const std::string &name)
     {
       const auto found = inputs.scenes.find(name);

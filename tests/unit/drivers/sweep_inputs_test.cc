@@ -55,6 +55,9 @@ namespace
     auto damaged           = before.attributes();
     damaged["scene files"] = "{\"soft.prm\": ";
     EXPECT_THROW(SweepInputs::from_attributes(damaged), InputError);
+    SweepInputs garbled = before;
+    garbled.effective   = "subsection Bo\xff";
+    EXPECT_THROW(differences(garbled, before), InputError);
 
     write_file("plain.prm", "subsection Body\n set Length = 2\n set Friction coefficient = 7\nend\n");
     const auto changed = differences(kept, inputs(text)); // the friction coefficient is that of the axis anyway
