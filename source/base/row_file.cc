@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <limits>
 
 namespace crawler
@@ -17,9 +19,41 @@ namespace crawler
     Result
     checked(const Result result, const std::filesystem::path &path, const char *what)
     {
+      const bool writes = what == std::string("write") || what == std::string("create");
       if (result < 0)
-        throw FileError(fmt::format("cannot {} \"{}\" (is the disk full?)", what, path.string()));
+        throw FileError(fmt::format("cannot {} \"{}\"{}", what, path.string(), writes ? " (is the disk full?)" : ""));
       return result;
+    }
+
+    /// What is read of a file must be there.
+    template <typename Result>
+    Result
+    found(const Result result, const std::filesystem::path &path, const std::string &what)
+    {
+      if (result < 0)
+        throw InputError(
+          fmt::format("\"{}\" {}: it is no file of results that crawler wrote, or it is damaged; a whole "
+                      "one is expected",
+                      path.string(),
+                      what));
+      return result;
+    }
+
+    /// Opens an HDF5 file to read.
+    hid_t
+    opened(const std::filesystem::path &path, const hid_t access)
+    {
+      const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
+      if (file >= 0)
+        return file;
+      errno = 0;
+      std::ifstream in(path, std::ios::binary);
+      if (!in)
+        throw FileError(
+          fmt::format("cannot open \"{}\": {}", path.string(), errno != 0 ? std::strerror(errno) : "unknown reason"));
+      std::string start(8, '\0');
+      in.read(start.data(), static_cast<std::streamsize>(start.size()));
+      return found(file, path, start == "\x89HDF\r\n\x1a\n" ? "cannot be read as HDF5 file" : "is no HDF5 file");
     }
 
     /// HDF5 keeps "/" for groups.
@@ -64,11 +98,11 @@ namespace crawler
     std::string
     read_attribute_of(const hid_t object, const std::string &name, const std::filesystem::path &path)
     {
-      const Hdf5Handle attribute(checked(H5Aopen(object, name.c_str(), H5P_DEFAULT), path, "read an attribute of"),
-                                 H5Aclose);
+      const Hdf5Handle attribute(
+        found(H5Aopen(object, name.c_str(), H5P_DEFAULT), path, "has no attribute \"" + name + "\""), H5Aclose);
       const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
       std::string text(H5Tget_size(type), '\0');
-      checked(H5Aread(attribute, type, text.data()), path, "read");
+      found(H5Aread(attribute, type, text.data()), path, "has an attribute \"" + name + "\" that cannot be read");
       return text.substr(0, text.find('\0'));
     }
 
@@ -87,7 +121,7 @@ namespace crawler
     open_to_read(const std::filesystem::path &path)
     {
       H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
-      return {checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), path, "open"), H5Fclose};
+      return {opened(path, H5P_DEFAULT), H5Fclose};
     }
 
     /// Rows @p first to @p first + @p n - 1 of a column; @p value gives the value of row @p first + i.
@@ -268,18 +302,19 @@ namespace crawler
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
-    handles_.reset(new Handles{{checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), path, "open"), H5Fclose}});
-    const hid_t group = checked(H5Gopen(handles_->file, group_name.c_str(), H5P_DEFAULT), path, "read");
-    handles_->group   = std::make_unique<Hdf5Handle>(group, H5Gclose);
+    handles_.reset(new Handles{{opened(path, access), H5Fclose}});
+    const hid_t group =
+      found(H5Gopen(handles_->file, group_name.c_str(), H5P_DEFAULT), path, "has no group \"" + group_name + "\"");
+    handles_->group = std::make_unique<Hdf5Handle>(group, H5Gclose);
     H5G_info_t info;
     H5Gget_info(group, &info);
     for (hsize_t i = 0; i < info.nlinks; ++i)
     {
       char name[1024];
-      checked(H5Lget_name_by_idx(group, ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, name, sizeof(name), H5P_DEFAULT),
-              path,
-              "read");
-      const hid_t dataset = checked(H5Dopen(group, name, H5P_DEFAULT), path, "read");
+      found(H5Lget_name_by_idx(group, ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, name, sizeof(name), H5P_DEFAULT),
+            path,
+            fmt::format("has no column {} in the order of creation", i + 1));
+      const hid_t dataset = found(H5Dopen(group, name, H5P_DEFAULT), path, fmt::format("has no dataset \"{}\"", name));
       handles_->datasets.push_back(std::make_unique<Hdf5Handle>(dataset, H5Dclose));
       handles_->types.push_back(std::make_unique<Hdf5Handle>(H5Dget_type(dataset), H5Tclose));
       columns_.push_back({read_attribute_of(dataset, "name", path),
@@ -288,7 +323,7 @@ namespace crawler
                           {}});
       const std::size_t n = length_of(dataset);
       if (i > 0 && n != n_rows_)
-        throw FileError("\"" + path.string() + "\" has columns of different lengths");
+        found(-1, path, "has columns of different lengths");
       n_rows_ = n;
     }
   }
@@ -362,7 +397,8 @@ namespace crawler
   read_attribute(const std::filesystem::path &path, const std::string &group_name, const std::string &name)
   {
     const Hdf5Handle file = open_to_read(path);
-    const Hdf5Handle group(checked(H5Gopen(file, group_name.c_str(), H5P_DEFAULT), path, "read"), H5Gclose);
+    const Hdf5Handle group(
+      found(H5Gopen(file, group_name.c_str(), H5P_DEFAULT), path, "has no group \"" + group_name + "\""), H5Gclose);
     return read_attribute_of(group, name, path);
   }
 } // namespace crawler

@@ -6,14 +6,18 @@
 #include <crawler/parameters/declarations.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <optional>
-#include <sstream>
+#include <set>
 
 namespace crawler
 {
@@ -23,18 +27,65 @@ namespace crawler
   {
     const std::string entry_name = "Sweep/Axes";
 
-    std::vector<std::string>
-    split(const std::string &text, const char separator)
+    [[noreturn]] void
+    refuse(const std::string &sentence)
     {
-      std::vector<std::string> items;
-      std::istringstream in(text);
-      for (std::string item; std::getline(in, item, separator);)
-        items.push_back(trimmed(item));
-      return items;
+      throw InputError("\"" + entry_name + "\": " + sentence, entry_name);
     }
 
-    /// The cells of a line of a CSV file; a cell in quotes may have commas in it, and two quotes for one.
-    std::vector<std::string>
+    /// Opens a file that the axes name, @p what in words.
+    std::ifstream
+    open(const std::string &file, const std::string &what)
+    {
+      std::error_code ignored;
+      if (std::filesystem::is_directory(file, ignored))
+        refuse(fmt::format("\"{}\" is a folder, but {} is expected", file, what));
+      errno = 0;
+      std::ifstream in(file);
+      if (in)
+        return in;
+      const std::string reason         = errno != 0 ? std::strerror(errno) : "unknown reason";
+      const std::filesystem::path path = file, folder = path.parent_path();
+      std::vector<std::string> others; // without the ending, which they share
+      for (std::filesystem::directory_iterator i(folder.empty() ? "." : folder, ignored), end; !ignored && i != end;
+           i.increment(ignored))
+        if (i->path().extension() == path.extension() && i->is_regular_file(ignored))
+          others.push_back(i->path().stem().string());
+      auto near = nearest_names(path.stem().string(), others, 1);
+      for (std::string &name : near)
+        name = (folder / name).string() + path.extension().string();
+      refuse(fmt::format("cannot read \"{}\" ({}), but {} is expected{}",
+                         file,
+                         reason,
+                         what,
+                         near.empty() ? "" : "; the nearest name is " + quoted_list(near)));
+    }
+
+    /// Can it be shown on a terminal? Not if it is UTF-16, compressed or a picture.
+    bool
+    is_text(const std::string &line)
+    {
+      if (std::any_of(line.begin(),
+                      line.end(),
+                      [](const unsigned char c)
+                      {
+                        return (c < ' ' && c != '\t' && c != '\r') || c == 0x7f;
+                      }))
+        return false;
+      try
+      {
+        nlohmann::json(line).dump(); // throws if it is no UTF-8
+        return true;
+      }
+      catch (const nlohmann::json::type_error &)
+      {
+        return false;
+      }
+    }
+
+    /// The cells of a line of a CSV file; a cell in quotes may have commas in it, and two quotes for one. Nothing if a
+    /// quote is not closed.
+    std::optional<std::vector<std::string>>
     csv_cells(const std::string &line)
     {
       std::vector<std::string> cells(1);
@@ -51,67 +102,87 @@ namespace crawler
           cells.emplace_back();
         else
           cells.back() += line[i];
+      if (is_quoted)
+        return std::nullopt;
       for (std::string &cell : cells)
         cell = trimmed(cell);
       return cells;
     }
 
-    /// "function(a, b)" -> its name and arguments; nothing if the text is something else.
-    struct Call
+    /// Which column of the file @p file has the name @p name.
+    std::size_t
+    column_of(const std::string &name, const std::vector<std::string> &names, const std::string &file)
     {
-      std::string function;
-      std::vector<std::string> arguments;
-    };
-
-    std::optional<Call>
-    read_call(const std::string &text)
-    {
-      const std::size_t open = text.find('(');
-      if (open == std::string::npos || text.back() != ')')
-        return std::nullopt;
-      return Call{trimmed(text.substr(0, open)), split(text.substr(open + 1, text.size() - open - 2), ',')};
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end())
+      {
+        constexpr std::size_t most = 10;
+        const bool all_are_named   = names.size() <= most;
+        const auto near            = nearest_names(name, names, 1);
+        refuse(fmt::format(
+          "\"{}\" has no column \"{}\", but {} is expected{}",
+          file,
+          name,
+          all_are_named ? quoted_list(names)
+                        : fmt::format("one of {} columns, {}, ...",
+                                      names.size(),
+                                      fmt::format("\"{}\"", fmt::join(names.begin(), names.begin() + most, "\", \""))),
+          near.empty() ? "" : "; the nearest is " + quoted_list(near)));
+      }
+      if (std::find(found + 1, names.end(), name) != names.end())
+        refuse(fmt::format("\"{}\" has more than one column \"{}\", but different names are expected", file, name));
+      return static_cast<std::size_t>(found - names.begin());
     }
 
-    /// The values in a column of a CSV file with a line of names.
+    /// The values in a column of a CSV file with a line of names. Lines that are empty or start with "#" do not count.
     std::vector<std::string>
     read_column(const Call &call)
     {
-      if (call.arguments.size() != 2)
-        throw InputError(fmt::format("\"{}\": found \"column({})\", but \"column(file.csv, name)\" is expected",
-                                     entry_name,
-                                     fmt::join(call.arguments, ", ")),
-                         entry_name);
+      if (call.arguments.size() != 2 || call.arguments[0].empty() || call.arguments[1].empty())
+        refuse(fmt::format("found \"column({})\", but \"column(file.csv, name)\" is expected",
+                           fmt::join(call.arguments, ", ")));
       const std::string &file = call.arguments[0], &name = call.arguments[1];
-      std::ifstream in(file);
-      std::string line;
-      if (!in || !std::getline(in, line))
-        throw InputError(fmt::format("\"{}\": cannot read the CSV file \"{}\"", entry_name, file), entry_name);
-      if (line.starts_with("\xef\xbb\xbf"))
-        line.erase(0, 3);
-      const auto names = csv_cells(line);
-      const auto found = std::find(names.begin(), names.end(), name);
-      if (found == names.end())
-        throw InputError(fmt::format("\"{}\": \"{}\" has no column \"{}\", but one of {} is expected",
-                                     entry_name,
-                                     file,
-                                     name,
-                                     quoted_list(names)),
-                         entry_name);
-      const auto column = static_cast<std::size_t>(found - names.begin());
+      std::ifstream in      = open(file, "a CSV file with a line of names");
+      std::size_t n_columns = 0, column = 0;
       std::vector<std::string> values;
-      for (unsigned long row = 2; std::getline(in, line); ++row)
+      std::string line;
+      for (unsigned long row = 1; std::getline(in, line); ++row)
       {
-        if (trimmed(line).empty())
+        if (row == 1 && line.starts_with("\xef\xbb\xbf"))
+          line.erase(0, 3);
+        if (!is_text(line))
+          refuse(fmt::format("row {} of \"{}\" is not text, but a CSV file in UTF-8 is expected", row, file));
+        line = trimmed(line);
+        if (line.empty() || line[0] == '#')
           continue;
         const auto cells = csv_cells(line);
-        if (cells.size() <= column || cells[column].empty())
-          throw InputError(
-            fmt::format("\"{}\": row {} of \"{}\" has no value in column \"{}\"", entry_name, row, file, name),
-            entry_name);
-        values.push_back(cells[column]);
+        if (!cells)
+          refuse(fmt::format(
+            "a double quote in row {} of \"{}\" is not closed, but rows of one line are expected", row, file));
+        if (n_columns == 0)
+        {
+          n_columns = cells->size();
+          column    = column_of(name, *cells, file);
+          continue;
+        }
+        if (cells->size() != n_columns)
+          refuse(fmt::format("row {} of \"{}\" has {} value{}, but {}, as many as names in the first row, {} expected",
+                             row,
+                             file,
+                             cells->size(),
+                             cells->size() == 1 ? "" : "s",
+                             n_columns,
+                             n_columns == 1 ? "is" : "are"));
+        if ((*cells)[column].empty())
+          refuse(fmt::format("row {} of \"{}\" has no value in column \"{}\", but one is expected", row, file, name));
+        values.push_back((*cells)[column]);
       }
+      if (in.bad())
+        refuse(fmt::format("cannot read \"{}\" to its end", file));
+      if (n_columns == 0)
+        refuse(fmt::format("\"{}\" is empty, but a CSV file with a line of names is expected", file));
       if (values.empty())
-        throw InputError(fmt::format("\"{}\": \"{}\" has no rows", entry_name, file), entry_name);
+        refuse(fmt::format("\"{}\" has no rows after the line of names, but at least one is expected", file));
       return values;
     }
 
@@ -186,22 +257,42 @@ namespace crawler
   {
     SweepAxis axis{entry, {}};
     const auto call = read_call(text);
+    if (axis.is_file() && call && call->function != "column")
+      refuse(fmt::format(
+        "found \"{}\" on the axis \"File\", but names of parameter files or \"column(file.csv, name)\" are expected",
+        text));
     if (call && (call->function == "uniform" || call->function == "loguniform"))
     {
       if (kind_ == Kind::grid || kind_ == Kind::zip)
-        throw InputError(fmt::format("\"{}\": {} belongs to a random or latin hypercube design, and this is a {}",
-                                     entry_name,
-                                     call->function,
-                                     design),
-                         entry_name);
+        refuse(
+          fmt::format("{} belongs to a random or latin hypercube design, and this is a {}", call->function, design));
       axis.values         = read_range(*call);
       axis.is_range       = true;
       axis.is_logarithmic = call->function == "loguniform";
     }
     else if (call && call->function == "column")
+    {
       axis.values = read_column(*call);
+      if (kind_ == Kind::grid)
+        require_distinct(axis.values,
+                         entry_name,
+                         fmt::format(" in column \"{}\" of \"{}\" (a grid)", call->arguments[1], call->arguments[0]));
+    }
     else
-      axis.values = parse_values(text, entry_name, /*distinct=*/kind_ == Kind::grid);
+    {
+      if (!call)
+        for (const std::string &value : split_parts(text, ','))
+          if (split_parts(value, ':').size() > 1 && value.find('?') == std::string::npos) // not "x<0 ? 1 : 2"
+            refuse(fmt::format("found the value \"{}\" of \"{}\"; is a semicolon missing before the next entry? (a "
+                               "value with a colon stands in double quotes)",
+                               value,
+                               entry));
+      axis.values =
+        parse_values(text, entry_name, /*distinct=*/kind_ == Kind::grid, {"column", "uniform", "loguniform"});
+    }
+    if (axis.is_file())
+      for (const std::string &file : std::set<std::string>(axis.values.begin(), axis.values.end()))
+        open(file, "a parameter file");
     return axis;
   }
 
@@ -212,7 +303,10 @@ namespace crawler
                                             : Kind::latin_hypercube)
     , seed_(parameters.seed)
   {
-    for (const std::string &text : split(parameters.axes, ';'))
+    auto parts = split_parts(parameters.axes, ';');
+    if (parts.back().empty())
+      parts.pop_back();
+    for (const std::string &text : parts)
     {
       const std::size_t colon = text.find(':');
       const std::string entry = trimmed(text.substr(0, colon));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/drivers/study.h>
 #include <crawler/drivers/sweep_inputs.h>
@@ -56,9 +57,14 @@ namespace crawler
   SweepInputs
   SweepInputs::from_attributes(const Texts &attributes)
   {
-    return {attributes.at(effective_name),
-            nlohmann::json::parse(attributes.at(scenes_name)),
-            nlohmann::json::parse(attributes.at(files_name))};
+    const auto parsed = [&](const std::string &name)
+    {
+      const auto json = nlohmann::json::parse(attributes.at(name), nullptr, /*allow_exceptions=*/false);
+      if (!json.is_object() && !json.is_null())
+        throw InputError("the attribute \"" + name + "\" of the table is damaged: JSON is expected");
+      return json;
+    };
+    return {attributes.at(effective_name), parsed(scenes_name), parsed(files_name)};
   }
 
   SweepInputs
@@ -104,7 +110,17 @@ namespace crawler
   std::vector<std::string>
   differences(const SweepInputs &before, const SweepInputs &now)
   {
-    auto list           = differences(before.effective, now.effective, free_sweep_entries);
+    std::vector<std::string> list;
+    try
+    {
+      list = differences(before.effective, now.effective, free_sweep_entries);
+    }
+    catch (const InputError &) // what it says may be bytes that no terminal can show
+    {
+      throw InputError(
+        "the parameters that are kept in results.h5 cannot be read: it is damaged, or of another version "
+        "of crawler; a whole one is expected");
+    }
     const auto scene_in = [](const SweepInputs &inputs, const std::string &name)
     {
       const auto found = inputs.scenes.find(name);

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 namespace crawler
 {
@@ -20,16 +20,6 @@ namespace crawler
   {
     constexpr double most_values = 100000;
 
-    std::vector<std::string>
-    split_list(const std::string &text)
-    {
-      std::vector<std::string> items;
-      std::istringstream in(text + ",");
-      for (std::string item; std::getline(in, item, ',');)
-        items.push_back(trimmed(item));
-      return items;
-    }
-
     /// Without the noise of round-off: 0.03 and not 0.030000000000000002, 100 and not 99.99999999999999.
     std::string
     clean_text(const double value)
@@ -37,34 +27,31 @@ namespace crawler
       return to_text(std::stod(fmt::format("{:.12g}", value)));
     }
 
-    /// The values of linspace(...) or logspace(...); @p call is all that stands behind the colon.
-    std::vector<std::string>
-    evenly_spaced(const std::string &call, const std::string &name)
+    const std::vector<std::string> own_functions = {"linspace", "logspace"};
+
+    [[noreturn]] void
+    refuse_call(const std::string &found, const std::string &function, const std::string &name)
     {
-      const std::size_t open     = call.find('(');
-      const std::string function = trimmed(call.substr(0, open));
-      if (function != "linspace" && function != "logspace")
-      {
-        const auto near = nearest_names(function, {"linspace", "logspace"}, 1);
-        throw InputError(fmt::format("\"{}\": unknown function \"{}\", but \"linspace\" or \"logspace\" is expected{}",
-                                     name,
-                                     function,
-                                     near.empty() ? "" : "; the nearest is " + quoted_list(near)),
-                         name);
-      }
-      const std::size_t close = call.find(')', open);
-      const auto arguments = split_list(call.substr(open + 1, close == std::string::npos ? close : close - open - 1));
+      throw InputError(
+        fmt::format("\"{}\": found \"{}\", but \"{}(first, last, count)\" with three numbers, and nothing beside it, "
+                    "is expected",
+                    name,
+                    found,
+                    function),
+        name);
+    }
+
+    /// The values of linspace(...) or logspace(...); @p text is all that stands behind the colon.
+    std::vector<std::string>
+    evenly_spaced(const Call &call, const std::string &text, const std::string &name)
+    {
+      const auto &[function, arguments] = call;
       std::vector<double> numbers;
       for (const std::string &argument : arguments)
         if (const auto number = to_number(argument))
           numbers.push_back(*number);
-      if (close == std::string::npos || close + 1 != call.size() || arguments.size() != 3 || numbers.size() != 3)
-        throw InputError(
-          fmt::format("\"{}\": found \"{}\", but \"{}(first, last, count)\" with three numbers is expected",
-                      name,
-                      call,
-                      function),
-          name);
+      if (arguments.size() != 3 || numbers.size() != 3)
+        refuse_call(text, function, name);
       const double count = numbers[2];
       if (count != std::round(count) || count < 1 || count > most_values)
         throw InputError(fmt::format("\"{}\": the count of {} is \"{}\", but a whole number from 1 to {:g} is expected",
@@ -86,35 +73,151 @@ namespace crawler
       return values;
     }
 
-    std::vector<std::string>
-    listed(const std::string &text, const std::string &name)
+    bool
+    are_parentheses_balanced(const std::string &text)
     {
-      const auto values = split_list(text);
+      bool is_quoted = false;
+      int depth      = 0;
+      for (const char c : text)
+        if (c == '"')
+          is_quoted = !is_quoted;
+        else if (!is_quoted && (depth += (c == '(') - (c == ')')) < 0)
+          return false;
+      return depth == 0;
+    }
+
+    std::vector<std::string>
+    listed(const std::string &text, const std::string &name, const std::vector<std::string> &functions)
+    {
+      if (std::count(text.begin(), text.end(), '"') % 2 != 0)
+        throw InputError(fmt::format("\"{}\": found {}, but a second double quote is expected", name, text), name);
+      auto values = split_parts(text, ',');
       for (std::size_t i = 0; i < values.size(); ++i)
-        if (values[i].empty())
+      {
+        std::string &value = values[i];
+        if (value.empty())
           throw InputError(
             fmt::format("\"{}\": value {} of the list \"{}\" is empty; values separated by single commas are expected",
                         name,
                         i + 1,
                         text),
             name);
+        const std::string bare = without_quotes(value);
+        if (bare == value)
+        {
+          const std::string word = trimmed(value.substr(0, value.find('(')));
+          if (word.size() < value.size() && std::find(functions.begin(), functions.end(), word) != functions.end())
+          {
+            if (std::find(own_functions.begin(), own_functions.end(), word) != own_functions.end())
+              refuse_call(value, word, name);
+            throw InputError(
+              fmt::format(
+                "\"{}\": found \"{}\", but \"{}(...)\" with nothing beside it is expected", name, value, word),
+              name);
+          }
+          if (!are_parentheses_balanced(value))
+            throw InputError(fmt::format("\"{}\": found \"{}\", but as many closing as opening parentheses are "
+                                         "expected; a value with a single one stands in double quotes",
+                                         name,
+                                         value),
+                             name);
+        }
+        value = bare;
+      }
       return values;
     }
   } // namespace
 
   std::vector<std::string>
-  parse_values(const std::string &text, const std::string &name, const bool distinct)
+  split_parts(const std::string &text, const char separator)
   {
-    const auto values = text.find('(') == std::string::npos ? listed(text, name) : evenly_spaced(text, name);
+    std::vector<std::string> parts(1);
+    bool is_quoted = false;
+    int depth      = 0;
+    for (const char c : text)
+    {
+      if (c == '"')
+        is_quoted = !is_quoted;
+      else if (!is_quoted && separator != ';')
+        depth += (c == '(') - (c == ')');
+      if (c == separator && !is_quoted && depth <= 0)
+        parts.emplace_back();
+      else
+        parts.back() += c;
+    }
+    for (std::string &part : parts)
+      part = trimmed(part);
+    return parts;
+  }
+
+  std::string
+  without_quotes(const std::string &text)
+  {
+    return text.size() >= 2 && text.find('"', 1) == text.size() - 1 && text[0] == '"' ? text.substr(1, text.size() - 2)
+                                                                                      : text;
+  }
+
+  std::optional<Call>
+  read_call(const std::string &text)
+  {
+    const std::size_t open = text.find('(');
+    if (open == std::string::npos || text.back() != ')')
+      return std::nullopt;
+    Call call{trimmed(text.substr(0, open)), {}};
+    const bool is_name       = !call.function.empty() && std::all_of(call.function.begin(),
+                                                               call.function.end(),
+                                                               [](const unsigned char c)
+                                                               {
+                                                                 return std::isalnum(c) || c == '_';
+                                                               });
+    const std::string inside = text.substr(open + 1, text.size() - open - 2);
+    if (!is_name || !are_parentheses_balanced(inside))
+      return std::nullopt;
+    for (const std::string &argument : split_parts(inside, ','))
+      call.arguments.push_back(without_quotes(argument));
+    return call;
+  }
+
+  std::vector<std::string>
+  parse_values(const std::string &text,
+               const std::string &name,
+               const bool distinct,
+               const std::vector<std::string> &other_functions)
+  {
+    std::vector<std::string> functions = own_functions, values;
+    functions.insert(functions.end(), other_functions.begin(), other_functions.end());
+    if (const auto call = read_call(text); !call)
+      values = listed(text, name, functions);
+    else if (std::find(own_functions.begin(), own_functions.end(), call->function) != own_functions.end())
+      values = evenly_spaced(*call, text, name);
+    else
+    {
+      const auto near = nearest_names(call->function, functions, 1);
+      throw InputError(fmt::format("\"{}\": unknown function \"{}\", but {} is expected{}; a formula that is the only "
+                                   "value stands in double quotes",
+                                   name,
+                                   call->function,
+                                   quoted_list(functions),
+                                   near.empty() ? "" : ", the nearest is " + quoted_list(near)),
+                       name);
+    }
+    if (distinct)
+      require_distinct(values, name);
+    return values;
+  }
+
+  void
+  require_distinct(const std::vector<std::string> &values, const std::string &name, const std::string &where)
+  {
     std::set<std::string> seen;
     for (const std::string &value : values)
     {
       const auto number = to_number(value);
-      if (distinct && !seen.insert(number ? to_text(*number) : value).second)
-        throw InputError(fmt::format("\"{}\": the value {} occurs twice, but different ones are expected", name, value),
-                         name);
+      if (!seen.insert(number ? to_text(*number) : value).second)
+        throw InputError(
+          fmt::format("\"{}\": the value {} occurs twice{}, but different ones are expected", name, value, where),
+          name);
     }
-    return values;
   }
 
   Axis

@@ -126,6 +126,19 @@ def test_designs(program, folder):
               f"{design}: 20 points within the ranges{'' if design == 'random' else ', one in each part of an axis'}")
         call(program, folder, "sweep", "sweep.prm", "--output", "again", "--overwrite")
         check(same(rows, table(folder / "again")), f"{design}: the same seed gives the same table")
+    values = ("max(1, s + 0.5)", "2", "1 + 0.1*min(2, s)")
+    write(folder, f'Body/Friction profile : {values[0]}, {values[1]}, "{values[2]}"; {CHI} : 0.1')
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "formulas")
+    rows = table(folder / "formulas")
+    check(result.returncode == 0 and tuple(rows["Body/Friction profile"]) == values and
+          all(rows["status"] == "finished"), f"formulas with commas are values {result.stderr.strip()}")
+    write(folder, 'Active stress/Optimal wave/Sine coefficients : "0.1, 0.05", "0.1, 0"',
+          "end\nsubsection Active stress\n subsection Optimal wave\n  set Shape = Fourier\n end")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "lists")
+    rows = table(folder / "lists")
+    check(result.returncode == 0 and rows["displacement"][0] != rows["displacement"][1] and
+          list(rows["Active stress/Optimal wave/Sine coefficients"]) == ["0.1, 0.05", "0.1, 0"],
+          f"so are lists in quotes {result.stderr.strip()}")
     (folder / "soft.prm").write_text("subsection Body\n  set Elastic modulus = 1\nend\n", encoding="utf-8")
     (folder / "stiff.prm").write_text("subsection Body\n  set Elastic modulus = 10\nend\n", encoding="utf-8")
     write(folder, f"File : soft.prm, stiff.prm; {CHI} : 0.3")
@@ -390,27 +403,87 @@ def test_limits(program, folder):
 
 def test_bad_input(program, folder):
     """Wrong names and values are found before the first solve."""
+    (folder / "empty.csv").write_text("", encoding="utf-8")
+    (folder / "remarks.csv").write_text("# nothing but a remark\n", encoding="utf-8")
+    (folder / "names.csv").write_text("p,chi\n", encoding="utf-8")
+    (folder / "good.csv").write_text("# a remark\np,chi\n2,0.1\n# another\n2.0,0.2\n", encoding="utf-8")
+    (folder / "wide.csv").write_text(",".join(f"name{i}" for i in range(40)) + "\n", encoding="utf-8")
+    (folder / "twice.csv").write_text("p,q,p\n1,2,3\n", encoding="utf-8")
+    (folder / "short.csv").write_text("p,q\n1,2\n\n3\n", encoding="utf-8")
+    (folder / "long.csv").write_text("p,q\n1,2,3\n", encoding="utf-8")
+    (folder / "quote.csv").write_text('p,q\n1,"a\nb"\n', encoding="utf-8")
+    (folder / "utf16.csv").write_text("p,q\n1,2\n", encoding="utf-16")
+    (folder / "binary.csv").write_bytes(bytes(range(256)) * 20)
+    (folder / "measured.prm").write_text("set Accuracy = 1e-4\n", encoding="utf-8")
+    (folder / "a_folder").mkdir()
     cases = {
-        "": "",
-        "Body/Anchoring exponnt : 1, 2": "Anchoring exponent",
-        f"{P} : 1, two": "two",
-        f"{P} : linspace(1, 2)": "linspace",
-        f"{P} : uniform(1, 2)": "random",
-        f"{P} : column(nothing.csv, p)": "nothing.csv",
-        f"{P} : 1, 2; {P} : 3, 4": "twice",
-        "Body/Length : 1, -1": "-1",
-        "Body/Friction profile : 1, 1+x": "1+x",
-        "Active stress/Generator : optimal wave, plse": "pulse",
-        "Sweep/Seed : 1, 2": "cannot vary",
-        f"{P} 1, 2": "VALUES",
-        "File : missing.prm": "missing.prm",
+        "": ("",),
+        "Body/Anchoring exponnt : 1, 2": ("Anchoring exponent",),
+        f"{P} : 1, two": ("two",),
+        f"{P} : linspace(1, 2)": ("linspace(first, last, count)",),
+        f"{P} : linspace(1, 2, 3), 4": ("linspace(1, 2, 3)", "nothing beside it"),
+        f"{P} : 4, column(good.csv, p)": ("column(good.csv, p)", "nothing beside it"),
+        f"{P} : uniform(1, 2)": ("random",),
+        f"{P} : colum(good.csv, p)": ('"colum"', '"linspace", "logspace", "column", "uniform" or "loguniform"',
+                                      'the nearest is "column"'),
+        f"{P} : uniforms(2, 3)": ('the nearest is "uniform"',),
+        "File : uniform(1, 2)": ("uniform(1, 2)", "names of parameter files"),
+        "File : linspace(1, 2, 2)": ("linspace(1, 2, 2)", "names of parameter files"),
+        f"{P} : max(1, (2), 3": ("as many closing as opening parentheses",),
+        f'{P} : "2, 3': ("double quote",),
+        f"{P} : 2, 3 Body/Length : 1, 2": ('"3 Body/Length : 1"', "semicolon missing"),
+        f"{P} : linspace(2, 3, 2) Body/Length: linspace(1, 2, 2)": ("semicolon missing",),
+        f"{P} : 2, 2, 2": ("the value 2 occurs twice",),
+        f"{P} : column(good.csv, p)": ("the value 2.0 occurs twice", '"p"', "good.csv"),
+        f"{P} : column(nothing.csv, p)": ("nothing.csv", "No such file or directory), but a CSV file"),
+        f"{P} : column(god.csv, p)": ('the nearest name is "good.csv"',),
+        f"{P} : column(a_folder, p)": ("a_folder", "is a folder"),
+        f"{P} : column(empty.csv, p)": ("empty.csv", "is empty"),
+        f"{P} : column(remarks.csv, p)": ("remarks.csv", "is empty"),
+        f"{P} : column(names.csv, p)": ("names.csv", "no rows"),
+        f"{P} : column(good.csv)": ("column(file.csv, name)",),
+        f"{P} : column(good.csv, chj)": ('"p" or "chi" is expected', 'the nearest is "chi"'),
+        f"{P} : column(wide.csv, nme39)": ('one of 40 columns, "name0"', '"name9", ...', 'the nearest is "name39"'),
+        f"{P} : column(twice.csv, p)": ("more than one column",),
+        f"{P} : column(short.csv, p)": ("row 4", "1 value,"),
+        f"{P} : column(long.csv, p)": ("row 2", "3 values,"),
+        f"{P} : column(quote.csv, p)": ("row 2", "not closed"),
+        f"{P} : column(utf16.csv, p)": ("row 1", "not text"),
+        f"{P} : column(binary.csv, p)": ("row 1", "not text"),
+        f"{P} : 1, 2; {P} : 3, 4": ("twice",),
+        "Body/Length : 1, -1": ("-1",),
+        "Sweep/Seed : 1, 2": ("cannot vary",),
+        f"{P} 1, 2": ("VALUES",),
+        "File : missing.prm": ("missing.prm", "No such file"),
+        "File : measured.prm, mesured.prm": ("mesured.prm", 'the nearest name is "measured.prm"'),
+        "File : a_folder": ("a_folder", "is a folder"),
+        "Body/Friction profile : 1, 1+x": ("1+x",),
+        "Active stress/Generator : optimal wave, plse": ("pulse",),
     }
-    for axes, word in cases.items():
+    for axes, words in cases.items():
         write(folder, axes)
         result = call(program, folder, "sweep", "sweep.prm", "--output", "bad")
         lines = [line for line in result.stderr.splitlines() if line.strip()]
-        check(result.returncode in (2, 6) and len(lines) == 1 and word in lines[0] and not (folder / "bad").exists(),
+        check(result.returncode == 2 and len(lines) == 1 and all(word in lines[0] for word in words + ("Sweep/Axes",))
+              and lines[0].isprintable() and not (folder / "bad").exists(),
               f"\"{axes}\": {result.returncode}, {lines[0] if lines else 'no message'}")
+
+
+def test_damaged_table(program, folder):
+    """--resume refuses what is no table of a sweep, and a part of one."""
+    write(folder, f"{P} : 2, 3")
+    call(program, folder, "sweep", "sweep.prm", "--output", "damaged")
+    file = folder / "damaged" / "results.h5"
+    whole = file.read_bytes()
+    for content, word in ((whole[:len(whole) // 2], "cannot be read"), (whole[:100], "cannot be read"), (b"", "no HDF5"),
+                          (b"garbage" * 1000, "no HDF5"), (whole.replace(b"scene files", b"Scene files"), "no attribute"),
+                          (whole.replace(b"results", b"Results"), "results")):
+        file.write_bytes(content)
+        refused(program, folder, "damaged", ("results.h5", word, "damaged"), f"a table of {len(content)} bytes")
+    file.unlink()
+    with h5py.File(file, "w") as other:
+        other["x"] = 1.
+    refused(program, folder, "damaged", ('no group "results"',), "another HDF5 file")
 
 
 def main():
@@ -419,6 +492,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         test_bad_input(program, folder)
+        test_damaged_table(program, folder)
         test_grid(program, mpirun, folder)
         test_designs(program, folder)
         test_rows_that_fail(program, folder)

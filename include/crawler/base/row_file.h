@@ -76,7 +76,8 @@ namespace crawler
   class RowReader
   {
   public:
-    /// Collective, and so is the destructor. Throws FileError.
+    /// Collective, and so is the destructor. Throws FileError if there is no such file, InputError if RowFile did not
+    /// make it or it is damaged.
     RowReader(MPI_Comm communicator, const std::filesystem::path &path, const std::string &group);
     ~RowReader();
     RowReader(const RowReader &) = delete;
@@ -112,7 +113,8 @@ namespace crawler
   Table
   read_table(const std::filesystem::path &path, const std::string &group);
 
-  /// An attribute of the group; FileError if there is none.
+  /// An attribute of the group. Throws FileError if there is no such file, InputError if there is no such attribute in
+  /// it or it is damaged.
   std::string
   read_attribute(const std::filesystem::path &path, const std::string &group, const std::string &name);
 } // namespace crawler

@@ -21,6 +21,7 @@ namespace crawler
     std::map<std::string, std::string>
     attributes() const;
 
+    /// Throws InputError if they are not what attributes() gives.
     static SweepInputs
     from_attributes(const std::map<std::string, std::string> &attributes);
   };

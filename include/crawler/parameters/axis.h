@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,18 +16,47 @@ namespace crawler
     std::vector<std::string> values; ///< as they stand in a parameter file, no two alike
   };
 
-  /// Reads VALUES as parse_axis() does, as they stand in a parameter file, no two alike if they must be @p distinct.
-  /// Throws InputError in the name of the entry @p name.
+  /// The parts of a text between separators, trimmed. Separators within double quotes do not count, nor do those within
+  /// parentheses, unless these are semicolons.
   std::vector<std::string>
-  parse_values(const std::string &text, const std::string &name, bool distinct = true);
+  split_parts(const std::string &text, char separator);
+
+  /// What stands between the double quotes around @p text; a text without them as it is.
+  std::string
+  without_quotes(const std::string &text);
+
+  /// "function(a, b)"
+  struct Call
+  {
+    std::string function;
+    std::vector<std::string> arguments; ///< without quotes
+  };
+
+  /// Nothing unless the whole text is one call.
+  std::optional<Call>
+  read_call(const std::string &text);
+
+  /// Reads VALUES as parse_axis() does, as they stand in a parameter file, no two alike if they must be @p distinct.
+  /// Throws InputError in the name of the entry @p name; it offers @p other_functions, too, which the caller reads.
+  std::vector<std::string>
+  parse_values(const std::string &text,
+               const std::string &name,
+               bool distinct                                   = true,
+               const std::vector<std::string> &other_functions = {});
+
+  /// Throws InputError in the name of the entry @p name if two values are alike (as numbers, if they are); @p where,
+  /// say " in column p", follows the value in the sentence.
+  void
+  require_distinct(const std::vector<std::string> &values, const std::string &name, const std::string &where = "");
 
   /// What parse_axis() reads, in words.
   extern const std::string axis_syntax;
 
   /**
    * Reads "Section/Entry : VALUES", where VALUES is linspace(first, last, count), logspace(first exponent, last
-   * exponent, count) (powers of ten), or a list of values separated by commas. Throws InputError in the name of the
-   * entry @p name in which the text stands.
+   * exponent, count) (powers of ten), or a list of values separated by commas. Commas within parentheses, as in
+   * max(1, x), do not separate; a value in double quotes may have any characters but those. Throws InputError in the
+   * name of the entry @p name in which the text stands.
    */
   Axis
   parse_axis(const std::string &text, const std::string &name);

@@ -2,6 +2,7 @@
 // A table into which all ranks write; run on several, too.
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/base/row_file.h>
 
 #include <gtest/gtest.h>
@@ -113,5 +114,46 @@ namespace
   {
     EXPECT_THROW(read_table("/nowhere/at/all.h5", "results"), FileError);
     EXPECT_THROW(RowFile::create("/nowhere/at/all.h5", "results", columns, 3, {}), FileError);
+  }
+
+  TEST(RowFile, WhatIsNoTableOrDamagedIsBadInput)
+  {
+    const auto path = a_file();
+    if (rank_of(MPI_COMM_WORLD) > 0)
+      return;
+    RowFile::create(path, "results", columns, 1000, {{"made by", "a test"}});
+    const std::string whole     = read_whole_file(path);
+    const auto expect_bad_input = [&](const std::string &group, const std::string &attribute, const std::string &part)
+    {
+      for (const bool reads_attribute : {true, false})
+        try
+        {
+          if (reads_attribute)
+            read_attribute(path, group, attribute);
+          else if (attribute == "made by")
+            read_table(path, group);
+          else
+            continue;
+          ADD_FAILURE() << part;
+        }
+        catch (const InputError &error)
+        {
+          EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << part << " not in: " << error.what();
+          EXPECT_NE(std::string(error.what()).find(path.string()), std::string::npos) << error.what();
+        }
+    };
+    expect_bad_input("nothing", "made by", "has no group \"nothing\"");
+    expect_bad_input("results", "nothing", "has no attribute \"nothing\"");
+    for (const std::string &text : {whole.substr(0, whole.size() / 2), whole.substr(0, 20)})
+    {
+      write_file(path, text);
+      expect_bad_input("results", "made by", "cannot be read as HDF5 file");
+    }
+    for (const std::string text : {"", "index,A/x\n0,1\n"})
+    {
+      write_file(path, text);
+      expect_bad_input("results", "made by", "is no HDF5 file");
+    }
+    std::filesystem::remove(path);
   }
 } // namespace

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/drivers/sweep_design.h>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <map>
@@ -106,6 +108,28 @@ namespace
     }
     EXPECT_EQ(differences, 20u);
     EXPECT_EQ(one.value(0, 0), design("random", axes, 5, 7).value(0, 0));
+  }
+
+  TEST(SweepDesign, AColumnIsReadWithoutRemarksAndAGridHasNoPointTwice)
+  {
+    const auto path = std::filesystem::temp_directory_path() / ("sweep_design_test_" + std::to_string(::getpid()));
+    write_file(path, "\xef\xbb\xbf# a remark\r\np, \"a, b\"\r\n\r\n2,x\r\n#3,y\r\n2.0,\"y, \"\"z\"\"\"\r\n");
+    const std::string p     = "A/x : column(" + path.string() + ", p)",
+                      words = "; A/y : column(" + path.string() + ", \"a, b\")";
+    const SweepDesign zip   = design("zip", p + words);
+    EXPECT_EQ(zip.n_points(), 2u);
+    EXPECT_EQ(zip.value(0, 1), "2.0");
+    EXPECT_EQ(zip.value(1, 1), "y, \"z\"");
+    EXPECT_THROW(design("grid", p), InputError);
+    EXPECT_EQ(design("grid", "A/x : 1, 2" + words).n_points(), 4u);
+    std::filesystem::remove(path);
+  }
+
+  TEST(SweepDesign, SemicolonsAndColonsWithinQuotesBelongToTheValue)
+  {
+    const SweepDesign grid = design("grid", "A/x : \"a;b\", \"c : d\", x<0 ? 1 : 2; A/y : 1;");
+    EXPECT_EQ(grid.axes()[0].values, (std::vector<std::string>{"a;b", "c : d", "x<0 ? 1 : 2"}));
+    EXPECT_THROW(design("grid", "A/x : 1, 2 A/y : 3, 4"), InputError);
   }
 
   TEST(SweepDesign, WhatMakesNoSenseIsRefused)

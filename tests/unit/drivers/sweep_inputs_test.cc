@@ -52,6 +52,13 @@ namespace
     const SweepInputs kept = SweepInputs::from_attributes(before.attributes());
     EXPECT_TRUE(differences(kept, before).empty());
 
+    auto damaged           = before.attributes();
+    damaged["scene files"] = "{\"soft.prm\": ";
+    EXPECT_THROW(SweepInputs::from_attributes(damaged), InputError);
+    SweepInputs garbled = before;
+    garbled.effective   = "subsection Bo\xff";
+    EXPECT_THROW(differences(garbled, before), InputError);
+
     write_file("plain.prm", "subsection Body\n set Length = 2\n set Friction coefficient = 7\nend\n");
     const auto changed = differences(kept, inputs(text)); // the friction coefficient is that of the axis anyway
     EXPECT_EQ(changed, std::vector<std::string>{"Body/Length in plain.prm was not set and is \"2\""});

@@ -56,12 +56,32 @@ TEST(Axis, ListsKeepTheTextOfTheValues)
   EXPECT_EQ(numbers_of(parse_axis("Body/Length : 1, 2.50", name), name), (std::vector<double>{1., 2.5}));
 }
 
+TEST(Axis, CommasWithinParenthesesOrQuotesDoNotSeparate)
+{
+  EXPECT_EQ(values_of("max(1, x), 2"), (std::vector<std::string>{"max(1, x)", "2"}));
+  EXPECT_EQ(values_of("2*max(1, min(x, 3))"), (std::vector<std::string>{"2*max(1, min(x, 3))"}));
+  EXPECT_EQ(values_of("sin(x) + cos(x)"), (std::vector<std::string>{"sin(x) + cos(x)"}));
+  EXPECT_EQ(values_of("\"1, 2\", \"max(1, x)\" , 3"), (std::vector<std::string>{"1, 2", "max(1, x)", "3"}));
+  EXPECT_EQ(values_of("\"max(1, x)\""), (std::vector<std::string>{"max(1, x)"}));
+  EXPECT_EQ(values_of("\"an (odd name\", b"), (std::vector<std::string>{"an (odd name", "b"}));
+  const auto call = read_call("column(\"a, (b.csv\", p)");
+  ASSERT_TRUE(call);
+  EXPECT_EQ(call->function, "column");
+  EXPECT_EQ(call->arguments, (std::vector<std::string>{"a, (b.csv", "p"}));
+  EXPECT_FALSE(read_call("f(1) + g(2)"));
+  EXPECT_EQ(split_parts("a : f(1; b : \"x;y\"", ';'), (std::vector<std::string>{"a : f(1", "b : \"x;y\""}));
+}
+
 TEST(Axis, WhatIsWrongIsSaid)
 {
   expect_error("Body/Length", {"\"Body/Length\"", "linspace(first, last, count)"});
   expect_error("Body/Length :", {"is expected"});
   expect_error(": 1, 2", {"Section/Entry"});
   expect_error("Body/Length : linspce(0, 1, 2)", {"\"linspce\"", "the nearest is \"linspace\""});
+  expect_error("Body/Length : max(1, x)", {"\"max\"", "\"linspace\" or \"logspace\"", "in double quotes"});
+  expect_error("Body/Length : 1, linspace(0, 1, 2)", {"\"linspace(0, 1, 2)\"", "nothing beside it"});
+  expect_error("Body/Length : 1, max(1, (x)", {"as many closing as opening parentheses"});
+  expect_error("Body/Length : 1, \"2", {"a second double quote is expected"});
   expect_error("Body/Length : linspace(0, 1)", {"\"linspace(0, 1)\"", "three numbers"});
   expect_error("Body/Length : linspace(0, x, 3)", {"three numbers"});
   expect_error("Body/Length : linspace(0, 1, 3", {"three numbers"});
