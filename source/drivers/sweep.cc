@@ -181,8 +181,9 @@ namespace crawler
       std::vector<std::string> words;
       for (const auto &[status, count] : counts.statuses)
         words.push_back(fmt::format("{} {}", count, status));
-      log.line(fmt::format("{} points: {}. {:.1f} s, {:.4g} points/s.",
+      log.line(fmt::format("{} point{}: {}. {:.1f} s, {:.4g} points/s.",
                            counts.n_points,
+                           counts.n_points == 1 ? "" : "s",
                            fmt::join(words, ", "),
                            end.seconds,
                            static_cast<double>(n_computed(counts, end)) / end.seconds));

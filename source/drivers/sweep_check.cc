@@ -29,8 +29,15 @@ namespace crawler
   {
     std::vector<std::string> axes;
     for (const SweepAxis &axis : design.axes())
-      axes.push_back(axis.entry + (design_name == "grid" ? fmt::format(" ({} values)", axis.values.size()) : ""));
-    return fmt::format("{} points, {} over {}", design.n_points(), design_name, fmt::join(axes, ", "));
+      axes.push_back(axis.entry +
+                     (design_name == "grid"
+                        ? fmt::format(" ({} value{})", axis.values.size(), axis.values.size() == 1 ? "" : "s")
+                        : ""));
+    return fmt::format("{} point{}, {} over {}",
+                       design.n_points(),
+                       design.n_points() == 1 ? "" : "s",
+                       design_name,
+                       fmt::join(axes, ", "));
   }
 
   bool
