@@ -106,17 +106,6 @@ namespace crawler
       return text.substr(0, text.find('\0'));
     }
 
-    /// Not in the middle of a character.
-    std::size_t
-    cut(const std::string &text, const std::size_t width)
-    {
-      std::size_t size = std::min(text.size(), width);
-      if (size < text.size())
-        while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80)
-          --size;
-      return size;
-    }
-
     Hdf5Handle
     open_to_read(const std::filesystem::path &path)
     {
@@ -148,7 +137,8 @@ namespace crawler
         else
         {
           const std::string &text = std::get<std::string>(one);
-          std::copy_n(text.begin(), cut(text, width), data.begin() + static_cast<std::ptrdiff_t>(i * width));
+          std::copy_n(
+            text.begin(), whole_characters(text, width), data.begin() + static_cast<std::ptrdiff_t>(i * width));
         }
       }
       checked(H5Dwrite(dataset, type, memory, space, transfer, data.data()), path, "write");
@@ -163,6 +153,16 @@ namespace crawler
       return n;
     }
   } // namespace
+
+  std::size_t
+  whole_characters(const std::string &text, const std::size_t width)
+  {
+    std::size_t size = std::min(text.size(), width);
+    if (size < text.size())
+      while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80)
+        --size;
+    return size;
+  }
 
   void
   RowFile::create(const std::filesystem::path &path,
@@ -384,13 +384,6 @@ namespace crawler
     for (std::size_t i = 0; i < columns_.size(); ++i)
       table.push_back(read(i, first, n));
     return table;
-  }
-
-  Table
-  read_table(const std::filesystem::path &path, const std::string &group)
-  {
-    const RowReader reader(MPI_COMM_SELF, path, group);
-    return reader.read(0, reader.n_rows());
   }
 
   std::string

@@ -2,7 +2,6 @@
 #include <crawler/drivers/batch.h>
 #include <crawler/drivers/compute.h>
 #include <crawler/drivers/error_estimate.h>
-#include <crawler/drivers/gait.h>
 #include <crawler/drivers/model_choice.h>
 #include <crawler/drivers/rung.h>
 #include <crawler/drivers/self_check.h>
@@ -87,12 +86,8 @@ namespace crawler
                   Rung rung(*task.scene, model.model);
                   SimulationResult &result = task.computed.result;
                   result = rung.compute(task.parameters.accuracy, task.parameters.output.ledger, keep_going);
-                  if (task.gait && result.time.status == "finished")
-                  {
-                    result.gait = rung.gait();
-                    if (result.ledger)
-                      result.gait_efficiency = gait_efficiency(*task.scene, result);
-                  }
+                  if (task.gait)
+                    rung.describe_gait(*task.scene, result);
                   return;
                 }
                 const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);

@@ -4,9 +4,9 @@
 #include <crawler/drivers/error_estimate.h>
 #include <crawler/drivers/model_choice.h>
 #include <crawler/drivers/self_check.h>
+#include <crawler/drivers/study.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace crawler
@@ -15,12 +15,6 @@ namespace crawler
   {
     /// So few are not worth three choices of the numerics.
     constexpr std::size_t fewest = 6;
-
-    double
-    now()
-    {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    }
 
     /// What an answer of the shared numerics needs: a bar that can be compared with what is wanted.
     bool

@@ -111,8 +111,14 @@ namespace crawler
   }
 
   void
-  write_stress_table(Log &log, const Input &input, const std::filesystem::path &folder)
+  begin_files(Log &log, const Input &input, const std::filesystem::path &folder)
   {
+    prepare(folder);
+    if (input.parameters.output.n_snapshots > 0)
+      std::filesystem::create_directories(folder / "solution");
+    write_file(folder / "original.prm", input.file.text());
+    write_file(folder / "parameters.prm", input.effective);
+    log.open(folder / "log.txt");
     const std::vector<double> &size = input.parameters.output.active_stress_table;
     if (size.empty())
       return;
@@ -224,13 +230,7 @@ namespace crawler
     on_first_rank(communicator,
                   [&]()
                   {
-                    prepare(folder);
-                    if (output.n_snapshots > 0)
-                      std::filesystem::create_directories(folder / "solution");
-                    write_file(folder / "original.prm", input.file.text());
-                    write_file(folder / "parameters.prm", input.effective);
-                    log.open(folder / "log.txt");
-                    write_stress_table(log, input, folder);
+                    begin_files(log, input, folder);
                     return "";
                   });
     report_plan(log, input, model, *chosen);

@@ -127,13 +127,7 @@ namespace crawler
                     {
                       return std::chrono::duration<double>(Clock::now() - from).count();
                     };
-                    prepare(folder);
-                    if (output.n_snapshots > 0)
-                      std::filesystem::create_directories(folder / "solution");
-                    write_file(folder / "original.prm", input.file.text());
-                    write_file(folder / "parameters.prm", input.effective);
-                    log.open(folder / "log.txt");
-                    write_stress_table(log, input, folder);
+                    begin_files(log, input, folder);
                     report_scene(log, input);
                     log.line(choice.explanation);
 
@@ -148,10 +142,7 @@ namespace crawler
                                                              return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
                                                            });
                     result.setup_seconds    = setup;
-                    if (result.time.status == "finished")
-                      result.gait = rung.gait();
-                    if (result.time.status == "finished" && result.ledger)
-                      result.gait_efficiency = gait_efficiency(input.scene, result);
+                    rung.describe_gait(input.scene, result);
                     if (std::isfinite(result.net_friction)) // the series has no balance to check
                       check_identities(result, parameters);
                     log.line(rung.description());

@@ -206,12 +206,16 @@ namespace crawler
     }
   }
 
-  std::optional<Gait>
-  Rung::gait() const
+  void
+  Rung::describe_gait(const Scene &scene, SimulationResult &result) const
   {
+    if (result.time.status != "finished")
+      return;
+    if (result.ledger)
+      result.gait_efficiency = gait_efficiency(scene, result);
     const auto period = stride_of(*rungs_.scene().active_stress, 1., 1.);
     if (!period)
-      return std::nullopt;
+      return;
     GaitMeter meter(*period, false);
     std::vector<double> ends;
     for (unsigned int i = 0; i <= GaitMeter::n_pieces; ++i)
@@ -225,8 +229,8 @@ namespace crawler
              meter.see_step(t, state.displacement, &ledger);
              return true;
            });
-    auto gait = meter.gait();
-    return gait ? std::optional(gait->in_units(rungs_.units())) : std::nullopt;
+    if (const auto gait = meter.gait())
+      result.gait = gait->in_units(rungs_.units());
   }
 
   std::string

@@ -112,10 +112,7 @@ namespace crawler
       if (text.size() <= width)
         return text;
       const std::string dots = "...";
-      std::size_t size       = width - dots.size();
-      while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80) // not within a character
-        --size;
-      return text.substr(0, size) + dots;
+      return text.substr(0, whole_characters(text, width - dots.size())) + dots;
     }
 
     RowFile::Value

@@ -17,6 +17,10 @@
 
 namespace crawler
 {
+  /// So many bytes of a UTF-8 @p text, at most @p width, are whole characters.
+  std::size_t
+  whole_characters(const std::string &text, std::size_t width);
+
   /**
    * A table in an HDF5 file into which all ranks write rows as they come (parallel HDF5). Its layout is fixed when it
    * is created: a group with a dataset for each column, contiguous and allocated, so later only numbers are written, no
@@ -108,10 +112,6 @@ namespace crawler
     Table columns_; ///< without values
     unsigned long n_rows_ = 0;
   };
-
-  /// All of it (one process).
-  Table
-  read_table(const std::filesystem::path &path, const std::string &group);
 
   /// An attribute of the group. Throws FileError if there is no such file, InputError if there is no such attribute in
   /// it or it is damaged.

@@ -32,9 +32,10 @@ namespace crawler
   void
   report_scene(Log &log, const Input &input);
 
-  /// Writes active_stress.csv into @p folder if the input asks for it. Throws FileError.
+  /// Makes the output folder with the files that a run begins with: parameters, log, and active_stress.csv if the input
+  /// asks for it. Throws FileError.
   void
-  write_stress_table(Log &log, const Input &input, const std::filesystem::path &folder);
+  begin_files(Log &log, const Input &input, const std::filesystem::path &folder);
 
   /// What a run that ended like this returns to the shell.
   ExitCode

@@ -45,9 +45,10 @@ namespace crawler
            const std::vector<double> &points,
            const std::function<bool(double time, const State &state)> &see) const;
 
-    /// After compute(): the last stride, in the user's units; nothing if the active stress declares no period.
-    std::optional<Gait>
-    gait() const;
+    /// After compute() for @p scene, whose @p result gets the last stride, if the active stress declares its period,
+    /// and the gait efficiency. Nothing is said of a run that did not finish.
+    void
+    describe_gait(const Scene &scene, SimulationResult &result) const;
 
     const RungScene &
     rungs() const

@@ -13,6 +13,14 @@
 namespace
 {
   using namespace crawler;
+
+  Table
+  read_table(const std::filesystem::path &path, const std::string &group)
+  {
+    const RowReader reader(MPI_COMM_SELF, path, group);
+    return reader.read(0, reader.n_rows());
+  }
+
   const std::vector<RowFile::Column> columns = {
     {"index", "1", "number", 0}, {"A/x", "length", "a number", 0}, {"word", "", "a text of at most 6 bytes", 6}};
 
