@@ -81,9 +81,10 @@ namespace crawler
         TimePieces pieces;
         std::vector<double> frames;          ///< ends of the pieces, and where the last stride starts
         std::vector<unsigned char> restarts; ///< which of them are where a new piece starts
+        std::vector<StepLimit> limits;
         std::optional<GaitMeter> gait;
         std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
-        std::unique_ptr<ActiveStressAtPoints> ends;   ///< at the ends alone
+        std::optional<StressWatch> watch;
         std::vector<double> m;
         std::vector<std::array<double, 2>> end_stress; ///< m at the ends, in the stages of the step that is tried
         std::size_t n_stress_calls = 0;
@@ -120,6 +121,7 @@ namespace crawler
         lane.restarts.assign(lane.frames.size(), 1);
         lane.frames.push_back(1.);
         lane.restarts.push_back(0);
+        lane.limits = in_units(numerics, lane.units).step_limits;
         start_gait(lane, scene);
         std::vector<double> points = tables_.points;
         for (double &s : points)
@@ -127,7 +129,8 @@ namespace crawler
         points.push_back(0.);
         points.push_back(lane.units.length);
         lane.stress = scene.active_stress->at(points);
-        lane.ends   = scene.active_stress->at({0., lane.units.length});
+        lane.watch.emplace(
+          *scene.active_stress, lane.units.length, numerics.least_event > 0. ? numerics.least_event : HUGE_VAL);
         lane.m.resize(points.size());
         lane.end_stress.resize(tableau_.n);
         lane.n_stress_calls   = 0;
@@ -143,7 +146,8 @@ namespace crawler
                .a             = scene.body.friction_exponent(),
                .tolerance     = numerics.tolerance / lane.units.length,
                .initial_step  = numerics.initial_step / lane.units.time,
-               .largest_step  = numerics.largest_step / lane.units.time,
+               .limits        = lane.limits.data(),
+               .n_limits      = static_cast<unsigned int>(lane.limits.size()),
                .most_steps    = runs_[lane.run].time->max_steps,
                .least_stretch = small_stretch,
                .start_time    = 0.,
@@ -225,25 +229,18 @@ namespace crawler
       }
 
       /// Does an end invert (Simulation::end_inverts)? A coarse mesh may not have followed it. The ends are looked at
-      /// in the stages and between them.
+      /// in the stages and between them, by the watch.
       static bool
-      end_inverts(const Lane &lane, const LaneStep &step)
+      end_inverts(const Lane &lane)
       {
-        constexpr int parts = 4;
-        double smallest     = lane.stretch_at_start;
+        double smallest = lane.stretch_at_start;
         for (const auto &m : lane.end_stress)
           smallest = std::min(smallest, end_stretch(lane, m));
         if (!(smallest > 0.))
           return true;
-        std::array<double, 2> m{};
-        for (int i = 1; i < parts; ++i)
-        {
-          lane.ends->values(lane.pieces.inside(step.time - step.size * (parts - i) / parts) * lane.units.time, m);
-          for (double &value : m)
-            value /= lane.units.force;
-          if (!(end_stretch(lane, m) > 0.))
+        for (const StressWatch::Values &m : lane.watch->inside())
+          if (!(end_stretch(lane, {{m[0] / lane.units.force, m[1] / lane.units.force}}) > 0.))
             return true;
-        }
         return false;
       }
 
@@ -263,7 +260,8 @@ namespace crawler
       bool
       look_at_step(Lane &lane, const LaneStep &step)
       {
-        if (end_inverts(lane, step))
+        const double from = lane.pieces.inside(step.time - step.size), to = lane.pieces.inside(step.time);
+        if (!lane.watch->is_calm(from * lane.units.time, to * lane.units.time) || end_inverts(lane))
           return false;
         const unsigned int n = tableau_.n;
         for (unsigned int i = options_.ledger ? 0 : n - 1; i < n; ++i)
@@ -282,6 +280,7 @@ namespace crawler
         if (step.is_frame && !lane.pieces.is_last() && step.time == lane.pieces.end())
         {
           lane.pieces.go_on();
+          lane.watch->restart();
           lane.least.interrupt();
           lane.most.interrupt();
           lane.n_stress_calls = 0;

@@ -65,6 +65,8 @@ namespace crawler
     /// and if they are softer than very_soft at least soft_error, relative. Layers of the latter are not seen on
     /// uniform meshes.
     constexpr double soft = 1e-3, soft_factor = 3., very_soft = 2e-5, soft_error = 3e-3;
+    /// What differs less from what is expected within a step is no event, relative to the largest active stress.
+    constexpr double least_event = 0.1;
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;
 
@@ -113,7 +115,8 @@ namespace crawler
         n.linear                 = uses_linear_stepper(parameters, scene);
         n.degree                 = parameters.discretization.degree.value_or(automatic_degree);
         n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
-        n.largest_step           = scales_.time;
+        n.step_limits            = scales_.step_limits;
+        n.least_event            = scales_.jumps_move ? 0. : least_event * scales_.stress;
         const std::string &form  = parameters.discretization.formulation;
         n.formulation            = form == "position"      ? FormulationChoice::position
                                    : form == "log stretch" ? FormulationChoice::log_stretch
@@ -524,7 +527,7 @@ namespace crawler
         for (n.n_cells = first_moving_cells;; n.n_cells *= 2)
         {
           // Steps that pass over many cells at once miss what happens on the way, and their errors look small.
-          n.largest_step       = period / (moving_steps * n.n_cells);
+          n.step_limits        = {{0., period / (moving_steps * n.n_cells)}};
           tolerance_           = moving_tolerance * scale_ / n.n_cells;
           const double before  = pilot_.displacement;
           const bool is_second = pilot_.time.status == "finished";
@@ -646,6 +649,9 @@ namespace crawler
         if (choice_.promised_error > 1.5 * accuracy_ * size_)
           choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
                                              choice_.promised_error / size_);
+        if (!scales_.sees_all)
+          choice_.explanation +=
+            "; an event of the active stress that is shorter than a step of its sampling may be missed";
         if (jumps_move_ && !choice_.advice.empty())
           choice_.explanation += "; " + choice_.advice;
       }

@@ -33,18 +33,20 @@ namespace crawler
     {
       return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
     }
-
-    Numerics
-    in_units(Numerics numerics, const Units &units)
-    {
-      numerics.tolerance /= units.length;
-      numerics.initial_step /= units.time;
-      numerics.largest_step /= units.time;
-      numerics.mesh.tolerance /= units.length;
-      numerics.mesh.smallest_cell /= units.length;
-      return numerics;
-    }
   } // namespace
+
+  Numerics
+  in_units(Numerics numerics, const Units &units)
+  {
+    numerics.tolerance /= units.length;
+    numerics.initial_step /= units.time;
+    for (StepLimit &limit : numerics.step_limits)
+      limit = {limit.from / units.time, limit.longest / units.time};
+    numerics.least_event /= units.force;
+    numerics.mesh.tolerance /= units.length;
+    numerics.mesh.smallest_cell /= units.length;
+    return numerics;
+  }
 
   std::vector<double>
   first_cell_ends(const Scene &scene, const Numerics &numerics)
@@ -152,6 +154,15 @@ namespace crawler
     accepted_      = y_;
     accepted_time_ = 0.;
     next_step_     = numerics_.initial_step;
+    step_limits_   = numerics_.step_limits;
+    if (step_limits_.empty())
+      step_limits_.push_back({0., std::numeric_limits<double>::infinity()});
+    for (StepLimit &limit : step_limits_)
+      if (delay_ > 0.)
+        limit.longest = std::min(limit.longest, delay_);
+    watch_.reset();
+    if (numerics_.least_event > 0. && time_.step_control == "adaptive")
+      watch_.emplace(*scene_.active_stress, 1., numerics_.least_event);
 
     cycle_stop_.reset();
     if (options.cycles && CycleStop::fits(options.cycles->period / units_.time))
@@ -274,8 +285,7 @@ namespace crawler
       TimeOutcome outcome;
       try
       {
-        const double largest = delay_ > 0. ? std::min(delay_, numerics_.largest_step) : numerics_.largest_step;
-        outcome              = stepper_->solve(y_, ends, numerics_.tolerance, next_step_, largest, accepted_time_);
+        outcome = stepper_->solve(y_, ends, numerics_.tolerance, next_step_, step_limits_, accepted_time_);
       }
       catch (const NonfiniteStress &error) // of an observer
       {
@@ -308,7 +318,12 @@ namespace crawler
       if (request_ == Request::none || diagnosis_ || accepted_time_ >= 1. || (cycle_stop_ && cycle_stop_->repeats()))
         return outcome;
       count_part(outcome);
-      next_step_ = std::min(outcome.step_size, numerics_.largest_step);
+      next_step_ = outcome.step_size;
+      if (request_ == Request::retry)
+      {
+        y_ = accepted_;
+        continue;
+      }
       if (time_.integrator == "bdf") // starts anew with order 1
         next_step_ = std::min(next_step_, numerics_.initial_step);
       if (request_ != Request::restart)
@@ -341,6 +356,8 @@ namespace crawler
   Simulation::begin_piece()
   {
     pieces_.go_on();
+    if (watch_)
+      watch_->restart();
     assembler_->forget_stresses();
     rates_.assign(rates_.size(), {});
     quadrature_ = {};
@@ -443,6 +460,34 @@ namespace crawler
     }
   }
 
+  /// Did the active stress do something within the step that its ends do not show? Then the step is made again, by
+  /// shorter ones.
+  bool
+  Simulation::passed_over_event(const Step &step)
+  {
+    constexpr double shortest = 1e-6, part = 0.125;
+    if (!watch_ || step.size <= shortest || watch_->is_calm(step.time - step.size, step.time))
+      return false;
+    const auto after = std::find_if(step_limits_.begin(),
+                                    step_limits_.end(),
+                                    [&](const StepLimit &limit)
+                                    {
+                                      return limit.from > step.time;
+                                    });
+    StepLimit later  = *std::prev(after);
+    later.from       = step.time;
+    const auto begin = std::find_if(step_limits_.begin(),
+                                    step_limits_.end(),
+                                    [&](const StepLimit &limit)
+                                    {
+                                      return limit.from > step.time - step.size;
+                                    });
+    const auto place = step_limits_.erase(begin, after);
+    step_limits_.insert(place, {{step.time - step.size, part * step.size}, later});
+    request_ = Request::retry;
+    return true;
+  }
+
   /// Looks at a state that the time stepper has accepted; returns false if it must not be used.
   bool
   Simulation::examine(const Step &step, const std::span<const double> y)
@@ -461,7 +506,7 @@ namespace crawler
                                 step.time * units_.time)};
       return false;
     }
-    if (end_inverts(before, step.time))
+    if (end_inverts(before, step.time) || passed_over_event(step))
       return false;
     const bool in_position = assembler_->formulation() == Formulation::position,
                adaptive    = numerics_.mesh.tolerance > 0.;

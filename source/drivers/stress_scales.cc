@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/drivers/stress_scales.h>
+#include <crawler/scene/fast_changes.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <optional>
+#include <set>
 
 namespace crawler
 {
@@ -80,28 +84,198 @@ namespace crawler
       return false;
     }
 
-    /// Is the active stress nearly 0 for more than a tenth of the time?
-    bool
-    is_often_quiet(const Scene &scene, const double largest)
+    /// Samples of m on two grids: many places at few times, and many times at few places.
+    class Samples
     {
-      constexpr unsigned int n = 128, n_places = 5;
-      constexpr double quiet = 1e-6, often = 0.1;
-      std::vector<double> places, m(n_places);
-      for (unsigned int i = 0; i < n_places; ++i)
-        places.push_back(scene.body.length * i / (n_places - 1));
-      const auto stress    = scene.active_stress->at(places);
-      unsigned int n_quiet = 0;
-      for (unsigned int j = 0; j < n; ++j)
+    public:
+      /// Over [0, @p duration], which is a period of m or all the time; @p in_time are breaks relative to that.
+      Samples(const Scene &scene,
+              const double duration,
+              const std::vector<double> &in_space,
+              const std::vector<double> &in_time)
+        : scene_(scene)
+        , T_(duration)
+        , in_space_(in_space)
+        , in_time_(in_time)
       {
-        stress->values(scene.end_time * j / n, m);
-        n_quiet += std::all_of(m.begin(),
-                               m.end(),
-                               [&](const double value)
-                               {
-                                 return std::abs(value) <= quiet * largest;
-                               });
+        constexpr unsigned int fine = 512, coarse = 16, very_fine = 8192;
+        look(fine, coarse);
+        look(coarse, fine);
+        // Where m is nearly 0 most of the time a short event may have been missed, unless the generator can tell.
+        if (is_often_quiet() && !scene.active_stress->bounds({0., scene.body.length, 0., T_}))
+          look(coarse, very_fine);
       }
-      return n_quiet > often * n;
+
+      /// At many places at one more time.
+      void
+      look_at(const double t)
+      {
+        constexpr unsigned int fine = 512;
+        sample(scene_.active_stress->at(places(fine)).get(), fine, t);
+      }
+
+      double
+      largest_rate(const double from, const double to) const
+      {
+        const double n = static_cast<double>(rates_.size());
+        const auto i   = static_cast<std::size_t>(std::clamp(std::floor(from / T_ * n), 0., n - 1.)),
+                   j   = static_cast<std::size_t>(std::clamp(std::ceil(to / T_ * n), 1., n));
+        return *std::max_element(rates_.begin() + static_cast<std::ptrdiff_t>(i),
+                                 rates_.begin() + static_cast<std::ptrdiff_t>(std::max(j, i + 1)));
+      }
+
+      /// The largest |m_t| but for rare times, a tenth of all at the most, in which it is far larger.
+      double
+      usual_rate() const
+      {
+        constexpr double rare = 0.1, far = 4.;
+        std::vector<double> sorted = rates_;
+        std::sort(sorted.begin(), sorted.end());
+        const double usual =
+          sorted[static_cast<std::size_t>(std::floor((1. - rare) * static_cast<double>(sorted.size() - 1)))];
+        return *std::prev(std::upper_bound(sorted.begin(), sorted.end(), far * usual));
+      }
+
+      /// The rare times.
+      std::vector<FastChange>
+      rare_changes(const double usual) const
+      {
+        std::vector<FastChange> list;
+        const double dt = T_ / static_cast<double>(rates_.size());
+        for (std::size_t j = 0; j < rates_.size(); ++j)
+          if (rates_[j] > usual) // and a sample before and after
+            list.push_back({dt * (static_cast<double>(j) - 1.), dt * (static_cast<double>(j) + 2.), rates_[j]});
+        return list;
+      }
+
+      double largest = 0.; ///< |m|
+      double along   = 0.; ///< |m_s| between the breaks
+
+    private:
+      std::vector<double>
+      places(const unsigned int n) const
+      {
+        std::vector<double> list;
+        for (unsigned int i = 0; i <= n; ++i)
+          list.push_back(scene_.body.length * i / n);
+        return list;
+      }
+
+      void
+      sample(ActiveStressAtPoints *stress, const unsigned int n_points, const double t)
+      {
+        const double L = scene_.body.length;
+        m_.resize(n_points + 1);
+        stress->values(t, m_);
+        for (unsigned int i = 0; i <= n_points; ++i)
+        {
+          largest = std::max(largest, std::abs(m_[i]));
+          if (i > 0 && !any_between(in_space_, L * (i - 1) / n_points, L * i / n_points))
+            along = std::max(along, std::abs(m_[i] - m_[i - 1]) * n_points / L);
+        }
+      }
+
+      void
+      look(const unsigned int n_points, const unsigned int n_times)
+      {
+        const auto stress = scene_.active_stress->at(places(n_points));
+        std::vector<double> before, rates(n_times, 0.);
+        for (unsigned int j = 0; j <= n_times; ++j)
+        {
+          before = m_;
+          sample(stress.get(), n_points, T_ * j / n_times);
+          if (j > 0 && !any_between(in_time_, (j - 1.) / n_times, 1. * j / n_times))
+            for (unsigned int i = 0; i <= n_points; ++i)
+              rates[j - 1] = std::max(rates[j - 1], std::abs(m_[i] - before[i]) * n_times / T_);
+        }
+        rates_.swap(rates); // finer than those before
+      }
+
+      /// Is the active stress nearly 0 for more than a tenth of the time?
+      bool
+      is_often_quiet() const
+      {
+        constexpr unsigned int n = 128, n_places = 4;
+        constexpr double quiet = 1e-6, often = 0.1;
+        std::vector<double> m(n_places + 1);
+        const auto stress    = scene_.active_stress->at(places(n_places));
+        unsigned int n_quiet = 0;
+        for (unsigned int j = 0; j < n; ++j)
+        {
+          stress->values(T_ * j / n, m);
+          n_quiet += std::all_of(m.begin(),
+                                 m.end(),
+                                 [&](const double value)
+                                 {
+                                   return std::abs(value) <= quiet * largest;
+                                 });
+        }
+        return n_quiet > often * n;
+      }
+
+      const Scene &scene_;
+      const double T_;
+      const std::vector<double> &in_space_, &in_time_;
+      std::vector<double> m_, rates_; ///< |m_t| between samples, largest along the body
+    };
+
+    /// Limits of the steps such that no step is longer than the time in which m can change by the largest |m|: where it
+    /// is fast, and elsewhere.
+    std::vector<StepLimit>
+    step_limits(const std::vector<FastChange> &changes,
+                const double largest,
+                const double usual,
+                const double period,
+                const double end_time)
+    {
+      constexpr double unlimited        = std::numeric_limits<double>::infinity();
+      constexpr double similar          = 2.;
+      constexpr std::size_t most_limits = 100000;
+      if (largest == 0.)
+        return {};
+      const double longest = usual > 0. ? largest / usual : unlimited;
+      // Where changes begin and end; the fastest of those that go on is what counts.
+      std::map<double, std::vector<std::pair<double, bool>>> edges; // time -> rates, and whether they begin
+      for (const FastChange &change : changes)
+        if (change.rate > usual && change.from < period && change.to > 0.)
+        {
+          edges[std::max(change.from, 0.)].emplace_back(change.rate, true);
+          edges[std::min(change.to, period)].emplace_back(change.rate, false);
+        }
+      std::vector<StepLimit> limits = {{0., longest}};
+      std::multiset<double> rates;
+      for (const auto &[time, list] : edges)
+      {
+        for (const auto &[rate, begins] : list)
+          if (begins)
+            rates.insert(rate);
+          else
+            rates.erase(rates.find(rate));
+        const double now = rates.empty() ? longest : largest / *rates.rbegin();
+        StepLimit &last  = limits.back();
+        if (last.from >= time)
+          last.longest = now;
+        else if (!rates.empty() && last.longest < longest &&
+                 std::max(now, last.longest) <= similar * std::min(now, last.longest))
+          last.longest = std::min(now, last.longest);
+        else
+          limits.push_back({time, now});
+      }
+      const std::size_t n = limits.size();
+      if (n == 1)
+        return longest < unlimited ? limits : std::vector<StepLimit>();
+      const double n_periods = std::ceil(end_time / period * (1. - 1e-12));
+      if (static_cast<double>(n) * n_periods > static_cast<double>(most_limits))
+      {
+        double shortest = longest;
+        for (const StepLimit &limit : limits)
+          shortest = std::min(shortest, limit.longest);
+        return {{0., shortest}};
+      }
+      for (double i = 1.; i < n_periods; ++i)
+        for (std::size_t j = 0; j < n; ++j)
+          limits.push_back({limits[j].from + i * period, limits[j].longest});
+      return limits;
     }
 
     struct SuddenChange
@@ -151,43 +325,50 @@ namespace crawler
   StressScales
   stress_scales(const Scene &scene)
   {
-    constexpr unsigned int fine = 512, coarse = 16, very_fine = 8192;
+    constexpr unsigned int fine = 512, most_looks = 64;
     constexpr double jump_part = 0.05; // smaller jumps, relative to the largest |m|, are not looked for
+    const ActiveStress &stress = *scene.active_stress;
     const double L = scene.body.length, T = scene.end_time;
-    const std::vector<double> in_space = breaks_in_space(*scene.active_stress, L),
-                              in_time  = TimePieces(*scene.active_stress, T).breaks();
-    double largest = 0., along = 0., over = 0.;
-    const auto look = [&](const unsigned int n_points, const unsigned int n_times)
-    {
-      std::vector<double> points(n_points + 1), m(n_points + 1), before;
-      for (unsigned int i = 0; i <= n_points; ++i)
-        points[i] = L * i / n_points;
-      const auto stress = scene.active_stress->at(points);
-      for (unsigned int j = 0; j <= n_times; ++j)
+    // One period shows all.
+    const double P                     = std::min(stress.period().value_or(T), T);
+    const std::vector<double> in_space = breaks_in_space(stress, L), in_time = TimePieces(stress, T).breaks();
+    std::vector<double> in_period;
+    for (const double t : in_time)
+      if (t * T < P)
+        in_period.push_back(t * T / P);
+
+    Samples samples(scene, P, in_space, in_period);
+    const double usual              = samples.usual_rate();
+    std::vector<FastChange> changes = samples.rare_changes(usual);
+    const FastChanges found         = find_fast_changes(
+      stress,
+      L,
+      0.,
+      P,
+      [&](const double from, const double to)
       {
-        before = m;
-        stress->values(T * j / n_times, m);
-        const bool goes_on = j > 0 && !any_between(in_time, (j - 1.) / n_times, 1. * j / n_times);
-        for (unsigned int i = 0; i <= n_points; ++i)
-        {
-          largest = std::max(largest, std::abs(m[i]));
-          if (i > 0 && !any_between(in_space, points[i - 1], points[i]))
-            along = std::max(along, std::abs(m[i] - m[i - 1]) / (points[i] - points[i - 1]));
-          if (goes_on)
-            over = std::max(over, std::abs(m[i] - before[i]) * n_times / T);
-        }
-      }
-    };
-    look(fine, coarse);
-    look(coarse, fine);
-    if (is_often_quiet(scene, largest)) // and a short event may have been missed
-      look(coarse, very_fine);
+        return std::max(usual, samples.largest_rate(from, to));
+      },
+      samples.largest);
+    changes.insert(changes.end(), found.list.begin(), found.list.end());
+    std::sort(changes.begin(),
+              changes.end(),
+              [](const FastChange &a, const FastChange &b)
+              {
+                return a.from < b.from;
+              });
+    for (std::size_t i = 0; i < changes.size(); i += 1 + changes.size() / most_looks)
+      samples.look_at(0.5 * (changes[i].from + changes[i].to));
+
+    const double largest = samples.largest, along = samples.along;
     const SuddenChange change = largest > 0. ? largest_sudden_change(scene, in_space) : SuddenChange{0., 0.};
     const double unit         = largest > 0. ? largest : 1.;
     const bool may_jump       = along * L / fine > jump_part * largest;
     return {std::min(largest * L / scene.body.elastic_modulus, largest * T / (L * scene.body.friction_coefficient)),
             along > 0. ? largest / along : L,
-            over > 0. ? largest / over : T,
+            step_limits(changes, largest, usual, P, T),
+            largest,
+            found.is_complete || stress.stride(),
             std::max(change.at_start, change.later) / unit,
             change.later / unit,
             in_space.size(),

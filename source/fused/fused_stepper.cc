@@ -24,7 +24,7 @@ namespace crawler
                       const std::vector<double> &frames,
                       const double tolerance,
                       const double initial_step,
-                      const double largest_step,
+                      const std::span<const StepLimit> limits,
                       const double start_time)
   {
     constexpr double end_time = 1.;
@@ -35,7 +35,8 @@ namespace crawler
                 .a             = scene_.body.friction_exponent(),
                 .tolerance     = tolerance,
                 .initial_step  = initial_step,
-                .largest_step  = largest_step,
+                .limits        = limits.data(),
+                .n_limits      = static_cast<unsigned int>(limits.size()),
                 .most_steps    = std::numeric_limits<unsigned int>::max(), // the monitor's business
                 .least_stretch = 0.,
                 .start_time    = start_time,

@@ -233,18 +233,19 @@ namespace crawler
                        const std::vector<double> &frames,
                        const double tolerance,
                        const double initial_step,
-                       const double largest_step,
+                       const std::span<const StepLimit> limits,
                        const double start_time)
   {
     std::vector<double> ends = frames;
     if (ends.empty() || ends.back() < 1.)
       ends.push_back(1.);
     TimeOutcome outcome;
-    outcome.time = start_time;
-    steps_       = 0;
-    tolerance_   = tolerance;
-    f_time_      = -1.;
-    double next  = adaptive_ ? std::min(initial_step, largest_step) : initial_step;
+    outcome.time       = start_time;
+    steps_             = 0;
+    tolerance_         = tolerance;
+    f_time_            = -1.;
+    double next        = initial_step;
+    unsigned int limit = 0;
     if (monitor && !monitor({start_time, 0., 0, false, 0, 0}, y))
     {
       outcome.status    = "stopped";
@@ -258,6 +259,16 @@ namespace crawler
       while (outcome.time < end)
       {
         const double t = outcome.time;
+        if (adaptive_)
+        {
+          const double wanted = left > 0 ? h : next,
+                       most = admitted_step(limits.data(), static_cast<unsigned int>(limits.size()), limit, t, wanted);
+          if (most < wanted)
+          {
+            next = most;
+            left = 0;
+          }
+        }
         if (left == 0)
         {
           left = static_cast<unsigned long>(std::max(1., std::ceil((end - t) / next * (1. - same_size))));
@@ -295,7 +306,7 @@ namespace crawler
         next = h;
         if (adaptive_ && (factor < 1. || factor > least_growth))
         {
-          next = std::min(std::min(factor, most_growth) * h, largest_step);
+          next = std::min(factor, most_growth) * h;
           if (next != h)
             left = 0;
         }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/scene/active_stress.h>
+#include <crawler/scene/fast_changes.h>
 #include <crawler/scene/period.h>
 
 #include <fmt/format.h>
@@ -24,7 +25,9 @@ namespace crawler
     {
     public:
       PeriodSearch(const ActiveStress &stress, const double length, const double end_time, const unsigned int n_times)
-        : T_(end_time)
+        : owner_(stress)
+        , length_(length)
+        , T_(end_time)
         , n_times_(n_times)
         , stress_(stress.at(places(length)))
         , grid_(n_times_ + 1)
@@ -173,7 +176,7 @@ namespace crawler
         return P;
       }
 
-      /// At random times and at as many equally spaced ones as the grid has.
+      /// At random times, at as many equally spaced ones as the grid has, and where m is faster than the grid shows.
       bool
       is_period(const double P)
       {
@@ -189,9 +192,30 @@ namespace crawler
         for (unsigned int i = 0; i < n_times_; ++i)
           if (!is_same_after((i + 0.381966) / n_times_ * (T_ - P)))
             return false;
+        const double known = step_ * n_times_ / T_;
+        double largest     = largest_;
+        for (const FastChange &change : find_fast_changes(
+                                          owner_,
+                                          length_,
+                                          0.,
+                                          T_,
+                                          [known](double, double)
+                                          {
+                                            return known;
+                                          },
+                                          largest)
+                                          .list)
+          for (const double part : {0.27, 0.5, 0.81})
+          {
+            const double t = change.from + part * (change.to - change.from);
+            if ((t + P <= T_ && !is_same_after(t)) || (t >= P && !is_same_after(t - P)))
+              return false;
+          }
         return true;
       }
 
+      const ActiveStress &owner_;
+      const double length_;
       const double T_;
       const unsigned int n_times_;
       const std::unique_ptr<ActiveStressAtPoints> stress_;

@@ -68,8 +68,9 @@ namespace crawler
     bool jacobian_ok       = true;
     double refused_at      = -1.; ///< time of the last state that implicit_function refused
     double nonfinite_at    = -1.; ///< time of the last residual that was not a finite number
-    double largest_step    = 0.;
-    bool underflow         = false;                  ///< a step is below the resolution of the time
+    std::span<const StepLimit> limits;
+    unsigned int limit = 0;                          ///< the present one
+    bool underflow     = false;                      ///< a step is below the resolution of the time
     std::optional<double> user_tolerance, user_step; ///< options -ts_atol and -ts_dt
     double relative_tolerance   = 0.;                ///< option -ts_rtol
     double convergence_constant = std::numeric_limits<double>::infinity();
@@ -522,7 +523,7 @@ namespace crawler
     if (self.fixed_step > 0.)
       size = self.fixed_step;
     else
-      size = std::min(size, self.largest_step);
+      size = admitted_step(self.limits.data(), static_cast<unsigned int>(self.limits.size()), self.limit, time, size);
     const double remaining = self.frames[self.next_frame] - time;
     if (size >= remaining * (1. - 1e-9))
       size = remaining;
@@ -691,7 +692,7 @@ namespace crawler
                      const std::vector<double> &frames,
                      const double tolerance,
                      const double initial_step,
-                     const double largest_step,
+                     const std::span<const StepLimit> limits,
                      const double start_time)
   {
     Implementation &self      = *implementation_;
@@ -705,7 +706,8 @@ namespace crawler
     self.exception            = nullptr;
     self.refused_at           = -1.;
     self.nonfinite_at         = -1.;
-    self.largest_step         = largest_step;
+    self.limits               = limits;
+    self.limit                = 0;
     self.underflow            = false;
     self.tolerance            = self.user_tolerance.value_or(tolerance);
     const double first_step   = self.user_step.value_or(initial_step);

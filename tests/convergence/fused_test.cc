@@ -16,9 +16,10 @@ TEST(Fused, ReachesItsOrderWithEqualSteps)
 {
   const auto energy = [](const std::string &integrator, const unsigned int n)
   {
-    const FusedRun run(test::expression(0., "0.02*sin(pi*t/2)^8*cos(3*(s-2*t))", 1., 0.05),
-                       integrator,
-                       {.degree = 4, .n_cells = 1, .tolerance = 1e3, .initial_step = 1. / n, .largest_step = 1. / n});
+    const FusedRun run(
+      test::expression(0., "0.02*sin(pi*t/2)^8*cos(3*(s-2*t))", 1., 0.05),
+      integrator,
+      {.degree = 4, .n_cells = 1, .tolerance = 1e3, .initial_step = 1. / n, .step_limits = {{0., 1. / n}}});
     const auto result = test::run_alone(run);
     EXPECT_EQ(result->time.steps, n) << integrator;
     return result->ledger->elastic_energy;

@@ -117,7 +117,7 @@ TEST(Jumps, InTimeKeepTheOrder)
       const auto run =
         jumping(test::expression(0., "cos(3*(s-2*t))*(t<0.375 ? 0.02*sin(pi*t/2)^8 : " + after + ")", 1., 0.05),
                 integrator,
-                {.degree = 4, .n_cells = 1, .tolerance = 1e3, .initial_step = 1. / n, .largest_step = 1. / n},
+                {.degree = 4, .n_cells = 1, .tolerance = 1e3, .initial_step = 1. / n, .step_limits = {{0., 1. / n}}},
                 {},
                 declared ? std::vector<double>{0.375} : std::vector<double>());
       const auto result = engine == "batch" ? *test::run_alone(*run) : run->simulate(engine);

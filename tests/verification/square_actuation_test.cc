@@ -117,7 +117,7 @@ TEST(SquareActuation, MovingJumpsHaveAnHonestBar)
                           .n_cells      = n_cells,
                           .tolerance    = 1e-2 / n_cells,
                           .initial_step = 1e-5,
-                          .largest_step = 0.25 / n_cells,
+                          .step_limits  = {{0., 0.25 / n_cells}},
                           .integrator   = "radau 5"})
       .displacement;
   };

@@ -9,6 +9,7 @@
 #include <crawler/drivers/displacement_error.h>
 #include <crawler/drivers/gait.h>
 #include <crawler/drivers/number_errors.h>
+#include <crawler/drivers/stress_watch.h>
 #include <crawler/fused/fused_stepper.h>
 #include <crawler/fused/linear_stepper.h>
 #include <crawler/observers/observer.h>
@@ -35,11 +36,13 @@ namespace crawler
   /// The numerical settings of one simulation; numerics_choice.h chooses those that the user leaves open.
   struct Numerics
   {
-    unsigned int degree           = 0;
-    unsigned int n_cells          = 0;                                       ///< of the first mesh
-    double tolerance              = 0.;                                      ///< [length]
-    double initial_step           = 0.;                                      ///< [time]
-    double largest_step           = std::numeric_limits<double>::infinity(); ///< [time]
+    unsigned int degree                = 0;
+    unsigned int n_cells               = 0;  ///< of the first mesh
+    double tolerance                   = 0.; ///< [length]
+    double initial_step                = 0.; ///< [time]
+    std::vector<StepLimit> step_limits = {}; ///< of adaptive steps [time]
+    double least_event = 0.; ///< an event of the active stress within a step, if it is this large, is stepped over
+                             ///< again [force]; 0: not looked for
     FormulationChoice formulation = FormulationChoice::automatic;
     MeshLimits mesh               = {};    ///< of an adaptive mesh
     bool linear                   = false; ///< the rung for a = 0: radau, position form, uniform mesh
@@ -47,6 +50,10 @@ namespace crawler
     Grading grading               = {};    ///< of the first mesh, which has n_cells cells without it
     bool jumps_move               = false; ///< the active stress jumps at places that move through the cells
   };
+
+  /// In natural units.
+  Numerics
+  in_units(Numerics numerics, const Units &units);
 
   /// The ends of the cells of the first mesh, for a body of length 1: at the breaks in space, and graded as wished.
   /// Empty if they are n_cells of one size.
@@ -149,6 +156,7 @@ namespace crawler
       none,
       log_stretch, ///< change the formulation
       mesh,        ///< change the mesh by changes_
+      retry,       ///< the active stress did something within the step
       restart      ///< the active stress jumps
     };
 
@@ -192,6 +200,8 @@ namespace crawler
     keep_rate(double t, std::span<const double> y_dot);
     bool
     mesh_is_good(const Step &step, std::span<const double> y);
+    bool
+    passed_over_event(const Step &step);
     bool
     cycle_repeats(const Step &step, std::span<const double> y);
     void
@@ -238,9 +248,10 @@ namespace crawler
     const Scene &physical_scene_;
     const Units units_;
     TimePieces pieces_;
-    const Scene scene_;       ///< in natural units
-    const Numerics numerics_; ///< in natural units
-    TimeParameters time_;     ///< in natural units
+    const Scene scene_;                  ///< in natural units
+    const Numerics numerics_;            ///< in natural units
+    TimeParameters time_;                ///< in natural units
+    std::vector<StepLimit> step_limits_; ///< of adaptive steps, in natural units
     const MPI_Comm communicator_;
 
     std::unique_ptr<Discretization> discretization_;
@@ -292,6 +303,7 @@ namespace crawler
     bool ends_at_frame_     = false; ///< does the present piece?
     std::optional<CycleStop> cycle_stop_;
     std::optional<GaitMeter> gait_meter_;
+    std::optional<StressWatch> watch_;
     std::optional<double> hidden_frame_; ///< one of frames_ that nobody has asked for
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
     unsigned long n_failures_ = 0;     ///< of the active stress before this run

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/step_limits.h>
 #include <crawler/scene/scene.h>
 
 #include <cstddef>
@@ -12,7 +13,10 @@ namespace crawler
   {
     double displacement; ///< of the stiff body, or of the one that is held by friction [length]
     double length;       ///< largest |m| over largest |m_s| between the breaks [length]
-    double time;         ///< largest |m| over largest |m_t| between the breaks [time]
+    /// No step is longer than the time in which m can change by the largest |m| between the breaks [time].
+    std::vector<StepLimit> step_limits;
+    double stress; ///< largest |m| [force]
+    bool sees_all; ///< no event is too short to be seen: by ActiveStress::bounds(), or one stride shows all
     /// The largest sudden change of what makes layers, relative to the largest |m|: of m at the ends of the body and of
     /// its jumps in space, at the start and at the breaks in time [1].
     double sudden;

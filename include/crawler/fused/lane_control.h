@@ -35,7 +35,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     double t = 0., h = 1., next = 1., old_h = 1.;
     double error = 0.; ///< of the step, relative to the tolerance
     double rate = 0., known_rate = 1., last_correction = 0.;
-    unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, frame = 0;
+    unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, frame = 0, limit = 0;
     unsigned int first_step = 0; ///< steps before the last start
     unsigned long newton    = 0;
 
@@ -44,7 +44,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     choose_step()
     {
       const double left = job.frames[frame] - t;
-      h                 = next < job.largest_step ? next : job.largest_step;
+      h                 = admitted_step(job.limits, job.n_limits, limit, t, next);
       if (h >= left * (1. - 1e-9))
         h = left;
       else if (h > 0.5 * left)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/step_limits.h>
+
 #include <cstddef>
 
 /**
@@ -37,7 +39,9 @@ namespace crawler
   {
     double k, a;      ///< elastic modulus, friction exponent
     double tolerance; ///< root mean square of the error of a step
-    double initial_step, largest_step;
+    double initial_step;
+    const StepLimit *limits; ///< of its steps
+    unsigned int n_limits;
     unsigned int most_steps;
     double least_stretch; ///< a state with a smaller one is given up; the full path must tell what it means
     double start_time;

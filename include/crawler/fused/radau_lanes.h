@@ -101,7 +101,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       lane       = Lane();
       lane.busy  = host_.next(host_.context, static_cast<unsigned int>(l), lane.job);
       if (!lane.busy)
-        lane.job = {1., 0., 1., 1., 1., 0, 0., 0., nullptr, nullptr, 0, nullptr};
+        lane.job = {1., 0., 1., 1., nullptr, 0, 0, 0., 0., nullptr, nullptr, 0, nullptr};
       lane.t    = lane.job.start_time;
       lane.next = lane.job.initial_step;
       set_lane(mesh_.k, l, lane.job.k);

@@ -91,7 +91,7 @@ namespace crawler
   };
 
   /// Grows by 1 whenever a header that a plug-in includes changes.
-  inline constexpr unsigned int plugin_interface = 3;
+  inline constexpr unsigned int plugin_interface = 4;
 
   /// The name of the function that CRAWLER_ACTIVE_STRESS_PLUGIN exports.
   inline constexpr const char *plugin_function = "crawler_active_stress_plugin";

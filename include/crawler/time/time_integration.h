@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/step_limits.h>
+
 #include <functional>
 #include <span>
 #include <string>
@@ -49,14 +51,14 @@ namespace crawler
      * Integrates from @p start_time to the end time. @p y is the first state on entry and the last accepted
      * state on return. Steps end exactly on @p frames (ascending, within (start_time, end_time]) and on the end time.
      * The same object can solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p
-     * initial_step [time] replace the parameters' automatic values. No adaptive step is longer than @p largest_step.
+     * initial_step [time] replace the parameters' automatic values. Adaptive steps keep the @p limits.
      */
     virtual TimeOutcome
     solve(std::vector<double> &y,
           const std::vector<double> &frames,
           double tolerance,
           double initial_step,
-          double largest_step,
+          std::span<const StepLimit> limits,
           double start_time) = 0;
 
     /// Within the monitor: the state at a time of the step that has just been accepted, by the integrator's own

@@ -59,7 +59,7 @@ namespace crawler
           const std::vector<double> &frames,
           double tolerance,
           double initial_step,
-          double largest_step,
+          std::span<const StepLimit> limits,
           double start_time) override;
     void
     interpolate(double time, Vector y) override;

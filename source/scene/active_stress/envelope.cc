@@ -84,6 +84,12 @@ namespace crawler
     return ramp_ > 0. ? smooth_step_rate(t / ramp_) / ramp_ : 0.;
   }
 
+  double
+  Envelope::largest_ramp_rate(const double from, const double to) const
+  {
+    return ramp_ > 0. ? largest_smooth_step_rate(from / ramp_, to / ramp_) / ramp_ : 0.;
+  }
+
   std::vector<double>
   Envelope::breaks_in_space() const
   {

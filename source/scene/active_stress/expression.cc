@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace crawler
@@ -40,6 +41,7 @@ namespace crawler
     , formula_(parameters.active_stress)
     , compiled_(read_formula(
         {"active stress", formula_, parameters.constants, formula_entry, constants_entry}, length, end_time))
+    , bound_(compiled_)
   {
     require_finite_values(length, end_time);
   }
@@ -79,6 +81,13 @@ namespace crawler
     if (!period_)
       period_ = find_period(*this, length_, end_time_);
     return *period_;
+  }
+
+  std::optional<ActiveStress::Bounds>
+  Expression::bounds(const Box &box) const
+  {
+    const Enclosure m = bound_(box);
+    return Bounds{m.value.largest(), m.rate.largest()};
   }
 
   std::unique_ptr<ActiveStressAtPoints>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/scene/active_stress/formula.h>
+#include <crawler/scene/active_stress/formula_bound.h>
 #include <crawler/scene/active_stress/formula_rate.h>
 
 #include <muParser.h>
@@ -251,7 +252,7 @@ namespace crawler
       const auto loop = loop_of(code);
       if (loop == nullptr)
         throw mu::ParserError(mu::ecINTERNAL_ERROR);
-      add({.loop = loop, .tangent = tangent_of(code)}, 2);
+      add({.loop = loop, .tangent = tangent_of(code), .bound = bound_of(code)}, 2);
     }
 
     /// x x ... x, multiplied from the left as muParser does.
@@ -274,10 +275,10 @@ namespace crawler
         throw mu::ParserError(mu::ecINTERNAL_ERROR);
       const auto loop = count < 0 ? function_of_many : count == 1 ? function_of_one : function_of_two;
       // A function without a name is the sign: -x (muParser defines no other).
-      const auto name = names_.find(reinterpret_cast<Function>(function._pRawFun));
-      add(
-        {.loop = loop, .tangent = tangent_of(name == names_.end() ? "-" : name->second), .function = function._pRawFun},
-        static_cast<std::size_t>(std::abs(count)));
+      const auto name         = names_.find(reinterpret_cast<Function>(function._pRawFun));
+      const std::string known = name == names_.end() ? "-" : name->second;
+      add({.loop = loop, .tangent = tangent_of(known), .bound = bound_of(known), .function = function._pRawFun},
+          static_cast<std::size_t>(std::abs(count)));
     }
 
     /// Its position.
@@ -297,7 +298,7 @@ namespace crawler
       formula_.of_both_[condition.skip_b].target = formula_.of_both_.size();
       conditions_.pop_back();
       stack_.insert(stack_.end() - 2, condition.value);
-      add({.loop = select, .tangent = tangent_of("?")}, 3);
+      add({.loop = select, .tangent = tangent_of("?"), .bound = bound_of("?")}, 3);
     }
 
     /// Takes the arguments from the stack, puts the result there and the operation into the list where it belongs.

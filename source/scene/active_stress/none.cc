@@ -28,4 +28,10 @@ namespace crawler
   {
     return std::make_unique<Zero>();
   }
+
+  std::optional<ActiveStress::Bounds>
+  NoActiveStress::bounds(const Box &) const
+  {
+    return Bounds{0., 0.};
+  }
 } // namespace crawler

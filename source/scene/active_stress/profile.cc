@@ -31,6 +31,12 @@ namespace crawler
   }
 
   double
+  largest_smooth_step_rate(const double from, const double to)
+  {
+    return smooth_step_rate(std::clamp(0.5, from, to)); // it has one maximum, in the middle
+  }
+
+  double
   smooth_step_inverse(const double value)
   {
     const double z = std::log(1. / value - 1.); // = 1/x - 1/(1-x), a quadratic equation for x

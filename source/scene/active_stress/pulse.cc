@@ -18,6 +18,18 @@ namespace crawler
 
     /// Beyond this multiple of its width a Gaussian is below round-off of its top, 2e-16.
     constexpr double gaussian_reach = 6.;
+    /// Where the bumps are the steepest.
+    constexpr double gaussian_steepest = 0.70710678118654752, compact_steepest = 0.75983568565159254;
+
+    /// |b'(z)|
+    double
+    slope_of_bump(const bool compact, const double z)
+    {
+      if (!compact)
+        return 2. * z * std::exp(-z * z);
+      const double room = (1. - z) * (1. + z);
+      return room > 1e-3 ? 2. * z / (room * room) * std::exp(1. - 1. / room) : 0.;
+    }
 
     class AtPoints : public ActiveStressAtPoints
     {
@@ -182,6 +194,51 @@ namespace crawler
   Pulse::period() const
   {
     return settings_.envelope.has_ramp() ? std::nullopt : stride();
+  }
+
+  /// Of all pulses that come to the box, each where it is the steepest.
+  std::optional<ActiveStress::Bounds>
+  Pulse::bounds(const Box &box) const
+  {
+    const double v = settings_.velocity, P = settings_.period, reach = settings_.reach;
+    const double A    = std::abs(settings_.amplitude);
+    const double grow = settings_.envelope.largest_ramp_rate(box.t_from, box.t_to);
+    Bounds sum{0., 0.};
+    const auto add_pulse = [&](const double start)
+    {
+      const double a = start + v * box.t_from, b = start + v * box.t_to;
+      const double from = box.s_from - std::max(a, b), to = box.s_to - std::min(a, b);
+      if (from >= reach || to <= -reach)
+        return;
+      // The largest |b'(z)| is at |z| = steepest, and falls on both sides of it.
+      const double steepest = settings_.compact ? compact_steepest : gaussian_steepest;
+      const double least    = from <= 0. && to >= 0. ? 0. : std::min(std::abs(from), std::abs(to)) / settings_.width;
+      const double most     = std::max(std::abs(from), std::abs(to)) / settings_.width;
+      const double slope    = slope_of_bump(settings_.compact, std::clamp(steepest, least, most));
+      sum.value += A;
+      sum.rate += A * (std::abs(v) / settings_.width * slope + grow);
+    };
+    if (!(P > 0.))
+      add_pulse(settings_.start);
+    else
+    {
+      // Pulse j has left or not come yet unless j is between these.
+      const double d = v * P, x[] = {settings_.start + v * box.t_from, settings_.start + v * box.t_to};
+      double first = HUGE_VAL, last = -HUGE_VAL;
+      for (const double place : x)
+        for (const double s : {box.s_from - reach, box.s_to + reach})
+        {
+          first = std::min(first, (place - s) / d);
+          last  = std::max(last, (place - s) / d);
+        }
+      first = std::ceil(first);
+      // In a long time the same pulses come again and again.
+      const double on_the_body = std::ceil((box.s_to - box.s_from + 2. * reach) / std::abs(d)) + 1.;
+      last                     = std::min(std::floor(last), first + 2. * on_the_body);
+      for (double j = first; j <= last; ++j)
+        add_pulse(settings_.start - j * d);
+    }
+    return sum;
   }
 
   std::vector<double>

@@ -322,6 +322,32 @@ namespace crawler
     return envelope_.has_ramp() ? std::nullopt : stride();
   }
 
+  /// Fronts begin at 0 and at D, or half their width before if they are smooth.
+  std::optional<ActiveStress::Bounds>
+  Segments::bounds(const Box &box) const
+  {
+    const double f = parameters_.frequency, ramp = envelope_.largest_ramp_rate(box.t_from, box.t_to);
+    const double n = f * (box.t_to - box.t_from); // periods in the box
+    Bounds largest{0., 0.};
+    for (const Segment &segment : segments_)
+    {
+      const double width  = smooth_ ? parameters_.front_width : segment.front,
+                   change = std::abs(smooth_ ? segment.amplitude : segment.high - segment.low),
+                   value  = std::max({std::abs(segment.low), std::abs(segment.high), std::abs(segment.amplitude)});
+      double slope        = 0.; // of a front, from 0 to 1, in periods
+      for (const double begin : {0., parameters_.duty_cycle})
+      {
+        const double x = fraction(f * box.t_from + segment.phase - begin + (smooth_ ? 0.5 * width : 0.));
+        for (const double from : {x, x - 1.})
+          if (width > 0. && from < width && from + n > 0.)
+            slope = std::max(slope, smooth_ ? largest_smooth_step_rate(from / width, (from + n) / width) : 1.);
+      }
+      const double rate = slope > 0. ? f * change * slope / width : 0.;
+      largest           = {std::max(largest.value, value), std::max(largest.rate, rate + value * ramp)};
+    }
+    return largest;
+  }
+
   std::vector<double>
   Segments::breaks_in_space() const
   {

@@ -449,6 +449,71 @@ namespace crawler
     return strides.empty() ? period() : common_period(strides);
   }
 
+  namespace
+  {
+    ActiveStress::Bounds
+    sampled_bounds(const ActiveStress &stress, const ActiveStress::Box &box)
+    {
+      constexpr unsigned int n = 2;
+      constexpr double margin  = 2.;
+      std::vector<double> places, now(n + 1), before;
+      for (unsigned int i = 0; i <= n; ++i)
+        places.push_back(box.s_from + (box.s_to - box.s_from) * i / n);
+      const auto at = stress.at(places), rate_at = stress.rate_at(places);
+      ActiveStress::Bounds largest{0., 0.};
+      const double step = (box.t_to - box.t_from) / n;
+      for (unsigned int j = 0; j <= n; ++j)
+      {
+        const double t = box.t_from + step * j;
+        before         = now;
+        at->values(t, now);
+        for (unsigned int i = 0; i <= n; ++i)
+        {
+          largest.value = std::max(largest.value, margin * std::abs(now[i]));
+          if (j > 0 && step > 0.)
+            largest.rate = std::max(largest.rate, margin * std::abs(now[i] - before[i]) / step);
+        }
+        if (!rate_at)
+          continue;
+        rate_at->values(t, now);
+        for (const double rate : now)
+          largest.rate = std::max(largest.rate, margin * std::abs(rate));
+        at->values(t, now);
+      }
+      return largest;
+    }
+  } // namespace
+
+  std::optional<ActiveStress::Bounds>
+  Sum::bounds(const Box &box) const
+  {
+    bool any = false;
+    Bounds sum{0., 0.}, product{1., 0.};
+    for (const SumTerm &term : terms_)
+    {
+      auto own = term.stress->bounds(box);
+      any      = any || own;
+      if (!own)
+        own = sampled_bounds(*term.stress, box);
+      const auto [window, change] = term.in_t.largest(box.t_from, box.t_to);
+      const double factor         = std::abs(term.factor) * term.in_s.largest(box.s_from, box.s_to).first;
+      const auto times            = [](const double a, const double b)
+      {
+        return a == 0. || b == 0. ? 0. : a * b;
+      };
+      const Bounds f = {factor * window * own->value, times(factor * window, own->rate) + factor * change * own->value};
+      if (term.multiplies)
+        product = {product.value * f.value, times(product.rate, f.value) + times(product.value, f.rate)};
+      else
+        sum = {sum.value + f.value, sum.rate + f.rate};
+    }
+    if (!any)
+      return std::nullopt;
+    const double rate = (sum.rate > 0. && product.value > 0. ? sum.rate * product.value : 0.) +
+                        (sum.value > 0. && product.rate > 0. ? sum.value * product.rate : 0.);
+    return Bounds{sum.value * product.value, rate};
+  }
+
   std::vector<double>
   Sum::breaks_in_space() const
   {

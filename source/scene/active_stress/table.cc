@@ -189,6 +189,16 @@ namespace crawler
              parameters.interpolation == "cubic" ? GridInterpolation::Method::cubic : GridInterpolation::Method::linear,
              outside_in_t(parameters))
   {
+    const GridTable &grid = table_.grid();
+    const std::size_t n_s = grid.s.size();
+    largest_              = largest(grid.values);
+    for (std::size_t j = 0; j + 1 < grid.t.size(); ++j)
+    {
+      double change = 0.;
+      for (std::size_t i = j * n_s; i < (j + 1) * n_s; ++i)
+        change = std::max(change, std::abs(grid.values[i + n_s] - grid.values[i]));
+      changes_.push_back(change / (grid.t[j + 1] - grid.t[j]));
+    }
   }
 
   std::unique_ptr<ActiveStressAtPoints>
@@ -201,6 +211,38 @@ namespace crawler
   ActiveStressTable::rate_at(const std::vector<double> &points) const
   {
     return std::make_unique<RatesAtPoints>(table_.at(points));
+  }
+
+  /// Of the samples, and a spline may be steeper than the steepest of its neighbours.
+  std::optional<ActiveStress::Bounds>
+  ActiveStressTable::bounds(const Box &box) const
+  {
+    const bool is_cubic          = parameters_.interpolation == "cubic";
+    const double more            = is_cubic ? 2. : 1.;
+    const std::vector<double> &t = table_.grid().t;
+    const double whole           = t.back() - t.front();
+    const auto n                 = static_cast<std::ptrdiff_t>(changes_.size());
+    const auto largest_change    = [&](const double from, const double to)
+    {
+      if (to <= t.front() || from >= t.back())
+        return 0.;
+      const std::ptrdiff_t beside = is_cubic ? 2 : 0;
+      const auto first            = std::upper_bound(t.begin(), t.end(), from) - t.begin() - 1 - beside,
+                 last             = std::lower_bound(t.begin(), t.end(), to) - t.begin() + beside;
+      return *std::max_element(changes_.begin() + std::clamp<std::ptrdiff_t>(first, 0, n - 1),
+                               changes_.begin() + std::clamp<std::ptrdiff_t>(last, 1, n));
+    };
+    double rate = 0.;
+    if (parameters_.outside != "periodic" || box.t_to - box.t_from >= whole)
+      rate =
+        box.t_to - box.t_from >= whole ? largest_change(t.front(), t.back()) : largest_change(box.t_from, box.t_to);
+    else
+    {
+      const double shift = whole * std::floor((box.t_from - t.front()) / whole), from = box.t_from - shift,
+                   to = box.t_to - shift;
+      rate            = std::max(largest_change(from, to), largest_change(from - whole, to - whole));
+    }
+    return Bounds{more * largest_, more * rate};
   }
 
   std::optional<double>

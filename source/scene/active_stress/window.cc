@@ -61,6 +61,20 @@ namespace crawler
     return (smooth_step_rate(up) * smooth_step(down) - smooth_step(up) * smooth_step_rate(down)) / edge_;
   }
 
+  std::pair<double, double>
+  Window::largest(const double from, const double to) const
+  {
+    if (is_everywhere_)
+      return {1., 0.};
+    if (to < from_ || from > to_)
+      return {0., 0.};
+    if (edge_ == 0.)
+      return {1., 0.};
+    const double up   = largest_smooth_step_rate((from - from_) / edge_, (to - from_) / edge_),
+                 down = largest_smooth_step_rate((to_ - to) / edge_, (to_ - from) / edge_);
+    return {1., (up + down) / edge_};
+  }
+
   std::vector<double>
   Window::breaks() const
   {

@@ -58,7 +58,7 @@ namespace
       steps.clear();
       states.clear();
       y = {0.};
-      return stepper.solve(y, frames, tolerance, step, /*largest_step=*/HUGE_VAL, /*start_time=*/0.);
+      return stepper.solve(y, frames, tolerance, step, /*limits=*/{}, /*start_time=*/0.);
     }
 
     TimeStepper stepper;

@@ -43,6 +43,10 @@ namespace crawler
     double
     ramp_rate(double t) const;
 
+    /// A bound of that in [from, to].
+    double
+    largest_ramp_rate(double from, double to) const;
+
     bool
     has_ramp() const
     {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress/formula.h>
+#include <crawler/scene/active_stress/formula_bound.h>
 
 #include <optional>
 #include <string>
@@ -40,6 +40,9 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     rate_at(const std::vector<double> &points) const override;
 
+    std::optional<Bounds>
+    bounds(const Box &box) const override;
+
     /// Looked for (scene/period.h).
     std::optional<double>
     period() const override;
@@ -52,6 +55,7 @@ namespace crawler
     const double length_, end_time_;
     std::string formula_;
     std::shared_ptr<const Formula> compiled_;
+    mutable FormulaBound bound_;
     mutable std::optional<std::optional<double>> period_; ///< once somebody has asked
   };
 } // namespace crawler

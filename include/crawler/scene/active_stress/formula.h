@@ -4,11 +4,34 @@
 #include <crawler/scene/active_stress.h>
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <utility>
 
 namespace crawler
 {
+  struct Interval
+  {
+    double lower, upper;
+
+    /// Of the absolute values.
+    double
+    largest() const
+    {
+      return -lower > upper ? -lower : upper;
+    }
+  };
+
+  /// What a value of a formula is within in a box of places and times, and its derivative by t.
+  struct Enclosure
+  {
+    static constexpr unsigned int no_number = std::numeric_limits<unsigned int>::max();
+
+    Interval value, rate;
+    unsigned int number = no_number; ///< of the value in its formula
+    bool on_s           = false;     ///< it depends on s
+  };
+
   /**
    * A formula of some variables, s and t unless others are named, read by muParser and then evaluated for many points
    * at a time: each operation is one loop over a block of points instead of one step of muParser's interpreter per
@@ -56,8 +79,12 @@ namespace crawler
                                double *rate,
                                std::size_t n);
 
+      /// Encloses the result (formula_bound.h).
+      using Bound = Enclosure (*)(std::span<const Enclosure> arguments);
+
       Loop loop                           = nullptr;
       Tangent tangent                     = nullptr; ///< null: the result does not change, except by jumps
+      Bound bound                         = nullptr;
       Function function                   = nullptr; ///< For loops that call a function, of any type.
       std::vector<unsigned int> arguments = {};      ///< Values; for a skip the condition.
       unsigned int result                 = 0;       ///< Value.
@@ -69,6 +96,7 @@ namespace crawler
     friend class FormulaAtPoints;
     friend class FormulaRateAtPoints;
     friend class FormulaGradient;
+    friend class FormulaBound;
     friend class FormulaReader;
 
     /// What a value depends on.

@@ -15,5 +15,7 @@ namespace crawler
     at(const std::vector<double> &points) const override;
     std::unique_ptr<ActiveStressAtPoints>
     rate_at(const std::vector<double> &points) const override;
+    std::optional<Bounds>
+    bounds(const Box &box) const override;
   };
 } // namespace crawler

@@ -14,6 +14,10 @@ namespace crawler
   double
   smooth_step_rate(double x);
 
+  /// The largest of that in [from, to].
+  double
+  largest_smooth_step_rate(double from, double to);
+
   /// The x in (0, 1) at which S(x) = @p value, which is between 0 and 1.
   double
   smooth_step_inverse(double value);

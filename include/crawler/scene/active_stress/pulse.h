@@ -52,6 +52,8 @@ namespace crawler
     period() const override;
     std::optional<double>
     stride() const override;
+    std::optional<Bounds>
+    bounds(const Box &box) const override;
     std::vector<double>
     breaks_in_space() const override;
 

@@ -65,6 +65,10 @@ namespace crawler
     std::optional<double>
     stride() const override;
 
+    /// Of terms that cannot tell by samples in the box: what they do is as fast as what others see of them.
+    std::optional<Bounds>
+    bounds(const Box &box) const override;
+
     std::vector<double>
     breaks_in_space() const override;
     std::vector<double>

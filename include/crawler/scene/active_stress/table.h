@@ -45,6 +45,9 @@ namespace crawler
     std::unique_ptr<ActiveStressAtPoints>
     rate_at(const std::vector<double> &points) const override;
 
+    std::optional<Bounds>
+    bounds(const Box &box) const override;
+
     /// If it is periodic, that of the table, or a whole part of it after which equally spaced samples repeat.
     std::optional<double>
     period() const override;
@@ -63,5 +66,7 @@ namespace crawler
     const TableParameters parameters_;
     const double length_, end_time_;
     const GridInterpolation table_;
+    double largest_ = 0.;         ///< |m| [force]
+    std::vector<double> changes_; ///< largest |m_t| between two times of the table [force/time]
   };
 } // namespace crawler

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crawler
@@ -31,6 +32,10 @@ namespace crawler
     /// Its derivative, without the jumps.
     double
     rate(double x) const;
+
+    /// The largest value, and a bound of the largest |derivative|, in [from, to].
+    std::pair<double, double>
+    largest(double from, double to) const;
 
     /// Where it jumps, in (0, end).
     std::vector<double>

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace crawler
+{
+  class ActiveStress;
+
+  /// A time during which an active stress changes faster than was known.
+  struct FastChange
+  {
+    double from, to; ///< [time]
+    double rate;     ///< about the largest |m_t| in it [force/time]
+  };
+
+  struct FastChanges
+  {
+    std::vector<FastChange> list; ///< in the order of their times; they may overlap
+    /// Everything faster is in the list. Otherwise the generator cannot say, or there are too many.
+    bool is_complete = false;
+  };
+
+  /**
+   * Looks for them in [from, to] by bounds of |m_t| in boxes (ActiveStress::bounds), which are halved in s or t
+   * until the bound is explained: by the rate @p known in that time (four times that, since bounds are too large), or
+   * by a change of less than 1e-4 of the largest |m|; or until a point of the box has a rate near the bound. So nothing
+   * is missed because it is short. @p largest is the largest |m| known [force]; it is raised to what is found.
+   */
+  FastChanges
+  find_fast_changes(const ActiveStress &stress,
+                    double length,
+                    double from,
+                    double to,
+                    const std::function<double(double, double)> &known,
+                    double &largest);
+} // namespace crawler

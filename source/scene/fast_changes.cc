@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/scene/active_stress.h>
+#include <crawler/scene/fast_changes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+namespace crawler
+{
+  namespace
+  {
+    /// A bound of so many times a rate is explained by it.
+    constexpr double explained = 4., explained_by_point = 16.;
+    /// A change of less than this part of the largest |m| is none; one of less than the second is no jump.
+    constexpr double negligible = 1e-4, least_jump = 0.05;
+    /// In a time that is put on the list m changes by at most so many times the largest |m|; longer ones are halved.
+    constexpr double most_changes = 64.;
+    /// Relative to the whole time.
+    constexpr double shortest = 1e-9;
+    /// So many bounds are asked for.
+    constexpr unsigned int most_bounds = 20000;
+
+    class Search
+    {
+    public:
+      Search(const ActiveStress &stress,
+             const double duration,
+             const std::function<double(double, double)> &known,
+             double &largest)
+        : stress_(stress)
+        , duration_(duration)
+        , known_(known)
+        , largest_(largest)
+      {
+      }
+
+      FastChanges
+      look(const ActiveStress::Box &all)
+      {
+        FastChanges result;
+        const auto bounds = stress_.bounds(all);
+        if (!bounds)
+          return result;
+        boxes_.push_back({all, bounds->rate, /*in_s=*/true});
+        for (; !boxes_.empty() && n_bounds_ < most_bounds; boxes_.pop_front())
+          look_at(boxes_.front(), result.list);
+        result.is_complete = boxes_.empty();
+        for (const Part &part : boxes_)
+          result.list.push_back({part.box.t_from, part.box.t_to, std::min(part.bound, rate_in(part.box))});
+        std::sort(result.list.begin(),
+                  result.list.end(),
+                  [](const FastChange &a, const FastChange &b)
+                  {
+                    return a.from < b.from;
+                  });
+        return result;
+      }
+
+    private:
+      struct Part
+      {
+        ActiveStress::Box box;
+        double bound;
+        bool in_s; ///< it is a half in s
+      };
+
+      void
+      look_at(const Part &part, std::vector<FastChange> &list)
+      {
+        const ActiveStress::Box box = part.box;
+        const double bound = part.bound, time = box.t_to - box.t_from;
+        if (bound <= explained * known_(box.t_from, box.t_to) || bound * time <= negligible * largest_)
+          return;
+        const double rate = rate_in(box);
+        if (rate * explained_by_point >= bound && std::isfinite(bound))
+        {
+          see_values(box);
+          if (bound * time <= most_changes * largest_)
+          {
+            list.push_back({box.t_from, box.t_to, std::min(bound, 2. * rate)});
+            return;
+          }
+        }
+        if (time <= shortest * duration_)
+        {
+          if (const double change = see_values(box); change >= least_jump * largest_ && change > 0.)
+            list.push_back({box.t_from, box.t_to, change / time});
+          return;
+        }
+        // In the direction that makes the bounds smaller; if both are the same, not in that of the last time.
+        ActiveStress::Box left = box, right = box, early = box, late = box;
+        left.s_to = right.s_from = 0.5 * (box.s_from + box.s_to);
+        early.t_to = late.t_from = 0.5 * (box.t_from + box.t_to);
+        const double of_early = bound_in(early), of_late = bound_in(late);
+        const bool is_jump   = !std::isfinite(bound);
+        const double of_left = is_jump ? HUGE_VAL : bound_in(left), of_right = is_jump ? HUGE_VAL : bound_in(right);
+        const double in_time = of_early + of_late, in_space = of_left + of_right;
+        const bool in_s = !is_jump && (in_space < 0.99 * in_time || (in_space <= 1.01 * in_time && !part.in_s));
+        boxes_.push_back(in_s ? Part{left, of_left, true} : Part{early, of_early, false});
+        boxes_.push_back(in_s ? Part{right, of_right, true} : Part{late, of_late, false});
+      }
+
+      double
+      bound_in(const ActiveStress::Box &box)
+      {
+        ++n_bounds_;
+        return stress_.bounds(box)->rate;
+      }
+
+      /// The largest |m_t| at some points of the box: there a bound has nothing to be too large for.
+      double
+      rate_in(const ActiveStress::Box &box)
+      {
+        struct Point
+        {
+          double x, y;
+        };
+        constexpr Point points[] = {{0.5, 0.5}, {0.21, 0.83}, {0.79, 0.17}};
+        double largest           = 0.;
+        for (const auto &[x, y] : points)
+        {
+          const double s = box.s_from + x * (box.s_to - box.s_from), t = box.t_from + y * (box.t_to - box.t_from);
+          if (const double rate = bound_in({s, s, t, t}); std::isfinite(rate))
+            largest = std::max(largest, rate);
+        }
+        return largest;
+      }
+
+      /// Keeps the largest |m| in the box, and returns by how much it changes.
+      double
+      see_values(const ActiveStress::Box &box)
+      {
+        constexpr unsigned int n = 4;
+        std::vector<double> places, m(n + 1), least(n + 1, HUGE_VAL), most(n + 1, -HUGE_VAL);
+        for (unsigned int i = 0; i <= n; ++i)
+          places.push_back(box.s_from + (box.s_to - box.s_from) * i / n);
+        const auto at = stress_.at(places);
+        double change = 0.;
+        for (unsigned int j = 0; j <= n; ++j)
+        {
+          at->values(box.t_from + (box.t_to - box.t_from) * j / n, m);
+          for (unsigned int i = 0; i <= n; ++i)
+          {
+            largest_ = std::max(largest_, std::abs(m[i]));
+            least[i] = std::min(least[i], m[i]);
+            most[i]  = std::max(most[i], m[i]);
+            change   = std::max(change, most[i] - least[i]);
+          }
+        }
+        return change;
+      }
+
+      const ActiveStress &stress_;
+      const double duration_;
+      const std::function<double(double, double)> &known_;
+      double &largest_;
+      std::deque<Part> boxes_;
+      unsigned int n_bounds_ = 0;
+    };
+  } // namespace
+
+  FastChanges
+  find_fast_changes(const ActiveStress &stress,
+                    const double length,
+                    const double from,
+                    const double to,
+                    const std::function<double(double, double)> &known,
+                    double &largest)
+  {
+    return Search(stress, to - from, known, largest).look({0., length, from, to});
+  }
+} // namespace crawler
