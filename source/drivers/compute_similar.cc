@@ -4,6 +4,7 @@
 #include <crawler/drivers/error_estimate.h>
 #include <crawler/drivers/model_choice.h>
 #include <crawler/drivers/self_check.h>
+#include <crawler/drivers/stress_scales.h>
 #include <crawler/drivers/study.h>
 
 #include <algorithm>
@@ -69,6 +70,16 @@ namespace crawler
       return finest;
     }
 
+    /// Sets the limits of the steps of one scene from those of a similar one.
+    void
+    watch_events(Numerics &numerics, const Scene &scene)
+    {
+      const EventLimits own = similar_event_limits(scene, numerics.step_limits);
+      numerics.step_limits  = own.step_limits;
+      if (numerics.least_event > 0.)
+        numerics.least_event = least_event * own.stress;
+    }
+
     /// Leaves nothing of a try behind.
     void
     forget(Task &task)
@@ -121,20 +132,25 @@ namespace crawler
       struct Member
       {
         std::size_t task;
-        Numerics finer;
+        Numerics own, finer;
         TimeParameters finer_time;
       };
       std::vector<Member> members;
-      std::vector<BatchRun> runs;
       for (std::size_t i = 0; i < tasks.size(); ++i)
         if (wanted[i] && !is_faster_alone(tasks[i]) &&
             fused_method(*tasks[i].scene, tasks[i].parameters.time, shared->numerics))
         {
+          // Each stress has events of its own.
+          NumericsChoice own = *shared;
+          watch_events(own.numerics, *tasks[i].scene);
           members.push_back({i,
-                             numerics_of_finer_run(*shared, tasks[i].parameters.time, *tasks[i].scene),
+                             own.numerics,
+                             numerics_of_finer_run(own, tasks[i].parameters.time, *tasks[i].scene),
                              time_of_finer_run(tasks[i].parameters.time)});
-          runs.push_back({&*tasks[i].scene, &tasks[i].parameters.time, &shared->numerics});
         }
+      std::vector<BatchRun> runs;
+      for (const Member &member : members)
+        runs.push_back({&*tasks[member.task].scene, &tasks[member.task].parameters.time, &member.own});
       const Simulation::Options options = {.ledger = tasks.front().parameters.output.ledger,
                                            .gait   = tasks.front().gait ? Simulation::GaitWish::declared
                                                                         : Simulation::GaitWish::none};
@@ -157,6 +173,7 @@ namespace crawler
           continue;
         SimulationResult &result = *results[i];
         NumericsChoice choice    = *shared;
+        choice.numerics          = members[i].own;
         choice.wanted_error      = task.parameters.accuracy * std::abs(result.displacement);
         choice.promised_error    = choice.wanted_error;
         set_errors(choice, result, &*finer_results[j], task.parameters, *task.scene);

@@ -65,8 +65,6 @@ namespace crawler
     /// and if they are softer than very_soft at least soft_error, relative. Layers of the latter are not seen on
     /// uniform meshes.
     constexpr double soft = 1e-3, soft_factor = 3., very_soft = 2e-5, soft_error = 3e-3;
-    /// What differs less from what is expected within a step is no event, relative to the largest active stress.
-    constexpr double least_event = 0.1;
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;
 

@@ -460,6 +460,19 @@ namespace crawler
     }
   }
 
+  /// The limit of steps at this time.
+  double
+  Simulation::longest_step(const double t) const
+  {
+    const auto after = std::find_if(step_limits_.begin(),
+                                    step_limits_.end(),
+                                    [t](const StepLimit &limit)
+                                    {
+                                      return limit.from > t;
+                                    });
+    return after == step_limits_.begin() ? HUGE_VAL : std::prev(after)->longest;
+  }
+
   /// Did the active stress do something within the step that its ends do not show? Then the step is made again, by
   /// shorter ones.
   bool
@@ -474,8 +487,7 @@ namespace crawler
                                     {
                                       return limit.from > step.time;
                                     });
-    StepLimit later  = *std::prev(after);
-    later.from       = step.time;
+    const StepLimit later{step.time, longest_step(step.time)};
     const auto begin = std::find_if(step_limits_.begin(),
                                     step_limits_.end(),
                                     [&](const StepLimit &limit)
@@ -558,7 +570,8 @@ namespace crawler
       result_.largest_u           = std::max(result_.largest_u, assembler_->root_mean_square(y));
     }
     // Many steps that lead nowhere.
-    tiny_steps_ = step.size > 0. && step.size < tiny_step ? tiny_steps_ + 1 : 0;
+    const double tiny = tiny_step * std::min(1., 10. * longest_step(step.time));
+    tiny_steps_       = step.size > 0. && step.size < tiny ? tiny_steps_ + 1 : 0;
     if (tiny_steps_ > most_steps_at_zero && scene_.friction_exponent() >= 0. && stretch_.min.value < nearly_zero)
     {
       inverted_inside(stretch_.min.value, stretch_.min.s, step.time);
@@ -571,7 +584,7 @@ namespace crawler
                     fmt::format("{} steps in succession were smaller than {:g} of the duration, at t = {:.9g}; the "
                                 "smallest stretch is {:.3g} at s = {:.6g}",
                                 most_tiny_steps,
-                                tiny_step,
+                                tiny,
                                 step.time * units_.time,
                                 stretch_.min.value,
                                 stretch_.min.s * units_.length)};

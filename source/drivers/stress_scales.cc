@@ -375,4 +375,45 @@ namespace crawler
             in_time.size(),
             may_jump && jumps_that_move(scene, in_space, jump_part * largest)};
   }
+
+  EventLimits
+  similar_event_limits(const Scene &scene, const std::vector<StepLimit> &known)
+  {
+    const ActiveStress &stress = *scene.active_stress;
+    const double L = scene.body.length, T = scene.end_time, P = std::min(stress.period().value_or(T), T);
+    if (!stress.bounds({0., L, 0., P}) && known.size() > 1) // there are events, and it cannot say when
+    {
+      const StressScales scales = stress_scales(scene);
+      return {scales.stress, scales.step_limits};
+    }
+    constexpr unsigned int n = 16;
+    std::vector<double> places, m(n + 1);
+    for (unsigned int i = 0; i <= n; ++i)
+      places.push_back(L * i / n);
+    const auto at  = stress.at(places);
+    double largest = 0.;
+    for (unsigned int j = 0; j <= n; ++j)
+    {
+      at->values(P * j / n, m);
+      for (const double value : m)
+        largest = std::max(largest, std::abs(value));
+    }
+    double longest = 0.;
+    for (const StepLimit &limit : known)
+      longest = std::max(longest, limit.longest);
+    const double usual      = longest > 0. ? largest / longest : 0.;
+    const FastChanges found = find_fast_changes(
+      stress,
+      L,
+      0.,
+      P,
+      [usual](double, double)
+      {
+        return usual;
+      },
+      largest);
+    if (found.list.empty())
+      return {largest, known.empty() ? known : std::vector<StepLimit>{{0., longest}}};
+    return {largest, step_limits(found.list, largest, usual, P, T)};
+  }
 } // namespace crawler

@@ -124,11 +124,11 @@ namespace
   std::vector<Row>
   rows_of(const unsigned int number, const std::vector<double> &accuracies)
   {
-    const bool jumps               = number >= test::first_jumping_scene;
-    const test::RandomScene random = jumps ? test::jumping_scene(number) : test::random_scene(number);
+    const bool jumping             = number >= test::first_jumping_scene;
+    const test::RandomScene random = jumping ? test::jumping_scene(number) : test::random_scene(number);
     Parameters parameters          = test::parameters_with(random.settings);
     Reference reference;
-    if (jumps)
+    if (jumping || random.kind == "sudden")
       reference = displacement_of_jumping(parameters, random);
     else
     {

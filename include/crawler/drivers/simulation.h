@@ -200,6 +200,8 @@ namespace crawler
     keep_rate(double t, std::span<const double> y_dot);
     bool
     mesh_is_good(const Step &step, std::span<const double> y);
+    double
+    longest_step(double t) const;
     bool
     passed_over_event(const Step &step);
     bool

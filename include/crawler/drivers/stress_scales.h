@@ -26,6 +26,20 @@ namespace crawler
     bool jumps_move;
   };
 
+  /// What differs less from what is expected within a step is no event, relative to the largest |m|.
+  constexpr double least_event = 0.1;
+
   StressScales
   stress_scales(const Scene &scene);
+
+  /// The largest |m| [force], about, and limits of the steps [time].
+  struct EventLimits
+  {
+    double stress;
+    std::vector<StepLimit> step_limits;
+  };
+
+  /// Those of a scene like one that has the limits @p known; that takes microseconds where the generator can tell.
+  EventLimits
+  similar_event_limits(const Scene &scene, const std::vector<StepLimit> &known);
 } // namespace crawler
