@@ -61,7 +61,7 @@ namespace crawler
     }
 
     /// The number of waves of the largest S, to a sixteenth, among those that the pieces tell apart: each harmonic
-    /// gives |int En e^(iks) ds|^2 as a table over k.
+    /// gives |int E_n e^(iks) ds|^2 as a table over k.
     double
     search(const std::vector<Complex> &E)
     {
@@ -194,7 +194,7 @@ namespace crawler
     Beam::best() const
     {
       constexpr unsigned int most_corrections = 30;
-      constexpr double most = 0.5 / search_steps_per_wave, round_off = 1e-13;
+      constexpr double most = 0.5 / search_steps_per_wave, last = 1e-7;
       // Half as many pieces are searched in a quarter of the time. If they find more than half of e, nothing else can
       // be more: waves of other numbers are orthogonal.
       std::vector<Complex> pairs(E_.size() / 2);
@@ -207,14 +207,15 @@ namespace crawler
       double nu = search(pairs);
       if (at(nu).S < 0.5)
         nu = search(E_);
-      // Newton's method for a slope of 0, which goes uphill where S is not concave.
+      // Newton's method for a slope of 0, which goes uphill where S is not concave. Digits double, so that this last
+      // correction leaves round-off.
       for (unsigned int i = 0; i < most_corrections; ++i)
       {
         const Value here = at(nu);
         const double correction =
           here.curvature < 0. ? std::clamp(-here.slope / here.curvature, -most, most) : std::copysign(most, here.slope);
         nu += correction;
-        if (std::abs(correction) < round_off * std::max(1., std::abs(nu)))
+        if (std::abs(correction) < last)
           break;
       }
       return nu;
