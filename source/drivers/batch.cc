@@ -194,6 +194,8 @@ namespace crawler
           sampler_.sample(step, std::min(time, step.time));
           lane.gait->see(sampler_.displacement(), sampler_.mean_displacement());
         }
+        const LaneStage &end = step.stages[tableau_.n - 1];
+        lane.gait->see_extremes(end.min_stretch, end.max_stretch);
         if (!step.is_frame)
           return;
         sampler_.sample(step, step.time);

@@ -12,10 +12,8 @@ namespace crawler
 {
   namespace
   {
-    /// A displacement or a change of the strain that is smaller than this is none.
+    /// A displacement that is smaller than this is none.
     constexpr double nothing = 1e-12;
-    /// A wave of less coherence is a standing one.
-    constexpr double least_coherence = 0.1;
     /// Samples of a run whose period is not known, and those of them that are searched for one.
     constexpr unsigned int n_unknown = 1024, n_searched = n_unknown / 2;
     /// The stretch repeats if the mean square of its change is below this part of the largest such.
@@ -54,11 +52,16 @@ namespace crawler
   }
 
   std::optional<double>
+  Gait::wave_speed() const
+  {
+    return wave && wave->travels() ? std::optional(wave->speed) : std::nullopt;
+  }
+
+  std::optional<double>
   Gait::slip() const
   {
-    if (!wave || wave->coherence < least_coherence)
-      return std::nullopt;
-    return 1. - std::abs(speed() / wave->speed);
+    const auto c = wave_speed();
+    return c ? std::optional(1. - std::abs(speed() / *c)) : std::nullopt;
   }
 
   std::optional<double>
@@ -73,49 +76,9 @@ namespace crawler
   {
     if (!wave || std::abs(body_lengths()) <= nothing)
       return "none";
-    if (wave->coherence < least_coherence)
+    if (!wave->travels())
       return "standing";
     return wave->speed * displacement > 0. ? "prograde" : "retrograde";
-  }
-
-  std::optional<StretchWave>
-  measure_wave(std::vector<std::vector<double>> stretch, const double period, const double length)
-  {
-    const std::size_t n_t = stretch.size(), n_s = stretch.front().size();
-    for (std::size_t i = 0; i < n_s; ++i)
-    {
-      double mean = 0.;
-      for (const auto &e : stretch)
-        mean += e[i] / static_cast<double>(n_t);
-      for (auto &e : stretch)
-        e[i] -= mean;
-    }
-    const double ds = length / static_cast<double>(n_s), dt = period / static_cast<double>(n_t);
-    const auto slope = [](const double m2, const double m1, const double p1, const double p2, const double step)
-    {
-      return (8. * (p1 - m1) - (p2 - m2)) / (12. * step);
-    };
-    double tt = 0., ts = 0., ss = 0., largest = 0.;
-    for (std::size_t j = 0; j < n_t; ++j)
-    {
-      const auto &e      = stretch[j];
-      const auto at_time = [&](const std::size_t shift, const std::size_t i)
-      {
-        return stretch[(j + n_t + shift - 2) % n_t][i];
-      };
-      for (std::size_t i = 2; i + 2 < n_s; ++i)
-      {
-        const double e_s = slope(e[i - 2], e[i - 1], e[i + 1], e[i + 2], ds);
-        const double e_t = slope(at_time(0, i), at_time(1, i), at_time(3, i), at_time(4, i), dt);
-        tt += e_t * e_t;
-        ts += e_t * e_s;
-        ss += e_s * e_s;
-        largest = std::max(largest, std::abs(e[i]));
-      }
-    }
-    if (largest <= nothing || ss == 0. || tt == 0.)
-      return std::nullopt;
-    return StretchWave{-ts / ss, std::abs(ts) / std::sqrt(tt * ss)};
   }
 
   std::optional<double>
@@ -217,6 +180,13 @@ namespace crawler
   }
 
   void
+  GaitMeter::see_extremes(const double smallest, const double largest)
+  {
+    smallest_.add({smallest, smallest});
+    largest_.add({largest, largest});
+  }
+
+  void
   GaitMeter::see_step(const double time, const double displacement, const Ledger *ledger)
   {
     bool is_kept = time >= 0.4;
@@ -229,7 +199,22 @@ namespace crawler
       return;
     if (period_ && steps_.size() >= 2)
       steps_.erase(steps_.begin());
-    steps_.push_back({time, displacement, ledger ? std::optional(*ledger) : std::nullopt});
+    steps_.push_back({time, displacement, ledger ? std::optional(*ledger) : std::nullopt, smallest_, largest_});
+    smallest_ = largest_ = {};
+  }
+
+  /// The steps tell what the samples may have missed.
+  std::optional<StretchWave>
+  GaitMeter::wave(const std::vector<std::vector<double>> &stretch, const double period) const
+  {
+    Range smallest, largest;
+    for (const StepEnd &step : steps_)
+      if (step.time > 1. - period + 1e-9)
+      {
+        smallest.add(step.smallest);
+        largest.add(step.largest);
+      }
+    return measure_wave(stretch, period, 1., std::max(smallest.to - smallest.from, largest.to - largest.from));
   }
 
   std::optional<Gait>
@@ -249,7 +234,7 @@ namespace crawler
     std::vector<std::vector<double>> stretch;
     for (unsigned int j = 1; j <= n_phases; ++j)
       stretch.push_back(samples_[j].stretch);
-    Gait gait{*period_, true, 1. / *period_, to.displacement - from.displacement, measure_wave(stretch, *period_, 1.)};
+    Gait gait{*period_, true, 1. / *period_, to.displacement - from.displacement, wave(stretch, *period_)};
     if (from.ledger && to.ledger)
       gait.ledger = difference(*to.ledger, *from.ledger);
     return gait;
@@ -331,7 +316,7 @@ namespace crawler
           place.a * values[place.i] + place.b * values[place.i + 1] + place.c * M[place.i] + place.d * M[place.i + 1];
       }
     }
-    Gait gait{period, false, 1. / period, moved, measure_wave(stretch, period, 1.)};
+    Gait gait{period, false, 1. / period, moved, wave(stretch, period)};
     if (steps_.size() >= 4 && steps_.front().time < start && steps_.back().ledger)
     {
       times.clear();

@@ -98,7 +98,7 @@ namespace crawler
       of_gait(
         [](const Gait &g)
         {
-          return g.wave ? std::optional(g.wave->speed) : std::nullopt;
+          return g.wave_speed();
         });
       *next            = with_own_scale(result.gait_efficiency);
       next->is_sampled = true; // it follows from the extreme stretches

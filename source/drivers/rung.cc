@@ -225,6 +225,8 @@ namespace crawler
            [&](const double t, const State &state)
            {
              meter.see(state.fields.displacement, state.displacement);
+             meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // of the whole motion
+             meter.see_extremes(1. + state.smallest.strain, 1. + state.largest.strain);
              const Ledger ledger = ledger_of(state.energies);
              meter.see_step(t, state.displacement, &ledger);
              return true;

@@ -71,6 +71,7 @@ namespace crawler
         stepper_->interpolate(time, y_inside_);
         see(y_inside_);
       }
+    gait_meter_->see_extremes(stretch_.min.value, stretch_.max.value);
     // With a ledger or observers the displacement of this state is known already.
     const bool is_known = options_.ledger || has_observers_;
     gait_meter_->see_step(step.time,

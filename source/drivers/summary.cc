@@ -99,7 +99,7 @@ namespace crawler
                                       })}};
       json["slip"]              = result.gait ? number(result.gait->slip()) : Json(nullptr);
       json["wave"]              = {{"direction", result.gait ? Json(result.gait->direction()) : Json(nullptr)},
-                                   {"speed", has_wave ? Json(result.gait->wave->speed) : Json(nullptr)},
+                                   {"speed", result.gait ? number(result.gait->wave_speed()) : Json(nullptr)},
                                    {"coherence", has_wave ? Json(result.gait->wave->coherence) : Json(nullptr)}};
       json["efficiency"]        = number(result.gait_efficiency);
       return json;
@@ -146,9 +146,9 @@ namespace crawler
                     gait.body_lengths(),
                     gait.speed()));
       if (gait.wave)
-        lines.push_back(fmt::format("  wave              {}, speed {:.4g}, coherence {:.3g}{}",
+        lines.push_back(fmt::format("  wave              {}{}, coherence {:.3g}{}",
                                     gait.direction(),
-                                    gait.wave->speed,
+                                    gait.wave_speed() ? fmt::format(", speed {:.4g}", *gait.wave_speed()) : "",
                                     gait.wave->coherence,
                                     gait.slip() ? fmt::format(", slip {:.4g}", *gait.slip()) : ""));
       if (!gait.ledger)

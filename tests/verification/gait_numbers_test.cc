@@ -21,6 +21,16 @@ namespace
                                       .gait   = Simulation::GaitWish::any};
     return test::run_with(settings, options).result;
   }
+
+  /// The gait of a run at Accuracy 1e-4, if the generator declares its period.
+  std::optional<Gait>
+  declared_gait(test::Settings settings)
+  {
+    settings.emplace_back("Accuracy", "1e-4");
+    Simulation::Options options;
+    options.gait = Simulation::GaitWish::declared;
+    return test::run_with(settings, options).result.gait;
+  }
 } // namespace
 
 TEST(GaitNumbers, ThoseOfFigure2)
@@ -34,13 +44,13 @@ TEST(GaitNumbers, ThoseOfFigure2)
   EXPECT_NEAR(gait.displacement, 0.090100, 0.5e-6);
   EXPECT_NEAR(gait.displacement, (1.801968240 - 9.0072529800e-2) / 19., 2e-9);
   EXPECT_STREQ(gait.direction(), "retrograde");
-  EXPECT_NEAR(gait.wave->speed, -1., 0.01);
+  EXPECT_NEAR(gait.wave->speed, -1., 0.02); // to leading order in chi
   // From stride to stride nothing is stored: the work is dissipated.
   EXPECT_NEAR(gait.ledger->elastic_energy, 0., 1e-9);
   EXPECT_NEAR(gait.ledger->stress_power, gait.ledger->dissipation, 1e-8);
   EXPECT_NEAR(gait.ledger->stress_power, (1.674733 - 0.083860120) / 19., 1e-6);
   EXPECT_LT(*result.gait_efficiency, 1.);
-  EXPECT_NEAR(*gait.slip(), 1. - 0.0901, 1e-3);
+  EXPECT_NEAR(*gait.slip(), 1. - 0.0901, 2e-3);
 
   const auto early = stride(test::wave(-1., 0.4, 1., 20.), /*with_cycle_stop=*/true);
   ASSERT_TRUE(early.cycles && early.gait);
@@ -68,6 +78,8 @@ TEST(GaitNumbers, TheDirectionSwitchesWithA)
     ASSERT_TRUE(result.gait);
     EXPECT_STREQ(result.gait->direction(), a < 0. ? "retrograde" : "prograde");
     EXPECT_GT(result.gait->displacement, 0.);
+    EXPECT_NEAR(result.gait->wave->speed, a, 2e-3);
+    EXPECT_NEAR(result.gait->wave->coherence, 1., 1e-3);
     // -L gamma c/a to leading order in chi.
     EXPECT_NEAR(*result.gait->cost_of_transport(result.gait->ledger->stress_power), 1., 0.02);
   }
@@ -87,6 +99,59 @@ TEST(GaitNumbers, TheEnergiesOfAStrideAddUpWithThoseBefore)
   EXPECT_NEAR(whole.gait->ledger->positive_power, whole.ledger->positive_power - before.ledger->positive_power, 1e-4);
 }
 
+/// The generator says which wave runs; what is measured knows nothing of it. Actuators switch from segment to segment,
+/// and between them there may be gaps.
+TEST(GaitNumbers, SegmentsHaveTheWaveThatTheyDeclare)
+{
+  const std::string section = "Active stress/Segments/";
+  for (const unsigned int n : {8, 16, 32, 64})
+    for (const double gap : {0., 0.3})
+      for (const bool to_tail : {true, false})
+      {
+        const double lag = n == 16 ? 0.1 : 1. / n, duty = n == 8 ? 0.5 : 0.3;
+        const auto gait = declared_gait({{"Active stress/Generator", "segments"},
+                                         {section + "Number of segments", test::text(n)},
+                                         {section + "Gap", test::text(gap)},
+                                         {section + "Phase lag", test::text(lag)},
+                                         {section + "Duty cycle", test::text(duty)},
+                                         {section + "Direction", to_tail ? "from head to tail" : "from tail to head"},
+                                         {section + "Rate limit", "1.5"},
+                                         {section + "Ramp duration", "0.5"},
+                                         {"Time/End time", "3"}});
+        ASSERT_TRUE(gait && gait->wave) << n;
+        const double pitch = (1. + gap) / (n + (n - 1) * gap), speed = (to_tail ? -1. : 1.) * pitch / lag;
+        EXPECT_NEAR(gait->wave->speed, speed, 0.03 * std::abs(speed)) << n << " segments, gap " << gap;
+        EXPECT_GT(gait->wave->coherence, 0.6) << n << " segments, gap " << gap;
+        EXPECT_STREQ(gait->direction(), "retrograde");
+        EXPECT_NEAR(*gait->slip(), 1. - std::abs(gait->speed() / speed), 1e-3);
+      }
+}
+
+/// A pulse that crosses the body between two samples is not taken for what is left of it.
+TEST(GaitNumbers, AWaveThatIsTooFastForTheSamplesIsAbsent)
+{
+  const auto pulse = [](const double speed, const double end_time)
+  {
+    return declared_gait({{"Active stress/Generator", "pulse"},
+                          {"Active stress/Pulse/Shape", "compact"},
+                          {"Active stress/Pulse/Width", "0.3"},
+                          {"Active stress/Pulse/Speed", test::text(speed)},
+                          {"Active stress/Pulse/Repetition period", "2"},
+                          {"Time/End time", test::text(end_time)}});
+  };
+  const auto slow = pulse(1.5, 4.);
+  ASSERT_TRUE(slow && slow->wave_speed());
+  EXPECT_NEAR(*slow->wave_speed(), 1.5, 0.1);
+  for (const double end_time : {4., 4.01, 4.03, 4.05})
+  {
+    const auto fast = pulse(40., end_time);
+    ASSERT_TRUE(fast) << end_time;
+    EXPECT_FALSE(fast->wave) << end_time;
+    EXPECT_FALSE(fast->slip()) << end_time;
+    EXPECT_STREQ(fast->direction(), "none") << end_time;
+  }
+}
+
 /// Side by side with others the last stride is the same as alone: in other units, where it starts in the middle of a
 /// run, and where the active stress jumps before.
 TEST(GaitNumbers, SideBySideTheyAreTheSame)
@@ -96,6 +161,14 @@ TEST(GaitNumbers, SideBySideTheyAreTheSame)
   const test::Settings travelling = {{"Active stress/Generator", "travelling wave"},
                                      {"Active stress/Travelling wave/Amplitude", "0.3"},
                                      {"Active stress/Travelling wave/Ramp duration", "0.5"}};
+  const test::Settings segments   = {{"Active stress/Generator", "segments"},
+                                     {"Active stress/Segments/Gap", "0.1"},
+                                     {"Active stress/Segments/Number of segments", "4"},
+                                     {"Active stress/Segments/Rate limit", "1.5"},
+                                     {"Active stress/Segments/Ramp duration", "0.5"}};
+  const test::Settings pulses     = {{"Active stress/Generator", "pulse"},
+                                     {"Active stress/Pulse/Speed", "40"},
+                                     {"Active stress/Pulse/Repetition period", "2"}};
   const Numerics numerics         = {.degree = 6, .n_cells = 8, .tolerance = 1e-8, .initial_step = 1e-4};
   test::FusedRuns runs;
   const auto add = [&](const test::Settings &settings)
@@ -106,7 +179,9 @@ TEST(GaitNumbers, SideBySideTheyAreTheSame)
   add(test::wave(-1., 0.3, 1., 2.5));
   add(test::with(test::wave(2., 0.2, -1., 3.), units));
   add(test::with(test::wave(-1., 0.3, 1., 4.), travelling));
-  add(test::wave(-1., 0.3, 1., 0.7)); // no whole stride
+  add(test::with(test::wave(-1., 0.3, 1., 4.), segments));
+  add(test::with(test::wave(-1., 0.3, 1., 4.03), pulses)); // too fast for the samples
+  add(test::wave(-1., 0.3, 1., 0.7));                      // no whole stride
   const Simulation::Options options{.ledger = true, .gait = Simulation::GaitWish::declared};
   const auto together = run_batch(test::entries(runs), options);
   for (std::size_t i = 0; i < runs.size(); ++i)
@@ -114,10 +189,11 @@ TEST(GaitNumbers, SideBySideTheyAreTheSame)
     const auto alone = runs[i]->simulate("automatic", options);
     ASSERT_TRUE(together[i]) << i;
     ASSERT_EQ(together[i]->gait.has_value(), alone.gait.has_value()) << i;
-    EXPECT_EQ(alone.gait.has_value(), i < 4) << i;
+    EXPECT_EQ(alone.gait.has_value(), i < 6) << i;
     EXPECT_NEAR(*together[i]->gait_efficiency, *alone.gait_efficiency, 1e-6);
     if (!alone.gait)
       continue;
+    EXPECT_EQ(alone.gait->wave.has_value(), i != 5) << i;
     const auto here = test::numbers_of(*together[i]->gait), there = test::numbers_of(*alone.gait);
     ASSERT_EQ(here.size(), there.size());
     for (std::size_t j = 0; j < here.size(); ++j)

@@ -4,7 +4,7 @@
 
     python3 number_errors.py PATH_TO_CRAWLER [POINTS] [SEED]
 
-Random sweeps over four kinds of crawlers, POINTS of each, at three accuracies, against the same sweep with many cells and
+Random sweeps over five kinds of crawlers, POINTS of each, at three accuracies, against the same sweep with many cells and
 Accuracy 1e-9. Prints a table; fails if a number is above its bar in more than 1 % of all points.
 """
 import csv
@@ -16,6 +16,7 @@ import tempfile
 
 BODY = "Body/Anchoring exponent : uniform(1.5, 4); Body/Elastic modulus : "
 WAVE = "Active stress/Optimal wave/"
+SEGMENTS = "Active stress/Segments/"
 SCENES = {  # settings, axes
     "a stride of the optimal wave": ([WAVE + "Choose wave by=wave speed"],
                                      BODY + f"loguniform(0.9, 1.1); {WAVE}Perturbation parameter : uniform(0.05, 0.45)"),
@@ -25,6 +26,10 @@ SCENES = {  # settings, axes
     "travelling waves with a ramp": (["Active stress/Generator=travelling wave", "Time/End time=3",
                                       "Active stress/Travelling wave/Ramp duration=1"],
                                      BODY + "loguniform(0.7, 10); Active stress/Travelling wave/Amplitude : uniform(0.05, 0.4)"),
+    "segments with and without gaps": (["Active stress/Generator=segments", SEGMENTS + "Rate limit=1.5",
+                                        SEGMENTS + "Ramp duration=0.5", "Time/End time=3"],
+                                       BODY + f"loguniform(0.7, 10); {SEGMENTS}Amplitude : uniform(0.05, 0.3); "
+                                       f"{SEGMENTS}Gap : uniform(0, 0.5); {SEGMENTS}Phase lag : uniform(0.06, 0.4)"),
     "pulses": (["Active stress/Generator=pulse", "Time/End time=2"], BODY + "loguniform(0.7, 10)"),
 }
 ACCURACIES = ("1e-3", "1e-4", "1e-6")

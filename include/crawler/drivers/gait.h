@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/drivers/stretch_wave.h>
 #include <crawler/observers/ledger.h>
 #include <crawler/scene/units.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,13 +17,6 @@ namespace crawler
   class ActiveStress;
   struct SimulationResult;
 
-  /// A wave of stretch along the body, e(s - c t) as far as it is one; what does not change in time is no part of it.
-  struct StretchWave
-  {
-    double speed;     ///< c, positive towards s = L [length/time]
-    double coherence; ///< 1: all of it travels with this speed; 0: as much goes one way as the other
-  };
-
   /// The last stride of a run (doc/theory.md, "Gait numbers").
   struct Gait
   {
@@ -28,7 +24,7 @@ namespace crawler
     bool is_declared;                  ///< by the active stress; otherwise it was found in the stretch
     double n_strides;                  ///< so many fit into the run
     double displacement;               ///< of the centre of mass in this stride [length]
-    std::optional<StretchWave> wave;   ///< nothing if the stretch hardly changes
+    std::optional<StretchWave> wave;   ///< nothing if the stretch hardly changes, or too fast
     std::optional<Ledger> ledger = {}; ///< works of this stride [energy], if there is a ledger
 
     /// From natural units to the user's.
@@ -50,22 +46,17 @@ namespace crawler
     /// Energy per distance [force]; nothing if the body does not move.
     std::optional<double>
     cost_of_transport(double energy) const;
+    /// Nothing if no wave travels [length/time].
+    std::optional<double>
+    wave_speed() const;
     /// Nothing if no wave travels: 1 - (speed of the body)/(speed of the wave) [1].
     std::optional<double>
     slip() const;
     /// "prograde" if the wave travels as the body does, "retrograde" if against it, "standing" if neither; "none" if
-    /// the stretch hardly changes or the body does not move.
+    /// there is no wave or the body does not move.
     const char *
     direction() const;
   };
-
-  /**
-   * The wave in the samples @p stretch [phase][piece] of one period, equally spaced in time and along the body. With
-   * the least-squares speed c = - <e_t e_s>/<e_s^2> and the coherence |<e_t e_s>|/sqrt(<e_t^2><e_s^2>), <.> the mean
-   * over body and period, and e the stretch without its mean over time; differences of fourth order.
-   */
-  std::optional<StretchWave>
-  measure_wave(std::vector<std::vector<double>> stretch, double period, double length);
 
   /**
    * The part of the largest displacement that any gait with these extreme stretches and this work can reach, at most 1:
@@ -112,6 +103,10 @@ namespace crawler
     void
     see(std::span<const double> u, double displacement);
 
+    /// Sees the smallest and the largest stretch at the end of a step, before see_step() does.
+    void
+    see_extremes(double smallest, double largest);
+
     /// Sees the end of a step; @p ledger may be null.
     void
     see_step(double time, double displacement, const Ledger *ledger);
@@ -126,10 +121,23 @@ namespace crawler
       double time, displacement;
       std::vector<double> stretch;
     };
+    /// The range of a number.
+    struct Range
+    {
+      double from = HUGE_VAL, to = -HUGE_VAL;
+
+      void
+      add(const Range &other)
+      {
+        from = std::min(from, other.from);
+        to   = std::max(to, other.to);
+      }
+    };
     struct StepEnd
     {
       double time, displacement;
       std::optional<Ledger> ledger;
+      Range smallest, largest; ///< stretches since the one before
     };
 
     double
@@ -140,11 +148,14 @@ namespace crawler
     found_gait() const;
     std::optional<double>
     find_period() const;
+    std::optional<StretchWave>
+    wave(const std::vector<std::vector<double>> &stretch, double period) const;
 
     const std::optional<double> period_;
     const bool ends_early_;
     unsigned long n_samples_ = 0, next_ = 0; ///< of all samples, and the next one
     std::vector<Sample> samples_;            ///< a known period: of the last n_phases; otherwise all
     std::vector<StepEnd> steps_;             ///< a known period: ends of strides; otherwise all of the second half
+    Range smallest_, largest_;               ///< stretches since the last of steps_
   };
 } // namespace crawler

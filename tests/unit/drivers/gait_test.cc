@@ -14,16 +14,6 @@ namespace
   constexpr double pi        = std::numbers::pi;
   constexpr unsigned int n_s = GaitMeter::n_pieces, n_t = GaitMeter::n_phases;
 
-  std::vector<std::vector<double>>
-  samples(const std::function<double(double, double)> &e, const double period, const double length)
-  {
-    std::vector<std::vector<double>> stretch(n_t, std::vector<double>(n_s));
-    for (unsigned int j = 0; j < n_t; ++j)
-      for (unsigned int i = 0; i < n_s; ++i)
-        stretch[j][i] = 1. + e(length * (i + 0.5) / n_s, period * j / n_t);
-    return stretch;
-  }
-
   /// Shows a meter the motion zeta = s + u(s,t) + D(t) with the work @p work(t), in steps.
   void
   show(GaitMeter &meter,
@@ -48,74 +38,6 @@ namespace
       ledger.stress_power = work(t);
       meter.see_step(t, D(t), &ledger);
     }
-  }
-
-  TEST(StretchWave, TravelsWithItsSpeed)
-  {
-    for (const double speed : {-1.5, 0.5})
-      for (const int n : {1, 2, 3})
-      {
-        const double length = 2., period = length / (n * std::abs(speed));
-        const auto wave =
-          measure_wave(samples(
-                         [&](const double s, const double t) // with something that rests
-                         {
-                           return 0.2 * std::sin(5. * s) + 0.3 * std::sin(2. * pi * n * (s - speed * t) / length);
-                         },
-                         period,
-                         length),
-                       period,
-                       length);
-        ASSERT_TRUE(wave);
-        EXPECT_NEAR(wave->speed, speed, 2e-3 * std::abs(speed));
-        EXPECT_NEAR(wave->coherence, 1., 1e-3);
-      }
-  }
-
-  TEST(StretchWave, OfTwoWavesTheStrongerOneWins)
-  {
-    // e = A sin(q(s+t)) + B sin(q(s-t)): <e_t e_s> = q^2 (A^2 - B^2)/2, <e_s^2> = <e_t^2> = q^2 (A^2 + B^2)/2.
-    const double A = 0.2, B = 0.1;
-    const auto wave = measure_wave(samples(
-                                     [&](const double s, const double t)
-                                     {
-                                       return A * std::sin(2. * pi * (s + t)) + B * std::sin(2. * pi * (s - t));
-                                     },
-                                     1.,
-                                     1.),
-                                   1.,
-                                   1.);
-    ASSERT_TRUE(wave);
-    const double expected = (A * A - B * B) / (A * A + B * B);
-    EXPECT_NEAR(wave->coherence, expected, 0.1 * expected); // the ends are not seen
-    EXPECT_NEAR(wave->speed, -expected, 0.1 * expected);
-  }
-
-  TEST(StretchWave, AStandingWaveDoesNotTravelAndNothingIsNoWave)
-  {
-    const auto wave = measure_wave(samples(
-                                     [&](const double s, const double t)
-                                     {
-                                       return 0.2 * std::sin(pi * s) * std::sin(2. * pi * t);
-                                     },
-                                     1.,
-                                     1.),
-                                   1.,
-                                   1.);
-    ASSERT_TRUE(wave);
-    EXPECT_LT(wave->coherence, 1e-10);
-    const Gait gait{1., true, 1., 0.1, wave};
-    EXPECT_STREQ(gait.direction(), "standing");
-    EXPECT_FALSE(gait.slip());
-    EXPECT_FALSE(measure_wave(samples(
-                                [](double, double)
-                                {
-                                  return 0.1;
-                                },
-                                1.,
-                                1.),
-                              1.,
-                              1.));
   }
 
   TEST(GaitMeter, DescribesTheLastStrideOfAKnownPeriod)
@@ -148,6 +70,32 @@ namespace
     EXPECT_NEAR(gait->wave->speed, -4., 0.01);
     EXPECT_STREQ(gait->direction(), "retrograde");
     EXPECT_NEAR(*gait->slip(), 1. - 0.08 / 4., 1e-4);
+  }
+
+  /// What a step has seen and no sample has is a wave that is not known.
+  TEST(GaitMeter, KnowsNoWaveIfTheStepsSeeMoreThanTheSamples)
+  {
+    for (const bool is_missed : {false, true})
+    {
+      GaitMeter meter(0.25, false);
+      for (unsigned int i = 0; i <= 128; ++i)
+      {
+        const double t = i / 128.;
+        std::vector<double> u(n_s + 1);
+        for (unsigned int j = 0; j <= n_s; ++j)
+          u[j] = 0.01 * std::cos(2. * pi * (static_cast<double>(j) / n_s - 4. * t)) / (2. * pi);
+        while (meter.next_time() <= t)
+          meter.see(u, t);
+        const bool has_pulse = is_missed && i == 101;
+        meter.see_extremes(has_pulse ? 0.8 : 0.99, 1.01);
+        meter.see_step(t, t, nullptr);
+      }
+      const auto gait = meter.gait();
+      ASSERT_TRUE(gait);
+      EXPECT_EQ(gait->wave.has_value(), !is_missed);
+      EXPECT_EQ(gait->slip().has_value(), !is_missed);
+      EXPECT_STREQ(gait->direction(), is_missed ? "none" : "prograde");
+    }
   }
 
   TEST(GaitMeter, FindsThePeriodOfTheStretch)
