@@ -158,6 +158,13 @@ def test_designs(program, folder):
     rows = table(folder / "files")
     check(result.returncode == 0 and abs(rows["displacement"][0] - 4.764510e-2) < 1e-5 and
           abs(rows["displacement"][1] - 4.8552305987e-2) < 1e-5, "parameter files are an axis")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "set", "--set", "Body/Elastic modulus=10")
+    check(result.returncode == 0 and list(table(folder / "set")["displacement"]) == [rows["displacement"][1]] * 2,
+          f"--set is stronger than the files of an axis {result.stderr.strip()}")
+    result = call(program, folder, "check", "soft.prm", "--set", f" Sweep / Axes = {CHI} : 0.1, 0.2, 0.3")
+    check(result.returncode == 0 and "3 points" in result.stdout, f"blanks in the name of an entry do not matter {result.stderr}")
+    result = call(program, folder, "check", "sweep.prm", "--set", "Sweep/Axes=")
+    check(result.returncode == 0 and "points" not in result.stdout, f"without axes there is no sweep to check {result.stderr}")
 
 
 def test_rows_that_fail(program, folder):
