@@ -624,6 +624,17 @@ namespace crawler
     assembler_->solve_with_jacobian(F, correction);
     for (std::size_t i = 0; i < v.size(); ++i)
       v[i] = known->y_dot[i] - correction[i] / size;
+    if (scene_.is_plain())
+    {
+      // K does not act on rigid motions, so round-off of the solution, 1e-16 h K/M of it, can hide in one; friction
+      // that is linear in the velocity says how large that is.
+      const std::vector<double> rigid(v.size(), 1.);
+      const double motion =
+        assembler_->integrals(t, y, v).net_friction / assembler_->integrals(t, y, rigid).net_friction;
+      if (std::isfinite(motion))
+        for (double &value : v)
+          value -= motion;
+    }
     return true;
   }
 
