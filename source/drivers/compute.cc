@@ -64,9 +64,9 @@ namespace crawler
       {
         try
         {
-          const TimeOutcome failure  = failure_of(std::current_exception());
-          task.computed.result       = {};
-          task.computed.result.time  = failure;
+          const TimeOutcome failure = failure_of(std::current_exception());
+          task.computed.result      = {};
+          task.computed.result.time = failure;
         }
         catch (...)
         {

@@ -228,7 +228,7 @@ namespace crawler
     const double wanted = choice.wanted_error;
     // What has been measured on one mesh after the other is not tried again.
     const bool may_refine = !choice.is_measured && choice.promised_error < hopeless * wanted;
-    answer.result = simulate(choice);
+    answer.result         = simulate(choice);
     for (;;)
     {
       SimulationResult &result = answer.result;

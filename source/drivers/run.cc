@@ -221,7 +221,8 @@ namespace crawler
     bool shared              = false; // the cells, by all ranks
     const auto write_summary = [&]()
     {
-      write_file(folder / "summary.json", summary_json(result, parameters, size_of(communicator), options.command_line));
+      write_file(folder / "summary.json",
+                 summary_json(result, parameters, size_of(communicator), options.command_line));
     };
     // What a part of the work throws is how the run ends, with all that an end has.
     const auto guarded = [&](const auto &work)

@@ -222,10 +222,10 @@ namespace crawler
     for (const auto &observer : observers)
       observer->end();
     if (assembler_) // not if the next mesh could not be built
-      result_.mesh        = {discretization().n_cells(),
-                             discretization().element().degree,
-                             discretization().n_unknowns(),
-                             discretization().n_ranks() > 1};
+      result_.mesh = {discretization().n_cells(),
+                      discretization().element().degree,
+                      discretization().n_unknowns(),
+                      discretization().n_ranks() > 1};
     result_.integrator    = time_.integrator;
     result_.engine        = !fused_stepper_ ? "petsc" : fused_gave_up_ || petsc_stepper_ ? "fused, petsc" : "fused";
     result_.solve_seconds = now() - start - result_.output_seconds;
@@ -571,8 +571,7 @@ namespace crawler
   {
     if (numerics_.linear)
       return true;
-    const bool amplifies =
-      relaxation_time_ < fast_relaxation || (scene_.friction_exponent() > 0. && scene_.is_plain());
+    const bool amplifies = relaxation_time_ < fast_relaxation || (scene_.friction_exponent() > 0. && scene_.is_plain());
     return amplifies && assembler_->formulation() == Formulation::position;
   }
 

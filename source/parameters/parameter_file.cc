@@ -132,7 +132,8 @@ namespace crawler
         const auto equals = rest.find('=');
         if (equals == std::string::npos || trimmed(rest.substr(0, equals)).empty())
           throw InputError(fmt::format("{}: found \"{}\", but \"set Entry = value\" is expected", place, statement));
-        const Assignment assignment{path(trimmed(rest.substr(0, equals))), trimmed(rest.substr(equals + 1)), place, false};
+        const Assignment assignment{
+          path(trimmed(rest.substr(0, equals))), trimmed(rest.substr(equals + 1)), place, false};
         if (const Assignment *const other = assignment_of(assignment.path))
           throw InputError(fmt::format(
             "{}: \"{}\" is set a second time (first in {}); once is expected", place, assignment.path, other->place));

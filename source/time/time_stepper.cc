@@ -763,7 +763,7 @@ namespace crawler
       implementation_->interpolated.reset(vec);
     }
     // PETSc refuses times outside of the step, also by a last bit: the start of a step is its end less its size.
-    TS ts              = implementation_->ts.get();
+    TS ts          = implementation_->ts.get();
     PetscReal from = 0., to = 0.;
     petsc(TSGetPrevTime(ts, &from));
     petsc(TSGetTime(ts, &to));

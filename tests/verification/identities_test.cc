@@ -75,11 +75,12 @@ TEST(Identities, LedgerOfStiffBodies)
 {
   for (const double k : {1e6, 1e8, 1e11})
     for (const double a : {-3., -1., 2.})
-      for (const test::Settings &more :
-           {test::Settings{},
-            test::Settings{{"Time/Engine", "petsc"}},
-            test::Settings{{"Discretization/Mesh", "adaptive"}},
-            test::Settings{{"Body/Elastic modulus profile", "1+0.3*s"}, {"Ground/Backward ratio", "2"}, {"Ground/Switching velocity", "0.01"}}})
+      for (const test::Settings &more : {test::Settings{},
+                                         test::Settings{{"Time/Engine", "petsc"}},
+                                         test::Settings{{"Discretization/Mesh", "adaptive"}},
+                                         test::Settings{{"Body/Elastic modulus profile", "1+0.3*s"},
+                                                        {"Ground/Backward ratio", "2"},
+                                                        {"Ground/Switching velocity", "0.01"}}})
       {
         const auto settings = with(with(test::wave(a, 0.2, 1., 1., k), {{"Accuracy", "1e-8"}}), more);
         const auto &result  = test::run_with(settings).result;

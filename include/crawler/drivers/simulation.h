@@ -282,9 +282,9 @@ namespace crawler
       double time = -1.;
       std::vector<double> y_dot;
     };
-    std::vector<Rate> rates_; ///< of the latest residuals, where they are kept
+    std::vector<Rate> rates_;           ///< of the latest residuals, where they are kept
     double relaxation_time_ = HUGE_VAL; ///< of the present mesh, at least
-    double delay_ = 0.;       ///< of the feedback [natural units]; 0: nobody asks for the past
+    double delay_           = 0.;       ///< of the feedback [natural units]; 0: nobody asks for the past
     StretchHistory history_;
     std::shared_ptr<const std::vector<Cell>> history_cells_; ///< of the present mesh
     // The last state that was accepted, to which a change of mesh or formulation may go back.
