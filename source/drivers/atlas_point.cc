@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 namespace crawler
 {
@@ -128,11 +127,7 @@ namespace crawler
       {
         run = not_computed("refused", "inadmissible", error.what());
       }
-      catch (const std::bad_alloc &)
-      {
-        run = not_computed("failed", "out_of_memory", "out of memory");
-      }
-      catch (const std::exception &error)
+      catch (const FileError &error)
       {
         run = not_computed("failed", "exception", error.what());
       }

@@ -11,6 +11,7 @@
 #include <crawler/drivers/tradeoff.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/parameter_file.h>
+#include <crawler/time/failure.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -19,6 +20,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -245,13 +247,15 @@ namespace crawler
     {
       return report_error(communicator, ExitCode::file_error, error.what(), error.on_all_ranks);
     }
-    catch (const std::bad_alloc &)
+    catch (const std::filesystem::filesystem_error &error)
     {
-      return report_error(communicator, ExitCode::numerical_failure, "out of memory", /*on_all_ranks=*/false);
+      return report_error(communicator, ExitCode::file_error, error.what(), /*on_all_ranks=*/false);
     }
-    catch (const std::exception &error)
+    catch (...)
     {
-      return report_error(communicator, ExitCode::numerical_failure, error.what(), /*on_all_ranks=*/false);
+      const TimeOutcome failure = failure_of(std::current_exception());
+      return report_error(
+        communicator, ExitCode::numerical_failure, failure.reason + ": " + failure.message, /*on_all_ranks=*/false);
     }
   }
 } // namespace crawler

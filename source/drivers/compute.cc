@@ -5,6 +5,7 @@
 #include <crawler/drivers/model_choice.h>
 #include <crawler/drivers/rung.h>
 #include <crawler/drivers/self_check.h>
+#include <crawler/time/failure.h>
 
 #include <chrono>
 #include <utility>
@@ -49,7 +50,8 @@ namespace crawler
       const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     };
 
-    /// A part of the work for one task: its time is taken, and what it throws is kept.
+    /// A part of the work for one task: its time is taken. What it throws is how the task ended, unless the user has to
+    /// mend it; that is kept.
     void
     guarded(Task &task, const std::function<void()> &work)
     {
@@ -60,7 +62,16 @@ namespace crawler
       }
       catch (...)
       {
-        task.error = std::current_exception();
+        try
+        {
+          const TimeOutcome failure = failure_of(std::current_exception());
+          task.computed.result      = {};
+          task.computed.result.time = failure;
+        }
+        catch (...)
+        {
+          task.error = std::current_exception();
+        }
       }
       task.seconds += clock.seconds();
     }
@@ -122,12 +133,19 @@ namespace crawler
       {
         const double n = static_cast<double>(runs[ledger].size());
         const Clock clock;
-        auto results = run_batch(runs[ledger],
-                                 {.ledger = ledger, .gait = gait_wish(tasks.front())},
-                                 [&]()
-                                 {
-                                   return clock.seconds() <= n * time_limit && !interrupted();
-                                 });
+        std::vector<std::optional<SimulationResult>> results;
+        try
+        {
+          results = run_batch(runs[ledger],
+                              {.ledger = ledger, .gait = gait_wish(tasks.front())},
+                              [&]()
+                              {
+                                return clock.seconds() <= n * time_limit && !interrupted();
+                              });
+        }
+        catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
+        {
+        }
         for (std::size_t i = 0; i < results.size(); ++i)
         {
           members[ledger][i]->seconds += clock.seconds() / n;

@@ -4,6 +4,7 @@
 #include <crawler/drivers/error_estimate.h>
 #include <crawler/drivers/graded_choice.h>
 #include <crawler/drivers/self_check.h>
+#include <crawler/time/failure.h>
 
 #include <fmt/format.h>
 
@@ -197,7 +198,18 @@ namespace crawler
       set_errors(choice, result, nullptr, parameters, scene);
     else
     {
-      const SimulationResult finer = finer_run(communicator, parameters, scene, choice, result, keep_going);
+      // Whatever becomes of the finer run, the answer is there.
+      SimulationResult finer;
+      try
+      {
+        finer = finer_run(communicator, parameters, scene, choice, result, keep_going);
+      }
+      catch (...)
+      {
+        finer.time = failure_of(std::current_exception());
+        if (size_of(communicator) > 1) // the other ranks may be waiting
+          throw;
+      }
       set_errors(choice, result, &finer, parameters, scene);
     }
   }
@@ -216,9 +228,9 @@ namespace crawler
     const double wanted = choice.wanted_error;
     // What has been measured on one mesh after the other is not tried again.
     const bool may_refine = !choice.is_measured && choice.promised_error < hopeless * wanted;
-    for (;; ++answer.refinements, answer.choice = refined(answer.choice, scene))
+    answer.result         = simulate(choice);
+    for (;;)
     {
-      answer.result            = simulate(answer.choice);
       SimulationResult &result = answer.result;
       if (!parameters.error_estimate || result.time.status != "finished")
         return answer;
@@ -232,8 +244,22 @@ namespace crawler
       const bool is_good = std::isnan(wanted) || total <= wanted || stopped;
       if (is_good && (closes || std::isnan(wanted)))
         return answer;
+      std::string problem;
       if (may_refine && answer.refinements < most_refinements)
-        continue;
+        try
+        {
+          const NumericsChoice next = refined(answer.choice, scene);
+          result                    = simulate(next);
+          answer.choice             = next;
+          ++answer.refinements;
+          continue;
+        }
+        catch (...) // the answer that is there stays
+        {
+          problem = "; the next try failed: " + failure_of(std::current_exception()).message;
+          if (size_of(communicator) > 1) // the other ranks may be waiting
+            throw;
+        }
       if (is_good)
         return answer;
       result.time.status = "failed";
@@ -242,6 +268,7 @@ namespace crawler
         std::isnan(total)
           ? "the error of the displacement is not known: a finer run did not finish"
           : fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}", total, wanted);
+      result.time.message += problem;
       if (!answer.choice.advice.empty())
         result.time.message += "; " + answer.choice.advice;
       return answer;

@@ -19,6 +19,7 @@
 #include <crawler/observers/kymograph_writer.h>
 #include <crawler/observers/statistics_writer.h>
 #include <crawler/observers/vtu_writer.h>
+#include <crawler/time/failure.h>
 
 #include <fmt/format.h>
 #include <petscsys.h>
@@ -26,6 +27,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace crawler
@@ -70,6 +72,23 @@ namespace crawler
       log.line(model.explanation);
       log.line(describe(choice.numerics, input));
       log.line("  (" + choice.explanation + ")");
+    }
+
+    /// A rank that has failed alone, for want of memory perhaps, ends the run of all.
+    void
+    agree_on_failure(MPI_Comm communicator, TimeOutcome &outcome)
+    {
+      const int n = static_cast<int>(size_of(communicator));
+      int speaker = outcome.status.empty() ? n : static_cast<int>(rank_of(communicator));
+      MPI_Allreduce(MPI_IN_PLACE, &speaker, 1, MPI_INT, MPI_MIN, communicator);
+      if (speaker == n)
+        return;
+      const auto texts        = gather(outcome.reason + "\n" + outcome.message, communicator);
+      const std::string text  = broadcast(texts.empty() ? "" : texts[static_cast<std::size_t>(speaker)], communicator);
+      const std::size_t split = text.find('\n');
+      outcome.status          = "failed";
+      outcome.reason          = text.substr(0, split);
+      outcome.message         = text.substr(split + 1);
     }
 
     /// PETSc options that nobody has looked at are most likely misspelt.
@@ -198,42 +217,89 @@ namespace crawler
                     return "";
                   });
 
-    const ModelChoice model = choose_model(input);
-    if (!model.needs_mesh())
-      return run_rung(communicator, options, input, model, stop_signal, start, log);
-    input.parameters.model = model.model;
-    // The linear rung (a = 0) is computed by what follows, as the nonlinear one.
-    PilotProgress pilots(log);
-    const auto chosen = choose_numerics(MPI_COMM_SELF,
-                                        parameters,
-                                        input.scene,
-                                        [&]()
-                                        {
-                                          pilots.step();
-                                          return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
-                                        });
+    SimulationResult result;
+    bool shared              = false; // the cells, by all ranks
+    const auto write_summary = [&]()
+    {
+      write_file(folder / "summary.json",
+                 summary_json(result, parameters, size_of(communicator), options.command_line));
+    };
+    // What a part of the work throws is how the run ends, with all that an end has.
+    const auto guarded = [&](const auto &work)
+    {
+      try
+      {
+        if (result.time.status.empty())
+          work();
+      }
+      catch (...)
+      {
+        result.time = failure_of(std::current_exception());
+        if (!shared)
+          return;
+        std::filesystem::create_directories(folder);
+        write_summary(); // by whoever failed, since the others may be waiting
+        throw;
+      }
+    };
+    std::optional<ModelChoice> model;
+    std::optional<NumericsChoice> chosen;
+    guarded(
+      [&]()
+      {
+        model = choose_model(input);
+      });
+    agree_on_failure(communicator, result.time);
+    if (model && !model->needs_mesh())
+      return run_rung(communicator, options, input, *model, stop_signal, start, log);
+    guarded(
+      [&]()
+      {
+        input.parameters.model = model->model;
+        // The linear rung (a = 0) is computed by what follows, as the nonlinear one.
+        PilotProgress pilots(log);
+        chosen = choose_numerics(MPI_COMM_SELF,
+                                 parameters,
+                                 input.scene,
+                                 [&]()
+                                 {
+                                   pilots.step();
+                                   return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
+                                 });
+      });
     if (stop_signal.arrived_anywhere(communicator))
     {
       log.warn("stopped by a signal during the pilot runs; nothing was written");
       return ExitCode::stopped;
     }
+    agree_on_failure(communicator, result.time);
     // Either all ranks share the cells, or each computes the whole body and the first one writes.
-    const bool shared        = parameters.discretization.shares(chosen->numerics.n_cells);
+    shared = size_of(communicator) > 1 && chosen && parameters.discretization.shares(chosen->numerics.n_cells);
     const MPI_Comm computing = shared ? communicator : MPI_COMM_SELF;
     const auto keep_going    = [&]()
     {
       return !stop_signal.arrived_anywhere(computing);
     };
-    auto simulation = std::make_unique<Simulation>(computing, input.scene, parameters.time, chosen->numerics);
+    std::unique_ptr<Simulation> simulation;
+    const auto build = [&](const Numerics &numerics)
+    {
+      simulation = std::make_unique<Simulation>(computing, input.scene, parameters.time, numerics);
+    };
+    guarded(
+      [&]()
+      {
+        build(chosen->numerics);
+      });
 
-    // Everything is in order: from here on there are files.
+    // Everything is in order, or as good as it will be: from here on there are files.
     on_first_rank(communicator,
                   [&]()
                   {
                     begin_files(log, input, folder);
                     return "";
                   });
-    report_plan(log, input, model, *chosen);
+    if (chosen)
+      report_plan(log, input, *model, *chosen);
 
     const bool writes           = shared || first;
     const auto create_observers = [&]()
@@ -258,7 +324,7 @@ namespace crawler
       if (++n_runs > 1)
       {
         log.line("The error is larger than Accuracy asks for: once more, finer.");
-        simulation = std::make_unique<Simulation>(computing, input.scene, parameters.time, choice.numerics);
+        build(choice.numerics);
         if (writes)
           on_first_rank(computing,
                         [&]()
@@ -276,11 +342,15 @@ namespace crawler
                              create_observers(),
                              keep_going);
     };
-    Answer answer            = run_as_promised(computing, parameters, input.scene, *chosen, simulate, keep_going);
-    SimulationResult &result = answer.result;
-    result.setup_seconds     = setup_seconds;
-    result.estimate_seconds  = answer.estimate_seconds;
-    result.refinements       = answer.refinements;
+    guarded(
+      [&]()
+      {
+        Answer answer           = run_as_promised(computing, parameters, input.scene, *chosen, simulate, keep_going);
+        result                  = std::move(answer.result);
+        result.estimate_seconds = answer.estimate_seconds;
+        result.refinements      = answer.refinements;
+      });
+    result.setup_seconds = setup_seconds;
     if (result.time.status == "stopped" && result.time.reason.empty())
     {
       result.time.reason  = "signal";
@@ -294,8 +364,7 @@ namespace crawler
     on_first_rank(communicator,
                   [&]()
                   {
-                    write_file(folder / "summary.json",
-                               summary_json(result, parameters, size_of(communicator), options.command_line));
+                    write_summary();
                     return "";
                   });
     for (const std::string &line : summary_lines(result, parameters))

@@ -12,6 +12,7 @@
 #include <crawler/observers/kymograph_writer.h>
 #include <crawler/observers/statistics_writer.h>
 #include <crawler/observers/vtu_writer.h>
+#include <crawler/time/failure.h>
 
 #include <fmt/format.h>
 
@@ -134,24 +135,32 @@ namespace crawler
                     Parameters parameters = input.parameters;
                     parameters.model      = choice.model;
                     const double setup    = seconds_from(start);
-                    Rung rung(input.scene, choice.model);
-                    SimulationResult result = rung.compute(parameters.accuracy,
-                                                           output.ledger,
-                                                           [&]()
-                                                           {
-                                                             return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
-                                                           });
-                    result.setup_seconds    = setup;
-                    rung.describe_gait(input.scene, result);
-                    if (std::isfinite(result.net_friction)) // the series has no balance to check
-                      check_identities(result, parameters);
-                    log.line(rung.description());
+                    SimulationResult result;
+                    try
+                    {
+                      Rung rung(input.scene, choice.model);
+                      result               = rung.compute(parameters.accuracy,
+                                            output.ledger,
+                                            [&]()
+                                            {
+                                              return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
+                                            });
+                      result.setup_seconds = setup;
+                      rung.describe_gait(input.scene, result);
+                      if (std::isfinite(result.net_friction)) // the series has no balance to check
+                        check_identities(result, parameters);
+                      log.line(rung.description());
 
-                    const auto before = Clock::now();
-                    if (result.error && (output.n_snapshots > 0 || output.statistics) &&
-                        !write_pictures(rung, input, folder, stop_signal))
-                      result.time.status = "stopped";
-                    result.output_seconds = seconds_from(before);
+                      const auto before = Clock::now();
+                      if (result.error && (output.n_snapshots > 0 || output.statistics) &&
+                          !write_pictures(rung, input, folder, stop_signal))
+                        result.time.status = "stopped";
+                      result.output_seconds = seconds_from(before);
+                    }
+                    catch (...)
+                    {
+                      result.time = failure_of(std::current_exception());
+                    }
                     if (result.time.status == "stopped")
                     {
                       result.time.reason  = "signal";

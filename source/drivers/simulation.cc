@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/exceptions.h>
+#include <crawler/base/communication.h>
 #include <crawler/discretization/mesh_transfer.h>
 #include <crawler/drivers/simulation.h>
+#include <crawler/time/failure.h>
 #include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
@@ -95,7 +96,8 @@ namespace crawler
   void
   Simulation::build(std::unique_ptr<Discretization> discretization, const Formulation formulation)
   {
-    stepper_ = nullptr;
+    as_at_start_ = false;
+    stepper_     = nullptr;
     petsc_stepper_.reset();
     fused_stepper_.reset();
     linear_stepper_.reset();
@@ -109,10 +111,14 @@ namespace crawler
     }
     assembler_->keep_stresses(integrator(time_.integrator).n_stages);
     rates_.assign(integrator(time_.integrator).n_stages + 1, {});
+    // Of the highest mode of the smallest cell.
+    double h = 1.;
+    for (const Cell &cell : discretization_->cells())
+      h = std::min(h, cell.size);
+    relaxation_time_ = h * h / (scene_.body.elastic_modulus * std::pow(discretization_->element().degree, 4.));
     y_.resize(assembler_->n_owned());
     v_.resize(discretization_->n_owned());
     ++mesh_number_;
-    as_at_start_ = false;
     choose_stepper(); // options of PETSc are read now
   }
 
@@ -134,6 +140,7 @@ namespace crawler
     diagnosis_            = {};
     largest_              = {};
     before_               = {};
+    latest_               = {};
     frames_               = frames;
     next_frame_           = 0;
     tiny_steps_           = 0;
@@ -180,7 +187,14 @@ namespace crawler
     if (options.gait != GaitWish::none)
       prepare_gait();
 
-    result_.time           = integrate(observers, keep_going);
+    try
+    {
+      result_.time = integrate(observers, keep_going);
+    }
+    catch (...)
+    {
+      result_.time = failure_while_integrating();
+    }
     const bool ended_early = cycle_stop_ && cycle_stop_->repeats();
     if (ended_early)
     {
@@ -218,10 +232,11 @@ namespace crawler
 
     for (const auto &observer : observers)
       observer->end();
-    result_.mesh          = {discretization().n_cells(),
-                             discretization().element().degree,
-                             discretization().n_unknowns(),
-                             discretization().n_ranks() > 1};
+    if (assembler_) // not if the next mesh could not be built
+      result_.mesh = {discretization().n_cells(),
+                      discretization().element().degree,
+                      discretization().n_unknowns(),
+                      discretization().n_ranks() > 1};
     result_.integrator    = time_.integrator;
     result_.engine        = !fused_stepper_ ? "petsc" : fused_gave_up_ || petsc_stepper_ ? "fused, petsc" : "fused";
     result_.solve_seconds = now() - start - result_.output_seconds;
@@ -238,7 +253,6 @@ namespace crawler
       request_     = Request::none;
       bool resumed = started_;
       choose_stepper();
-      Step latest{};
       if (!pieces_.is_last() && accepted_time_ >= pieces_.end())
         begin_piece();
       if (diagnosis_)
@@ -247,7 +261,6 @@ namespace crawler
       const bool ends_at_frame       = ends_at_frame_;
       stepper_->monitor              = [&](const Step &part, const std::span<const double> y)
       {
-        latest = part;
         if (resumed) // the state from which this part starts has been seen already
         {
           resumed = false;
@@ -257,6 +270,7 @@ namespace crawler
         step.number += before_.steps;
         step.rejected += before_.rejected_steps;
         step.newton_iterations += before_.newton_iterations;
+        latest_             = step;
         const bool at_break = !pieces_.is_last() && part.time == pieces_.end();
         step.is_frame       = part.is_frame && (!at_break || ends_at_frame);
         if (!examine(step, y))
@@ -282,23 +296,8 @@ namespace crawler
           request_ = Request::restart;
         return request_ == Request::none;
       };
-      TimeOutcome outcome;
-      try
-      {
-        outcome = stepper_->solve(y_, ends, numerics_.tolerance, next_step_, step_limits_, accepted_time_);
-      }
-      catch (const NonfiniteStress &error) // of an observer
-      {
-        outcome.status            = "failed";
-        outcome.time              = latest.time;
-        outcome.step_size         = latest.size;
-        outcome.steps             = latest.number;
-        outcome.rejected_steps    = latest.rejected;
-        outcome.newton_iterations = latest.newton_iterations;
-        if (!stress_failed())
-          diagnosis_ = {"failed", "nonfinite", error.what()};
-      }
-      stepper_->monitor = nullptr;
+      TimeOutcome outcome = stepper_->solve(y_, ends, numerics_.tolerance, next_step_, step_limits_, accepted_time_);
+      stepper_->monitor   = nullptr;
       outcome.steps += before_.steps;
       outcome.rejected_steps += before_.rejected_steps;
       outcome.newton_iterations += before_.newton_iterations;
@@ -329,6 +328,27 @@ namespace crawler
       if (request_ != Request::restart)
         change();
     }
+  }
+
+  /// In a catch block: the end of a run that has thrown. What it has computed so far stays. Where ranks share the cells
+  /// one may have failed alone, and the others wait for it; only a stress that is not finite is found by all together.
+  TimeOutcome
+  Simulation::failure_while_integrating()
+  {
+    TimeOutcome outcome = failure_of(std::current_exception());
+    if (outcome.reason != "nonfinite" && size_of(communicator_) > 1)
+      throw;
+    if (stepper_ != nullptr)
+      stepper_->monitor = nullptr;
+    outcome.time              = latest_.time;
+    outcome.step_size         = latest_.size;
+    outcome.steps             = latest_.number;
+    outcome.rejected_steps    = latest_.rejected;
+    outcome.newton_iterations = latest_.newton_iterations;
+    diagnosis_                = {outcome.status, outcome.reason, outcome.message};
+    if (outcome.reason != "nonfinite")
+      diagnosis_->message += fmt::format(", after t = {:.9g}", accepted_time_ * units_.time);
+    return outcome;
   }
 
   /// The frames from now to the end of the present piece, which is the last of them if another piece follows.
@@ -432,8 +452,11 @@ namespace crawler
     constexpr unsigned int most_corrections = 10;
     const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
     const double t                          = accepted_time_ + size;
-    const double next_frame                 = next_frame_ < frames_.size() ? frames_[next_frame_] / units_.time : 1.;
-    if (t > std::min(next_frame, pieces_.end()) - size)
+    // Nobody sees this step, so it must not pass a time at which somebody wants to see a state.
+    const double next_frame  = next_frame_ < frames_.size() ? frames_[next_frame_] / units_.time : 1.;
+    const double next_stride = gait_meter_ ? gait_meter_->next_time() : HUGE_VAL,
+                 next_cycle  = cycle_stop_ ? cycle_stop_->next_time() : HUGE_VAL;
+    if (t > std::min({next_frame, pieces_.end(), next_stride, next_cycle}) - size)
       return;
     std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
     for (unsigned int i = 0; i < most_corrections; ++i)
@@ -598,17 +621,16 @@ namespace crawler
   }
 
   /// Where friction vanishes (w -> 0 for a > 0) a state alone does not tell the velocity: the error of Newton's method
-  /// would be divided by the friction; and the smallest cells of graded meshes turn its round-off into velocities, by
-  /// 1e-16 over their time of relaxation. The rate of the time stepper has no such error, so it is kept. That of the
-  /// linear rung is the velocity, exactly.
+  /// would be divided by the friction; and cells that are small or stiff turn its round-off into velocities, by 1e-16
+  /// over their time of relaxation. The rate of the time stepper has no such error, so it is kept. That of the linear
+  /// rung is the velocity, exactly.
   bool
   Simulation::keeps_rate() const
   {
     if (numerics_.linear)
       return true;
-    const bool amplifies =
-      scene_.friction_exponent() > 0. || (numerics_.grading.levels > 0 && numerics_.initial_step < fast_relaxation);
-    return amplifies && assembler_->formulation() == Formulation::position && scene_.is_plain();
+    const bool amplifies = relaxation_time_ < fast_relaxation || (scene_.friction_exponent() > 0. && scene_.is_plain());
+    return amplifies && assembler_->formulation() == Formulation::position;
   }
 
   /// Keeps the rate of the latest residual at each of the latest times: those of the stages of a step, and its start.
@@ -652,12 +674,24 @@ namespace crawler
       return true;
     }
     std::vector<double> F(y.size()), correction(y.size());
-    const std::vector<double> at_rest(y.size(), 0.); // without a velocity the Jacobian is M/h + K
-    if (!assembler_->residual(t, y, known->y_dot, F) || !assembler_->setup_jacobian(t, y, at_rest, 1. / size))
+    // Without a velocity the Jacobian is M/h + K; but friction that is not linear in it has to be that of the rate.
+    const std::vector<double> at = scene_.is_plain() ? std::vector<double>(y.size(), 0.) : known->y_dot;
+    if (!assembler_->residual(t, y, known->y_dot, F) || !assembler_->setup_jacobian(t, y, at, 1. / size))
       return false;
     assembler_->solve_with_jacobian(F, correction);
     for (std::size_t i = 0; i < v.size(); ++i)
       v[i] = known->y_dot[i] - correction[i] / size;
+    if (scene_.is_plain())
+    {
+      // K does not act on rigid motions, so round-off of the solution, 1e-16 h K/M of it, can hide in one; friction
+      // that is linear in the velocity says how large that is.
+      const std::vector<double> rigid(v.size(), 1.);
+      const double motion =
+        assembler_->integrals(t, y, v).net_friction / assembler_->integrals(t, y, rigid).net_friction;
+      if (std::isfinite(motion))
+        for (double &value : v)
+          value -= motion;
+    }
     return true;
   }
 

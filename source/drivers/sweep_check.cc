@@ -43,12 +43,8 @@ namespace crawler
   bool
   check_sweep(MPI_Comm communicator, const ParameterFile &file, Log &log)
   {
-    if (std::none_of(file.assignments().begin(),
-                     file.assignments().end(),
-                     [](const Assignment &assignment)
-                     {
-                       return assignment.path == "Sweep/Axes" && !assignment.value.empty();
-                     }))
+    const Assignment *const axes = file.assignment_of("Sweep/Axes");
+    if (axes == nullptr || axes->value.empty())
       return false;
     SweepPoints points(communicator, file);
     const SweepDesign &design = points.design();

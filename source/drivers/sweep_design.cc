@@ -314,7 +314,7 @@ namespace crawler
       if (entry.empty() || rest.empty())
         throw InputError(fmt::format("\"{}\": found \"{}\", but {} is expected", entry_name, text, sweep_syntax),
                          entry_name);
-      const std::string path = fmt::format("{}", fmt::join(split_path(entry), "/"));
+      const std::string path = normal_path(entry);
       if (varies(path))
         throw InputError(
           fmt::format("\"{}\": \"{}\" varies twice, but different entries are expected", entry_name, path), entry_name);

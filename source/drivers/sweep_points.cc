@@ -39,7 +39,7 @@ namespace crawler
           throw InputError(assignment.place + ": " + error.what());
         }
       for (const Assignment &assignment : file.assignments())
-        if (assignment.place == "--set") // stronger than all files
+        if (assignment.is_override) // stronger than all files
           declarations.set(assignment.path, assignment.value);
     }
     Form(const Form &) = delete;

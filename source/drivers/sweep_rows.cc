@@ -178,14 +178,6 @@ namespace crawler
       {
         return {"failed", "refused", error.what()};
       }
-      catch (const FileError &)
-      {
-        throw;
-      }
-      catch (const std::exception &error)
-      {
-        return {"failed", "exception", error.what()};
-      }
     if (task.is_out_of_time)
       return {
         "stopped",

@@ -5,13 +5,13 @@
 #include <crawler/drivers/self_check.h>
 #include <crawler/drivers/study.h>
 #include <crawler/drivers/tradeoff_measurement.h>
+#include <crawler/time/failure.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <new>
 
 #ifdef __GLIBC__
 #  include <malloc.h>
@@ -134,13 +134,14 @@ namespace crawler
     {
       not_computed(row, "refused", "inadmissible", error.what());
     }
-    catch (const std::bad_alloc &)
-    {
-      not_computed(row, "failed", "out_of_memory", "out of memory");
-    }
-    catch (const std::exception &error)
+    catch (const FileError &error)
     {
       not_computed(row, "failed", "exception", error.what());
+    }
+    catch (...)
+    {
+      const TimeOutcome failure = failure_of(std::current_exception());
+      not_computed(row, failure.status, failure.reason, failure.message);
     }
     return row;
   }

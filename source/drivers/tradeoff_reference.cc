@@ -3,6 +3,7 @@
 #include <crawler/drivers/simulation.h>
 #include <crawler/drivers/study.h>
 #include <crawler/drivers/tradeoff_reference.h>
+#include <crawler/time/failure.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -167,6 +168,22 @@ namespace crawler
         return result;
       }
 
+      /// One that throws is one that failed: there are other methods.
+      SimulationResult
+      guarded_run(const TradeoffSetting &setting)
+      {
+        try
+        {
+          return run(setting);
+        }
+        catch (...)
+        {
+          SimulationResult result;
+          result.time = failure_of(std::current_exception());
+          return result;
+        }
+      }
+
       /// Nothing if fewer than two runs finished.
       RefinedDisplacement
       refine(const Method &method)
@@ -181,7 +198,7 @@ namespace crawler
           setting.cells                 = method.first_cells << level;
           setting.mesh_tolerance        = method.setting.mesh_tolerance * smaller;
           setting.tolerance             = std::max(method.first_tolerance * smaller, last_tolerance);
-          const SimulationResult result = run(setting);
+          const SimulationResult result = guarded_run(setting);
           if (result.time.status != "finished")
           {
             reference_.status  = result.time.status;
@@ -223,7 +240,7 @@ namespace crawler
         const auto add = [&](const unsigned int cells)
         {
           setting.cells              = cells;
-          const SimulationResult run = this->run(setting);
+          const SimulationResult run = guarded_run(setting);
           const bool finished        = run.time.status == "finished";
           const double error         = std::abs(run.displacement - reference_.first.displacement) / reference_.size;
           result.emplace_back(cells, finished ? error : std::numeric_limits<double>::infinity());

@@ -228,7 +228,7 @@ namespace crawler
     const std::string rest  = colon == std::string::npos ? "" : trimmed(text.substr(colon + 1));
     if (entry.empty() || rest.empty())
       throw InputError(fmt::format("\"{}\" is \"{}\", but {} is expected", name, text, axis_syntax), name);
-    return {fmt::format("{}", fmt::join(split_path(entry), "/")), parse_values(rest, name)};
+    return {normal_path(entry), parse_values(rest, name)};
   }
 
   void

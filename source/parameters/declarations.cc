@@ -553,6 +553,12 @@ namespace crawler
     return words;
   }
 
+  std::string
+  normal_path(const std::string &path)
+  {
+    return fmt::format("{}", fmt::join(split_path(path), "/"));
+  }
+
   std::optional<double>
   to_number(const std::string &text)
   {

@@ -87,7 +87,7 @@ namespace crawler
       std::string result;
       for (const auto &[section, line] : open)
         result += section + "/";
-      return result + last;
+      return normal_path(result + last);
     };
 
     std::istringstream in(text);
@@ -132,11 +132,11 @@ namespace crawler
         const auto equals = rest.find('=');
         if (equals == std::string::npos || trimmed(rest.substr(0, equals)).empty())
           throw InputError(fmt::format("{}: found \"{}\", but \"set Entry = value\" is expected", place, statement));
-        const Assignment assignment{path(trimmed(rest.substr(0, equals))), trimmed(rest.substr(equals + 1)), place};
-        for (const Assignment &other : assignments_)
-          if (other.path == assignment.path)
-            throw InputError(fmt::format(
-              "{}: \"{}\" is set a second time (first in {}); once is expected", place, assignment.path, other.place));
+        const Assignment assignment{
+          path(trimmed(rest.substr(0, equals))), trimmed(rest.substr(equals + 1)), place, false};
+        if (const Assignment *const other = assignment_of(assignment.path))
+          throw InputError(fmt::format(
+            "{}: \"{}\" is set a second time (first in {}); once is expected", place, assignment.path, other->place));
         assignments_.push_back(assignment);
       }
       else if (keyword == "include")
@@ -177,9 +177,10 @@ namespace crawler
     if (equals == std::string::npos || trimmed(assignment.substr(0, equals)).empty())
       throw InputError(fmt::format("--set \"{}\": \"Section/Entry=value\" is expected", assignment));
     overrides_.push_back(assignment);
-    assignments_.push_back({trimmed(assignment.substr(0, equals)),
+    assignments_.push_back({normal_path(assignment.substr(0, equals)),
                             trimmed(assignment.substr(equals + 1)),
-                            fmt::format("--set \"{}\"", assignment)});
+                            fmt::format("--set \"{}\"", assignment),
+                            true});
   }
 
   void
@@ -216,7 +217,7 @@ namespace crawler
       const std::string rest = inner.substr(path.size() + 1);
       const auto slash       = rest.find('/');
       if (slash != std::string::npos || !is_entry)
-        names.insert(trimmed(rest.substr(0, slash)));
+        names.insert(rest.substr(0, slash));
     };
     for (const Section &section : sections_)
       add(section.path, /*is_entry=*/false);
@@ -225,12 +226,22 @@ namespace crawler
     return names;
   }
 
+  const Assignment *
+  ParameterFile::assignment_of(const std::string &path) const
+  {
+    const auto found = std::find_if(assignments_.rbegin(),
+                                    assignments_.rend(),
+                                    [&](const Assignment &assignment)
+                                    {
+                                      return assignment.path == path;
+                                    });
+    return found == assignments_.rend() ? nullptr : &*found;
+  }
+
   InputError
   ParameterFile::with_place(const InputError &error) const
   {
-    for (auto it = assignments_.rbegin(); it != assignments_.rend(); ++it)
-      if (!error.entry.empty() && it->path == error.entry)
-        return InputError(it->place + ": " + error.what(), error.entry);
-    return InputError(name_ + ": " + error.what(), error.entry);
+    const Assignment *const assignment = assignment_of(error.entry);
+    return InputError((assignment != nullptr ? assignment->place : name_) + ": " + error.what(), error.entry);
   }
 } // namespace crawler

@@ -764,7 +764,14 @@ namespace crawler
       petsc(VecDuplicate(implementation_->solution.get(), &vec));
       implementation_->interpolated.reset(vec);
     }
-    petsc(TSInterpolate(implementation_->ts.get(), time, implementation_->interpolated.get()));
+    // PETSc refuses times outside of the step, also by a last bit: the start of a step is its end less its size.
+    TS ts          = implementation_->ts.get();
+    PetscReal from = 0., to = 0.;
+    petsc(TSGetPrevTime(ts, &from));
+    petsc(TSGetTime(ts, &to));
+    const double inside = std::clamp(time, from, to);
+    const bool is_there = std::abs(inside - time) <= 1e-12 * std::abs(to);
+    petsc(TSInterpolate(ts, is_there ? inside : time, implementation_->interpolated.get()));
     const ReadAccess access(implementation_->interpolated.get());
     std::copy(access.span.begin(), access.span.end(), y.begin());
   }

@@ -158,6 +158,31 @@ def test_designs(program, folder):
     rows = table(folder / "files")
     check(result.returncode == 0 and abs(rows["displacement"][0] - 4.764510e-2) < 1e-5 and
           abs(rows["displacement"][1] - 4.8552305987e-2) < 1e-5, "parameter files are an axis")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "set", "--set", "Body/Elastic modulus=10")
+    check(result.returncode == 0 and list(table(folder / "set")["displacement"]) == [rows["displacement"][1]] * 2,
+          f"--set is stronger than the files of an axis {result.stderr.strip()}")
+    result = call(program, folder, "check", "soft.prm", "--set", f" Sweep / Axes = {CHI} : 0.1, 0.2, 0.3")
+    check(result.returncode == 0 and "3 points" in result.stdout, f"blanks in the name of an entry do not matter {result.stderr}")
+    result = call(program, folder, "check", "sweep.prm", "--set", "Sweep/Axes=")
+    check(result.returncode == 0 and "points" not in result.stdout, f"without axes there is no sweep to check {result.stderr}")
+
+
+def test_out_of_memory(program, folder):
+    """What a run throws is how it ends: with a reason, a summary and exit code 3; in a sweep it is a row."""
+    cells = "Discretization/Number of cells"
+    limited = ("sh", "-c", 'ulimit -v 1600000; exec "$@"', "sh")
+    for tolerance in ((), ("--set", "Time/Tolerance=1e-3")):  # in a pilot run, and in the run itself
+        result = call(program, folder, "run", "soft.prm", "--output", "large", "--overwrite", "--quiet", "--set",
+                      f"{cells}=10000000", *tolerance, command=limited)
+        file = folder / "large" / "summary.json"
+        summary = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+        check(result.returncode == 3 and summary.get("status") == "failed" and summary.get("reason") == "out_of_memory" and
+              "out_of_memory" in result.stderr, f"a run that needs too much memory says so ({result.returncode}) {result.stderr}")
+    write(folder, f"{cells} : 4, 10000000, 5")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "memory", command=limited)
+    rows = table(folder / "memory")
+    check(result.returncode == 0 and list(rows["reason"]) == ["", "out_of_memory", ""] and
+          list(rows["status"]) == ["finished", "failed", "finished"], f"in a sweep it is a row {list(rows['reason'])} {result.stderr}")
 
 
 def test_rows_that_fail(program, folder):
@@ -520,6 +545,7 @@ def main():
         test_damaged_table(program, folder)
         test_grid(program, mpirun, folder)
         test_designs(program, folder)
+        test_out_of_memory(program, folder)
         test_rows_that_fail(program, folder)
         test_limits(program, folder)
         test_changed_inputs(program, folder)

@@ -70,6 +70,28 @@ TEST(Identities, LedgerWhereFrictionVanishes)
   }
 }
 
+/// A cell of a stiff body comes to rest within 1e-15 of the duration; the round-off of its state is no velocity.
+TEST(Identities, LedgerOfStiffBodies)
+{
+  for (const double k : {1e6, 1e8, 1e11})
+    for (const double a : {-3., -1., 2.})
+      for (const test::Settings &more : {test::Settings{},
+                                         test::Settings{{"Time/Engine", "petsc"}},
+                                         test::Settings{{"Discretization/Mesh", "adaptive"}},
+                                         test::Settings{{"Body/Elastic modulus profile", "1+0.3*s"},
+                                                        {"Ground/Backward ratio", "2"},
+                                                        {"Ground/Switching velocity", "0.01"}}})
+      {
+        const auto settings = with(with(test::wave(a, 0.2, 1., 1., k), {{"Accuracy", "1e-8"}}), more);
+        const auto &result  = test::run_with(settings).result;
+        const std::string what =
+          fmt::format("k = {:g}, a = {:g}, {}", k, a, more.empty() ? "automatic" : more.front().first);
+        ASSERT_EQ(result.time.status, "finished") << what;
+        EXPECT_LT(result.ledger->residual(), 1e-7) << what;
+        EXPECT_LT(result.net_friction, 1e-7) << what;
+      }
+}
+
 /// m(L-s,t) gives the opposite displacement.
 TEST(Identities, MirroredStressMirrorsTheDisplacement)
 {

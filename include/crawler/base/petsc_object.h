@@ -10,7 +10,20 @@
 
 namespace crawler
 {
-  /// Throws std::runtime_error with PETSc's own words if @p code is an error.
+  /// A function of PETSc has failed.
+  class PetscFailure : public std::runtime_error
+  {
+  public:
+    PetscFailure(const PetscErrorCode code, const std::string &words)
+      : std::runtime_error("PETSc error " + std::to_string(code) + ": " + words)
+      , code(code)
+    {
+    }
+
+    const PetscErrorCode code;
+  };
+
+  /// Throws PetscFailure with PETSc's own words if @p code is an error.
   inline void
   petsc(const PetscErrorCode code)
   {
@@ -18,8 +31,7 @@ namespace crawler
       return;
     const char *text = nullptr;
     PetscErrorMessage(code, &text, nullptr);
-    throw std::runtime_error("PETSc error " + std::to_string(code) + ": " +
-                             (text != nullptr ? text : "without a message"));
+    throw PetscFailure(code, text != nullptr ? text : "without a message");
   }
 
   /// Keeps the words of PETSc's errors instead of printing them with their stack, as long as this lives.

@@ -16,6 +16,7 @@
 #include <crawler/time/time_stepper.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -240,6 +241,8 @@ namespace crawler
     under_resolved(double value, double s, double t);
     TimeOutcome
     integrate(const std::vector<std::unique_ptr<Observer>> &observers, const std::function<bool()> &keep_going);
+    TimeOutcome
+    failure_while_integrating();
     void
     show(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
     double
@@ -292,14 +295,16 @@ namespace crawler
       double time = -1.;
       std::vector<double> y_dot;
     };
-    std::vector<Rate> rates_; ///< of the latest residuals, where they are kept
-    double delay_ = 0.;       ///< of the feedback [natural units]; 0: nobody asks for the past
+    std::vector<Rate> rates_;           ///< of the latest residuals, where they are kept
+    double relaxation_time_ = HUGE_VAL; ///< of the present mesh, at least
+    double delay_           = 0.;       ///< of the feedback [natural units]; 0: nobody asks for the past
     StretchHistory history_;
     std::shared_ptr<const std::vector<Cell>> history_cells_; ///< of the present mesh
     // The last state that was accepted, to which a change of mesh or formulation may go back.
     std::vector<double> accepted_;
     double accepted_time_ = 0., next_step_ = 0.;
     TimeOutcome before_;         ///< counts of the parts of the run before the last change of mesh or formulation
+    Step latest_{};              ///< that was tried, with the counts of the whole run
     std::vector<double> frames_; ///< in physical units
     std::size_t next_frame_ = 0;
     bool ends_at_frame_     = false; ///< does the present piece?

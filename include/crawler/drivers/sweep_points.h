@@ -56,7 +56,7 @@ namespace crawler
     const Parameters &
     parameters(unsigned long point);
 
-    /// The same as overrides "Section/Entry=value" of a command line, those of the user first.
+    /// The same as overrides "Section/Entry=value" of a command line: the file of the axis, the user, the axes.
     std::vector<std::string>
     overrides(const SweepDesign &design, unsigned long point) const;
 

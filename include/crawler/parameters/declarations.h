@@ -167,6 +167,10 @@ namespace crawler
   std::vector<std::string>
   split_path(const std::string &path);
 
+  /// The one spelling of a path, by which entries are compared: without blanks around its words.
+  std::string
+  normal_path(const std::string &path);
+
   /// Text without blanks at both ends.
   std::string
   trimmed(const std::string &text);

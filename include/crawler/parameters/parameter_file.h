@@ -13,9 +13,10 @@ namespace crawler
   /// One line "set Entry = value" of a file or one --set of the command line, with its place.
   struct Assignment
   {
-    std::string path;  ///< "Section/Entry"
+    std::string path;  ///< "Section/Entry", as normal_path() writes it
     std::string value; ///< without blanks around it and without the comment
-    std::string place; ///< "fig_2.prm, line 12" or "--set"
+    std::string place; ///< for messages: "fig_2.prm, line 12" or "--set ..."
+    bool is_override;  ///< of --set, which is stronger than all files
   };
 
   /**
@@ -50,6 +51,10 @@ namespace crawler
     /// The sections within the section @p path that the file opens or that something is set in, sorted.
     std::set<std::string>
     subsections(const std::string &path) const;
+
+    /// The strongest assignment of an entry, the last one; null if it is not set.
+    const Assignment *
+    assignment_of(const std::string &path) const;
 
     /// Everything that is set, in the order of file and command line.
     const std::vector<Assignment> &

@@ -64,9 +64,24 @@ TEST(ParameterFile, OverridesAreStronger)
 TEST(ParameterFile, ErrorsNameTheLine)
 {
   EXPECT_NE(error_of("set Accuracy = 1e-4\nset Accuracy = 1e-5\n").find("file.prm, line 2"), std::string::npos);
+  EXPECT_NE(error_of("subsection Body\n  set Length = 1\nend\nset Body / Length = 2\n").find("line 4: \"Body/Length\""),
+            std::string::npos);
   EXPECT_NE(error_of("subsection Body\n\n  set Length = -1\nend\n").find("file.prm, line 3"), std::string::npos);
   EXPECT_NE(error_of("\nsubsection Body\n  set Length = 1\n").find("line 2: \"subsection Body\" has no \"end\""),
             std::string::npos);
   EXPECT_NE(error_of("set Accuracy = 1e-4\nend\n").find("line 2"), std::string::npos);
   EXPECT_NE(error_of("subsection Boddy\nend\n").find("\"Body\""), std::string::npos);
+}
+
+/// Whoever mixes files and overrides must tell them apart, however they are written.
+TEST(ParameterFile, KnowsWhatStandsAboveFiles)
+{
+  ParameterFile file = ParameterFile::from_text("subsection Body\n  set Length = 3\nend\n", "file.prm");
+  EXPECT_FALSE(file.assignment_of("Body/Length")->is_override);
+  file.add_override(" Body / Length = 4");
+  EXPECT_TRUE(file.assignment_of("Body/Length")->is_override);
+  EXPECT_EQ(file.assignment_of("Body/Length")->value, "4");
+  EXPECT_EQ(file.assignment_of("Body/Elastic modulus"), nullptr);
+  const InputError error = file.with_place(InputError("too long", "Body/Length"));
+  EXPECT_EQ(std::string(error.what()).find("--set"), 0u);
 }

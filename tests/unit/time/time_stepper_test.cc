@@ -118,6 +118,34 @@ TEST(TimeStepper, StepsEndExactlyOnFrames)
   }
 }
 
+/// Also where the end of a step less its size is not its start to the last bit, as in steps that grow.
+TEST(TimeStepper, KnowsStatesFromStartToEndOfEachStep)
+{
+  unsigned int n_below = 0;
+  for (unsigned int i = 1; i <= 50; ++i)
+  {
+    ScalarEquation equation(parameters_for("bdf"));
+    std::vector<double> y(1);
+    double before = 0., start = 0.;
+    equation.stepper.monitor = [&](const Step &step, auto state)
+    {
+      if (step.size > 0.)
+      {
+        n_below += step.time - step.size < start;
+        equation.stepper.interpolate(step.time - step.size, y);
+        EXPECT_NEAR(y[0], before, 1e-6);
+        equation.stepper.interpolate(step.time, y);
+        EXPECT_NEAR(y[0], state[0], 1e-12);
+      }
+      before = state[0];
+      start  = step.time;
+      return true;
+    };
+    EXPECT_EQ(equation.solve(1e-3, 1e-5 / i).status, "finished");
+  }
+  EXPECT_GT(n_below, 0u); // else nothing was tested
+}
+
 TEST(TimeStepper, SolvesAgainWithTheSameResult)
 {
   ScalarEquation equation(parameters_for("bdf"));
