@@ -33,8 +33,6 @@ namespace crawler
     constexpr double first_step = 1e-3;
     /// For the next try.
     constexpr double refined_cells = 1.2, refined_tolerance = 0.1;
-    /// An error that is known beforehand to be so many times as large as wanted is not worth another try.
-    constexpr double hopeless = 4.;
     /// No displacement is more accurate than this part of the body length.
     constexpr double round_off = 1e-15;
 
@@ -90,6 +88,28 @@ namespace crawler
       if (n.grading.levels > 0)
         n = with_finer_grading(scene, n);
       return next;
+    }
+
+    /// The run with more cells and its own steps: where nothing is promised it tells both parts of the error apart, since
+    /// their sum may be small by chance.
+    SimulationResult
+    run_on_finer_mesh(MPI_Comm communicator,
+                      const Parameters &parameters,
+                      const Scene &scene,
+                      const NumericsChoice &choice,
+                      const SimulationResult &result,
+                      const std::function<bool()> &keep_going)
+    {
+      Numerics numerics                    = choice.numerics;
+      const Numerics finer_mesh            = finer(choice, parameters.time.integrator, scene);
+      numerics.n_cells                     = finer_mesh.n_cells;
+      numerics.mesh.tolerance              = finer_mesh.mesh.tolerance;
+      numerics.grading                     = finer_mesh.grading;
+      TimeParameters time                  = parameters.time;
+      time.petsc_prefix                    = time_of_finer_run(time).petsc_prefix;
+      const auto cycles                    = cycle_wish(parameters, scene, 0);
+      return Simulation(communicator, scene, time, numerics)
+        .run({}, options_of_finer_run(result, cycles), {}, keep_going);
     }
 
     /// What the finer run gives; it may not have finished.
@@ -152,15 +172,17 @@ namespace crawler
              SimulationResult &result,
              const SimulationResult *const finer,
              const Parameters &parameters,
-             const Scene &scene)
+             const Scene &scene,
+             const SimulationResult *const finer_mesh)
   {
     DisplacementError &error = result.error.emplace();
     double total             = choice.promised_error;
+    std::optional<double> space; // of the total, if it was measured
     if (choice.numerics.linear) // the centre of mass stays where it is, whatever the other errors are
       total = 0.;
     else if (finer != nullptr)
     {
-      if (finer->time.status != "finished")
+      if (finer->time.status != "finished" || (finer_mesh != nullptr && finer_mesh->time.status != "finished"))
         return;
       const bool promised = is_promised(choice, scene);
       const double part   = !promised                             ? 0.
@@ -168,20 +190,35 @@ namespace crawler
                             : choice.numerics.grading.levels > 0  ? promised_part_if_graded
                                                                   : promised_part;
       const double factor = promised ? measured_factor : factor_without_promise;
-      total               = factor * std::abs(finer->displacement - result.displacement);
-      if (promised)
-        total += part * choice.promised_error;
+      if (finer_mesh != nullptr)
+      {
+        space = factor * std::abs(finer_mesh->displacement - result.displacement);
+        total = *space + factor * std::abs(finer->displacement - finer_mesh->displacement);
+      }
+      else
+      {
+        total = factor * std::abs(finer->displacement - result.displacement);
+        if (promised)
+          total += part * choice.promised_error;
+      }
+      total = std::max(total, choice.least_error);
       // Works of cycles that were extrapolated are so far off as the displacement is.
       const double cycles =
         result.cycles && result.displacement != 0. ? result.cycles->bound / std::abs(result.displacement) : 0.;
-      result.errors = number_errors(result, *finer, factor, part * parameters.accuracy + cycles);
+      result.errors = number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * parameters.accuracy + cycles);
+      if (finer_mesh != nullptr)
+      {
+        const NumberErrors in_time = number_errors(*finer_mesh, *finer, factor, 0.);
+        for (std::size_t i = 0; i < NumberErrors::n; ++i)
+          result.errors->values[i] += in_time.values[i];
+      }
     }
     if (!std::isfinite(total))
       return;
     const double cycles = result.cycles ? result.cycles->bound : 0.;
     const double rest   = std::max(total, round_off * scene.body.length);
     error.total         = rest + cycles;
-    error.space         = choice.numerics.linear ? 0. : choice.space_share * rest;
+    error.space         = choice.numerics.linear ? 0. : space.value_or(choice.space_share * rest);
     error.time          = error.total - error.space;
     error.model         = 0.;
   }
@@ -199,10 +236,13 @@ namespace crawler
     else
     {
       // Whatever becomes of the finer run, the answer is there.
-      SimulationResult finer;
+      SimulationResult finer, finer_mesh;
+      const bool promised = is_promised(choice, scene);
       try
       {
         finer = finer_run(communicator, parameters, scene, choice, result, keep_going);
+        if (!promised && finer.time.status == "finished")
+          finer_mesh = run_on_finer_mesh(communicator, parameters, scene, choice, result, keep_going);
       }
       catch (...)
       {
@@ -210,9 +250,72 @@ namespace crawler
         if (size_of(communicator) > 1) // the other ranks may be waiting
           throw;
       }
-      set_errors(choice, result, &finer, parameters, scene);
+      set_errors(choice, result, &finer, parameters, scene, promised ? nullptr : &finer_mesh);
     }
   }
+
+  namespace
+  {
+    /**
+     * Where the user chose the numerics a coarse mesh or long steps can fake a stretch that is lost inside: finer runs
+     * must lose it, too, at nearly the same time.
+     */
+    void
+    confirm_inversion(MPI_Comm communicator,
+                      const Parameters &parameters,
+                      const Scene &scene,
+                      const NumericsChoice &choice,
+                      SimulationResult &result,
+                      const std::function<bool()> &keep_going)
+    {
+      constexpr unsigned int most_runs = 4;
+      constexpr double same            = 0.02; // relative
+      const TimeParameters time        = time_of_finer_run(parameters.time);
+      NumericsChoice finer             = choice;
+      std::string found;
+      for (unsigned int i = 0; i < most_runs; ++i)
+      {
+        finer.numerics               = numerics_of_finer_run(finer, time, scene);
+        const SimulationResult check = Simulation(communicator, scene, time, finer.numerics).run({}, {}, {}, keep_going);
+        if (check.time.status == "stopped")
+          return;
+        const double before = result.inversion->t;
+        if (check.time.status != "inverted")
+        {
+          found = check.time.status == "finished" ? "did not lose it" : "ended with " + check.time.reason;
+          break;
+        }
+        if (std::abs(check.inversion->t - before) <= same * before)
+        {
+          if (i == 0)
+            return;
+          found = fmt::format("lost it at t = {:.6g} only", check.inversion->t);
+          break;
+        }
+        result.inversion->t = check.inversion->t;
+        found               = fmt::format("lost it at t = {:.6g}", check.inversion->t);
+      }
+      result.time.status  = "failed";
+      result.time.reason  = "under_resolved";
+      result.time.message = fmt::format("the computed stretch was lost at s = {:.6g}, t = {:.6g}, but a run with {} cells "
+                                        "and a smaller tolerance {}: a larger Discretization/Number of cells and a "
+                                        "smaller Time/Tolerance are needed",
+                                        result.inversion->s,
+                                        result.time.time,
+                                        finer.numerics.n_cells,
+                                        found);
+      result.inversion.reset();
+    }
+
+    /// May a run with finer numerics end where this one did not?
+    bool
+    is_for_finer_numerics(const TimeOutcome &outcome)
+    {
+      constexpr const char *reasons[] = {
+        "newton_diverged", "linear_failed", "step_underflow", "rejection_limit", "under_resolved"};
+      return outcome.status == "failed" && std::ranges::find(reasons, outcome.reason) != std::end(reasons);
+    }
+  } // namespace
 
   Answer
   run_as_promised(MPI_Comm communicator,
@@ -227,13 +330,26 @@ namespace crawler
     answer.choice       = choice;
     const double wanted = choice.wanted_error;
     // What has been measured on one mesh after the other is not tried again.
-    const bool may_refine = !choice.is_measured && choice.promised_error < hopeless * wanted;
+    const bool may_refine = !choice.is_measured && choice.least_error <= wanted;
     answer.result         = simulate(choice);
     for (;;)
     {
       SimulationResult &result = answer.result;
-      if (!parameters.error_estimate || result.time.status != "finished")
+      if (result.time.status == "inverted" && result.time.reason == "inverted_inside" &&
+          choice.is_users)
+        confirm_inversion(communicator, parameters, scene, choice, result, keep_going);
+      const bool retries = std::isfinite(choice.promised_error) && !choice.is_measured &&
+                           answer.refinements < most_refinements && is_for_finer_numerics(result.time);
+      if (!retries && (!parameters.error_estimate || result.time.status != "finished"))
         return answer;
+      if (retries)
+      {
+        const NumericsChoice next = refined(answer.choice, scene);
+        result                    = simulate(next);
+        answer.choice             = next;
+        ++answer.refinements;
+        continue;
+      }
       const auto start = Clock::now();
       estimate_errors(communicator, parameters, scene, answer.choice, result, keep_going);
       answer.estimate_seconds += std::chrono::duration<double>(Clock::now() - start).count();

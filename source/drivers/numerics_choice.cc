@@ -61,10 +61,10 @@ namespace crawler
     constexpr double moving_factor = 1.5, moving_factor_of_first = 4.;
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
-    /// On adaptive meshes the error of bodies softer than this, in natural units, is up to soft_factor times Accuracy,
-    /// and if they are softer than very_soft at least soft_error, relative. Layers of the latter are not seen on
+    /// On adaptive meshes the error of bodies softer than this, in natural units, may be as large as soft_error, relative,
+    /// whatever Accuracy is: their layers are not seen by the indicators, and not at all on
     /// uniform meshes.
-    constexpr double soft = 1e-3, soft_factor = 3., very_soft = 2e-5, soft_error = 3e-3;
+    constexpr double very_soft = 2e-5, soft_error = 3e-3;
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;
 
@@ -139,6 +139,7 @@ namespace crawler
       {
         const std::string &mesh = parameters_.discretization.mesh;
         const bool fixed        = parameters_.time.step_control == "fixed";
+        choice_.is_users = user_cells_ || user_tolerance_ || fixed || parameters_.discretization.mesh_tolerance;
         if (user_cells_ && (user_tolerance_ || fixed) && mesh != "adaptive")
         {
           choice_.numerics.n_cells   = *user_cells_;
@@ -613,11 +614,12 @@ namespace crawler
         if (predicts && !is_collapse_ && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
-          const double k       = n.mesh.tolerance > 0. ? scene_.body.elastic_modulus / natural_units(scene_).force : 1.;
-          choice_.space_share  = space_over_time_ / (1. + space_over_time_);
-          choice_.wanted_error = accuracy_ * size_;
-          choice_.promised_error =
-            size_ * std::max(accuracy_ * (k < soft ? soft_factor : 1.), k < very_soft ? soft_error : 0.);
+          const double k         = scene_.body.elastic_modulus / natural_units(scene_).force;
+          choice_.space_share    = space_over_time_ / (1. + space_over_time_);
+          choice_.wanted_error   = accuracy_ * size_;
+          choice_.promised_error = choice_.wanted_error;
+          if (n.mesh.tolerance > 0. && k < very_soft)
+            choice_.least_error = soft_error * size_;
         }
         if ((is_collapse_ || jumps_move_) && predicts)
           choice_.wanted_error = accuracy_ * size_;
@@ -644,9 +646,9 @@ namespace crawler
                                  pilot_.time.message);
         if (!predicts && inversion_error_ > 0.)
           choice_.explanation += fmt::format("; the time of that has an error of about {:.2g}", inversion_error_);
-        if (choice_.promised_error > 1.5 * accuracy_ * size_)
+        if (std::max(choice_.promised_error, choice_.least_error) > 1.5 * accuracy_ * size_)
           choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
-                                             choice_.promised_error / size_);
+                                             std::max(choice_.promised_error, choice_.least_error) / size_);
         if (!scales_.sees_all)
           choice_.explanation +=
             "; an event of the active stress that is shorter than a step of its sampling may be missed";

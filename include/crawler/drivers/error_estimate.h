@@ -45,7 +45,8 @@ namespace crawler
              SimulationResult &result,
              const SimulationResult *finer,
              const Parameters &parameters,
-             const Scene &scene);
+             const Scene &scene,
+             const SimulationResult *finer_mesh = nullptr);
 
   /// A run with its error, and how it was found.
   struct Answer

@@ -22,6 +22,10 @@ namespace crawler
     double wanted_error = std::numeric_limits<double>::quiet_NaN();
     /// The part of the error that is of the mesh, as far as the rule can tell; not a number if it cannot [1].
     double space_share = std::numeric_limits<double>::quiet_NaN();
+    /// The reported error is at least this: what the indicators cannot see [length].
+    double least_error = 0.;
+    /// The user set cells or tolerances.
+    bool is_users = false;
     /// Its promised error was measured with one mesh after the other: the stretch collapses, or jumps of the active
     /// stress move.
     bool is_measured = false;
