@@ -90,8 +90,8 @@ namespace crawler
       return next;
     }
 
-    /// The run with more cells and its own steps: where nothing is promised it tells both parts of the error apart, since
-    /// their sum may be small by chance.
+    /// The run with more cells and its own steps: where nothing is promised it tells both parts of the error apart,
+    /// since their sum may be small by chance.
     SimulationResult
     run_on_finer_mesh(MPI_Comm communicator,
                       const Parameters &parameters,
@@ -100,14 +100,14 @@ namespace crawler
                       const SimulationResult &result,
                       const std::function<bool()> &keep_going)
     {
-      Numerics numerics                    = choice.numerics;
-      const Numerics finer_mesh            = finer(choice, parameters.time.integrator, scene);
-      numerics.n_cells                     = finer_mesh.n_cells;
-      numerics.mesh.tolerance              = finer_mesh.mesh.tolerance;
-      numerics.grading                     = finer_mesh.grading;
-      TimeParameters time                  = parameters.time;
-      time.petsc_prefix                    = time_of_finer_run(time).petsc_prefix;
-      const auto cycles                    = cycle_wish(parameters, scene, 0);
+      Numerics numerics         = choice.numerics;
+      const Numerics finer_mesh = finer(choice, parameters.time.integrator, scene);
+      numerics.n_cells          = finer_mesh.n_cells;
+      numerics.mesh.tolerance   = finer_mesh.mesh.tolerance;
+      numerics.grading          = finer_mesh.grading;
+      TimeParameters time       = parameters.time;
+      time.petsc_prefix         = time_of_finer_run(time).petsc_prefix;
+      const auto cycles         = cycle_wish(parameters, scene, 0);
       return Simulation(communicator, scene, time, numerics)
         .run({}, options_of_finer_run(result, cycles), {}, keep_going);
     }
@@ -178,7 +178,7 @@ namespace crawler
     DisplacementError &error = result.error.emplace();
     double total             = choice.promised_error;
     std::optional<double> space; // of the total, if it was measured
-    if (choice.numerics.linear) // the centre of mass stays where it is, whatever the other errors are
+    if (choice.numerics.linear)  // the centre of mass stays where it is, whatever the other errors are
       total = 0.;
     else if (finer != nullptr)
     {
@@ -205,7 +205,8 @@ namespace crawler
       // Works of cycles that were extrapolated are so far off as the displacement is.
       const double cycles =
         result.cycles && result.displacement != 0. ? result.cycles->bound / std::abs(result.displacement) : 0.;
-      result.errors = number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * parameters.accuracy + cycles);
+      result.errors =
+        number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * parameters.accuracy + cycles);
       if (finer_mesh != nullptr)
       {
         const NumberErrors in_time = number_errors(*finer_mesh, *finer, factor, 0.);
@@ -272,11 +273,13 @@ namespace crawler
       constexpr double same            = 0.02; // relative
       const TimeParameters time        = time_of_finer_run(parameters.time);
       NumericsChoice finer             = choice;
+      const Extreme lost               = *result.inversion;
       std::string found;
       for (unsigned int i = 0; i < most_runs; ++i)
       {
-        finer.numerics               = numerics_of_finer_run(finer, time, scene);
-        const SimulationResult check = Simulation(communicator, scene, time, finer.numerics).run({}, {}, {}, keep_going);
+        finer.numerics = numerics_of_finer_run(finer, time, scene);
+        const SimulationResult check =
+          Simulation(communicator, scene, time, finer.numerics).run({}, {}, {}, keep_going);
         if (check.time.status == "stopped")
           return;
         const double before = result.inversion->t;
@@ -295,15 +298,16 @@ namespace crawler
         result.inversion->t = check.inversion->t;
         found               = fmt::format("lost it at t = {:.6g}", check.inversion->t);
       }
-      result.time.status  = "failed";
-      result.time.reason  = "under_resolved";
-      result.time.message = fmt::format("the computed stretch was lost at s = {:.6g}, t = {:.6g}, but a run with {} cells "
-                                        "and a smaller tolerance {}: a larger Discretization/Number of cells and a "
-                                        "smaller Time/Tolerance are needed",
-                                        result.inversion->s,
-                                        result.time.time,
-                                        finer.numerics.n_cells,
-                                        found);
+      result.time.status = "failed";
+      result.time.reason = "under_resolved";
+      result.time.message =
+        fmt::format("the computed stretch was lost at s = {:.6g}, t = {:.6g}, but a run with {} cells "
+                    "and a smaller tolerance {}: a larger Discretization/Number of cells and a "
+                    "smaller Time/Tolerance are needed",
+                    lost.s,
+                    lost.t,
+                    finer.numerics.n_cells,
+                    found);
       result.inversion.reset();
     }
 
@@ -335,8 +339,7 @@ namespace crawler
     for (;;)
     {
       SimulationResult &result = answer.result;
-      if (result.time.status == "inverted" && result.time.reason == "inverted_inside" &&
-          choice.is_users)
+      if (result.time.status == "inverted" && result.time.reason == "inverted_inside" && choice.is_users)
         confirm_inversion(communicator, parameters, scene, choice, result, keep_going);
       const bool retries = std::isfinite(choice.promised_error) && !choice.is_measured &&
                            answer.refinements < most_refinements && is_for_finer_numerics(result.time);

@@ -61,9 +61,8 @@ namespace crawler
     constexpr double moving_factor = 1.5, moving_factor_of_first = 4.;
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
-    /// On adaptive meshes the error of bodies softer than this, in natural units, may be as large as soft_error, relative,
-    /// whatever Accuracy is: their layers are not seen by the indicators, and not at all on
-    /// uniform meshes.
+    /// On adaptive meshes the error of bodies softer than this, in natural units, may be as large as soft_error,
+    /// relative, whatever Accuracy is: their layers are not seen by the indicators, and not at all on uniform meshes.
     constexpr double very_soft = 2e-5, soft_error = 3e-3;
     /// The displacement counts as no smaller than this part of the body's largest deformation.
     constexpr double displacement_floor = 1e-4;
@@ -139,7 +138,7 @@ namespace crawler
       {
         const std::string &mesh = parameters_.discretization.mesh;
         const bool fixed        = parameters_.time.step_control == "fixed";
-        choice_.is_users = user_cells_ || user_tolerance_ || fixed || parameters_.discretization.mesh_tolerance;
+        choice_.is_users        = user_cells_ || user_tolerance_ || fixed || parameters_.discretization.mesh_tolerance;
         if (user_cells_ && (user_tolerance_ || fixed) && mesh != "adaptive")
         {
           choice_.numerics.n_cells   = *user_cells_;
@@ -237,13 +236,20 @@ namespace crawler
                          (choice_.numerics.linear ? 1. : displacement_floor) * pilot_.largest_u);
       }
 
+      /// k T/(gamma L^2)
+      double
+      stiffness() const
+      {
+        return scene_.body.elastic_modulus / natural_units(scene_).force;
+      }
+
       /// k T/(g L^2) for the largest friction g of the last pilot, which thin layers are a matter of.
       double
       stiffness_over_friction() const
       {
         const double a       = scene_.friction_exponent();
         const double largest = std::max(std::pow(pilot_.min_stretch.value, a), std::pow(pilot_.max_stretch.value, a));
-        return scene_.body.elastic_modulus / natural_units(scene_).force / largest;
+        return stiffness() / largest;
       }
 
       /// Does the active stress make layers suddenly, and may a graded mesh be chosen for that?
@@ -346,6 +352,8 @@ namespace crawler
         choice_.numerics.n_cells = n_cells;
         if (!predicts || pilot_.unresolved > std::max(resolved, accuracy_))
           return most == most_cells; // whatever it is, there is no more
+        if (most < most_cells && stiffness() < very_soft)
+          return false; // a pilot may pass over such layers by luck
         if (user_cells_)
           return true;
 
@@ -614,11 +622,10 @@ namespace crawler
         if (predicts && !is_collapse_ && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
-          const double k         = scene_.body.elastic_modulus / natural_units(scene_).force;
           choice_.space_share    = space_over_time_ / (1. + space_over_time_);
           choice_.wanted_error   = accuracy_ * size_;
           choice_.promised_error = choice_.wanted_error;
-          if (n.mesh.tolerance > 0. && k < very_soft)
+          if (n.mesh.tolerance > 0. && stiffness() < very_soft)
             choice_.least_error = soft_error * size_;
         }
         if ((is_collapse_ || jumps_move_) && predicts)

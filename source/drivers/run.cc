@@ -320,12 +320,12 @@ namespace crawler
     const double setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     unsigned int n_runs        = 0;
     TimeOutcome latest;
-    const auto simulate        = [&](const NumericsChoice &choice)
+    const auto simulate = [&](const NumericsChoice &choice)
     {
       if (++n_runs > 1)
       {
-        log.line((latest.status == "failed" ? latest.reason + ": " + latest.message :
-                                              "The error is larger than Accuracy asks for") +
+        log.line((latest.status == "failed" ? latest.reason + ": " + latest.message
+                                            : "The error is larger than Accuracy asks for") +
                  ": once more, finer.");
         build(choice.numerics);
         if (writes)
@@ -338,13 +338,13 @@ namespace crawler
         log.line(describe(choice.numerics, input));
       }
       SimulationResult run = simulation->run(frame_times(output.n_snapshots, parameters.time.end_time),
-                             {.ledger     = output.ledger,
-                              .resolution = false,
-                              .cycles     = cycle_wish(parameters, input.scene, output.n_snapshots),
-                              .gait       = Simulation::GaitWish::any},
-                             create_observers(),
-                             keep_going);
-      latest = run.time;
+                                             {.ledger     = output.ledger,
+                                              .resolution = false,
+                                              .cycles     = cycle_wish(parameters, input.scene, output.n_snapshots),
+                                              .gait       = Simulation::GaitWish::any},
+                                             create_observers(),
+                                             keep_going);
+      latest               = run.time;
       return run;
     };
     guarded(

@@ -15,6 +15,7 @@ namespace crawler::test
     std::string kind; ///< wave, waves, pulse, standing or sudden; or start, switch or segments
     Settings settings;
     std::vector<double> in_space, in_time; ///< breaks of the active stress
+    double step = 0.;                      ///< no step of a reference may be longer, if this is not 0 [time]
 
     /// The scene of @p parameters, which have the settings.
     Scene
@@ -223,6 +224,114 @@ namespace crawler::test
                       {"Active stress/Generator", "expression"},
                       {"Active stress/Expression/Active stress", formula},
                       {"Active stress/Expression/Constants", fmt::format("A={}, nu={}", text(A), text(nu))}};
+    return scene;
+  }
+
+  /// The scenes from this number on are hard_scene()s.
+  constexpr unsigned int first_hard_scene = 20000;
+
+  /**
+   * Scene number @p number of those that are easily misjudged, L = gamma = 1; a fifth each are
+   *  - pulses, single or repeated, that pass over the body in a hundredth to a thousandth of the time, or more slowly;
+   *  - events: a wave, and for a time between 3e-5 and 3e-3 of the duration something else;
+   *  - long gaits: stiff bodies, 20 to 400 strides;
+   *  - soft bodies, k T/(gamma L^2) from 2e-5 to 1e-3;
+   *  - robots of 3 to 16 segments that switch with a rate limit or with smooth fronts, with and without gaps.
+   */
+  inline RandomScene
+  hard_scene(const unsigned int number)
+  {
+    Random r(1000 + number);
+    RandomScene scene;
+    double k = r.log_uniform(0.3, 30.), T = 1.;
+    const double p = r.uniform(-2., 4.);
+    const auto set = [&scene](const std::string &entry, const double value)
+    {
+      scene.settings.emplace_back(entry, text(value));
+    };
+    const auto wave = [&](const double chi, const double c)
+    {
+      set("Active stress/Optimal wave/Perturbation parameter", chi * std::abs(c));
+      scene.settings.emplace_back("Active stress/Optimal wave/Choose wave by", "wave speed");
+      set("Active stress/Optimal wave/Wave speed", c);
+    };
+    const std::string generator = "Active stress/Generator";
+    switch (number % 5)
+    {
+      case 0:
+      {
+        scene.kind         = "pulse";
+        const double width = r.uniform(0.08, 0.3), speed = r.log_uniform(0.5, 100.);
+        const bool repeats = r.chance(0.5);
+        // Until it has passed, and then some time.
+        T = r.log_uniform(1., 100.) * (1. + 12. * width) / speed;
+        scene.settings.emplace_back(generator, "pulse");
+        set("Active stress/Pulse/Amplitude", r.uniform(0.05, 0.4) * k * (r.chance(0.7) ? 1. : -1.));
+        set("Active stress/Pulse/Width", width);
+        set("Active stress/Pulse/Speed", speed);
+        set("Active stress/Pulse/Repetition period", repeats ? T / r.uniform(1.5, 6.) : 0.);
+        if (repeats && speed * T / 6. < width)
+          scene.settings.back().second = "0";
+        scene.step = 0.5 * width / speed;
+        break;
+      }
+      case 1:
+      {
+        scene.kind         = "event";
+        const double width = r.log_uniform(3e-5, 3e-3), time = r.uniform(0.01, 0.99);
+        scene.settings.emplace_back(generator, "expression");
+        scene.settings.emplace_back("Active stress/Expression/Active stress",
+                                    "A*sin(2*pi*(s+t))*tanh(5*t)+B*sin(pi*s)*sin(2*pi*s)*exp(-((t-q)/w)^2)");
+        scene.settings.emplace_back("Active stress/Expression/Constants",
+                                    fmt::format("A={}, B={}, q={}, w={}",
+                                                text(r.uniform(0.02, 0.2) * k),
+                                                text(r.uniform(-0.6, 0.6) * k),
+                                                text(time),
+                                                text(width)));
+        scene.step = width;
+        break;
+      }
+      case 2:
+      {
+        scene.kind     = "long";
+        k              = r.log_uniform(5., 1000.);
+        const double c = r.log_uniform(0.2, 1.2) * (r.chance(0.5) ? 1. : -1.);
+        T              = r.log_uniform(20., 400.) / std::abs(c);
+        wave(r.uniform(0.02, 0.4), c);
+        break;
+      }
+      case 3:
+        scene.kind = "soft";
+        k          = r.log_uniform(2e-5, 1e-3);
+        wave(r.uniform(0.05, 0.35), r.log_uniform(0.5, 2.) * (r.chance(0.5) ? 1. : -1.));
+        break;
+      default:
+      {
+        scene.kind           = "switching";
+        const unsigned int n = r.whole(3, 16);
+        T                    = r.uniform(1., 3.);
+        const bool smooth    = r.chance(0.5);
+        scene.settings.emplace_back(generator, "segments");
+        const std::string segments = "Active stress/Segments/";
+        set(segments + "Number of segments", n);
+        set(segments + "Amplitude", r.uniform(0.05, 0.3) * k);
+        set(segments + "Phase lag", r.uniform(-1., 1.) / n);
+        set(segments + "Duty cycle", r.uniform(0.3, 0.6));
+        set(segments + "Ramp duration", r.uniform(0.2, 0.8));
+        if (r.chance(0.5))
+          set(segments + "Gap", r.uniform(0.05, 0.3) / n);
+        if (smooth)
+        {
+          scene.settings.emplace_back(segments + "Switching", "smooth");
+          set(segments + "Front width", r.uniform(0.05, 0.25));
+        }
+        else
+          set(segments + "Rate limit", r.uniform(1., 5.) * k);
+      }
+    }
+    set("Body/Anchoring exponent", p);
+    set("Body/Elastic modulus", k);
+    set("Time/End time", T);
     return scene;
   }
 } // namespace crawler::test

@@ -82,9 +82,8 @@ namespace crawler
     }
 
     /// Of a function that increases.
-    template <typename Function>
     Interval
-    increasing(const Function &f, const Interval x)
+    increasing(double (*f)(double), const Interval x)
     {
       return {f(x.lower), f(x.upper)};
     }
@@ -169,46 +168,11 @@ namespace crawler
     const Interval one{1., 1.};
     CRAWLER_RULE(sin_rule, sine(x), cosine(x))
     CRAWLER_RULE(cos_rule, cosine(x), -sine(x))
-    CRAWLER_RULE(sinh_rule,
-                 increasing(
-                   [](const double y)
-                   {
-                     return std::sinh(y);
-                   },
-                   x),
-                 hyperbolic_cosine(x))
-    CRAWLER_RULE(cosh_rule,
-                 hyperbolic_cosine(x),
-                 increasing(
-                   [](const double y)
-                   {
-                     return std::sinh(y);
-                   },
-                   x))
-    CRAWLER_RULE(tanh_rule,
-                 increasing(
-                   [](const double y)
-                   {
-                     return std::tanh(y);
-                   },
-                   x),
-                 one + -square(f))
-    CRAWLER_RULE(atan_rule,
-                 increasing(
-                   [](const double y)
-                   {
-                     return std::atan(y);
-                   },
-                   x),
-                 inverse(one + square(x)))
-    CRAWLER_RULE(asinh_rule,
-                 increasing(
-                   [](const double y)
-                   {
-                     return std::asinh(y);
-                   },
-                   x),
-                 inverse_root(one + square(x)))
+    CRAWLER_RULE(sinh_rule, increasing(std::sinh, x), hyperbolic_cosine(x))
+    CRAWLER_RULE(cosh_rule, hyperbolic_cosine(x), increasing(std::sinh, x))
+    CRAWLER_RULE(tanh_rule, increasing(std::tanh, x), one + -square(f))
+    CRAWLER_RULE(atan_rule, increasing(std::atan, x), inverse(one + square(x)))
+    CRAWLER_RULE(asinh_rule, increasing(std::asinh, x), inverse_root(one + square(x)))
     CRAWLER_RULE(exp_rule, exponential(x), f)
     CRAWLER_RULE(log_rule, logarithm(x), x.lower > 0. ? inverse(x) : all)
     CRAWLER_RULE(log2_rule,
@@ -219,21 +183,9 @@ namespace crawler
                  x.lower > 0. ? scaled(inverse(x), std::numbers::log10e) : all)
     CRAWLER_RULE(sqrt_rule, root(x), scaled(inverse_root(x), 0.5))
     CRAWLER_RULE(negative_rule, -x, -one)
-    CRAWLER_RULE(erf_rule,
-                 increasing(
-                   [](const double y)
-                   {
-                     return std::erf(y);
-                   },
-                   x),
-                 scaled(exponential(-square(x)), 2. * std::numbers::inv_sqrtpi))
+    CRAWLER_RULE(erf_rule, increasing(std::erf, x), scaled(exponential(-square(x)), 2. * std::numbers::inv_sqrtpi))
     CRAWLER_RULE(erfc_rule,
-                 -increasing(
-                   [](const double y)
-                   {
-                     return -std::erfc(y);
-                   },
-                   x),
+                 one + -increasing(std::erf, x),
                  scaled(exponential(-square(x)), -2. * std::numbers::inv_sqrtpi))
 #undef CRAWLER_RULE
 
@@ -341,17 +293,11 @@ namespace crawler
       return {value, value.lower == value.upper || !at_a_time ? Interval{0., 0.} : all};
     }
 
-    template <auto function>
+    template <double (*function)(double)>
     Enclosure
     step_rule(const Arguments x)
     {
-      return jumping(increasing(
-                       [](const double y)
-                       {
-                         return function(y);
-                       },
-                       x[0].value),
-                     x);
+      return jumping(increasing(function, x[0].value), x);
     }
 
     double
@@ -572,9 +518,9 @@ namespace crawler
       {"avg", average_rule},
       {"?", select_rule},
       {"sign", step_rule<sign_of_number>},
-      {"rint", step_rule<static_cast<double (*)(double)>(std::rint)>},
-      {"floor", step_rule<static_cast<double (*)(double)>(std::floor)>},
-      {"ceil", step_rule<static_cast<double (*)(double)>(std::ceil)>},
+      {"rint", step_rule<std::rint>},
+      {"floor", step_rule<std::floor>},
+      {"ceil", step_rule<std::ceil>},
     };
     const auto found = rules.find(function);
     if (found == rules.end())

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/step_limits.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  /// Long steps but for a tenth in the middle.
+  constexpr StepLimit limits[] = {{0., 0.3}, {0.5, 1e-3}, {0.6, HUGE_VAL}};
+
+  double
+  step(const double t, const double wanted)
+  {
+    unsigned int present = 0;
+    return admitted_step(limits, 3, present, t, wanted);
+  }
+} // namespace
+
+TEST(StepLimits, NoStepIsLongerThanALimitThatItMeets)
+{
+  EXPECT_EQ(step(0., 1.), 0.3);
+  EXPECT_EQ(step(0., 0.1), 0.1);
+  EXPECT_DOUBLE_EQ(step(0.4, 1.), 0.1) << "it ends where the small one begins";
+  EXPECT_EQ(step(0.4995, 1.), 1e-3) << "but a small step may pass that";
+  EXPECT_EQ(step(0.55, 1.), 1e-3);
+  EXPECT_EQ(step(0.7, 5.), 5.);
+  unsigned int present = 0;
+  EXPECT_EQ(admitted_step(nullptr, 0, present, 0., 2.), 2.);
+}
+
+/// The limits are searched from where the last step was.
+TEST(StepLimits, StepsCoverTheWholeTime)
+{
+  unsigned int present = 0, n = 0;
+  double t = 0.;
+  for (; t < 1.; t += admitted_step(limits, 3, present, t, 0.5))
+    ++n;
+  EXPECT_GE(n, 100u);
+  EXPECT_LE(n, 106u);
+  EXPECT_EQ(present, 2u);
+}

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Scenes whose answers were once wrong, with bounds that said otherwise: events that samples miss, gaits of hundreds of
+// strides, soft bodies, meshes of the user's own.
+#include "../support/run_text.h"
+
+#include <crawler/drivers/compute.h>
+#include <crawler/drivers/compute_similar.h>
+#include <crawler/drivers/error_estimate.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  bool
+  never()
+  {
+    return false;
+  }
+
+  /// What `crawler run` answers, without files.
+  SimulationResult
+  answer_to(const test::Settings &settings)
+  {
+    Task task;
+    task.parameters = test::parameters_with(settings);
+    compute_all({&task, 1}, HUGE_VAL, never);
+    if (task.error)
+      std::rethrow_exception(task.error);
+    return task.computed.result;
+  }
+
+  void
+  expect_within(const SimulationResult &result, const double exact, const double accuracy, const std::string &what)
+  {
+    EXPECT_EQ(result.time.status, "finished") << what << ": " << result.time.message;
+    ASSERT_TRUE(result.error) << what;
+    EXPECT_LE(std::abs(result.displacement - exact), result.error->total) << what;
+    EXPECT_LE(result.error->total, accuracy * std::abs(exact) * 1.01) << what;
+  }
+
+  test::Settings
+  pulse(const double speed, const double repetition, const double end_time, const std::string &accuracy)
+  {
+    return {{"Body/Anchoring exponent", "2"},
+            {"Active stress/Generator", "pulse"},
+            {"Active stress/Pulse/Amplitude", "0.4"},
+            {"Active stress/Pulse/Width", "0.1"},
+            {"Active stress/Pulse/Speed", test::text(speed)},
+            {"Active stress/Pulse/Repetition period", test::text(repetition)},
+            {"Time/End time", test::text(end_time)},
+            {"Accuracy", accuracy}};
+  }
+
+  test::Settings
+  event(const double time, const double width, const std::string &accuracy)
+  {
+    return {{"Active stress/Generator", "expression"},
+            {"Active stress/Expression/Active stress",
+             "0.1*sin(2*pi*(s+t))*tanh(5*t)+0.6*sin(pi*s)*sin(2*pi*s)*exp(-((t-q)/w)^2)"},
+            {"Active stress/Expression/Constants", fmt::format("q={}, w={}", test::text(time), test::text(width))},
+            {"Accuracy", accuracy}};
+  }
+
+  /// With steps that no event can escape.
+  double
+  with_short_steps(const test::Settings &settings, const double step)
+  {
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    const Numerics numerics     = {
+          .degree = 8, .n_cells = 12, .tolerance = 1e-10, .initial_step = 1e-4 * step, .step_limits = {{0., step}}};
+    TimeParameters time = parameters.time;
+    time.integrator     = "radau 9";
+    return Simulation(MPI_COMM_WORLD, scene, time, numerics).run({}, {}).displacement;
+  }
+} // namespace
+
+/// True value by an independent solver.
+TEST(HardAnswers, ASinglePulseIsNotMissed)
+{
+  expect_within(answer_to(pulse(20., 0., 1000., "1e-4")), -0.00316044717, 1e-4, "pulse");
+}
+
+TEST(HardAnswers, PulsesAreCounted)
+{
+  const double one = answer_to(pulse(20., 0., 1000., "1e-7")).displacement;
+  for (const char *stop : {"automatic", "off"})
+  {
+    auto settings = pulse(20., 50., 1000., "1e-4");
+    settings.emplace_back("Time/Cycle stop", stop);
+    expect_within(answer_to(settings), 20. * one, 1e-4, stop);
+  }
+}
+
+TEST(HardAnswers, EventsOfFormulasAreNotMissed)
+{
+  for (const double width : {1e-4, 2e-4, 3e-4})
+    for (const double time : {0.2222, 0.51371, 0.9})
+    {
+      const auto settings = event(time, width, "1e-4");
+      expect_within(answer_to(settings), with_short_steps(settings, width), 1e-4, fmt::format("{} at {}", width, time));
+    }
+}
+
+/// Neighbours in a sweep share their numerics, but not their events.
+TEST(HardAnswers, EachPointOfASweepHasItsEvents)
+{
+  std::vector<Task> tasks(12);
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    tasks[i].parameters = test::parameters_with(event(0.1 + 0.07 * static_cast<double>(i), 2e-4, "1e-4"));
+  std::vector<bool> done = compute_similar(tasks, std::vector<bool>(tasks.size(), true), HUGE_VAL, never);
+  EXPECT_GE(std::count(done.begin(), done.end(), true), 10) << "most of them share their numerics";
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    if (done[i])
+      expect_within(tasks[i].computed.result,
+                    with_short_steps(event(0.1 + 0.07 * static_cast<double>(i), 2e-4, "1e-4"), 2e-4),
+                    1e-4,
+                    fmt::format("point {}", i));
+}
+
+/// The stress of many strides must be sampled over one of them: samples over all of them see the wrong rate.
+TEST(HardAnswers, GaitsOfHundredsOfStrides)
+{
+  struct
+  {
+    double k, T, p, chi, c, exact;
+  } const cases[] = {{30.199100422087973,
+                      588.9260921199359,
+                      -3.41351959351645,
+                      0.061243176350007436,
+                      -0.7964371869725007,
+                      5.843672328812725},
+                     {37.47944457885461,
+                      728.6483162675148,
+                      3.524307968745102,
+                      0.02106611885423389,
+                      -0.4481391340392069,
+                      -0.9093776532489591},
+                     {12.354832814752847,
+                      778.1620910319035,
+                      -0.4855237198344735,
+                      0.1360261489749871,
+                      -0.9408009676664544,
+                      11.223218696811003}};
+  for (const auto &[k, T, p, chi, c, exact] : cases)
+  {
+    auto settings = test::wave(1. - p, chi, c, T, k);
+    settings.emplace_back("Accuracy", "1e-5");
+    expect_within(answer_to(settings), exact, 1e-5, fmt::format("k = {}", k));
+  }
+}
+
+/// Reference: contrib/reference/stretch.py 1e-4 2 0.3 1 1.
+TEST(HardAnswers, SoftBodiesMayMeetAccuracy)
+{
+  for (const char *accuracy : {"1e-2", "1e-3", "1e-4", "1e-5"})
+  {
+    auto settings = test::wave(-1., 0.3, 1., 1., 1e-4);
+    settings.emplace_back("Accuracy", accuracy);
+    expect_within(answer_to(settings), 0.0478959169, std::stod(accuracy), accuracy);
+  }
+}
+
+/// Below that layers may be unresolved whatever Accuracy is; the error says so.
+TEST(HardAnswers, VerySoftBodiesSayWhatTheyDoNotKnow)
+{
+  for (const char *accuracy : {"1e-3", "1e-4"})
+  {
+    auto settings = test::wave(-1., 0.3, 1., 1., 1e-5);
+    settings.emplace_back("Accuracy", accuracy);
+    const SimulationResult result = answer_to(settings);
+    EXPECT_EQ(result.time.reason, accuracy_not_met) << accuracy;
+    EXPECT_LE(std::abs(result.displacement - 0.0479356665), result.error->total);
+  }
+}
+
+/// a > 0, three cells: the body does not invert.
+TEST(HardAnswers, ACoarseMeshDoesNotInvertABody)
+{
+  const auto answer = [](const unsigned int n_cells, const double chi, const double end_time)
+  {
+    auto settings = test::wave(3.38, chi, -1., end_time, 0.0134);
+    settings.insert(settings.end(),
+                    {{"Discretization/Number of cells", std::to_string(n_cells)},
+                     {"Discretization/Degree", "3"},
+                     {"Time/Integrator", "radau 9"}});
+    return answer_to(settings);
+  };
+  const SimulationResult coarse = answer(3, 0.302, 0.346);
+  EXPECT_EQ(coarse.time.reason, "under_resolved") << coarse.time.message;
+  EXPECT_FALSE(coarse.inversion);
+  EXPECT_EQ(answer(24, 0.302, 0.346).time.status, "finished");
+  // One that does is believed.
+  EXPECT_EQ(answer_to({{"Body/Anchoring exponent", "0"},
+                       {"Active stress/Optimal wave/Perturbation parameter", "0.6"},
+                       {"Active stress/Optimal wave/Choose wave by", "wave speed"},
+                       {"Active stress/Optimal wave/Wave speed", "-1"},
+                       {"Discretization/Number of cells", "12"},
+                       {"Discretization/Degree", "6"}})
+              .time.status,
+            "inverted");
+}
+
+/// Errors in space and time may cancel in two runs, but not in three.
+TEST(HardAnswers, NumericsOfTheUser)
+{
+  unsigned int n_missed = 0, n = 0;
+  for (unsigned int cells = 2; cells <= 6; ++cells)
+    for (const char *tolerance : {"1e-3", "3e-4", "1e-4", "3e-5", "1e-5"})
+    {
+      auto settings = test::wave(-1., 0.3);
+      settings.insert(settings.end(),
+                      {{"Discretization/Number of cells", std::to_string(cells)},
+                       {"Discretization/Degree", "4"},
+                       {"Time/Tolerance", tolerance},
+                       {"Time/Integrator", "radau 5"}});
+      const SimulationResult result = answer_to(settings);
+      ASSERT_EQ(result.time.status, "finished");
+      ++n;
+      n_missed += std::abs(result.displacement - 4.764510e-2) > result.error->total + 1e-8;
+      EXPECT_NEAR(result.error->space + result.error->time, result.error->total, 1e-12);
+    }
+  EXPECT_EQ(n_missed, 0u) << "of " << n;
+}
