@@ -13,8 +13,9 @@ namespace crawler
    * finer run tells that of the displacement (doc/numerics.md, "Error bars"): with x the difference of both
    * displacements and w the error that the choice promises,
    *
-   *   total = 1.3 x + w/4   (w/2 on adaptive meshes, 0.15 w on graded ones; without a promise 2 x), and at least 1e-15
-   * L, the error of round-off.
+   *   total = 1.5 x + w/5   (w/2 on adaptive meshes, 0.15 w on graded ones), and at least 1e-15 L, the error of
+   * round-off. Without a promise a third run with more cells only tells the parts in space and time, and total is twice
+   * their sum.
    *
    * It is split into space and time as the rule that chose the numerics expects it. Where the stretch collapses the
    * choice has measured the error, and no second run is made. The error is unknown if the finer run did not finish or
