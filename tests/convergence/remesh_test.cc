@@ -90,7 +90,7 @@ namespace
       {
         return step.number < steps_on_a_mesh;
       };
-      const TimeOutcome outcome = part->stepper.solve(y, {}, tolerance, size, 1., time);
+      const TimeOutcome outcome = part->stepper.solve(y, {}, tolerance, size, {}, time);
       count.steps += outcome.steps;
       count.rejected += outcome.rejected_steps;
       count.newton_iterations += outcome.newton_iterations;

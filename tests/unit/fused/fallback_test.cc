@@ -12,7 +12,7 @@ using test::wave;
 
 namespace
 {
-  constexpr Numerics fine = {.degree = 6, .n_cells = 8, .tolerance = 1e-6, .initial_step = 1e-4};
+  const Numerics fine = {.degree = 6, .n_cells = 8, .tolerance = 1e-6, .initial_step = 1e-4};
 
   struct Case
   {
@@ -32,9 +32,9 @@ namespace
   }
 
   constexpr auto position        = FormulationChoice::position;
-  constexpr Numerics short_steps = {
+  const Numerics short_steps = {
     .degree = 6, .n_cells = 8, .tolerance = 1e-6, .initial_step = 1e-4, .step_limits = {{0., 0.02}}};
-  constexpr Numerics one_jump = {.degree = 4, .n_cells = 2, .tolerance = 1e-4, .initial_step = 2e-2};
+  const Numerics one_jump = {.degree = 4, .n_cells = 2, .tolerance = 1e-4, .initial_step = 2e-2};
 
   std::vector<Case>
   cases()

@@ -55,7 +55,7 @@ namespace
     LinearStepper stepper(scene, mesh, n_stages, /*adaptive=*/false);
     FixedRun run;
     run.u.assign(mesh.n_owned(), 0.);
-    run.outcome          = stepper.solve(run.u, {}, 1e-6, 1. / n, HUGE_VAL, 0.);
+    run.outcome          = stepper.solve(run.u, {}, 1e-6, 1. / n, {}, 0.);
     run.n_factorizations = stepper.n_factorizations();
     return run;
   }
@@ -115,7 +115,7 @@ TEST(LinearStepper, AdaptiveStepsHaveFewSizes)
     return true;
   };
   const std::vector<double> frames = {0.2, 0.4, 0.6, 0.8, 1.};
-  const auto outcome               = stepper.solve(u, frames, 1e-10, 0.01, 1., 0.);
+  const auto outcome               = stepper.solve(u, frames, 1e-10, 0.01, {}, 0.);
   EXPECT_EQ(outcome.status, "finished");
   EXPECT_EQ(times, frames);
   fmt::print("{} steps, {} factorizations\n", outcome.steps, stepper.n_factorizations());
