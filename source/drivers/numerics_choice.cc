@@ -485,13 +485,13 @@ namespace crawler
             n.n_cells > first_collapse_cells && inverted == finished ? (finished ? size_ : T_) : std::abs(now - before);
           inverted            = !finished;
           const double wanted = finished ? accuracy_ * size_ : std::max(accuracy_, 1e-4) * T_;
-          // An error of second order is a third of the last change, if the changes show that. Where the body inverts
-          // the place of a cell matters, and there is no such order.
-          const double error = !finished                       ? 2. * std::max(change, change_before)
-                               : change <= change_before / 2.5 ? 0.5 * change
-                                                               : change;
-          before             = now;
-          change_before      = change;
+          // What is left if the changes go on as they did: an error of second order is a third of the last one. Where
+          // the body inverts the place of a cell matters, and there is no such order.
+          const double ratio = std::isfinite(change_before) ? std::min(change / change_before, 0.8) : 0.5;
+          const double error =
+            finished ? std::max(0.5, ratio / (1. - ratio)) * change : 2. * std::max(change, change_before);
+          before        = now;
+          change_before = change;
           if (finished)
           {
             choice_.promised_error = std::max(wanted, error);

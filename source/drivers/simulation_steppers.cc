@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Who integrates the equation of a simulation over time, and how they are connected.
+// Who integrates the equation of a simulation over time, how they are connected, and which of their steps are made
+// again.
 #include <crawler/base/communication.h>
 #include <crawler/drivers/batch.h>
 #include <crawler/drivers/simulation.h>
@@ -127,5 +128,45 @@ namespace crawler
     {
       assembler_->jacobian_vmult(x, y);
     };
+  }
+
+  /// The limit of steps at this time.
+  double
+  Simulation::longest_step(const double t) const
+  {
+    const auto after = std::find_if(step_limits_.begin(),
+                                    step_limits_.end(),
+                                    [t](const StepLimit &limit)
+                                    {
+                                      return limit.from > t;
+                                    });
+    return after == step_limits_.begin() ? HUGE_VAL : std::prev(after)->longest;
+  }
+
+  /// Did the active stress do something within the step that its ends do not show? Then the step is made again, by
+  /// shorter ones.
+  bool
+  Simulation::passed_over_event(const Step &step)
+  {
+    constexpr double shortest = 1e-6, part = 0.125;
+    if (!watch_ || step.size <= shortest || watch_->is_calm(step.time - step.size, step.time))
+      return false;
+    const auto after = std::find_if(step_limits_.begin(),
+                                    step_limits_.end(),
+                                    [&](const StepLimit &limit)
+                                    {
+                                      return limit.from > step.time;
+                                    });
+    const StepLimit later{step.time, longest_step(step.time)};
+    const auto begin = std::find_if(step_limits_.begin(),
+                                    step_limits_.end(),
+                                    [&](const StepLimit &limit)
+                                    {
+                                      return limit.from > step.time - step.size;
+                                    });
+    const auto place = step_limits_.erase(begin, after);
+    step_limits_.insert(place, {{step.time - step.size, part * step.size}, later});
+    request_ = Request::retry;
+    return true;
   }
 } // namespace crawler

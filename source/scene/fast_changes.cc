@@ -70,10 +70,11 @@ namespace crawler
       {
         const ActiveStress::Box box = part.box;
         const double bound = part.bound, time = box.t_to - box.t_from;
-        if (bound <= explained * known_(box.t_from, box.t_to) || bound * time <= negligible * largest_)
+        const double admitted = explained * known_(box.t_from, box.t_to);
+        if (bound <= admitted || bound * time <= negligible * largest_)
           return;
         const double rate = rate_in(box);
-        if (rate * explained_by_point >= bound && std::isfinite(bound))
+        if (rate * explained_by_point >= bound && 2. * rate > admitted && std::isfinite(bound))
         {
           see_values(box);
           if (bound * time <= most_changes * largest_)

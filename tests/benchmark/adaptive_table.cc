@@ -94,7 +94,9 @@ namespace
                0.};
     const auto reference = [&](const unsigned int degree, const double cells, const double tolerance)
     {
-      return run(pulse.parameters, {degree, static_cast<unsigned int>(cells / width), tolerance, 1e-5, {{0., width}}}, 1e3)
+      return run(pulse.parameters,
+                 {degree, static_cast<unsigned int>(cells / width), tolerance, 1e-5, {{0., width}}},
+                 1e3)
         .displacement;
     };
     pulse.displacement = reference(6, 5., 1e-12);

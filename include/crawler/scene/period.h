@@ -11,8 +11,8 @@ namespace crawler
   /**
    * The smallest period P <= T/2 of an active stress over a body of this @p length [length] and the duration
    * T = @p end_time [time], nothing if there is none: m(s,t+P) = m(s,t) to 1e-10 of the largest |m| at five places, at
-   * 1024 equally spaced and 64 other times in [0, T-P]. What the stress knows to be faster (fast_changes.h) must repeat, too. What does
-   * not depend on time has no period.
+   * 1024 equally spaced and 64 other times in [0, T-P]. What the stress knows to be faster (fast_changes.h) must
+   * repeat, too. What does not depend on time has no period.
    */
   std::optional<double>
   find_period(const ActiveStress &stress, double length, double end_time);

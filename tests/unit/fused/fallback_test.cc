@@ -31,7 +31,7 @@ namespace
     return numerics;
   }
 
-  constexpr auto position        = FormulationChoice::position;
+  constexpr auto position    = FormulationChoice::position;
   const Numerics short_steps = {
     .degree = 6, .n_cells = 8, .tolerance = 1e-6, .initial_step = 1e-4, .step_limits = {{0., 0.02}}};
   const Numerics one_jump = {.degree = 4, .n_cells = 2, .tolerance = 1e-4, .initial_step = 2e-2};
