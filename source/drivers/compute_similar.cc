@@ -60,24 +60,16 @@ namespace crawler
           n                      = other;
           n.tolerance            = std::min(coarser.tolerance, other.tolerance);
           n.initial_step         = std::min(coarser.initial_step, other.initial_step);
+          n.least_event          = std::min(coarser.least_event, other.least_event);
         }
         else
         {
           n.tolerance    = std::min(n.tolerance, other.tolerance);
           n.initial_step = std::min(n.initial_step, other.initial_step);
+          n.least_event  = std::min(n.least_event, other.least_event);
         }
       }
       return finest;
-    }
-
-    /// Sets the limits of the steps of one scene from those of a similar one.
-    void
-    watch_events(Numerics &numerics, const Scene &scene)
-    {
-      const EventLimits own = similar_event_limits(scene, numerics.step_limits);
-      numerics.step_limits  = own.step_limits;
-      if (numerics.least_event > 0.)
-        numerics.least_event = least_event * own.stress;
     }
 
     /// Leaves nothing of a try behind.
@@ -142,7 +134,8 @@ namespace crawler
         {
           // Each stress has events of its own.
           NumericsChoice own = *shared;
-          watch_events(own.numerics, *tasks[i].scene);
+          own.numerics.step_limits =
+            similar_step_limits(*tasks[i].scene, own.numerics.step_limits, own.numerics.least_event / least_event);
           members.push_back({i,
                              own.numerics,
                              numerics_of_finer_run(own, tasks[i].parameters.time, *tasks[i].scene),

@@ -170,7 +170,7 @@ namespace crawler
         for (unsigned int i = 0; i <= n_points; ++i)
         {
           largest = std::max(largest, std::abs(m_[i]));
-          if (i > 0 && !any_between(in_space_, L * (i - 1) / n_points, L * i / n_points))
+          if (i > 0 && (in_space_.empty() || !any_between(in_space_, L * (i - 1) / n_points, L * i / n_points)))
             along = std::max(along, std::abs(m_[i] - m_[i - 1]) * n_points / L);
         }
       }
@@ -376,28 +376,13 @@ namespace crawler
             may_jump && jumps_that_move(scene, in_space, jump_part * largest)};
   }
 
-  EventLimits
-  similar_event_limits(const Scene &scene, const std::vector<StepLimit> &known)
+  std::vector<StepLimit>
+  similar_step_limits(const Scene &scene, const std::vector<StepLimit> &known, double largest)
   {
     const ActiveStress &stress = *scene.active_stress;
     const double L = scene.body.length, T = scene.end_time, P = std::min(stress.period().value_or(T), T);
-    if (!stress.bounds({0., L, 0., P}) && known.size() > 1) // there are events, and it cannot say when
-    {
-      const StressScales scales = stress_scales(scene);
-      return {scales.stress, scales.step_limits};
-    }
-    constexpr unsigned int n = 16;
-    std::vector<double> places, m(n + 1);
-    for (unsigned int i = 0; i <= n; ++i)
-      places.push_back(L * i / n);
-    const auto at  = stress.at(places);
-    double largest = 0.;
-    for (unsigned int j = 0; j <= n; ++j)
-    {
-      at->values(P * j / n, m);
-      for (const double value : m)
-        largest = std::max(largest, std::abs(value));
-    }
+    if (!stress.bounds({0., L, 0., P})) // what it cannot tell is sampled, if there are events
+      return known.size() > 1 ? stress_scales(scene).step_limits : known;
     double longest = 0.;
     for (const StepLimit &limit : known)
       longest = std::max(longest, limit.longest);
@@ -413,7 +398,7 @@ namespace crawler
       },
       largest);
     if (found.list.empty())
-      return {largest, known.empty() ? known : std::vector<StepLimit>{{0., longest}}};
-    return {largest, step_limits(found.list, largest, usual, P, T)};
+      return known.empty() ? known : std::vector<StepLimit>{{0., longest}};
+    return step_limits(found.list, largest, usual, P, T);
   }
 } // namespace crawler

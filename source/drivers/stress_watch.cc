@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/drivers/stress_watch.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace crawler
 {
   StressWatch::StressWatch(const ActiveStress &stress, const double length, const double least)
-    : stress_(stress.at({0., length, 0.1837 * length, 0.4142 * length, 0.7321 * length}))
+    : stress_(stress.at({0., length, 0.2837 * length, 0.6142 * length}))
     , least_(least)
   {
   }
@@ -35,10 +36,11 @@ namespace crawler
     double largest        = 0.;
     for (unsigned int p = 0; p < n_places; ++p)
     {
+      largest_              = std::max(largest_, std::abs(end[p]));
       const double expected = of_start * start[p] + of_end * end[p] + of_a * inside_[0][p] + of_b * inside_[2][p];
       largest               = std::max(largest, std::abs(inside_[1][p] - expected));
     }
-    if (largest > least_)
+    if (largest > std::max(least_, least_event * largest_))
       return false;
     end_time_ = to;
     end_      = end;

@@ -60,6 +60,19 @@ namespace crawler
       return sum;
     }
 
+    /// The number of waves by the mean phase of the fundamental from piece to piece.
+    double
+    from_phases(const std::vector<Complex> &E)
+    {
+      double re = 0., im = 0.;
+      for (std::size_t i = 0; i + 1 < E.size(); ++i)
+      {
+        re += E[i].re[0] * E[i + 1].re[0] + E[i].im[0] * E[i + 1].im[0];
+        im += E[i].re[0] * E[i + 1].im[0] - E[i].im[0] * E[i + 1].re[0];
+      }
+      return -std::atan2(im, re) / (2. * std::numbers::pi) * static_cast<double>(E.size());
+    }
+
     /// The number of waves of the largest S, to a sixteenth, among those that the pieces tell apart: each harmonic
     /// gives |int E_n e^(iks) ds|^2 as a table over k.
     double
@@ -121,14 +134,25 @@ namespace crawler
       return best;
     }
 
+    /// sum_n sum_i |E_n|^2
+    double
+    power(const std::vector<Complex> &E)
+    {
+      double sum = 0.;
+      for (const Complex &here : E)
+        for (unsigned int n = 0; n < n_harmonics; ++n)
+          sum += square(here.re[n]) + square(here.im[n]);
+      return sum;
+    }
+
     /// S as a function of the number of waves of the fundamental on the body, nu = q L/P.
     class Beam
     {
     public:
-      /// @p E: [piece] of the body, @p all: the denominator.
-      Beam(std::vector<Complex> E, const double all)
+      /// @p E: [piece] of the body.
+      explicit Beam(std::vector<Complex> E)
         : E_(std::move(E))
-        , all_(all)
+        , all_(static_cast<double>(E_.size()) * power(E_))
       {
       }
 
@@ -139,13 +163,13 @@ namespace crawler
       Value
       at(double nu) const;
 
-      /// The number of waves of the largest S, to round-off.
+      /// The number of waves of the largest S near @p nu, to round-off.
       double
-      best() const;
+      best(double nu) const;
 
     private:
-      const std::vector<Complex> E_;
-      const double all_;
+      std::vector<Complex> E_;
+      double all_;
     };
 
     Beam::Value
@@ -191,22 +215,10 @@ namespace crawler
     }
 
     double
-    Beam::best() const
+    Beam::best(double nu) const
     {
       constexpr unsigned int most_corrections = 30;
       constexpr double most = 0.5 / search_steps_per_wave, last = 1e-7;
-      // Half as many pieces are searched in a quarter of the time. If they find more than half of e, nothing else can
-      // be more: waves of other numbers are orthogonal.
-      std::vector<Complex> pairs(E_.size() / 2);
-      for (std::size_t i = 0; i < pairs.size(); ++i)
-        for (unsigned int n = 0; n < n_harmonics; ++n)
-        {
-          pairs[i].re[n] = E_[2 * i].re[n] + E_[2 * i + 1].re[n];
-          pairs[i].im[n] = E_[2 * i].im[n] + E_[2 * i + 1].im[n];
-        }
-      double nu = search(pairs);
-      if (at(nu).S < 0.5)
-        nu = search(E_);
       // Newton's method for a slope of 0, which goes uphill where S is not concave. Digits double, so that this last
       // correction leaves round-off.
       for (unsigned int i = 0; i < most_corrections; ++i)
@@ -237,7 +249,9 @@ namespace crawler
     const auto turns = circle(n_t);
     std::vector<Complex> E(n_s);
     double largest = 0., squares = 0.;
-    for (std::size_t j = 0; j < n_t; ++j)
+    // Half a period later odd harmonics have the other sign.
+    const std::size_t half = n_t / 2;
+    for (std::size_t j = 0; j < half; ++j)
     {
       Complex turn;
       for (unsigned int n = 0; n < n_harmonics; ++n)
@@ -247,25 +261,45 @@ namespace crawler
       }
       for (std::size_t i = 0; i < n_s; ++i)
       {
-        const double e = stretch[j][i] - mean[i];
-        largest        = std::max(largest, std::abs(e));
-        squares += per_phase * e * e;
+        const double e = stretch[j][i] - mean[i], later = stretch[j + half][i] - mean[i];
+        largest = std::max({largest, std::abs(e), std::abs(later)});
+        squares += per_phase * (e * e + later * later);
+        const double parts[] = {e - later, e + later};
         for (unsigned int n = 0; n < n_harmonics; ++n)
         {
-          E[i].re[n] += e * turn.re[n];
-          E[i].im[n] += e * turn.im[n];
+          E[i].re[n] += parts[n % 2] * turn.re[n];
+          E[i].im[n] += parts[n % 2] * turn.im[n];
         }
       }
     }
-    double power = 0.; // sum_n sum_i |E_n|^2
-    for (const Complex &here : E)
-      for (unsigned int n = 0; n < n_harmonics; ++n)
-        power += square(here.re[n]) + square(here.im[n]);
-    if (largest <= nothing || swing > most_swing * largest || squares - 2. * power > most_unresolved * squares)
+    if (largest <= nothing || swing > most_swing * largest || squares - 2. * power(E) > most_unresolved * squares)
       return std::nullopt;
 
-    const Beam beam(std::move(E), static_cast<double>(n_s) * power);
-    const double nu = beam.best();
+    // Half as many pieces take half the time. What finds more than half of all e is the largest, since waves of other
+    // numbers are orthogonal: so near the phase from piece to piece, else among all. If pairs of pieces find nearly all
+    // they see as much as the whole.
+    constexpr double half_of_all = 0.5, nearly_all = 0.9;
+    std::vector<Complex> pairs(n_s / 2);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      for (unsigned int n = 0; n < n_harmonics; ++n)
+      {
+        pairs[i].re[n] = E[2 * i].re[n] + E[2 * i + 1].re[n];
+        pairs[i].im[n] = E[2 * i].im[n] + E[2 * i + 1].im[n];
+      }
+    const double of_pairs = static_cast<double>(pairs.size()) * power(pairs) / (static_cast<double>(n_s) * power(E));
+    Beam beam(pairs);
+    double nu    = beam.best(from_phases(pairs));
+    double found = beam.at(nu).S * of_pairs;
+    if (found < half_of_all)
+    {
+      nu    = search(pairs);
+      found = beam.at(nu).S * of_pairs;
+      if (found < half_of_all)
+        nu = search(E);
+    }
+    if (found < nearly_all)
+      beam = Beam(std::move(E));
+    nu = beam.best(nu);
     return StretchWave{length / (period * nu), std::max(beam.at(nu).S - beam.at(-nu).S, 0.)};
   }
 } // namespace crawler

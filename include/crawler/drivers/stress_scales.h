@@ -26,20 +26,11 @@ namespace crawler
     bool jumps_move;
   };
 
-  /// What differs less from what is expected within a step is no event, relative to the largest |m|.
-  constexpr double least_event = 0.1;
-
   StressScales
   stress_scales(const Scene &scene);
 
-  /// The largest |m| [force], about, and limits of the steps [time].
-  struct EventLimits
-  {
-    double stress;
-    std::vector<StepLimit> step_limits;
-  };
-
-  /// Those of a scene like one that has the limits @p known; that takes microseconds where the generator can tell.
-  EventLimits
-  similar_event_limits(const Scene &scene, const std::vector<StepLimit> &known);
+  /// The limits of the steps for a scene like one that has the limits @p known and this largest |m| [force]; finding
+  /// them takes microseconds where the generator can tell.
+  std::vector<StepLimit>
+  similar_step_limits(const Scene &scene, const std::vector<StepLimit> &known, double largest);
 } // namespace crawler

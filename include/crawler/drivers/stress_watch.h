@@ -7,6 +7,9 @@
 
 namespace crawler
 {
+  /// What differs less from what is expected within a step is no event, relative to the largest |m|.
+  constexpr double least_event = 0.1;
+
   /**
    * Looks for events of an active stress that a step has passed over: at times inside of the step that no integrator
    * can foresee it compares m with the cubic polynomial through its neighbours in time. What is smooth enough for a
@@ -15,12 +18,12 @@ namespace crawler
   class StressWatch
   {
   public:
-    static constexpr unsigned int n_places = 5, n_inside = 3;
+    static constexpr unsigned int n_places = 4, n_inside = 3;
 
     /// m at places along the body, the ends first, at one time.
     using Values = std::array<double, n_places>;
 
-    /// @p least [force]: what differs less is no event.
+    /// What differs by less than @p least [force], or than a part of the largest |m| seen, is no event.
     StressWatch(const ActiveStress &stress, double length, double least);
 
     /// The active stress jumps: m at the last time says nothing about what follows.
@@ -43,7 +46,7 @@ namespace crawler
 
   private:
     std::unique_ptr<ActiveStressAtPoints> stress_;
-    double least_;
+    double least_, largest_ = 0.;
     double end_time_ = -1., random_ = 0.; ///< end of the last step; the latest of a sequence that fills [0, 1)
     Values end_{};
     std::array<Values, n_inside> inside_{};

@@ -152,7 +152,8 @@ namespace
             const auto wave      = wave_of(segments(n, waves / n, duty, gap));
             const double pitches = n + (n - 1) * gap, speed = (1. + gap) / pitches * n / waves;
             ASSERT_TRUE(wave);
-            EXPECT_NEAR(wave->speed, speed, (0.01 + 2. / (n * n)) * std::abs(speed)) << n << ' ' << gap << ' ' << waves;
+            EXPECT_NEAR(wave->speed, speed, (0.015 + 2. / (n * n)) * std::abs(speed))
+              << n << ' ' << gap << ' ' << waves;
             EXPECT_GT(wave->coherence, 0.35);
           }
   }
