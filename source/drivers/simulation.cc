@@ -111,10 +111,12 @@ namespace crawler
     }
     assembler_->keep_stresses(integrator(time_.integrator).n_stages);
     rates_.assign(integrator(time_.integrator).n_stages + 1, {});
-    // Of the highest mode of the smallest cell.
-    double h = 1.;
+    // Of the highest mode of the smallest cell. Adaptive meshes have small cells where friction is large and slows them
+    // down; there the largest one tells whether the body is stiff.
+    const bool adaptive = numerics_.mesh.tolerance > 0.;
+    double h            = adaptive ? 0. : 1.;
     for (const Cell &cell : discretization_->cells())
-      h = std::min(h, cell.size);
+      h = adaptive ? std::max(h, cell.size) : std::min(h, cell.size);
     relaxation_time_ = h * h / (scene_.body.elastic_modulus * std::pow(discretization_->element().degree, 4.));
     y_.resize(assembler_->n_owned());
     v_.resize(discretization_->n_owned());
