@@ -31,6 +31,11 @@ namespace crawler
     constexpr const char *best_integrator = "radau 9";
     /// Its first step, relative to the duration, at least: others start with smaller ones.
     constexpr double first_step = 1e-3;
+    /// Bodies softer than this in natural units have layers at their ends, of a thickness of about that; the finer run
+    /// has cells as small as this times that there, smaller and smaller by this ratio.
+    constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, most_layer_levels = 8.;
+    /// A cycle that stands for many others has an error that does not average out: the finer run is more accurate.
+    constexpr double finer_tolerance_of_cycles = 0.25;
     /// For the next try.
     constexpr double refined_cells = 1.2, refined_tolerance = 0.1;
     /// No displacement is more accurate than this part of the body length.
@@ -69,6 +74,15 @@ namespace crawler
                      : integrator == best_integrator ? finer_tolerance
                                                      : finer_tolerance_than_others;
       n.integrator = best_integrator;
+      // Layers that neither mesh sees would be missed by the difference.
+      const double k = scene.body.elastic_modulus / natural_units(scene).force;
+      if (promised && k < soft && n.mesh.tolerance == 0. && n.grading.levels == 0)
+      {
+        const double levels = std::log(layer_cells * k * n.n_cells) / std::log(layer_ratio);
+        n.grading      = {static_cast<unsigned int>(std::clamp(std::ceil(levels), 1., most_layer_levels)), layer_ratio};
+        n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
+        return n;
+      }
       if (n.grading.levels > 0)
         return with_finer_grading(scene, n);
       n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
@@ -122,9 +136,11 @@ namespace crawler
               const std::function<bool()> &keep_going)
     {
       const TimeParameters time = time_of_finer_run(parameters.time);
-      const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene);
-      const auto cycles         = cycle_wish(parameters, scene, 0);
-      const auto options        = options_of_finer_run(result, cycles);
+      Numerics numerics         = numerics_of_finer_run(choice, parameters.time, scene);
+      if (result.cycles)
+        numerics.tolerance *= finer_tolerance_of_cycles;
+      const auto cycles  = cycle_wish(parameters, scene, 0);
+      const auto options = options_of_finer_run(result, cycles);
       // Most runs fit the fused engine; then nothing else has to be built.
       if (!cycles && size_of(communicator) == 1 && fused_method(scene, time, numerics))
       {
@@ -315,8 +331,7 @@ namespace crawler
     bool
     is_for_finer_numerics(const TimeOutcome &outcome)
     {
-      constexpr const char *reasons[] = {
-        "newton_diverged", "linear_failed", "step_underflow", "rejection_limit", "under_resolved"};
+      constexpr const char *reasons[] = {"newton_diverged", "linear_failed", "rejection_limit", "under_resolved"};
       return outcome.status == "failed" && std::ranges::find(reasons, outcome.reason) != std::end(reasons);
     }
   } // namespace

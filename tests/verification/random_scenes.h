@@ -301,10 +301,13 @@ namespace crawler::test
         break;
       }
       case 3:
-        scene.kind = "soft";
-        k          = r.log_uniform(2e-5, 1e-3);
-        wave(r.uniform(0.05, 0.35), r.log_uniform(0.5, 2.) * (r.chance(0.5) ? 1. : -1.));
+      {
+        scene.kind       = "soft";
+        k                = r.log_uniform(2e-5, 1e-3);
+        const double chi = r.uniform(0.05, 0.35), size = r.log_uniform(0.5, 2.);
+        wave(chi, r.chance(0.5) ? size : -size);
         break;
+      }
       default:
       {
         scene.kind           = "switching";
@@ -315,7 +318,7 @@ namespace crawler::test
         const std::string segments = "Active stress/Segments/";
         set(segments + "Number of segments", n);
         set(segments + "Amplitude", r.uniform(0.05, 0.3) * k);
-        set(segments + "Phase lag", r.uniform(-1., 1.) / n);
+        set(segments + "Phase lag", r.uniform(0.3, 2.) / n);
         set(segments + "Duty cycle", r.uniform(0.3, 0.6));
         set(segments + "Ramp duration", r.uniform(0.2, 0.8));
         if (r.chance(0.5))
