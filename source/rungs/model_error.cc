@@ -16,7 +16,7 @@ namespace crawler
     /// For all corrections that are left out: this times the change of the displacement by the last one.
     constexpr double safety = 3.;
     /// For the grid: this part of the error.
-    constexpr double grid_share = 0.05;
+    constexpr double grid_share = 0.3;
     /// If the last change is more than this part of the largest one the corrections are not trusted.
     constexpr double slowest_decay = 0.7;
 
