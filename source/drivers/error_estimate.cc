@@ -121,6 +121,7 @@ namespace crawler
       numerics.grading          = finer_mesh.grading;
       TimeParameters time       = parameters.time;
       time.petsc_prefix         = time_of_finer_run(time).petsc_prefix;
+      time.max_steps            = time_of_finer_run(time).max_steps; // the limit is for the run itself
       const auto cycles         = cycle_wish(parameters, scene, 0);
       return Simulation(communicator, scene, time, numerics)
         .run({}, options_of_finer_run(result, cycles), {}, keep_going);
