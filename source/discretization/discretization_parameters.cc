@@ -12,9 +12,9 @@ namespace crawler
     declarations.choice(
       "Formulation",
       formulation,
-      {"position", "log stretch", "automatic"},
-      "The unknowns: position; log stretch, for stretches near 0, which position cannot hold; automatic "
-      "starts with position and, for a < 0, changes to log stretch when the stretch falls below 0.1.");
+      {"position", "stretch", "automatic"},
+      "The unknowns: position, of high order on bodies that deform smoothly; stretch, for bodies that collapse, soft "
+      "ones with thin layers, and fronts; automatic takes the cheaper one.");
     declarations.choice(
       "Mesh",
       mesh,

@@ -140,37 +140,18 @@ namespace crawler
   }
 
   void
-  StretchElsewhere::evaluate(const double t,
-                             const std::span<const double> own,
-                             const bool is_log,
-                             const StretchHistory *history)
+  StretchElsewhere::evaluate(const double t, const std::span<const double> own, const StretchHistory *history)
   {
-    const auto to_stretch = [](std::vector<double> &values, const bool from_log)
+    const auto to_stretch = [](std::vector<double> &values)
     {
       for (double &value : values)
-        value = from_log ? std::exp(value) : 1. + value;
+        value += 1.;
     };
     if (near_places_)
-    {
       near_places_->interpolate(discretization_.gather(own), near);
-      to_stretch(near, is_log);
-      if (is_log)
-        near_slope = near;
-    }
     if (sensors_)
-    {
-      // The stretch is the polynomial through its values at the stretch points: so v_s changes it.
-      std::vector<double> strain(own.begin(), own.end());
-      if (is_log)
-      {
-        near_slope = strain;
-        to_stretch(near_slope, is_log);
-        for (double &value : strain)
-          value = std::expm1(value);
-      }
-      sensors_->mean(discretization_.gather(strain), near);
-      to_stretch(near, /*from_log=*/false);
-    }
+      sensors_->mean(discretization_.gather(own), near);
+    to_stretch(near);
     if (delay_ == 0.)
       return;
     const StretchHistory::Step *step = history != nullptr && t > delay_ ? history->find(t - delay_) : nullptr;
@@ -195,24 +176,15 @@ namespace crawler
     }
     StretchHistory::coefficients(*step, t - delay_, coefficients_);
     known->second.interpolate(coefficients_, delayed);
-    to_stretch(delayed, step->is_log);
+    to_stretch(delayed);
   }
 
   void
-  StretchElsewhere::change_of_near(const std::span<const double> own_change,
-                                   const std::span<const double> slope,
-                                   const std::span<double> change) const
+  StretchElsewhere::change_of_near(const std::span<const double> own_change, const std::span<double> change) const
   {
     if (sensors_)
-    {
-      std::vector<double> strain(own_change.begin(), own_change.end());
-      for (std::size_t i = 0; i < slope.size(); ++i)
-        strain[i] *= slope[i];
-      sensors_->mean(discretization_.gather(strain), change);
-      return;
-    }
-    near_places_->interpolate(discretization_.gather(own_change), change);
-    for (std::size_t i = 0; i < slope.size(); ++i)
-      change[i] *= slope[i];
+      sensors_->mean(discretization_.gather(own_change), change);
+    else
+      near_places_->interpolate(discretization_.gather(own_change), change);
   }
 } // namespace crawler

@@ -42,7 +42,7 @@ namespace crawler
         if (bad < 0 && !(w_[i] > 0.))
           bad = static_cast<long>(i);
       }
-    elsewhere_.evaluate(t, stretch_coefficients(u), /*is_log=*/false, history_);
+    elsewhere_.evaluate(t, stretch_coefficients(u), history_);
     if (bad >= 0)
       return bad;
     force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed}, in.m);
@@ -135,7 +135,7 @@ namespace crawler
     const ReferenceElement &element = discretization_.element();
     const unsigned int n = element.n, q = element.degree;
     std::vector<double> change(far.by_near.size()), local(discretization_.n_local(), 0.), owned(result.size());
-    elsewhere_.change_of_near(stretch_coefficients(x), {}, change);
+    elsewhere_.change_of_near(stretch_coefficients(x), change);
     for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
       for (unsigned int p = 0; p < n; ++p)
         for (unsigned int i = 0; i < n; ++i)

@@ -90,7 +90,7 @@ namespace crawler
     const Discretization &d = assembler_.discretization();
     const auto u_local      = d.to_local<double>(assembler_.displacement(y), u_local_);
     const auto v_local      = d.to_local<double>(v, v_local_);
-    const auto log_w        = assembler_.log_stretch(y);
+    const auto cells        = assembler_.stretch(y);
     const unsigned int n = d.element().n, q = d.element().degree;
     for (std::size_t p = 0; p < cells_.size(); ++p)
     {
@@ -105,13 +105,10 @@ namespace crawler
         v_[p] += values_[p * n + i] * v_local[node];
         rate_[p] += derivatives_[p * n + i] * v_local[node] / h;
       }
-      e_[p] = stretch_.strain(u_local, log_w, c, h, place);
-      w_[p] = stretch_.stretch(u_local, log_w, c, h, place);
+      e_[p] = stretch_.strain(u_local, c, h, place);
+      w_[p] = cells.empty() ? 1. + e_[p] : cells[c];
     }
-    elsewhere_.evaluate(t,
-                        assembler_.stretch_coefficients(y),
-                        assembler_.formulation() == Formulation::log_stretch,
-                        assembler_.history());
+    elsewhere_.evaluate(t, assembler_.stretch_coefficients(y), assembler_.history());
     force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed});
     sliding_.evaluate(u_, v_);
     assembler_.scene().friction->values(w_, friction_);

@@ -84,10 +84,7 @@ namespace crawler
       stretch_weights.push_back(stretch_gauss.weight(p));
     }
     stretch_derivatives = interpolation_matrix(nodes, stretch_points, 1);
-    stretch_to_nodes    = interpolation_matrix(stretch_points, nodes);
-    stretch_to_points   = interpolation_matrix(stretch_points, points);
     integrate_points    = integration_matrix(points, points);
-    integrate_nodes     = integration_matrix(nodes, points);
   }
 
   const ReferenceElement &

@@ -85,7 +85,7 @@ namespace crawler
       }
       run.min_stretch    = result.min_stretch.value;
       run.steps          = result.time.steps;
-      run.is_log_stretch = computed.choice.numerics.formulation == FormulationChoice::log_stretch;
+      run.is_stretch = computed.choice.numerics.formulation == Formulation::stretch;
       if (run.status == "finished")
         run.displacement = result.displacement;
       if (result.inversion)
@@ -167,14 +167,14 @@ namespace crawler
     {
       using P               = AtlasPoint;
       const auto &reference = point.runs[P::refined];
-      for (const auto which : {P::automatic, P::position, P::log_stretch})
+      for (const auto which : {P::automatic, P::position, P::stretch})
         point.runs[which].measured_error = std::abs(point.runs[which].displacement - reference.displacement);
       const bool is_own_check = same_run(point.runs[P::automatic], reference);
       if (is_own_check) // nothing is known of its error
         point.runs[P::automatic].measured_error = AtlasRun::unknown;
       if (point.runs[P::automatic].status != "refused" && !is_own_check)
         point.verdict =
-          cross_check({claim_of(point, P::automatic), claim_of(point, P::position), claim_of(point, P::log_stretch)},
+          cross_check({claim_of(point, P::automatic), claim_of(point, P::position), claim_of(point, P::stretch)},
                       claim_of(point, P::refined),
                       inversion_facts(parameters.create_scene()));
       point.outcome = outcome_of(point);
@@ -230,19 +230,19 @@ namespace crawler
             return std::nullopt;
           return with_formulation(parameters[i], "position");
         });
-    add(AtlasPoint::log_stretch,
+    add(AtlasPoint::stretch,
         [&](const std::size_t i) -> std::optional<Parameters>
         {
           // The log-stretch form is for a < 0 (doc/numerics.md).
-          if (!both_forms(i) || points[i].runs[AtlasPoint::automatic].is_log_stretch ||
+          if (!both_forms(i) || points[i].runs[AtlasPoint::automatic].is_stretch ||
               parameters[i].body.friction_exponent() >= 0.)
             return std::nullopt;
-          return with_formulation(parameters[i], "log stretch");
+          return with_formulation(parameters[i], "stretch");
         });
     for (std::size_t i = 0; i < points.size(); ++i)
       if (both_forms(i) &&
-          points[i].runs[AtlasPoint::automatic].is_log_stretch) // the automatic choice was this very run
-        points[i].runs[AtlasPoint::log_stretch] = points[i].runs[AtlasPoint::automatic];
+          points[i].runs[AtlasPoint::automatic].is_stretch) // the automatic choice was this very run
+        points[i].runs[AtlasPoint::stretch] = points[i].runs[AtlasPoint::automatic];
     // Where the choice of mesh and steps does not depend on it, Accuracy is divided once more: a run is no check of
     // itself.
     std::vector<Parameters> refined = parameters;

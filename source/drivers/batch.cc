@@ -18,15 +18,22 @@ namespace crawler
   {
     const std::string &name   = time.integrator == "automatic" ? numerics.integrator : time.integrator;
     const Integrator &method  = integrator(name.empty() ? "automatic" : name);
-    const bool log_stretch    = numerics.formulation == FormulationChoice::log_stretch;
     const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == "adaptive";
-    if (numerics.linear || time.engine != "automatic" || !is_one_of_ours || log_stretch ||
-        numerics.mesh.tolerance != 0. || !fits_fused(scene))
+    const bool is_stretch = numerics.formulation == Formulation::stretch;
+    if (numerics.linear || time.engine != "automatic" || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
+        !(is_stretch ? reason_against_stretch_form(scene).empty() : fits_fused(scene)))
       return std::nullopt;
-    FusedMethod result = {numerics.degree, numerics.n_cells, method.n_stages, first_cell_ends(scene, numerics)};
+    FusedMethod result = {
+      numerics.degree, numerics.n_cells, method.n_stages, first_cell_ends(scene, numerics), is_stretch};
     if (!result.cell_ends.empty())
       result.n_cells = static_cast<unsigned int>(result.cell_ends.size() - 1);
     return result;
+  }
+
+  std::optional<FusedMethod>
+  batch_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
+  {
+    return numerics.formulation == Formulation::position ? fused_method(scene, time, numerics) : std::nullopt;
   }
 
   namespace
@@ -150,6 +157,7 @@ namespace crawler
                .n_limits      = static_cast<unsigned int>(lane.limits.size()),
                .most_steps    = runs_[lane.run].time->max_steps,
                .least_stretch = small_stretch,
+               .is_last_resort = false,
                .start_time    = 0.,
                .start         = nullptr,
                .frames        = lane.frames.data(),
@@ -426,7 +434,7 @@ namespace crawler
   {
     std::map<FusedMethod, std::vector<std::size_t>> members;
     for (std::size_t i = 0; i < runs.size(); ++i)
-      members[fused_method(*runs[i].scene, *runs[i].time, *runs[i].numerics).value()].push_back(i);
+      members[batch_method(*runs[i].scene, *runs[i].time, *runs[i].numerics).value()].push_back(i);
     std::vector<std::optional<SimulationResult>> results(runs.size());
     for (const auto &[method, own] : members)
       if (!Batch(method, runs, own, options, keep_going, results).compute(engine))

@@ -14,6 +14,15 @@ namespace crawler
 {
   namespace
   {
+    Simulation::Options
+    options_of(const Parameters &parameters, const Scene &scene, const Simulation::GaitWish gait)
+    {
+      return {.ledger     = parameters.output.ledger,
+              .resolution = false,
+              .cycles     = cycle_wish(parameters, scene, 0),
+              .gait       = gait};
+    }
+
     SimulationResult
     simulate(const Parameters &parameters,
              const Scene &scene,
@@ -22,13 +31,7 @@ namespace crawler
              const std::function<bool()> &keep_going)
     {
       Simulation simulation(MPI_COMM_SELF, scene, parameters.time, numerics);
-      return simulation.run({},
-                            {.ledger     = parameters.output.ledger,
-                             .resolution = false,
-                             .cycles     = cycle_wish(parameters, scene, 0),
-                             .gait       = gait},
-                            {},
-                            keep_going);
+      return simulation.run({}, options_of(parameters, scene, gait), {}, keep_going);
     }
 
     Simulation::GaitWish
@@ -122,7 +125,7 @@ namespace crawler
       std::vector<BatchRun> runs[2]; // without and with ledger
       std::vector<Task *> members[2];
       for (Task &task : tasks)
-        if (is_ready(task) && fused_method(*task.scene, task.parameters.time, task.computed.choice.numerics) &&
+        if (is_ready(task) && !task.computed.choice.is_family && batch_method(*task.scene, task.parameters.time, task.computed.choice.numerics) &&
             !is_faster_alone(task))
         {
           const bool ledger = task.parameters.output.ledger;
@@ -177,6 +180,8 @@ namespace crawler
                       ? task.computed.result
                       : simulate(task.parameters, *task.scene, choice.numerics, gait_wish(task), keep_going);
         },
+        options_of(task.parameters, *task.scene, gait_wish(task)),
+        /*writes=*/false,
         keep_going);
       task.computed = {std::move(answer.result), std::move(answer.choice)};
     }

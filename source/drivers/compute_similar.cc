@@ -30,8 +30,8 @@ namespace crawler
     choose(const Task &task, const std::function<bool()> &keep_going)
     {
       const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
-      if (!choice || choice->is_measured || !std::isfinite(choice->promised_error) ||
-          !fused_method(*task.scene, task.parameters.time, choice->numerics))
+      if (!choice || choice->is_measured || choice->is_family || !std::isfinite(choice->promised_error) ||
+          !batch_method(*task.scene, task.parameters.time, choice->numerics))
         return std::nullopt;
       return choice;
     }
@@ -130,7 +130,7 @@ namespace crawler
       std::vector<Member> members;
       for (std::size_t i = 0; i < tasks.size(); ++i)
         if (wanted[i] && !is_faster_alone(tasks[i]) &&
-            fused_method(*tasks[i].scene, tasks[i].parameters.time, shared->numerics))
+            batch_method(*tasks[i].scene, tasks[i].parameters.time, shared->numerics))
         {
           // Each stress has events of its own.
           NumericsChoice own = *shared;
@@ -152,7 +152,7 @@ namespace crawler
       std::vector<BatchRun> finer_runs;
       for (std::size_t i = 0; i < members.size(); ++i)
         if (results[i] && results[i]->time.status == "finished" &&
-            fused_method(*tasks[members[i].task].scene, members[i].finer_time, members[i].finer))
+            batch_method(*tasks[members[i].task].scene, members[i].finer_time, members[i].finer))
         {
           finished.push_back(i);
           finer_runs.push_back({&*tasks[members[i].task].scene, &members[i].finer_time, &members[i].finer});

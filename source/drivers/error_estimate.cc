@@ -2,6 +2,7 @@
 #include <crawler/base/communication.h>
 #include <crawler/drivers/batch.h>
 #include <crawler/drivers/error_estimate.h>
+#include <crawler/drivers/mesh_family.h>
 #include <crawler/drivers/graded_choice.h>
 #include <crawler/drivers/self_check.h>
 #include <crawler/time/failure.h>
@@ -143,7 +144,7 @@ namespace crawler
       const auto cycles  = cycle_wish(parameters, scene, 0);
       const auto options = options_of_finer_run(result, cycles);
       // Most runs fit the fused engine; then nothing else has to be built.
-      if (!cycles && size_of(communicator) == 1 && fused_method(scene, time, numerics))
+      if (!cycles && size_of(communicator) == 1 && batch_method(scene, time, numerics))
       {
         const BatchRun run = {&scene, &time, &numerics};
         if (auto finer = run_batch({&run, 1}, options, keep_going, single_engine()).front())
@@ -343,9 +344,18 @@ namespace crawler
                   const Scene &scene,
                   const NumericsChoice &choice,
                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
+                  const Simulation::Options &options,
+                  const bool writes,
                   const std::function<bool()> &keep_going)
   {
     using Clock = std::chrono::steady_clock;
+    if (choice.is_family)
+      return answer_of_family(parameters,
+                              scene,
+                              choice,
+                              options,
+                              writes ? simulate : std::function<SimulationResult(const NumericsChoice &)>(),
+                              keep_going);
     Answer answer;
     answer.choice       = choice;
     const double wanted = choice.wanted_error;

@@ -21,12 +21,18 @@ namespace crawler
     constexpr unsigned int fewest_cells = 4, most_cells = 4096;
     /// A pilot that breaks off with a smaller stretch than this has lost it.
     constexpr double emptied = 0.1;
+    /// Bodies softer than this, in natural units, have thin layers.
+    constexpr double soft = 1e-3;
     /// Meshes that would need more cells than this are adaptive, with this degree.
     constexpr unsigned int most_uniform_cells = 256, adaptive_degree = 4;
     /// The error of the displacement, relative, is below this times the sum of the error indicators over the strain.
     constexpr double indicator_factor = 8.;
-    /// Meshes of the collapse (degree 1): from the coarsest, doubled until the displacement settles.
-    constexpr unsigned int first_collapse_cells = 64, last_collapse_cells = 512, last_accurate_collapse_cells = 2048;
+    /// The coarsest mesh of the stretch form, cells for each length in which the active stress changes, and the part of
+    /// Accuracy that the time tolerance is, relative to the strain, and at most.
+    constexpr unsigned int first_family_cells = 25;
+    constexpr double cells_of_length = 4., family_tolerance = 10., largest_family_tolerance = 3e-3;
+    /// Its layers: of this many lengths k/max|m_s|, at most this part of the body.
+    constexpr double layer_lengths = 3., largest_layer = 0.02;
     constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000,
                            most_adaptive_pilot_cells = 1200;
     /// How well a pilot that ends when its cycles repeat must know the displacement.
@@ -74,7 +80,7 @@ namespace crawler
     {
       const bool fits =
         parameters.body.friction_exponent() == 0. && scene.is_plain() && parameters.discretization.mesh != "adaptive" &&
-        parameters.discretization.formulation != "log stretch" && parameters.time.engine == "automatic" &&
+        parameters.discretization.formulation != "stretch" && parameters.time.engine == "automatic" &&
         (parameters.time.integrator == "automatic" || integrator(parameters.time.integrator).petsc_type == "radau");
       return fits && (parameters.model == "linear" || parameters.model == "auto");
     }
@@ -114,10 +120,6 @@ namespace crawler
         n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
         n.step_limits            = scales_.step_limits;
         n.least_event            = scales_.jumps_move ? 0. : least_event * scales_.stress;
-        const std::string &form  = parameters.discretization.formulation;
-        n.formulation            = form == "position"      ? FormulationChoice::position
-                                   : form == "log stretch" ? FormulationChoice::log_stretch
-                                                           : FormulationChoice::automatic;
         pilot_time_              = parameters.time;
         pilot_time_.step_control = "adaptive";
         if (!integrator(pilot_time_.integrator).adaptive)
@@ -138,6 +140,11 @@ namespace crawler
       {
         const std::string &mesh = parameters_.discretization.mesh;
         const bool fixed        = parameters_.time.step_control == "fixed";
+        if (parameters_.discretization.formulation == "stretch")
+        {
+          stretch_form();
+          return choice_;
+        }
         choice_.is_users        = user_cells_ || user_tolerance_ || fixed || parameters_.discretization.mesh_tolerance;
         if (user_cells_ && (user_tolerance_ || fixed) && mesh != "adaptive")
         {
@@ -158,15 +165,22 @@ namespace crawler
           finish(fixed);
           return choice_;
         }
+        if (may_be_stretch() && stiffness() < soft)
+        {
+          stretch_form();
+          return choice_;
+        }
         bool enough = false;
         if (mesh != "adaptive")
           enough =
             uniform(mesh == "uniform" || user_cells_ || choice_.numerics.linear ? most_cells : most_uniform_cells);
-        if (mesh == "adaptive" || (mesh == "automatic" && !enough && !user_cells_ && !choice_.numerics.linear))
+        if (mesh == "adaptive" || (mesh == "automatic" && !enough && !is_for_stretch() && !user_cells_ && !choice_.numerics.linear))
           adaptive();
-        if (collapses() && choice_.numerics.formulation != FormulationChoice::position && !user_cells_ &&
-            !parameters_.discretization.degree)
-          collapse();
+        if (is_for_stretch())
+        {
+          stretch_form();
+          return choice_;
+        }
         finish(fixed);
         return choice_;
       }
@@ -208,14 +222,6 @@ namespace crawler
       {
         const std::string &name = time.integrator == "automatic" ? choice_.numerics.integrator : time.integrator;
         return (name.starts_with("radau") ? one_step_start : multistep_start) * T_;
-      }
-
-      /// Has the last pilot lost a stretch inside that it should not, or that only the safe scheme can be trusted with?
-      bool
-      collapses() const
-      {
-        return pilot_.time.status != "finished" && pilot_.time.reason != "inverted_at_end" &&
-               pilot_.min_stretch.value < emptied && scene_.friction_exponent() < 0.;
       }
 
       /// Of the last pilot, whether it went there or its cycles were extrapolated.
@@ -333,6 +339,8 @@ namespace crawler
         {
           pilot_ = pilot(pilot_numerics(pilot_degree, n_cells, tolerance_));
           measure_size();
+          if (is_for_stretch())
+            return true;
           const bool finished = pilot_.time.status == "finished";
           const bool resolves = user_cells_ || pilot_.unresolved <= std::max(resolved, accuracy_) || n_cells >= most;
           // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
@@ -450,68 +458,59 @@ namespace crawler
           n.integrator = "radau 5";
       }
 
-      /**
-       * Elements of higher degree are not safe when the stretch collapses; degree 1 in the log-stretch form is
-       * (doc/theory.md, "When a body can invert"). The mesh is doubled until the displacement settles; what is left
-       * is the error that is reported.
-       */
-      void
-      collapse()
+      /// May the form be chosen, and can the stretch form compute this?
+      bool
+      may_be_stretch() const
       {
-        const Numerics before_collapse = choice_.numerics;
-        const SimulationResult failed  = pilot_;
-        Numerics &n                    = choice_.numerics;
-        n.degree                       = 1;
-        n.formulation                  = FormulationChoice::log_stretch;
-        n.mesh                         = {};
-        if (adaptive_steps_)
-          n.integrator = "arkimex 4"; // bdf is less accurate here, or not stable enough: its steps become tiny
-        double before = std::numeric_limits<double>::quiet_NaN(), change_before = before;
-        if (cycles_)
-          cycles_->accuracy = accuracy_; // the displacements are compared here
-        bool inverted           = false;
-        const unsigned int last = accuracy_ >= 1e-4 ? last_collapse_cells : last_accurate_collapse_cells;
-        size_                   = 0.; // that of a failed pilot says nothing
-        for (n.n_cells = first_collapse_cells;; n.n_cells *= 2)
-        {
-          tolerance_ = size_ > 0. ? std::max(0.1 * accuracy_ * size_, 1e-10 * scale_) : 1e-5 * scale_;
-          pilot_     = pilot(pilot_numerics(1, n.n_cells, tolerance_));
-          measure_size();
-          // If it inverts, the time of that is what has to settle.
-          const bool finished = pilot_.time.status == "finished";
-          const double now    = finished ? pilot_.displacement : pilot_.inversion ? pilot_.inversion->t : 0.;
-          // All of it changes if one mesh inverts and the other does not.
-          const double change =
-            n.n_cells > first_collapse_cells && inverted == finished ? (finished ? size_ : T_) : std::abs(now - before);
-          inverted            = !finished;
-          const double wanted = finished ? accuracy_ * size_ : std::max(accuracy_, 1e-4) * T_;
-          // What is left if the changes go on as they did: an error of second order is a third of the last one. Where
-          // the body inverts the place of a cell matters, and there is no such order.
-          const double ratio = std::isfinite(change_before) ? std::min(change / change_before, 0.8) : 0.5;
-          const double error =
-            finished ? std::max(0.5, ratio / (1. - ratio)) * change : 2. * std::max(change, change_before);
-          before        = now;
-          change_before = change;
-          if (finished)
-          {
-            choice_.promised_error = std::max(wanted, error);
-            choice_.space_share    = 0.9; // the time tolerance is a tenth of it
-            choice_.is_measured    = true;
-          }
-          else
-            inversion_error_ = pilot_.inversion ? error : 0.;
-          if (error <= wanted || 2 * n.n_cells > last)
-            break;
-        }
-        // Thin layers look like a collapse to a pilot that does not resolve them; here their forces do not balance.
-        is_collapse_ = pilot_.largest_indicator < pilot_.strain;
-        if (!is_collapse_)
-        {
-          choice_.numerics       = before_collapse;
-          choice_.promised_error = choice_.space_share = std::numeric_limits<double>::quiet_NaN();
-          choice_.is_measured                          = false;
-          pilot_                                       = failed;
-        }
+        const DiscretizationParameters &own = parameters_.discretization;
+        return own.formulation == "automatic" && own.mesh == "automatic" && !own.degree && !user_cells_ &&
+               !user_tolerance_ && adaptive_steps_ && !choice_.numerics.linear && parameters_.time.engine == "automatic" &&
+               (parameters_.time.integrator == "automatic" || parameters_.time.integrator.starts_with("radau")) &&
+               reason_against_stretch_form(scene_).empty();
+      }
+
+      /// Did the last pilot come near an emptied state?
+      bool
+      is_for_stretch() const
+      {
+        return may_be_stretch() && pilot_.time.reason != "inverted_at_end" && pilot_.min_stretch.value < emptied &&
+               scene_.friction_exponent() < 0.;
+      }
+
+      /// The stretch form: the first of a family of meshes (mesh_family.h), or what the user has set.
+      void
+      stretch_form()
+      {
+        Numerics &n      = choice_.numerics;
+        const double k   = scene_.body.elastic_modulus;
+        const double m_s = scales_.stress / scales_.length;
+        const double a   = std::max(1., std::abs(scene_.friction_exponent()));
+        n.formulation    = Formulation::stretch;
+        n.linear         = false;
+        n.degree         = 1;
+        n.mesh           = {};
+        n.grading        = {};
+        n.layer          = m_s > 0. ? std::min(largest_layer * L_, layer_lengths / a * k / m_s) : largest_layer * L_;
+        if (parameters_.discretization.mesh == "uniform")
+          n.layer = 0.;
+        n.parts          = 1;
+        n.integrator     = "radau 5";
+        choice_.strain   = std::min(scale_ / std::min(L_, scales_.length), 0.3);
+        const double first =
+          std::clamp(std::ceil(cells_of_length * L_ / scales_.length), 1. * first_family_cells, 0.25 * most_cells);
+        n.n_cells   = user_cells_.value_or(static_cast<unsigned int>(first));
+        n.tolerance = user_tolerance_.value_or(
+          std::max(std::min(family_tolerance * accuracy_, largest_family_tolerance) * choice_.strain * L_, 1e-13 * L_));
+        if (!parameters_.time.initial_step)
+          n.initial_step = 1e-4 * T_;
+        choice_.is_family = !user_cells_;
+        choice_.is_users  = !choice_.is_family;
+        choice_.promised_error = choice_.wanted_error = choice_.space_share = std::numeric_limits<double>::quiet_NaN();
+        choice_.explanation =
+          choice_.is_family
+            ? fmt::format("for Accuracy {:g}: the stretch form, on meshes that become finer until the displacement settles",
+                          accuracy_)
+            : "stretch form, with cells as set by the user";
       }
 
       /**
@@ -591,8 +590,7 @@ namespace crawler
       {
         const std::string &own  = parameters_.time.integrator;
         const std::string &name = own == "automatic" ? choice_.numerics.integrator : own;
-        if (choice_.numerics.mesh.tolerance > 0. || choice_.numerics.formulation == FormulationChoice::log_stretch ||
-            is_collapse_ || pilot_.min_stretch.value < emptied)
+        if (choice_.numerics.mesh.tolerance > 0. || pilot_.min_stretch.value < emptied)
           return 1.;
         return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
       }
@@ -616,10 +614,10 @@ namespace crawler
         const double wanted  = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
         const double by_rule = std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
                                         std::max(1e-15 * scale_, smallest()));
-        n.tolerance          = user_tolerance_.value_or(is_collapse_ || jumps_move_ ? tolerance_
-                                               : is_graded                 ? n.tolerance
-                                                                           : by_rule);
-        if (predicts && !is_collapse_ && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
+        n.tolerance          = user_tolerance_.value_or(jumps_move_ ? tolerance_
+                                               : is_graded ? n.tolerance
+                                                           : by_rule);
+        if (predicts && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
           choice_.space_share    = space_over_time_ / (1. + space_over_time_);
@@ -628,12 +626,11 @@ namespace crawler
           if (n.mesh.tolerance > 0. && stiffness() < very_soft)
             choice_.least_error = soft_error * size_;
         }
-        if ((is_collapse_ || jumps_move_) && predicts)
+        if (jumps_move_ && predicts)
           choice_.wanted_error = accuracy_ * size_;
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         const std::string kind =
-          jumps_move_    ? "jumps of the active stress that move, "
-          : is_collapse_ ? "the stretch collapses: log stretch with degree 1, "
+          jumps_move_ ? "jumps of the active stress that move, "
           : is_graded
             ? fmt::format("sudden stress, {} levels of cells smaller by {:g} each, ", n.grading.levels, n.grading.ratio)
           : n.mesh.tolerance > 0. ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
@@ -651,8 +648,6 @@ namespace crawler
                                  n_pilots_,
                                  n.n_cells,
                                  pilot_.time.message);
-        if (!predicts && inversion_error_ > 0.)
-          choice_.explanation += fmt::format("; the time of that has an error of about {:.2g}", inversion_error_);
         if (std::max(choice_.promised_error, choice_.least_error) > 1.5 * accuracy_ * size_)
           choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
                                              std::max(choice_.promised_error, choice_.least_error) / size_);
@@ -679,9 +674,8 @@ namespace crawler
       SimulationResult pilot_; ///< the last one that counts
       double tolerance_ = 0., size_ = 0.;
       unsigned int n_pilots_ = 0;
-      bool is_collapse_ = false, jumps_move_ = false;
+      bool jumps_move_       = false;
       double space_over_time_ = 1.; ///< errors as the rule expects them
-      double inversion_error_ = 0.; ///< of the time of an inversion that the collapse has found
     };
   } // namespace
 

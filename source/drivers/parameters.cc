@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/discretization/stretch_form.h>
 #include <crawler/drivers/parameters.h>
 #include <crawler/observers/active_stress_table.h>
 #include <crawler/parameters/declarations.h>
@@ -44,7 +45,7 @@ namespace crawler
       };
       require(
         p.discretization.mesh != "adaptive", "Discretization/Mesh", p.discretization.mesh, "automatic or uniform");
-      require(p.discretization.formulation != "log stretch",
+      require(p.discretization.formulation != "stretch",
               "Discretization/Formulation",
               p.discretization.formulation,
               "automatic or position");
@@ -54,6 +55,35 @@ namespace crawler
               "automatic, radau 5 or radau 9");
       require(p.time.engine == "automatic", "Time/Engine", p.time.engine, "automatic");
     }
+    /// The stretch form has meshes and integrators of its own.
+    void
+    require_stretch_form(const Parameters &p, const Scene &scene)
+    {
+      const auto require =
+        [](const bool ok, const std::string &entry, const std::string &found, const std::string &expected)
+      {
+        if (!ok)
+          throw InputError(fmt::format("Formulation is stretch and {} is {}, but {} is expected",
+                                       entry.substr(entry.find('/') + 1),
+                                       found,
+                                       expected),
+                           entry);
+      };
+      const DiscretizationParameters &d = p.discretization;
+      require(d.mesh != "adaptive", "Discretization/Mesh", d.mesh, "automatic or uniform");
+      require(!d.degree || *d.degree == 1, "Discretization/Degree", fmt::format("{}", d.degree.value_or(1)), "1");
+      require(d.share_cells != "yes", "Discretization/Share cells", d.share_cells, "automatic or no");
+      require(p.time.integrator == "automatic" || integrator(p.time.integrator).petsc_type == "radau",
+              "Time/Integrator",
+              p.time.integrator,
+              "automatic, radau 5 or radau 9");
+      require(p.time.engine == "automatic", "Time/Engine", p.time.engine, "automatic");
+      require(p.time.step_control == "adaptive", "Time/Step control", p.time.step_control, "adaptive");
+      if (const std::string reason = reason_against_stretch_form(scene); !reason.empty())
+        throw InputError(fmt::format("Formulation is stretch, but position or automatic is expected, since {}", reason),
+                         "Discretization/Formulation");
+    }
+
     /// What only plain scenes have.
     void
     require_general(const Parameters &p, const Scene &scene)
@@ -181,6 +211,8 @@ namespace crawler
     require_table_fits(output.active_stress_table, *scene.active_stress);
     if (!scene.is_plain())
       require_general(*this, scene);
+    if (discretization.formulation == "stretch")
+      require_stretch_form(*this, scene);
     return scene;
   }
 } // namespace crawler

@@ -320,9 +320,15 @@ namespace crawler
     const double setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     unsigned int n_runs        = 0;
     TimeOutcome latest;
-    const auto simulate = [&](const NumericsChoice &choice)
+    const Simulation::Options run_options = {.ledger     = output.ledger,
+                                             .resolution = false,
+                                             .cycles     = cycle_wish(parameters, input.scene, output.n_snapshots),
+                                             .gait       = Simulation::GaitWish::any};
+    const auto simulate                   = [&](const NumericsChoice &choice)
     {
-      if (++n_runs > 1)
+      if (choice.is_family)
+        build(choice.numerics);
+      else if (++n_runs > 1)
       {
         log.line((latest.status == "failed" ? latest.reason + ": " + latest.message
                                             : "The error is larger than Accuracy asks for") +
@@ -337,20 +343,16 @@ namespace crawler
                         });
         log.line(describe(choice.numerics, input));
       }
-      SimulationResult run = simulation->run(frame_times(output.n_snapshots, parameters.time.end_time),
-                                             {.ledger     = output.ledger,
-                                              .resolution = false,
-                                              .cycles     = cycle_wish(parameters, input.scene, output.n_snapshots),
-                                              .gait       = Simulation::GaitWish::any},
-                                             create_observers(),
-                                             keep_going);
+      SimulationResult run = simulation->run(
+        frame_times(output.n_snapshots, parameters.time.end_time), run_options, create_observers(), keep_going);
       latest               = run.time;
       return run;
     };
     guarded(
       [&]()
       {
-        Answer answer           = run_as_promised(computing, parameters, input.scene, *chosen, simulate, keep_going);
+        Answer answer           = run_as_promised(
+          computing, parameters, input.scene, *chosen, simulate, run_options, /*writes=*/true, keep_going);
         result                  = std::move(answer.result);
         result.estimate_seconds = answer.estimate_seconds;
         result.refinements      = answer.refinements;

@@ -40,6 +40,7 @@ namespace crawler
   in_units(Numerics numerics, const Units &units)
   {
     numerics.tolerance /= units.length;
+    numerics.layer /= units.length;
     numerics.initial_step /= units.time;
     for (StepLimit &limit : numerics.step_limits)
       limit = {limit.from / units.time, limit.longest / units.time};
@@ -56,6 +57,8 @@ namespace crawler
     std::vector<double> breaks = scene.breaks_in_space();
     for (double &s : breaks)
       s /= L;
+    if (numerics.layer > 0.)
+      return layered_cell_ends(numerics.n_cells, numerics.parts, breaks, numerics.layer / L);
     return cell_ends(numerics.n_cells, breaks, numerics.grading);
   }
 
@@ -81,20 +84,19 @@ namespace crawler
 
   Simulation::~Simulation() = default;
 
-  /// Mesh and formulation of the start.
+  /// The mesh of the start.
   void
   Simulation::build_first()
   {
     std::vector<double> ends = first_cell_ends(scene_, numerics_);
     build(ends.empty() ? std::make_unique<Discretization>(communicator_, 1., numerics_.n_cells, numerics_.degree)
-                       : std::make_unique<Discretization>(communicator_, std::move(ends), numerics_.degree),
-          numerics_.formulation == FormulationChoice::log_stretch ? Formulation::log_stretch : Formulation::position);
+                       : std::make_unique<Discretization>(communicator_, std::move(ends), numerics_.degree));
     as_at_start_ = true;
   }
 
   /// The equation on a mesh.
   void
-  Simulation::build(std::unique_ptr<Discretization> discretization, const Formulation formulation)
+  Simulation::build(std::unique_ptr<Discretization> discretization)
   {
     as_at_start_ = false;
     stepper_     = nullptr;
@@ -103,13 +105,26 @@ namespace crawler
     linear_stepper_.reset();
     assembler_.reset();
     discretization_ = std::move(discretization);
-    assembler_      = create_assembler(formulation, scene_, *discretization_);
+    position_       = nullptr;
+    stretch_form_   = nullptr;
+    if (numerics_.formulation == Formulation::stretch)
+    {
+      auto form     = std::make_unique<StretchForm>(scene_, *discretization_);
+      stretch_form_ = form.get();
+      assembler_    = std::move(form);
+    }
+    else
+    {
+      auto form  = create_position_form(scene_, *discretization_);
+      position_  = form.get();
+      assembler_ = std::move(form);
+      position_->keep_stresses(integrator(time_.integrator).n_stages);
+    }
     if (delay_ > 0.)
     {
       assembler_->set_history(&history_);
       history_cells_ = std::make_shared<const std::vector<Cell>>(discretization_->cells());
     }
-    assembler_->keep_stresses(integrator(time_.integrator).n_stages);
     rates_.assign(integrator(time_.integrator).n_stages + 1, {});
     // Of the highest mode of the smallest cell. Adaptive meshes have small cells where friction is large and slows them
     // down; there the largest one tells whether the body is stiff.
@@ -155,11 +170,9 @@ namespace crawler
     result_.jumps_move    = numerics_.jumps_move;
     if (options.ledger)
       result_.ledger.emplace();
-    if (numerics_.formulation == FormulationChoice::log_stretch)
-      result_.log_stretch_since = 0.;
+    result_.formulation = numerics_.formulation;
     history_.clear();
     assembler_->set_initial_state(y_);
-    assembler_->make_consistent(0., y_);
     accepted_      = y_;
     accepted_time_ = 0.;
     next_step_     = numerics_.initial_step;
@@ -245,7 +258,7 @@ namespace crawler
     return in_physical_units();
   }
 
-  /// From the first state to the end, with changes of mesh and formulation on the way.
+  /// From the first state to the end, with changes of mesh on the way.
   TimeOutcome
   Simulation::integrate(const std::vector<std::unique_ptr<Observer>> &observers,
                         const std::function<bool()> &keep_going)
@@ -307,14 +320,20 @@ namespace crawler
       result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
       if (!diagnosis_ && request_ == Request::none && outcome.reason == FusedStepper::gave_up)
       {
-        go_on_with_petsc(outcome);
-        continue;
+        if (position_ != nullptr)
+        {
+          go_on_with_petsc(outcome);
+          continue;
+        }
+        outcome.reason       = "newton_diverged";
+        outcome.message      = "the equations of a step cannot be solved";
+        outcome.domain_error = scene_.friction_exponent() >= 0.;
+        if (const auto &bad = fused_stepper_->bad_friction())
+        {
+          assembler_->look_at_friction({&bad->first, 1}, {&bad->second, 1});
+          outcome.domain_error = true;
+        }
       }
-      // A form that cannot go on because the stretch becomes small is changed, too.
-      if (request_ == Request::none && !diagnosis_ && outcome.status == "failed" && outcome.domain_error &&
-          may_change_form() && assembler_->formulation() == Formulation::position &&
-          !end_inverts(accepted_time_, accepted_time_ + 1e-9))
-        request_ = Request::log_stretch;
       // The step to the end is done again like any other if its state was thrown away.
       if (request_ == Request::none || diagnosis_ || accepted_time_ >= 1. || (cycle_stop_ && cycle_stop_->repeats()))
         return outcome;
@@ -389,8 +408,6 @@ namespace crawler
     if (end_inverts(accepted_time_, accepted_time_))
       return;
     y_ = accepted_;
-    assembler_->make_consistent(accepted_time_, y_);
-    accepted_ = y_;
     if (!options_.ledger || !stepper_->quadrature().empty())
       return;
     if (velocity(accepted_time_, 0., y_, v_))
@@ -410,23 +427,19 @@ namespace crawler
     }
   }
 
-  /// Changes mesh or formulation and carries the last accepted state over.
+  /// Changes the mesh, of the position form, and carries the last accepted state over.
   void
   Simulation::change()
   {
     const auto old_assembler      = std::move(assembler_);
+    PositionForm &old_form        = *position_;
     const auto old_discretization = std::move(discretization_);
-    const bool to_log             = request_ == Request::log_stretch;
-    const Formulation formulation = to_log ? Formulation::log_stretch : old_assembler->formulation();
-    auto mesh                     = old_discretization->adapted(
-      to_log ? std::vector<CellChange>(old_discretization->n_cells(), CellChange::keep) : changes_);
-    build(std::move(mesh), formulation);
-    y_ = mesh_transfer(numerics_.degree).transfer(*old_assembler, accepted_, *assembler_);
+    build(old_discretization->adapted(changes_));
+    y_ = mesh_transfer(numerics_.degree).transfer(old_form, accepted_, *position_);
     if (accepted_time_ == 0. && !scene_.is_plain())
       assembler_->set_initial_state(y_);
-    assembler_->make_consistent(accepted_time_, y_);
     const double old_time = accepted_time_;
-    if (!to_log && keeps_rate())
+    if (keeps_rate())
       settle();
     if (options_.ledger)
     {
@@ -435,10 +448,7 @@ namespace crawler
                                        assembler_->integrals(accepted_time_, y_, new_v).elastic_energy;
     }
     accepted_ = y_;
-    if (to_log)
-      result_.log_stretch_since = accepted_time_;
-    else
-      ++result_.mesh_changes;
+    ++result_.mesh_changes;
     result_.most_cells = std::max(result_.most_cells, discretization_->n_cells());
   }
 
@@ -463,9 +473,9 @@ namespace crawler
     std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
     for (unsigned int i = 0; i < most_corrections; ++i)
     {
-      if (!assembler_->residual(t, y, rate, F) || !assembler_->setup_jacobian(t, y, rate, 1. / size))
+      if (!position_->residual(t, y, rate, F) || !position_->setup_jacobian(t, y, rate, 1. / size))
         return;
-      assembler_->solve_with_jacobian(F, change);
+      position_->solve_with_jacobian(F, change);
       double largest = 0.;
       for (std::size_t j = 0; j < y.size(); ++j)
       {
@@ -505,19 +515,8 @@ namespace crawler
     }
     if (end_inverts(before, step.time) || passed_over_event(step))
       return false;
-    const bool in_position = assembler_->formulation() == Formulation::position,
-               adaptive    = numerics_.mesh.tolerance > 0.;
-    if (in_position && may_change_form() && stretch_.min.value < small_stretch)
-    {
-      // From this state if it is good, else from the one before.
-      if (stretch_.min.value < 0.5 * small_stretch && step.size > 0.)
-      {
-        request_ = Request::log_stretch;
-        return false;
-      }
-      request_ = Request::log_stretch;
-    }
-    else if (stretch_.min.value <= lost_stretch())
+    const bool adaptive = numerics_.mesh.tolerance > 0.;
+    if (stretch_.min.value <= lost_stretch())
     {
       // A mesh that is too coarse can lose it, too, so that is mended first.
       if (!adaptive || !velocity(step.time, step.size, y, v_) || mesh_is_good(step, y))
@@ -539,20 +538,20 @@ namespace crawler
     if (!compute_integrals(step, y))
       return false;
     look_at_extremes(step.time, stretch_, step.number == 0);
-    if (options_.resolution)
+    if (options_.resolution && position_ != nullptr)
     {
       if (!adaptive && velocity(step.time, step.size, y, v_))
       {
-        const auto indicators = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
+        const auto indicators = all_indicators(position_->error_indicators(step.time, y, v_), *discretization_);
         result_.largest_indicator =
           std::max(result_.largest_indicator, std::accumulate(indicators.begin(), indicators.end(), 0.));
       }
-      const Resolution resolution = assembler_->resolution(y);
+      const Resolution resolution = position_->resolution(y);
       largest_.highest_mode       = std::max(largest_.highest_mode, resolution.highest_mode);
       largest_.strain             = std::max(largest_.strain, resolution.strain);
       result_.unresolved          = largest_.strain > 0. ? largest_.highest_mode / largest_.strain : 0.;
       result_.strain              = largest_.strain;
-      result_.largest_u           = std::max(result_.largest_u, assembler_->root_mean_square(y));
+      result_.largest_u           = std::max(result_.largest_u, position_->root_mean_square(y));
     }
     // Many steps that lead nowhere.
     const double tiny = tiny_step * std::min(1., 10. * longest_step(step.time));
@@ -592,7 +591,7 @@ namespace crawler
     if (numerics_.linear)
       return true;
     const bool amplifies = relaxation_time_ < fast_relaxation || (scene_.friction_exponent() > 0. && scene_.is_plain());
-    return amplifies && assembler_->formulation() == Formulation::position;
+    return amplifies && position_ != nullptr;
   }
 
   /// Keeps the rate of the latest residual at each of the latest times: those of the stages of a step, and its start.
@@ -638,9 +637,9 @@ namespace crawler
     std::vector<double> F(y.size()), correction(y.size());
     // Without a velocity the Jacobian is M/h + K; but friction that is not linear in it has to be that of the rate.
     const std::vector<double> at = scene_.is_plain() ? std::vector<double>(y.size(), 0.) : known->y_dot;
-    if (!assembler_->residual(t, y, known->y_dot, F) || !assembler_->setup_jacobian(t, y, at, 1. / size))
+    if (!position_->residual(t, y, known->y_dot, F) || !position_->setup_jacobian(t, y, at, 1. / size))
       return false;
-    assembler_->solve_with_jacobian(F, correction);
+    position_->solve_with_jacobian(F, correction);
     for (std::size_t i = 0; i < v.size(); ++i)
       v[i] = known->y_dot[i] - correction[i] / size;
     if (scene_.is_plain())
@@ -657,19 +656,11 @@ namespace crawler
     return true;
   }
 
-  /// The log-stretch form is for what is emptied and sticks. For a >= 0 friction vanishes there, and its nodal
-  /// friction, at the continued stretch, is less robust than position, whose inversions are real.
-  bool
-  Simulation::may_change_form() const
-  {
-    return numerics_.formulation == FormulationChoice::automatic && scene_.friction_exponent() < 0.;
-  }
-
   /// Is the sum of the error indicators admissible? If not, and if cells can be divided, asks for that.
   bool
   Simulation::mesh_is_good(const Step &step, const std::span<const double> y)
   {
-    indicators_      = all_indicators(assembler_->error_indicators(step.time, y, v_), *discretization_);
+    indicators_      = all_indicators(position_->error_indicators(step.time, y, v_), *discretization_);
     const double sum = std::accumulate(indicators_.begin(), indicators_.end(), 0.);
     changes_.clear();
     if (sum > numerics_.mesh.tolerance)
@@ -770,8 +761,9 @@ namespace crawler
       result.gait_efficiency = gait_efficiency(physical_scene_, result);
     if (result.gait)
       result.gait = result.gait->in_units(units_);
-    if (result.log_stretch_since)
-      *result.log_stretch_since *= units_.time;
+    if (result.inverted_places)
+      result.inverted_places = {result.inverted_places->first * units_.length,
+                                result.inverted_places->second * units_.length};
     return result;
   }
 } // namespace crawler

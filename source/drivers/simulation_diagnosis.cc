@@ -26,13 +26,13 @@ namespace crawler
     constexpr double nearly_lost = 1e-4;
 
     /**
-     * In the log-stretch form the stretch can be followed much further. Near an inversion w^(1+a) goes linearly to 0,
-     * so this is where 1e-6 of it is left; for a <= -1 there is none, and what limits w is the range of doubles.
+     * In the stretch form cells may be empty if they then stick, a <= -1. For -1 < a < 0 w^(1+a) goes linearly to 0 near
+     * an inversion, so this is where 1e-6 of it is left.
      */
     double
-    lost_in_log_form(const double a)
+    lost_in_stretch_form(const double a)
     {
-      return a <= -1. ? std::exp(-700.) : std::exp(std::clamp(-14. / (1. + a), -690., std::log(1e-3)));
+      return a <= -1. ? -HUGE_VAL : a < 0. ? std::exp(std::clamp(-14. / (1. + a), -690., std::log(1e-3))) : 1e-9;
     }
 
     /// The time in [from, to] where @p function, positive at @p from and not at @p to, becomes 0.
@@ -54,8 +54,7 @@ namespace crawler
   double
   Simulation::lost_stretch() const
   {
-    return assembler_->formulation() == Formulation::position ? lost_in_position
-                                                              : lost_in_log_form(scene_.friction_exponent());
+    return position_ != nullptr ? lost_in_position : lost_in_stretch_form(scene_.friction_exponent());
   }
 
   /// Has the stretch that the end conditions prescribe, 1 - m/k, become 0 since @p from? Then the diagnosis says so.
@@ -122,7 +121,16 @@ namespace crawler
     if (at_end && !assembler_->has_known_ends())
       inverted_at_end(smallest.s, t, "where the active stress with its feedback is not below k");
     else if (!end_inverts(t, std::min(t + reach, 1.)))
+    {
       inverted_inside(stretch_.min.value, smallest.s, t);
+      if (result_.inversion && stretch_form_ != nullptr)
+      {
+        // There disturbances travel without bound, so all of these places are lost at once.
+        constexpr double at_once = 1e-6;
+        stepper_->interpolate(t, y);
+        result_.inverted_places = stretch_form_->lost_places(t, y, at_once);
+      }
+    }
   }
 
   /// Has the active stress failed since the run began, on any rank (collective)? Then the diagnosis says how.
@@ -206,15 +214,14 @@ namespace crawler
 
   /**
    * For a <= -1 the stretch inside stays positive as long as the ends do (doc/theory.md, "When a body can invert"), so
-   * a loss of stretch there is an error of the mesh and is called that. For -1 < a < 0 bodies do invert, but all forms
-   * lose the stretch too early, or without need, except log stretch with degree 1.
+   * a loss of stretch there is an error of the mesh and is called that. For -1 < a < 0 bodies do invert, but the
+   * position form loses the stretch too early, or without need.
    */
   void
   Simulation::inverted_inside(const double value, const double s, const double t)
   {
-    const double a     = scene_.friction_exponent();
-    const bool is_safe = assembler_->formulation() == Formulation::log_stretch && numerics_.degree == 1;
-    if (a <= -1. || (a < 0. && !is_safe))
+    const double a = scene_.friction_exponent();
+    if (a <= -1. || (a < 0. && position_ != nullptr))
     {
       under_resolved(value, s, t);
       return;
@@ -231,15 +238,7 @@ namespace crawler
   void
   Simulation::under_resolved(const double value, const double s, const double t)
   {
-    const bool positive  = scene_.friction_exponent() <= -1.,
-               user_form = numerics_.formulation == FormulationChoice::position;
-    std::string needed;
-    if (user_form)
-      needed += "Discretization/Formulation = automatic, ";
-    if (numerics_.degree > 1)
-      needed +=
-        "Discretization/Degree = 1 with Formulation = log stretch (Degree and Number of cells = automatic choose "
-        "that), ";
+    const bool positive = scene_.friction_exponent() <= -1.;
     diagnosis_ = {
       "failed",
       "under_resolved",
@@ -250,9 +249,9 @@ namespace crawler
                   s * units_.length,
                   t * units_.time,
                   positive ? "where the body itself stays uninverted (a <= -1)"
-                           : "which for a < 0 only log stretch with degree 1 is believed",
+                           : "which for a < 0 only the stretch form is believed",
                   discretization_->n_cells(),
                   discretization_->element().degree,
-                  needed.empty() ? "" : needed + "or ")};
+                  position_ != nullptr ? "Discretization/Formulation = stretch, or " : "")};
   }
 } // namespace crawler

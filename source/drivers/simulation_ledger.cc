@@ -59,7 +59,6 @@ namespace crawler
                                 step.time,
                                 history_cells_,
                                 &discretization_->element(),
-                                assembler_->formulation() == Formulation::log_stretch,
                                 {}};
     std::vector<double> inside(y.size());
     for (std::size_t i = 0; i < record.coefficients.size(); ++i)

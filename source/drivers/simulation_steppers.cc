@@ -15,8 +15,7 @@ namespace crawler
   bool
   Simulation::fused_fits() const
   {
-    return assembler_->formulation() == Formulation::position && size_of(communicator_) == 1 &&
-           fused_method(scene_, time_, numerics_);
+    return size_of(communicator_) == 1 && fused_method(scene_, time_, numerics_);
   }
 
   /// The fused engine where it fits and has not given up, else PETSc. What is not used is not built.
@@ -37,6 +36,8 @@ namespace crawler
       stepper_ = fused_stepper_.get();
       return;
     }
+    if (position_ == nullptr)
+      throw std::logic_error("the stretch form is for the fused engine");
     if (!petsc_stepper_)
       build_petsc_stepper();
     stepper_ = petsc_stepper_.get();
@@ -57,7 +58,7 @@ namespace crawler
   Simulation::build_linear_stepper()
   {
     if (scene_.body.friction_exponent() != 0. || !scene_.is_plain() || numerics_.mesh.tolerance > 0. ||
-        assembler_->formulation() != Formulation::position || integrator(time_.integrator).petsc_type != "radau")
+        position_ == nullptr || integrator(time_.integrator).petsc_type != "radau")
       throw std::logic_error("the linear model is for a = 0, the position form, uniform meshes and radau");
     linear_stepper_ = std::make_unique<LinearStepper>(
       scene_, *discretization_, integrator(time_.integrator).n_stages, time_.step_control == "adaptive");
@@ -84,11 +85,8 @@ namespace crawler
     using Vector         = TimeStepper::Vector;
     using ConstVector    = TimeStepper::ConstVector;
     using Complex        = TimeStepper::Complex;
-    petsc_stepper_       = std::make_unique<TimeStepper>(communicator_, assembler_->weights(), time_);
+    petsc_stepper_       = std::make_unique<TimeStepper>(communicator_, position_->n_owned(), time_);
     TimeStepper &stepper = *petsc_stepper_;
-    // The friction of degree 1 switches with the sign of the velocity.
-    stepper.smooth = assembler_->formulation() == Formulation::position || numerics_.degree > 1;
-
     stepper.exact_elimination =
       scene_.active_stress->feedback() == nullptr || !scene_.active_stress->feedback()->sees_near();
 
@@ -96,37 +94,37 @@ namespace crawler
     {
       if (keeps_rate())
         keep_rate(t, y_dot);
-      return assembler_->residual(t, y, y_dot, F);
+      return position_->residual(t, y, y_dot, F);
     };
     stepper.setup_jacobian = [this](const double t, const ConstVector y, const ConstVector y_dot, const double shift)
     {
-      return assembler_->setup_jacobian(t, y, y_dot, shift);
+      return position_->setup_jacobian(t, y, y_dot, shift);
     };
     stepper.solve_with_jacobian = [this](const ConstVector b, const Vector x)
     {
-      assembler_->solve_with_jacobian(b, x);
+      position_->solve_with_jacobian(b, x);
     };
     stepper.setup_complex_jacobians =
       [this](const double t, const ConstVector y, const ConstVector y_dot, const std::span<const Complex> sigma)
     {
-      return assembler_->setup_complex_jacobians(t, y, y_dot, sigma);
+      return position_->setup_complex_jacobians(t, y, y_dot, sigma);
     };
     stepper.solve_with_complex_jacobian =
       [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x)
     {
-      assembler_->solve_with_complex_jacobian(i, b, x);
+      position_->solve_with_complex_jacobian(i, b, x);
     };
     stepper.setup_stage = [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot)
     {
-      assembler_->setup_stage(stage, t, y, y_dot);
+      position_->setup_stage(stage, t, y, y_dot);
     };
     stepper.stage_vmult = [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector y)
     {
-      assembler_->stage_vmult(stage, x, x_dot, y);
+      position_->stage_vmult(stage, x, x_dot, y);
     };
     stepper.jacobian_vmult = [this](const ConstVector x, const Vector y)
     {
-      assembler_->jacobian_vmult(x, y);
+      position_->jacobian_vmult(x, y);
     };
   }
 

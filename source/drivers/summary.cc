@@ -21,6 +21,18 @@ namespace crawler
     }
 
     Json
+    inversion(const SimulationResult &result)
+    {
+      if (!result.inversion)
+        return nullptr;
+      Json json       = extreme(*result.inversion);
+      json["error"]   = result.inversion_error ? Json(*result.inversion_error) : Json(nullptr);
+      json["s_first"] = result.inverted_places ? result.inverted_places->first : result.inversion->s;
+      json["s_last"]  = result.inverted_places ? result.inverted_places->second : result.inversion->s;
+      return json;
+    }
+
+    Json
     number(const std::optional<double> value)
     {
       return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
@@ -222,10 +234,10 @@ namespace crawler
     json["max_stretch"]        = extreme(result.max_stretch);
     json["gait"]               = gait_numbers(result);
     json["errors"]             = error_bars(result.errors.value_or(NumberErrors()));
-    json["log_stretch_since"]  = result.log_stretch_since ? Json(*result.log_stretch_since) : Json(nullptr);
+    json["formulation"]        = result.formulation == Formulation::stretch ? "stretch" : "position";
     json["mesh_changes"]       = result.mesh_changes;
     json["most_cells"]         = std::max(result.most_cells, mesh ? mesh->n_cells : 0);
-    json["inversion"]          = result.inversion ? extreme(*result.inversion) : Json(nullptr);
+    json["inversion"]          = inversion(result);
     json["cells"]              = mesh ? mesh->n_cells : 0;
     json["degree"]             = mesh ? Json(mesh->degree) : Json(nullptr);
     json["degrees_of_freedom"] = mesh ? mesh->n_unknowns : 0;

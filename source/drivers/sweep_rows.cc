@@ -59,10 +59,10 @@ namespace crawler
       result.errors.emplace();
       result.ledger            = Ledger{};
       result.inversion         = SimulationResult::Extreme{};
+      result.inversion_error   = 0.;
       result.cycles            = Cycles{1., 1, 1, 0.};
       result.gait              = Gait{1., true, 1., 1., StretchWave{1., 1.}, Ledger{}};
       result.gait_efficiency   = 1.;
-      result.log_stretch_since = 0.;
       result.mesh              = SimulationResult::Mesh{1, 1, 1, false};
       return summary_of(result, Parameters());
     }
@@ -87,7 +87,9 @@ namespace crawler
                                                                {"elastic_energy", "force length"},
                                                                {"paper_energy", "force length"},
                                                                {"positive_power", "force length"},
-                                                               {"log_stretch_since", "time"},
+                                                               {"inversion.error", "time"},
+                                                               {"inversion.s_first", "length"},
+                                                               {"inversion.s_last", "length"},
                                                                {"gait.period", "time"},
                                                                {"gait.frequency", "1/time"},
                                                                {"gait.displacement", "length"},

@@ -16,7 +16,7 @@ namespace crawler
                       "The rungs of the model that crawler tradeoff tries. The first two need no mesh; for nonlinear "
                       "all other lists of this section are combined.");
     declarations.text(
-      "Formulations", formulations, "a list of \"position\" and \"log stretch\"", "The formulations that it tries.");
+      "Formulations", formulations, "a list of \"position\" and \"stretch\"", "The formulations that it tries.");
     declarations.text("Meshes", meshes, "a list of \"uniform\" and \"adaptive\"", "The kinds of meshes that it tries.");
     declarations.text(
       "Engines",

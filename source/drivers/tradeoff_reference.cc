@@ -60,10 +60,10 @@ namespace crawler
       adaptive.mesh_tolerance  = 1e-3;
       if (scene.friction_exponent() < 0.)
         return {{setting("position", "fused", "radau 9", 8), 8},
-                {setting("log stretch", "petsc", "radau 5", 7), 8},
+                {setting("position", "petsc", "radau 5", 7), 8},
                 // For bodies that collapse.
                 {adaptive, 0, 1e-5, 0.1},
-                {setting("log stretch", "petsc", "arkimex 4", 1), 64, 1e-4, 0.1},
+                {setting("stretch", "fused", "radau 5", 1), 64, 1e-4, 0.1},
                 {setting("position", "petsc", "bdf", 6), 8}};
       return {{setting("position", "fused", "radau 9", 8), 8},
               {setting("position", "petsc", "radau 5", 7), 8},
@@ -234,7 +234,7 @@ namespace crawler
         const bool in_position = reference_.first.method.starts_with("position") ||
                                  reference_.second.method.starts_with("position") || scene_.friction_exponent() >= 0.;
         TradeoffSetting setting = crawler::setting(
-          in_position ? "position" : "log stretch", in_position ? "fused" : "petsc", "radau 9", degree);
+          in_position ? "position" : "stretch", "fused", "radau 9", in_position ? degree : 1);
         setting.tolerance = mesh_tolerance;
         std::vector<std::pair<unsigned int, double>> result;
         const auto add = [&](const unsigned int cells)

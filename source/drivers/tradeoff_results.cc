@@ -251,7 +251,7 @@ namespace crawler
           return static_cast<double>(rows[i].index);
         });
     add_word("model", "rung of the model", &TradeoffSetting::model);
-    add_word("formulation", "position or log stretch", &TradeoffSetting::formulation);
+    add_word("formulation", "position or stretch", &TradeoffSetting::formulation);
     add_word("mesh", "uniform or adaptive", &TradeoffSetting::mesh);
     add_word("engine", "fused, petsc, or batch: 8 bodies side by side by the fused engine", &TradeoffSetting::engine);
     add_word("integrator", "time integrator", &TradeoffSetting::integrator);

@@ -109,18 +109,21 @@ namespace crawler
       return values;
     }
 
-    FormulationChoice
+    Formulation
     formulation_of(const std::string &name)
     {
-      return name == "position" ? FormulationChoice::position : FormulationChoice::log_stretch;
+      return name == "position" ? Formulation::position : Formulation::stretch;
     }
 
     /// Why the program cannot do this; empty if it can.
     std::string
     refusal(const TradeoffSetting &setting, const Scene &scene)
     {
-      if (setting.formulation == "log stretch" && scene.friction_exponent() >= 0.)
-        return "the log-stretch form is for a < 0, and here a = " + to_text(scene.friction_exponent());
+      const bool is_stretch = setting.formulation == "stretch";
+      if (const std::string reason = reason_against_stretch_form(scene); is_stretch && !reason.empty())
+        return "the stretch form cannot compute this: " + reason;
+      if (is_stretch && (setting.engine != "fused" || setting.mesh != "uniform"))
+        return "the stretch form is for the fused engine, one run at a time, and for meshes that do not change";
       if (setting.engine == "petsc")
         return "";
       Numerics numerics;
@@ -131,7 +134,7 @@ namespace crawler
       TimeParameters time;
       time.integrator = setting.integrator;
       if (!fused_method(scene, time, numerics))
-        return fmt::format("the fused engine{} has the radau integrators, in the position form and on uniform meshes",
+        return fmt::format("the fused engine{} has the radau integrators, on uniform meshes",
                            setting.is_batch() ? ", which computes batches," : "");
       return "";
     }
@@ -193,7 +196,7 @@ namespace crawler
     const TradeoffParameters &texts = parameters.tradeoff;
     TradeoffLists lists;
     lists.models          = words(texts.models, "Models", {"perturbation", "kinematic", "nonlinear"});
-    lists.formulations    = words(texts.formulations, "Formulations", {"position", "log stretch"});
+    lists.formulations    = words(texts.formulations, "Formulations", {"position", "stretch"});
     lists.meshes          = words(texts.meshes, "Meshes", {"uniform", "adaptive"});
     lists.engines         = words(texts.engines, "Engines", {"fused", "petsc", "batch"});
     lists.integrators     = read_integrators(parameters);
@@ -263,7 +266,7 @@ namespace crawler
               result.push_back({setting, {TradeoffSetting::none}, index++, why});
               continue;
             }
-            for (const unsigned int degree : lists.degrees)
+            for (const unsigned int degree : formulation == "stretch" ? std::vector<unsigned int>{1} : lists.degrees)
             {
               setting.degree = degree;
               add_meshes(setting);

@@ -3,6 +3,7 @@
 #include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace crawler
@@ -11,10 +12,23 @@ namespace crawler
     : scene_(scene)
     , tables_owner_(fused_tables(method))
     , tables_(*tables_owner_)
+    , setup_(tables_.setup)
     , tableau_(radau_tableau(method.n_stages))
     , stress_(scene.active_stress->at(tables_.points))
-    , memory_(fused_memory(single_engine().memory(tables_.setup)))
   {
+    if (method.is_stretch)
+    {
+      const StretchMethod stretch     = stretch_method(scene);
+      const StretchFeedback *feedback = scene.active_stress->feedback();
+      setup_.node_rule                = stretch.node_rule;
+      setup_.is_power                 = stretch.is_power;
+      setup_.sees_rate                = feedback != nullptr && feedback->uses_rate();
+      setup_.backward_ratio           = scene.ground.direction.ratio;
+      setup_.switching_velocity       = scene.ground.direction.switching_velocity;
+      if (!scene.is_plain())
+        laws_.emplace(scene, tables_.points);
+    }
+    memory_ = fused_memory(single_engine().memory(setup_));
     for (unsigned int i = 0; i < tableau_.n; ++i)
       quadrature_.push_back({tableau_.c[i], tableau_.b[i]});
   }
@@ -38,13 +52,16 @@ namespace crawler
                 .limits        = limits.data(),
                 .n_limits      = static_cast<unsigned int>(limits.size()),
                 .most_steps    = std::numeric_limits<unsigned int>::max(), // the monitor's business
-                .least_stretch = 0.,
+                // Cells may be empty where friction then holds them.
+                .least_stretch = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
+                .is_last_resort = setup_.is_stretch,
                 .start_time    = start_time,
                 .start         = y.data(),
                 .frames        = frames_.data(),
                 .n_frames      = static_cast<unsigned int>(frames_.size()),
                 .restarts      = nullptr}; // a solve for each piece
     started_ = false;
+    bad_friction_.reset();
     y_       = &y;
     outcome_ = {};
     if (monitor && !monitor({start_time, 0., 0, false, 0, 0}, y))
@@ -54,8 +71,8 @@ namespace crawler
       outcome_.step_size = initial_step;
       return outcome_;
     }
-    const LaneHost host = {this, next, stress, accepted, done, /*look_inside=*/false};
-    single_engine().run(tables_.setup, host, memory_.get());
+    const LaneHost host = {this, next, stress, accepted, done, /*look_inside=*/false, laws_ ? laws : nullptr};
+    single_engine().run(setup_, host, memory_.get());
     return outcome_;
   }
 
@@ -74,6 +91,33 @@ namespace crawler
   {
     auto &self = *static_cast<FusedStepper *>(context);
     self.stress_->values(t, {m, self.tables_.points.size()});
+  }
+
+  double
+  FusedStepper::laws(void *context,
+                     const double t,
+                     const double *m,
+                     const double *w,
+                     const double *rate,
+                     double *mobility,
+                     double *mobility_by_w,
+                     double *force,
+                     double *force_by_w,
+                     double *force_by_rate)
+  {
+    auto &self          = *static_cast<FusedStepper *>(context);
+    StretchLaws &laws   = *self.laws_;
+    const std::size_t n = self.tables_.points.size();
+    const long bad      = laws.evaluate(t, {w, n}, {rate, n}, m);
+    std::copy_n(laws.mobility.begin(), n, mobility);
+    std::copy_n(laws.mobility_by_w.begin(), n, mobility_by_w);
+    std::copy_n(laws.force().N.begin(), n, force);
+    std::copy_n(laws.force().by_w.begin(), n, force_by_w);
+    std::copy(laws.force().by_rate.begin(), laws.force().by_rate.end(), force_by_rate);
+    if (bad >= 0)
+      self.bad_friction_ = {w[bad], laws.friction[static_cast<std::size_t>(bad)]};
+    const bool may_be_empty = self.scene_.friction_exponent() < 0.;
+    return bad >= 0 ? -1. : may_be_empty ? 1. : *std::min_element(w, w + n);
   }
 
   bool

@@ -28,10 +28,13 @@ namespace crawler
   FusedTables::FusedTables(const FusedMethod &method)
     : method_(method)
     , element_(method.degree)
-    , sample_places_(element_.points)
+    , sample_places_(method.is_stretch ? std::vector<double>{0.5} : element_.points)
   {
-    sample_places_.insert(sample_places_.begin(), 0.);
-    sample_places_.push_back(1.);
+    if (!method.is_stretch)
+    {
+      sample_places_.insert(sample_places_.begin(), 0.);
+      sample_places_.push_back(1.);
+    }
     samples_                    = interpolation_matrix(element_.nodes, sample_places_, 1);
     const RadauTableau &tableau = radau_tableau(method.n_stages);
     eigenvalues_                = interleaved(tableau.eigenvalues);
@@ -41,7 +44,7 @@ namespace crawler
     for (unsigned int c = 0; c < method.n_cells; ++c)
     {
       sizes_.push_back(uniform ? 1. / method.n_cells : method.cell_ends[c + 1] - method.cell_ends[c]);
-      for (const double place : element_.points)
+      for (const double place : method.is_stretch ? sample_places_ : element_.points)
         points.push_back(uniform ? (c + place) / method.n_cells : method.cell_ends[c] + place * sizes_[c]);
     }
     setup = {method.degree,
@@ -62,6 +65,7 @@ namespace crawler
              eigenvalues_.data(),
              vectors_.data(),
              rows_.data()};
+    setup.is_stretch = method.is_stretch;
   }
 
   double

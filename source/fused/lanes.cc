@@ -7,21 +7,39 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 {
   namespace
   {
+    template <typename Pack, template <typename, int> class System>
+    std::size_t
+    memory_of(const LaneSetup &setup)
+    {
+      return setup.n_stages == 3 ? RadauLanes<Pack, 3, System>::memory(setup) :
+                                   RadauLanes<Pack, 5, System>::memory(setup);
+    }
+
+    template <typename Pack, template <typename, int> class System>
+    void
+    run_in(const LaneSetup &setup, const LaneHost &host, double *memory)
+    {
+      if (setup.n_stages == 3)
+        RadauLanes<Pack, 3, System>(setup, host, memory).run();
+      else
+        RadauLanes<Pack, 5, System>(setup, host, memory).run();
+    }
+
     template <typename Pack>
     std::size_t
     memory(const LaneSetup &setup)
     {
-      return setup.n_stages == 3 ? RadauLanes<Pack, 3>::memory(setup) : RadauLanes<Pack, 5>::memory(setup);
+      return setup.is_stretch ? memory_of<Pack, StretchSystem>(setup) : memory_of<Pack, PositionSystem>(setup);
     }
 
     template <typename Pack>
     void
     run(const LaneSetup &setup, const LaneHost &host, double *memory)
     {
-      if (setup.n_stages == 3)
-        RadauLanes<Pack, 3>(setup, host, memory).run();
+      if (setup.is_stretch)
+        run_in<Pack, StretchSystem>(setup, host, memory);
       else
-        RadauLanes<Pack, 5>(setup, host, memory).run();
+        run_in<Pack, PositionSystem>(setup, host, memory);
     }
 
 #define CRAWLER_TEXT(name) CRAWLER_TEXT_OF(name)

@@ -76,7 +76,7 @@ namespace crawler
     const Discretization &d = assembler_.discretization();
     const auto u_local      = d.to_local<double>(assembler_.displacement(y), u_local_);
     const auto v_local      = d.to_local<double>(v, v_local_);
-    const auto log_w        = assembler_.log_stretch(y);
+    const auto cells        = assembler_.stretch(y);
     const unsigned int n = d.element().n, q = d.element().degree;
     const double k = assembler_.scene().body.elastic_modulus;
     for (std::size_t p = 0; p < points_.size(); ++p)
@@ -93,9 +93,9 @@ namespace crawler
       fields_.displacement[p] = u_p * units_.length;
       fields_.position[p]     = coordinates_[p] + fields_.displacement[p];
       fields_.velocity[p]     = v_p;
-      fields_.stretch[p]      = stretch_.stretch(u_local, log_w, cell, d.cell_size()[cell], place);
-      fields_.elastic_stress[p] =
-        units_.force * equation::body_force(stretch_.strain(u_local, log_w, cell, d.cell_size()[cell], place), 0., k);
+      const double strain     = stretch_.strain(u_local, cell, d.cell_size()[cell], place);
+      fields_.stretch[p]        = cells.empty() ? 1. + strain : cells[cell];
+      fields_.elastic_stress[p] = units_.force * equation::body_force(strain, 0., k);
     }
     if (general_)
     {

@@ -34,6 +34,17 @@ namespace crawler
             initial_energy * unit};
   }
 
+  Ledger
+  Ledger::combined(const double own, const Ledger &other, const double part) const
+  {
+    Ledger result      = scaled(own);
+    const Ledger added = other.scaled(part);
+    for (const auto energy : energies())
+      result.*energy += added.*energy;
+    result.initial_energy += added.initial_energy;
+    return result;
+  }
+
   RateQuadrature::Rates
   RateQuadrature::advance(const double time, const Rates &rates)
   {

@@ -333,23 +333,13 @@ namespace crawler
 
     /// Root mean square over all stages and ranks, in units of the tolerance.
     double
-    scaled_norm(TS ts, Vec all, Vec absolute, const double tolerance)
+    scaled_norm(TS ts, Vec all, const double tolerance)
     {
       const Radau &radau = data(ts);
       const ReadAccess a(all);
       double sum = 0.;
-      if (absolute != nullptr)
-      {
-        const ReadAccess tolerances(absolute);
-        for (std::size_t i = 0; i < a.span.size(); ++i)
-        {
-          const double x = a.span[i] / tolerances.span[i % radau.n_owned];
-          sum += x * x;
-        }
-      }
-      else
-        for (const double value : a.span)
-          sum += value * value / (tolerance * tolerance);
+      for (const double value : a.span)
+        sum += value * value / (tolerance * tolerance);
       const MPI_Comm communicator = PetscObjectComm(reinterpret_cast<PetscObject>(all));
       int size                    = 1;
       MPI_Comm_size(communicator, &size);
@@ -386,7 +376,7 @@ namespace crawler
       Vec correction = nullptr, state = nullptr;
       SNESGetSolutionUpdate(snes, &correction);
       SNESGetSolution(snes, &state);
-      const double d = scaled_norm(ts, correction, ts->vatol, ts->atol);
+      const double d = scaled_norm(ts, correction, ts->atol);
       if (it >= 2)
       {
         radau.rate       = d / radau.last_correction;
@@ -397,8 +387,7 @@ namespace crawler
       radau.last_correction = d;
       const double left     = radau.known_rate / (1. - std::min(radau.known_rate, 0.9)) * d;
       const double enough   = radau.tableau->newton_fraction;
-      const bool small      = radau.systems->smooth ? left <= enough : d <= rough_fraction && it >= 2;
-      if (small || d <= 1e-15 * scaled_norm(ts, state, ts->vatol, ts->atol))
+      if (left <= enough || d <= 1e-15 * scaled_norm(ts, state, ts->atol))
         *reason = SNES_CONVERGED_SNORM_RELATIVE;
       else if (it >= 3 && radau.rate >= 1.)
         *reason = SNES_DIVERGED_DTOL;

@@ -44,16 +44,14 @@ namespace crawler
   {
     Implementation(TimeStepper &owner,
                    MPI_Comm communicator,
-                   const std::vector<double> &weights,
+                   std::size_t n_owned,
                    const TimeParameters &parameters);
 
     TimeStepper &owner;
     const TimeParameters parameters;
 
     PetscOwner<Vec> solution, residual;
-    PetscOwner<Vec> tolerances, weighted; ///< if the weights are not all 1
     PetscOwner<Vec> interpolated;
-    std::vector<double> weights;
     PetscOwner<Mat> jacobian;
     RadauSystems radau_systems;
     std::vector<QuadraturePoint> quadrature;
@@ -132,15 +130,13 @@ namespace crawler
 
   TimeStepper::Implementation::Implementation(TimeStepper &owner,
                                               MPI_Comm communicator,
-                                              const std::vector<double> &weights,
+                                              const std::size_t n_owned,
                                               const TimeParameters &parameters)
     : owner(owner)
     , parameters(parameters)
-    , weights(weights)
   {
     keep_duplicate(communicator);
-    const std::size_t n_owned = weights.size();
-    Vec vec                   = nullptr;
+    Vec vec = nullptr;
     petsc(VecCreate(communicator, &vec));
     solution.reset(vec);
     petsc(VecSetSizes(vec, static_cast<PetscInt>(n_owned), PETSC_DECIDE));
@@ -150,21 +146,6 @@ namespace crawler
     n_unknowns = static_cast<std::size_t>(n);
     petsc(VecDuplicate(solution.get(), &vec));
     residual.reset(vec);
-    int all_one = std::all_of(weights.begin(),
-                              weights.end(),
-                              [](const double weight)
-                              {
-                                return weight == 1.;
-                              });
-    MPI_Allreduce(MPI_IN_PLACE, &all_one, 1, MPI_INT, MPI_MIN, communicator);
-    if (all_one == 0)
-    {
-      petsc(VecDuplicate(solution.get(), &vec));
-      tolerances.reset(vec);
-      petsc(VecDuplicate(solution.get(), &vec));
-      weighted.reset(vec);
-    }
-
     Mat mat          = nullptr;
     const auto local = static_cast<PetscInt>(n_owned);
     petsc(MatCreateShell(communicator, local, local, PETSC_DECIDE, PETSC_DECIDE, this, &mat));
@@ -459,7 +440,7 @@ namespace crawler
    * about C d^2. C is taken from the last solve that needed two corrections; until there is one, two are made.
    */
   PetscErrorCode
-  TimeStepper::Implementation::newton_converged(SNES snes,
+  TimeStepper::Implementation::newton_converged(SNES,
                                                 const PetscInt it,
                                                 const PetscReal x_norm,
                                                 const PetscReal dx_norm,
@@ -482,29 +463,13 @@ namespace crawler
     }
     // In units of the admissible error.
     double d = dx_norm / self.tolerance, x = x_norm / self.tolerance;
-    if (self.tolerances)
-    {
-      Vec correction = nullptr, state = nullptr;
-      PetscReal norm = 0.;
-      SNESGetSolutionUpdate(snes, &correction);
-      VecPointwiseDivide(self.weighted.get(), correction, self.tolerances.get());
-      VecNorm(self.weighted.get(), NORM_2, &norm);
-      d = norm;
-      SNESGetSolution(snes, &state);
-      VecPointwiseDivide(self.weighted.get(), state, self.tolerances.get());
-      VecNorm(self.weighted.get(), NORM_2, &norm);
-      x = norm;
-    }
     const double rms = 1. / std::sqrt(static_cast<double>(self.n_unknowns));
     d *= rms;
     const double rounding = 1e-15 * x * rms;
     if (it >= 2 && self.last_correction > 0.)
       self.convergence_constant = d / (self.last_correction * self.last_correction);
     self.last_correction = d;
-    // Where the equations have kinks the first correction, and a rate, say nothing about the next one.
-    const bool small = self.owner.smooth
-                         ? d <= newton_fraction || self.convergence_constant * d * d <= predicted_fraction
-                         : d <= newton_fraction && it >= 2;
+    const bool small = d <= newton_fraction || self.convergence_constant * d * d <= predicted_fraction;
     if (small || d <= rounding)
       *reason = SNES_CONVERGED_SNORM_RELATIVE;
     return 0;
@@ -680,8 +645,8 @@ namespace crawler
   }
 
 
-  TimeStepper::TimeStepper(MPI_Comm communicator, const std::vector<double> &weights, const TimeParameters &parameters)
-    : implementation_(std::make_unique<Implementation>(*this, communicator, weights, parameters))
+  TimeStepper::TimeStepper(MPI_Comm communicator, const std::size_t n_owned, const TimeParameters &parameters)
+    : implementation_(std::make_unique<Implementation>(*this, communicator, n_owned, parameters))
   {
   }
 
@@ -698,7 +663,6 @@ namespace crawler
     Implementation &self      = *implementation_;
     TS ts                     = self.ts.get();
     self.frames               = frames;
-    self.radau_systems.smooth = smooth;
     if (self.frames.empty() || self.frames.back() < self.parameters.end_time)
       self.frames.push_back(self.parameters.end_time);
     self.next_frame           = 0;
@@ -718,15 +682,9 @@ namespace crawler
       const WriteAccess access(self.solution.get());
       std::copy(y.begin(), y.end(), access.span.begin());
     }
-    if (self.tolerances)
-    {
-      const WriteAccess access(self.tolerances.get());
-      for (std::size_t i = 0; i < self.weights.size(); ++i)
-        access.span[i] = self.tolerance * self.weights[i];
-    }
     if (!exact_elimination)
       self.use_krylov_method();
-    petsc(TSSetTolerances(ts, self.tolerance, self.tolerances.get(), self.relative_tolerance, nullptr));
+    petsc(TSSetTolerances(ts, self.tolerance, nullptr, self.relative_tolerance, nullptr));
     petsc(TSSetTime(ts, start_time));
     petsc(TSSetStepNumber(ts, 0));
     petsc(TSSetMaxTime(ts, self.parameters.end_time));

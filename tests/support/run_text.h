@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/drivers/input.h>
+#include <crawler/drivers/mesh_family.h>
 #include <crawler/drivers/numerics_choice.h>
 #include <crawler/drivers/simulation.h>
 #include <crawler/parameters/declarations.h>
@@ -51,6 +52,11 @@ namespace crawler::test
     const Scene scene = parameters.create_scene();
     Outcome outcome;
     outcome.choice = *choose_numerics(MPI_COMM_WORLD, parameters, scene);
+    if (outcome.choice.is_family)
+    {
+      Answer answer = answer_of_family(parameters, scene, outcome.choice, options, {}, {});
+      return {std::move(answer.result), std::move(answer.choice)};
+    }
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, outcome.choice.numerics);
     outcome.result = simulation.run({}, options);
     return outcome;

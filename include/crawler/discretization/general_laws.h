@@ -81,16 +81,13 @@ namespace crawler
 
     /// @p own: the coefficients of this rank's cells, as in StretchPlaces.
     void
-    evaluate(double t, std::span<const double> own, bool is_log, const StretchHistory *history);
+    evaluate(double t, std::span<const double> own, const StretchHistory *history);
 
-    /// The change of the near stretch [points] with that of the coefficients, for the state of evaluate() that left
-    /// this @p slope, which is empty if the coefficients are strains.
+    /// The change of the near stretch [points] with that of the coefficients.
     void
-    change_of_near(std::span<const double> own_change, std::span<const double> slope, std::span<double> change) const;
+    change_of_near(std::span<const double> own_change, std::span<double> change) const;
 
     std::vector<double> near, delayed; ///< stretches; of size 0 if they are not used
-    /// Where the coefficients are log w: the stretch, dw/dlog w, at the places; with a sensor at the coefficients.
-    std::vector<double> near_slope;
 
   private:
     const Discretization &discretization_;

@@ -28,17 +28,15 @@ namespace crawler
     std::vector<double> right_derivatives; ///< [n nodes] derivatives at 1
     std::vector<double> stiffness;         ///< [n nodes][n nodes] sum of weight derivative derivative
 
-    // The log-stretch form has one logarithm of the stretch at each of q Gauss points, and friction at the nodes.
+    // The stretch is a polynomial of degree q - 1: Gauss points that fix it.
     std::vector<double> node_weights;        ///< [n] Gauss-Lobatto weights of the nodes
     std::vector<double> stretch_points;      ///< [q] Gauss points of the stretch
     std::vector<double> stretch_weights;     ///< [q]
     std::vector<double> stretch_derivatives; ///< [q stretch points][n nodes] derivatives of the shape functions
-    std::vector<double> stretch_to_nodes;    ///< [n nodes][q] from values at the stretch points to the nodes
-    std::vector<double> stretch_to_points;   ///< [n points][q] to the quadrature points
 
-    // From the left end of the cell to each quadrature point, of the polynomial through values at ...
-    std::vector<double> integrate_points; ///< [n points][n] ... the quadrature points
-    std::vector<double> integrate_nodes;  ///< [n points][n] ... the nodes
+    /// [n points][n] integrals from the left end of the cell to each quadrature point, of the polynomial through values
+    /// at the quadrature points.
+    std::vector<double> integrate_points;
   };
 
   /// The tables of a degree, made when they are first asked for and kept: a mesh is made more often than they change.

@@ -13,7 +13,7 @@ namespace crawler
 {
   /**
    * Fixed places of the body on a mesh, where a field is looked at that has one coefficient at each stretch point of
-   * each cell of the whole mesh [cell][q]: the strain of the position form, or log w of the log-stretch form.
+   * each cell of the whole mesh [cell][q]: the strain.
    */
   class StretchPlaces
   {
@@ -44,7 +44,6 @@ namespace crawler
       double from, to; ///< [time]
       std::shared_ptr<const std::vector<Cell>> cells;
       const ReferenceElement *element;
-      bool is_log;
       std::array<std::vector<double>, 6> coefficients; ///< at the places(), for StretchPlaces
     };
 

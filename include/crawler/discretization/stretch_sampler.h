@@ -3,12 +3,11 @@
 
 #include <crawler/discretization/reference_element.h>
 
-#include <cmath>
 #include <span>
 
 namespace crawler
 {
-  /// Evaluates the strain w - 1 of both formulations at fixed places of a cell.
+  /// Evaluates the strain w - 1 of the position form at fixed places of a cell.
   class StretchSampler
   {
   public:
@@ -18,7 +17,6 @@ namespace crawler
       , n_(element.n)
       , q_(element.degree)
       , derivatives_(interpolation_matrix(element.nodes, places, 1))
-      , from_stretch_points_(interpolation_matrix(element.stretch_points, places))
     {
     }
 
@@ -28,47 +26,25 @@ namespace crawler
       return places_;
     }
 
-    /// The strain at place @p i of the local cell @p c of size @p h. @p u are the local displacements, @p log_w
-    /// [cell][q] the logarithms of the stretch, empty in the position form.
+    /// The strain at place @p i of the local cell @p c of size @p h. @p u are the local displacements.
     double
-    strain(const std::span<const double> u,
-           const std::span<const double> log_w,
-           const unsigned int c,
-           const double h,
-           const unsigned int i) const
+    strain(const std::span<const double> u, const unsigned int c, const double h, const unsigned int i) const
     {
       double sum = 0.;
-      if (log_w.empty())
-      {
-        for (unsigned int j = 0; j < n_; ++j)
-          sum += derivatives_[i * n_ + j] * u[c * q_ + j];
-        return sum / h;
-      }
-      for (unsigned int p = 0; p < q_; ++p)
-        sum += from_stretch_points_[i * q_ + p] * log_w[c * q_ + p];
-      return std::expm1(sum);
+      for (unsigned int j = 0; j < n_; ++j)
+        sum += derivatives_[i * n_ + j] * u[c * q_ + j];
+      return sum / h;
     }
 
-    /// The stretch, which keeps its digits when it is small in the log-stretch form.
     double
-    stretch(const std::span<const double> u,
-            const std::span<const double> log_w,
-            const unsigned int c,
-            const double h,
-            const unsigned int i) const
+    stretch(const std::span<const double> u, const unsigned int c, const double h, const unsigned int i) const
     {
-      if (log_w.empty())
-        return 1. + strain(u, log_w, c, h, i);
-      double sum = 0.;
-      for (unsigned int p = 0; p < q_; ++p)
-        sum += from_stretch_points_[i * q_ + p] * log_w[c * q_ + p];
-      return std::exp(sum);
+      return 1. + strain(u, c, h, i);
     }
 
   private:
     std::vector<double> places_;
     unsigned int n_, q_;
-    std::vector<double> derivatives_;         ///< [place][n nodes]
-    std::vector<double> from_stretch_points_; ///< [place][q]
+    std::vector<double> derivatives_; ///< [place][n nodes]
   };
 } // namespace crawler

@@ -26,7 +26,7 @@ namespace crawler
     double inversion_s = unknown, inversion_t = unknown;
     double min_stretch = unknown;
     double steps = unknown, seconds = unknown;
-    bool is_log_stretch = false; ///< from the start
+    bool is_stretch = false; ///< from the start
   };
 
   /// A point of the atlas: one scene, computed in several ways.
@@ -36,11 +36,11 @@ namespace crawler
     {
       automatic, ///< what `crawler run` answers
       position,
-      log_stretch,
+      stretch,
       refined,
       n_runs
     };
-    static constexpr std::array<const char *, n_runs> run_names = {{"run", "position", "log stretch", "refined"}};
+    static constexpr std::array<const char *, n_runs> run_names = {{"run", "position", "stretch", "refined"}};
 
     unsigned long index = 0;
     double first = 0., second = 0.; ///< values on the axes

@@ -15,12 +15,16 @@ namespace crawler
   std::optional<FusedMethod>
   fused_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
 
+  /// The same for batches, which are in the position form.
+  std::optional<FusedMethod>
+  batch_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
+
   /// A run of a batch. All pointers are the caller's.
   struct BatchRun
   {
     const Scene *scene;
     const TimeParameters *time;
-    const Numerics *numerics; ///< must have a fused_method()
+    const Numerics *numerics; ///< must have a batch_method()
   };
 
   /**

@@ -26,9 +26,12 @@ namespace crawler
     double least_error = 0.;
     /// The user set cells or tolerances.
     bool is_users = false;
-    /// Its promised error was measured with one mesh after the other: the stretch collapses, or jumps of the active
-    /// stress move.
+    /// Its promised error was measured with one mesh after the other: jumps of the active stress move.
     bool is_measured = false;
+    /// The stretch form: its runs on a family of meshes measure the error (mesh_family.h). They begin with `numerics`,
+    /// whose time tolerance is meant for this strain [1].
+    bool is_family = false;
+    double strain  = 0.;
     /// What helps if Accuracy is not met; empty if nothing special does.
     std::string advice;
   };

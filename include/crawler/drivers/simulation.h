@@ -5,6 +5,8 @@
 #include <crawler/discretization/assembler.h>
 #include <crawler/discretization/graded_mesh.h>
 #include <crawler/discretization/mesh_marking.h>
+#include <crawler/discretization/position_form.h>
+#include <crawler/discretization/stretch_form.h>
 #include <crawler/drivers/cycle_stop.h>
 #include <crawler/drivers/displacement_error.h>
 #include <crawler/drivers/gait.h>
@@ -26,14 +28,6 @@
 
 namespace crawler
 {
-  /// Which formulation a simulation uses: one throughout, or the position form until the stretch becomes small.
-  enum class FormulationChoice
-  {
-    position,
-    log_stretch,
-    automatic
-  };
-
   /// The numerical settings of one simulation; numerics_choice.h chooses those that the user leaves open.
   struct Numerics
   {
@@ -44,11 +38,13 @@ namespace crawler
     std::vector<StepLimit> step_limits = {}; ///< of adaptive steps [time]
     double least_event = 0.; ///< an event of the active stress within a step, if it is this large, is stepped over
                              ///< again [force]; 0: not looked for
-    FormulationChoice formulation = FormulationChoice::automatic;
+    Formulation formulation       = Formulation::position;
     MeshLimits mesh               = {};    ///< of an adaptive mesh
     bool linear                   = false; ///< the rung for a = 0: radau, position form, uniform mesh
     std::string integrator        = "";    ///< what an automatic integrator is (time/integrators.h); empty: bdf
     Grading grading               = {};    ///< of the first mesh, which has n_cells cells without it
+    double layer       = 0.; ///< of the stretch form: see layered_cell_ends() [length]; 0: none
+    unsigned int parts = 1;  ///< of the stretch form, into which each of n_cells is divided
     bool jumps_move               = false; ///< the active stress jumps at places that move through the cells
   };
 
@@ -82,12 +78,15 @@ namespace crawler
     using Extreme = crawler::Extreme;
     Extreme min_stretch, max_stretch;
     std::optional<Extreme> inversion; ///< where and when the body inverted; value is the stretch there
+    /// What is lost together with it: in the stretch form, from the first to the last of these places [length].
+    std::optional<std::pair<double, double>> inverted_places;
+    std::optional<double> inversion_error; ///< of the time when it inverted, where that was measured [time]
 
     std::optional<Gait> gait;              ///< the last stride, if that is looked at and there is one
     std::optional<double> gait_efficiency; ///< of the whole run (gait.h), if it is known [1]
     std::optional<Cycles> cycles;          ///< if the run ended because they repeat; all above is that of the end time
 
-    std::optional<double> log_stretch_since;       ///< time from which on the log-stretch form was used [time]
+    Formulation formulation   = Formulation::position;
     unsigned int mesh_changes = 0, most_cells = 0; ///< of an adaptive mesh
     /// The last mesh; nothing if there was none.
     struct Mesh
@@ -104,9 +103,9 @@ namespace crawler
   };
 
   /**
-   * One crawler: builds mesh, equation and time integration in this order, connects them, and changes mesh and
-   * formulation on the way where that is asked for. It computes in natural units (scene.h); what goes in and comes out
-   * is in the scene's. It can run several times; that reuses everything as long as mesh and formulation did not change.
+   * One crawler: builds mesh, equation and time integration in this order, connects them, and changes the mesh
+   * on the way where that is asked for. It computes in natural units (scene.h); what goes in and comes out
+   * is in the scene's. It can run several times; that reuses everything as long as the mesh did not change.
    */
   class Simulation
   {
@@ -155,16 +154,15 @@ namespace crawler
     enum class Request
     {
       none,
-      log_stretch, ///< change the formulation
-      mesh,        ///< change the mesh by changes_
-      retry,       ///< the active stress did something within the step
-      restart      ///< the active stress jumps
+      mesh,    ///< change the mesh by changes_
+      retry,   ///< the active stress did something within the step
+      restart  ///< the active stress jumps
     };
 
     void
     build_first();
     void
-    build(std::unique_ptr<Discretization> discretization, Formulation formulation);
+    build(std::unique_ptr<Discretization> discretization);
     bool
     fused_fits() const;
     void
@@ -191,8 +189,6 @@ namespace crawler
     stress_failed();
     bool
     examine(const Step &step, std::span<const double> y);
-    bool
-    may_change_form() const;
     bool
     keeps_rate() const;
     bool
@@ -261,13 +257,15 @@ namespace crawler
 
     std::unique_ptr<Discretization> discretization_;
     std::unique_ptr<Assembler> assembler_;
+    PositionForm *position_ = nullptr; ///< the assembler, if the form is that
+    StretchForm *stretch_form_ = nullptr;
     // Who integrates; built when they are needed.
     std::unique_ptr<TimeStepper> petsc_stepper_;
     std::unique_ptr<FusedStepper> fused_stepper_;
     std::unique_ptr<LinearStepper> linear_stepper_;
     TimeIntegration *stepper_ = nullptr; ///< one of them
     bool fused_gave_up_       = false;
-    bool as_at_start_         = false; ///< mesh and formulation are those of the start
+    bool as_at_start_         = false; ///< the mesh is that of the start
 
     // The state of one run().
     struct Diagnosis
@@ -300,10 +298,10 @@ namespace crawler
     double delay_           = 0.;       ///< of the feedback [natural units]; 0: nobody asks for the past
     StretchHistory history_;
     std::shared_ptr<const std::vector<Cell>> history_cells_; ///< of the present mesh
-    // The last state that was accepted, to which a change of mesh or formulation may go back.
+    // The last state that was accepted, to which a change of mesh may go back.
     std::vector<double> accepted_;
     double accepted_time_ = 0., next_step_ = 0.;
-    TimeOutcome before_;         ///< counts of the parts of the run before the last change of mesh or formulation
+    TimeOutcome before_;         ///< counts of the parts of the run before the last change of mesh
     Step latest_{};              ///< that was tried, with the counts of the whole run
     std::vector<double> frames_; ///< in physical units
     std::size_t next_frame_ = 0;

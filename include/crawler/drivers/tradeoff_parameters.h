@@ -11,7 +11,7 @@ namespace crawler
   struct TradeoffParameters
   {
     std::string models          = "perturbation, kinematic, nonlinear";
-    std::string formulations    = "position, log stretch";
+    std::string formulations    = "position, stretch";
     std::string meshes          = "uniform, adaptive";
     std::string engines         = "fused, petsc, batch";
     std::string integrators     = "radau 5, radau 9, bdf";

@@ -46,7 +46,7 @@ namespace crawler
 
   /**
    * Refines the displacement by one method after another until two have settled: position form of degree 8 by radau 9;
-   * for a < 0 log stretch of degree 7 by radau 5 on PETSc, otherwise position of degree 7 by that; then others, for
+   * position of degree 7 by radau 5 on PETSc; then others, for
    * scenes that these cannot do (bodies that collapse). Cells are doubled and tolerances divided by 100 until the
    * displacement changes by less than 1e-12, or as long as it helps and a run takes no longer than the limit. The bar
    * is the distance of the two, plus the last change of the reference, plus 1e-14 for round-off. Errors are relative to

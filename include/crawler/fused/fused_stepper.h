@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/discretization/stretch_form.h>
 #include <crawler/fused/fused_tables.h>
 #include <crawler/time/time_integration.h>
 
@@ -16,7 +17,7 @@ namespace crawler
   public:
     static constexpr const char *gave_up = "gave_up";
 
-    /// @p scene is in natural units; it must fit (fits_fused) and outlive the stepper.
+    /// @p scene is in natural units; it must fit (fits_fused, reason_against_stretch_form) and outlive the stepper.
     FusedStepper(const Scene &scene, const FusedMethod &method);
 
     TimeOutcome
@@ -37,6 +38,13 @@ namespace crawler
     /// If set: sees the velocities in the stages of each accepted step, before the monitor sees the step.
     std::function<void(double time, ConstVector v)> stage_rates;
 
+    /// Stretch and friction where a friction law was not positive, of the last solve(), if one was not.
+    const std::optional<std::pair<double, double>> &
+    bad_friction() const
+    {
+      return bad_friction_;
+    }
+
   private:
     static bool
     next(void *context, unsigned int lane, LaneJob &job);
@@ -46,18 +54,32 @@ namespace crawler
     accepted(void *context, unsigned int lane, const LaneStep &step);
     static void
     done(void *context, unsigned int lane, const LaneOutcome &outcome);
+    static double
+    laws(void *context,
+         double t,
+         const double *m,
+         const double *w,
+         const double *rate,
+         double *mobility,
+         double *mobility_by_w,
+         double *force,
+         double *force_by_w,
+         double *force_by_rate);
     void
     show_rates();
 
     const Scene &scene_;
     const std::shared_ptr<const FusedTables> tables_owner_;
     const FusedTables &tables_;
+    LaneSetup setup_;
+    std::optional<StretchLaws> laws_; ///< of a general body in the stretch form
     const RadauTableau &tableau_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;
     std::vector<QuadraturePoint> quadrature_;
     FusedMemory memory_;
 
     // The state of one solve().
+    std::optional<std::pair<double, double>> bad_friction_;
     LaneJob job_;
     bool started_           = false;
     std::vector<double> *y_ = nullptr;

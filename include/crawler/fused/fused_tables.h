@@ -15,6 +15,7 @@ namespace crawler
   {
     unsigned int degree, n_cells, n_stages;
     std::vector<double> cell_ends = {}; ///< of a body of length 1 (discretization/graded_mesh.h)
+    bool is_stretch               = false; ///< the stretch form, of degree 1
 
     auto
     operator<=>(const FusedMethod &) const = default;
@@ -29,7 +30,7 @@ namespace crawler
     explicit FusedTables(const FusedMethod &method);
     FusedTables(const FusedTables &) = delete;
 
-    /// Quadrature points of all cells, for a body of length 1.
+    /// Quadrature points of all cells, for a body of length 1; in the stretch form their middles.
     std::vector<double> points;
     LaneSetup setup;
 
@@ -57,10 +58,10 @@ namespace crawler
   FusedMemory
   fused_memory(std::size_t n);
 
-  /// The formulation `automatic` changes to log stretch when the stretch falls below this.
+  /// In a batch no stretch may fall below this.
   constexpr double small_stretch = 0.1;
 
-  /// Can the engine compute this scene?
+  /// Can the engine compute this scene in the position form?
   bool
   fits_fused(const Scene &scene);
 } // namespace crawler

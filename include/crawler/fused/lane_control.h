@@ -153,7 +153,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     is_hopeless() const
     {
       return failures > most_failures || next < least_step ||
-             (all_failures > many_failures && all_failures > large_part * steps);
+             (!job.is_last_resort && all_failures > many_failures && all_failures > large_part * steps);
     }
 
     /// From here on the past is no guide.

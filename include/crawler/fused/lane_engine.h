@@ -6,8 +6,8 @@
 #include <cstddef>
 
 /**
- * Kernels and time integration of the position form in one piece, for meshes that do not change and the p-model of
- * friction: Radau IIA with the simplified Newton method, as in time/radau.h, without an object of PETSc. Several bodies
+ * Kernels and time integration of a form in one piece, for meshes that do not change: the position form with the
+ * p-model of friction, and the stretch form. Radau IIA with the simplified Newton method, as in time/radau.h, without an object of PETSc. Several bodies
  * are computed side by side in the lanes of vector registers, each with its own parameters and its own steps; a lane
  * that is done takes the next body. No operation mixes lanes, so an answer does not depend on which bodies share a
  * batch.
@@ -32,6 +32,11 @@ namespace crawler
     const double *eigenvalues; ///< [pairs][real, imaginary]
     const double *vectors;     ///< [stages][1 + pairs][real, imaginary]
     const double *rows;        ///< [1 + pairs][stages][real, imaginary]
+
+    // The stretch form (lane_stretch.h), whose points are the middles of its cells.
+    bool is_stretch = false, is_power = false, sees_rate = false; ///< see StretchSystem; does m depend on w_t?
+    unsigned char node_rule = 0;                                  ///< NodeRule of discretization/stretch_loops.h
+    double backward_ratio = 1., switching_velocity = 1.;          ///< of the ground (scene/ground.h)
   };
 
   /// One body to compute.
@@ -44,6 +49,7 @@ namespace crawler
     unsigned int n_limits;
     unsigned int most_steps;
     double least_stretch; ///< a state with a smaller one is given up; the full path must tell what it means
+    bool is_last_resort;  ///< is there nobody else who would go on where Newton's method often fails?
     double start_time;
     const double *start;  ///< [unknowns] displacement at start_time; null: rest
     const double *frames; ///< ascending times after start_time where steps must end; the run ends with the last
@@ -104,6 +110,19 @@ namespace crawler
     bool (*accepted)(void *context, unsigned int lane, const LaneStep &step);
     void (*done)(void *context, unsigned int lane, const LaneOutcome &outcome);
     bool look_inside; ///< stretch and rates in all stages
+    /// The laws of a general body in the stretch form, for an engine with one lane, at all cells: from the stretch and
+    /// its rate the mobility 1/(g b), the force N, and their derivatives by w and w_t. Returns a number that is not
+    /// positive if one of them has no meaning. Null: those of a plain body.
+    double (*laws)(void *context,
+                   double t,
+                   const double *m,
+                   const double *w,
+                   const double *rate,
+                   double *mobility,
+                   double *mobility_by_w,
+                   double *force,
+                   double *force_by_w,
+                   double *force_by_rate) = nullptr;
   };
 
   /// The engine as compiled for one instruction set and one number of lanes.

@@ -85,6 +85,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       net_friction{}, abs_friction{}, velocity{};
   };
 
+  /// What is looked at in a state: the extreme stretches, the numbers of their samples, and the integrals.
+  template <typename Pack>
+  struct LaneLook
+  {
+    Pack least = broadcast<Pack>(HUGE_VAL), most = broadcast<Pack>(-HUGE_VAL), least_at{}, most_at{};
+    LaneIntegrals<Pack> sums;
+  };
+
   template <typename Pack, int q>
   struct LaneKernels
   {

@@ -13,6 +13,17 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   /// The polynomial of the last step is a good guess up to this multiple of the step.
   constexpr double longest_extrapolation = 3.;
 
+  /// A sum, or the larger one. What is not a number stays one.
+  template <bool largest, typename Pack>
+  inline Pack
+  added(const Pack &a, const Pack &b)
+  {
+    if constexpr (largest)
+      return a >= b ? a : b;
+    else
+      return a + b;
+  }
+
   template <typename Pack, int s>
   struct LaneStates
   {
@@ -93,7 +104,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     /// Takes a correction in the basis of the eigenvectors of A^-1 from z where @p moves; returns the sum of its
-    /// squares.
+    /// squares, or the largest of them.
+    template <bool largest>
     Pack
     correct(const Pack *real, const Complex<Pack> *complex, const typename PackTraits<Pack>::Mask &moves)
     {
@@ -109,7 +121,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
             const Complex<Pack> &x = complex[p * n + d];
             change += 2. * vector[0] * x.re - 2. * vector[1] * x.im;
           }
-          square += change * change;
+          square = added<largest>(square, change * change);
           Pack &moved = z[i * n + d];
           moved       = moves ? moved - change : moved;
         }

@@ -7,22 +7,82 @@
 
 #include <cstddef>
 
-/// The linear systems of the Radau methods for a pack of bodies (included by radau_lanes.h).
+/// The equations and linear systems of the position form for a pack of bodies (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// K + (g/h) M and K + (l_j/h) M, g and l_j the eigenvalues of A^-1: blocks of the cells (chain_loops.h) and the
-  /// tridiagonal system of the corners between them.
+  /// The unknowns are the displacements of the nodes. The systems are K + (g/h) M and K + (l_j/h) M, g and l_j the
+  /// eigenvalues of A^-1: blocks of the cells (chain_loops.h) and the tridiagonal system of the corners between them.
   template <typename Pack, int pairs>
-  class LaneSystems
+  class PositionSystem
   {
   public:
-    using Number = Complex<Pack>;
+    using Number                  = Complex<Pack>;
+    static constexpr bool largest = false; ///< the size of a vector is its mean square
 
-    LaneSystems(const LaneSetup &setup, const LaneMesh<Pack> &mesh)
+    PositionSystem(const LaneSetup &setup, const LaneHost &)
       : setup_(setup)
-      , mesh_(mesh)
       , kernels_(lane_kernels<Pack>(setup.degree))
     {
+      mesh_.n_cells = static_cast<int>(setup.n_cells);
+      mesh_.sizes   = setup.sizes;
+      mesh_.tables  = {setup.values, setup.derivatives, setup.weights, setup.stiffness};
+    }
+
+    int
+    n_unknowns() const
+    {
+      return static_cast<int>(setup_.n_cells * setup_.degree + 1);
+    }
+    int
+    n_controlled() const
+    {
+      return n_unknowns();
+    }
+    int
+    n_points() const
+    {
+      return static_cast<int>(setup_.n_cells * (setup_.degree + 1));
+    }
+
+    void
+    set_body(const int l, const LaneJob &job)
+    {
+      set_lane(mesh_.k, l, job.k);
+      set_lane(mesh_.friction.a, l, job.a);
+    }
+
+    void
+    sort_bodies()
+    {
+      mesh_.friction.sort();
+    }
+
+    Pack
+    residual(const double *, const Pack *u, const Pack *v, const Pack *m, Pack *F) const
+    {
+      return kernels_.residual(mesh_, u, v, m, F);
+    }
+
+    /// The extreme stretches, and if @p rates the integrals for the velocity @p v.
+    void
+    look(const Pack *u, const Pack *v, const Pack *m, const bool rates, LaneLook<Pack> &result) const
+    {
+      kernels_.extremes(mesh_,
+                        static_cast<int>(setup_.n_samples),
+                        setup_.sample_derivatives,
+                        u,
+                        &result.least,
+                        &result.least_at,
+                        &result.most,
+                        &result.most_at);
+      if (rates)
+        kernels_.integrals(mesh_, u, v, m, result.sums);
+    }
+
+    Pack
+    integral(const Pack *u) const
+    {
+      return kernels_.integral(mesh_, u);
     }
 
     void
@@ -43,7 +103,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     /// For the state (@p u, @p v).
     void
-    factorize(const Pack *u, const Pack *v, const Pack &inverse_h)
+    factorize(const double *, const Pack *u, const Pack *v, const Pack *, const Pack &inverse_h)
     {
       Number shifts[pairs];
       for (int j = 0; j < pairs; ++j)
@@ -140,7 +200,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     const LaneSetup &setup_;
-    const LaneMesh<Pack> &mesh_;
+    LaneMesh<Pack> mesh_;
     const LaneKernelTable<Pack> &kernels_;
     Pack *blocks_, *schur_, *lower_, *pivot_, *upper_;
     Number *complex_blocks_, *complex_schur_, *complex_lower_, *complex_pivot_, *complex_upper_; ///< [pair][...]

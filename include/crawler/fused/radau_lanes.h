@@ -6,6 +6,7 @@
 #include <crawler/fused/lane_kernels.h>
 #include <crawler/fused/lane_memory.h>
 #include <crawler/fused/lane_states.h>
+#include <crawler/fused/lane_stretch.h>
 #include <crawler/fused/lane_systems.h>
 
 #include <cstddef>
@@ -17,7 +18,8 @@
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  template <typename Pack, int s>
+  /// @p System: the equations of a form (lane_systems.h, lane_stretch.h).
+  template <typename Pack, int s, template <typename, int> class System>
   class RadauLanes
   {
   public:
@@ -27,16 +29,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     RadauLanes(const LaneSetup &setup, const LaneHost &host, double *memory)
       : setup_(setup)
       , host_(host)
-      , kernels_(lane_kernels<Pack>(setup.degree))
-      , n_(static_cast<int>(setup.n_cells * setup.degree + 1))
-      , n_points_(static_cast<int>(setup.n_cells * (setup.degree + 1)))
+      , system_(setup, host)
+      , n_(system_.n_unknowns())
+      , n_points_(system_.n_points())
       , memory_(memory)
       , states_{setup, n_}
-      , systems_(setup, mesh_)
     {
-      mesh_.n_cells = static_cast<int>(setup.n_cells);
-      mesh_.sizes   = setup.sizes;
-      mesh_.tables  = {setup.values, setup.derivatives, setup.weights, setup.stiffness};
       lay_out();
     }
 
@@ -57,12 +55,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       while (any_busy())
       {
         if (friction_changed_)
-          mesh_.friction.sort();
+          system_.sort_bodies();
         friction_changed_ = false;
         begin_step();
         guess();
         states_.go_to_stage(middle, inverse_h_);
-        systems_.factorize(states_.u, states_.v, inverse_h_);
+        system_.factorize(times_[middle], states_.u, states_.v, m_ + middle * n_points_, inverse_h_);
         newton();
         estimate_error();
         decide();
@@ -80,7 +78,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory_.piece(m_start_, n_points_);
       memory_.piece(real_, n);
       memory_.piece(complex_, pairs * n);
-      systems_.lay_out(memory_);
+      system_.lay_out(memory_);
       memory_.piece(scratch_, n_points_);
     }
 
@@ -101,11 +99,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       lane       = Lane();
       lane.busy  = host_.next(host_.context, static_cast<unsigned int>(l), lane.job);
       if (!lane.busy)
-        lane.job = {1., 0., 1., 1., nullptr, 0, 0, 0., 0., nullptr, nullptr, 0, nullptr};
+        lane.job = {1., 0., 1., 1., nullptr, 0, 0, 0., false, 0., nullptr, nullptr, 0, nullptr};
       lane.t    = lane.job.start_time;
       lane.next = lane.job.initial_step;
-      set_lane(mesh_.k, l, lane.job.k);
-      set_lane(mesh_.friction.a, l, lane.job.a);
+      system_.set_body(l, lane.job);
       set_lane(tolerance_, l, lane.job.tolerance);
       friction_changed_ = true;
       states_.start(l, lane.job.start);
@@ -133,8 +130,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         if (lane.busy)
         {
           lane.choose_step();
+          start_[l] = lane.t;
           for (int i = 0; i < s; ++i)
-            stress(l, i + 1 < s ? lane.t + setup_.c[i] * lane.h : lane.end_of_step(), m_ + i * n_points_);
+          {
+            times_[i][l] = i + 1 < s ? lane.t + setup_.c[i] * lane.h : lane.end_of_step();
+            stress(l, times_[i][l], m_ + i * n_points_);
+          }
         }
         set_lane(inverse_h_, l, 1. / lane.h);
       }
@@ -163,7 +164,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         for (int i = 0; i < s; ++i)
         {
           states_.go_to_stage(i, inverse_h_);
-          least = smaller(least, kernels_.residual(mesh_, states_.u, states_.v, m_ + i * n_points_, F_ + i * n_));
+          least = smaller(
+            least, system_.residual(times_[i], states_.u, states_.v, m_ + i * n_points_, F_ + i * n_));
         }
         const Pack correction = correct();
         for (int l = 0; l < lanes; ++l)
@@ -183,6 +185,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         if (lane.iterating)
           return true;
       return false;
+    }
+
+    /// The square of the size of @p n elements in units of the tolerance.
+    Pack
+    relative(const Pack &square, const int n) const
+    {
+      const Pack in_units = square / (tolerance_ * tolerance_);
+      return System<Pack, pairs>::largest ? in_units : in_units * (1. / n);
     }
 
     /// One correction from the residuals F, in the basis of the eigenvectors of A^-1; returns its mean square in units
@@ -214,11 +224,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           complex_[p * n_ + d] = r;
         }
       }
-      systems_.solve(real_);
+      system_.solve(real_);
       for (int p = 0; p < pairs; ++p)
-        systems_.solve_complex(p, complex_ + p * n_);
-      const Pack square = states_.correct(real_, complex_, mask > 0.);
-      return square / (tolerance_ * tolerance_) * (1. / (s * n_));
+        system_.solve_complex(p, complex_ + p * n_);
+      const Pack square = states_.template correct<System<Pack, pairs>::largest>(real_, complex_, mask > 0.);
+      return relative(square, s * n_);
     }
 
     /// The error of the embedded formula (time/radau.cc, estimate_error).
@@ -228,15 +238,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       states_.go_to_start(inverse_h_);
       for (int round = 0; round < 2; ++round)
       {
-        kernels_.residual(mesh_, states_.u, states_.v, m_start_, real_);
-        systems_.solve(real_);
+        system_.residual(start_, states_.u, states_.v, m_start_, real_);
+        system_.solve(real_);
         Pack square{};
+        for (int d = 0; d < system_.n_controlled(); ++d)
+          square = added<System<Pack, pairs>::largest>(square, real_[d] * real_[d]);
         for (int d = 0; d < n_; ++d)
-        {
-          square += real_[d] * real_[d];
           states_.u[d] = states_.y[d] - real_[d];
-        }
-        square     = square / (tolerance_ * tolerance_) * (1. / n_);
+        square     = relative(square, n_);
         bool again = false;
         for (int l = 0; l < lanes; ++l)
         {
@@ -289,7 +298,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 0; i < n_points_; ++i)
         m_start_[i] = accepted ? m_[(s - 1) * n_points_ + i] : m_start_[i];
       if (host_.look_inside)
-        systems_.velocity(
+        system_.velocity(
           states_.y, m_ + (s - 1) * n_points_, states_.v); // that of the stage is Newton's, with its error
       look_at_stage(s - 1, states_.y);
       for (int l = 0; l < lanes; ++l)
@@ -301,17 +310,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     look_at_stage(const int i, const Pack *u)
     {
-      Pack least, least_at, most, most_at;
-      kernels_.extremes(
-        mesh_, static_cast<int>(setup_.n_samples), setup_.sample_derivatives, u, &least, &least_at, &most, &most_at);
-      LaneIntegrals<Pack> sums;
-      if (host_.look_inside)
-        kernels_.integrals(mesh_, u, states_.v, m_ + i * n_points_, sums);
+      LaneLook<Pack> look;
+      system_.look(u, states_.v, m_ + i * n_points_, host_.look_inside, look);
+      const LaneIntegrals<Pack> &sums = look.sums;
       for (int l = 0; l < lanes; ++l)
-        stages_[l][i] = {get_lane(least, l),
-                         get_lane(most, l),
-                         static_cast<unsigned int>(get_lane(least_at, l)),
-                         static_cast<unsigned int>(get_lane(most_at, l)),
+        stages_[l][i] = {get_lane(look.least, l),
+                         get_lane(look.most, l),
+                         static_cast<unsigned int>(get_lane(look.least_at, l)),
+                         static_cast<unsigned int>(get_lane(look.most_at, l)),
                          get_lane(sums.stress_power, l),
                          get_lane(sums.positive_power, l),
                          get_lane(sums.absolute_power, l),
@@ -373,20 +379,19 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                   lane.steps,
                   lane.rejected,
                   lane.newton,
-                  get_lane(kernels_.integral(mesh_, states_.y), l)});
+                  get_lane(system_.integral(states_.y), l)});
       take_next(l);
     }
 
     const LaneSetup &setup_;
     const LaneHost &host_;
-    const LaneKernelTable<Pack> &kernels_;
-    const int n_, n_points_; ///< unknowns and quadrature points
+    System<Pack, pairs> system_;
+    const int n_, n_points_; ///< unknowns, and points with an active stress
     LaneMemory memory_;
-    LaneMesh<Pack> mesh_;
     LaneStates<Pack, s> states_;
-    LaneSystems<Pack, pairs> systems_;
     Lane lanes_[lanes];
     Pack tolerance_, inverse_h_;
+    double times_[s][lanes], start_[lanes]; ///< of the stages, and where the step starts
     bool friction_changed_ = true;
     LaneStage stages_[lanes][s]; ///< what the host gets to see
     Pack elastic_energy_{};

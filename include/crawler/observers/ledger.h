@@ -15,7 +15,7 @@ namespace crawler
     double exchanged      = 0.; ///< int int |m zeta_st| ds dt [energy]
     double end_work       = 0.; ///< int [m v] from s = 0 to L dt [energy]
     double elastic_energy = 0.; ///< of the present state [energy]
-    double transfer_loss  = 0.; ///< elastic energy lost by changes of mesh and formulation [energy]
+    double transfer_loss  = 0.; ///< elastic energy lost by changes of the mesh [energy]
     double initial_energy = 0.; ///< elastic energy at t = 0, of a body that does not start unstretched [energy]
 
     /// All of these, for what is done to each.
@@ -34,6 +34,10 @@ namespace crawler
     /// All energies times @p unit.
     Ledger
     scaled(double unit) const;
+
+    /// @p own times these energies and @p part times the others.
+    Ledger
+    combined(double own, const Ledger &other, double part) const;
 
     /// int int m_s zeta_t ds dt, the energy of the paper [energy].
     double

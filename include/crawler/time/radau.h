@@ -24,8 +24,6 @@ namespace crawler
       setup;
     std::function<PetscErrorCode(ConstVector b, std::span<double> x)> solve_real;
     std::function<PetscErrorCode(unsigned int i, std::span<const Complex> b, std::span<Complex> x)> solve_complex;
-    /// Has F derivatives everywhere? If not, a second correction must be small.
-    bool smooth = true;
     /// Keeps K and M at the state of a stage, and result = K x + M x_dot with them.
     std::function<PetscErrorCode(unsigned int stage, double t, ConstVector y, ConstVector y_dot)> setup_stage;
     std::function<PetscErrorCode(unsigned int stage, ConstVector x, ConstVector x_dot, std::span<double> result)>

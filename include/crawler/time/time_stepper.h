@@ -20,14 +20,14 @@ namespace crawler
    * class. Vectors are the owned values of each rank. An exception thrown by a callback ends solve() with it.
    *
    * Errors are controlled absolutely, with the root mean square of the estimated error of a step over all unknowns,
-   * each divided by its weight, so y should be a displacement from rest. Newton's method stops when the estimated
+   * so y should be a displacement from rest. Newton's method stops when the estimated
    * remaining error is below 1% of that.
    */
   class TimeStepper : public TimeIntegration
   {
   public:
-    /// @p weights: for each owned unknown the error that counts as much as an error of 1 in the displacement.
-    TimeStepper(MPI_Comm communicator, const std::vector<double> &weights, const TimeParameters &parameters);
+    /// @p n_owned: unknowns of this rank.
+    TimeStepper(MPI_Comm communicator, std::size_t n_owned, const TimeParameters &parameters);
     ~TimeStepper() override;
     TimeStepper(const TimeStepper &) = delete;
 
@@ -49,8 +49,6 @@ namespace crawler
     /// destination = dF/dy x + dF/dy_dot x_dot.
     std::function<void(unsigned int stage, double t, ConstVector y, ConstVector y_dot)> setup_stage;
     std::function<void(unsigned int stage, ConstVector x, ConstVector x_dot, Vector destination)> stage_vmult;
-    /// Has F derivatives everywhere? If not, Newton's method goes on until a second correction is small.
-    bool smooth = true;
     /// Is solve_with_jacobian the inverse of jacobian_vmult? If not it preconditions a Krylov method, unless the user
     /// asks for another linear solver.
     bool exact_elimination = true;

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/discretization/stretch_loops.h>
+#include <crawler/fused/lane_engine.h>
+#include <crawler/fused/lane_kernels.h>
+#include <crawler/fused/lane_memory.h>
+
+#include <cstddef>
+
+/// The equations and linear systems of the stretch form for a pack of bodies (included by radau_lanes.h).
+namespace crawler::CRAWLER_INSTRUCTION_SET
+{
+  /// The smallest w^(1+a) that is looked at, where that is what the unknown is made of.
+  constexpr double least_power = 1e-8;
+
+  /**
+   * The unknowns are those of the cells, and last the displacement of the left end, u_0' = v_0. That of a cell is its
+   * stretch w; or q = w^(1+a)/(1+a), -1 < a < 0, which passes 0 at a finite rate where a body inverts (LaneSetup).
+   *
+   *   F_j = q_j' - c_j (v_{j+1} - v_j)/h_j,   c = dq/dw,        F_n = u_0' - v_0
+   */
+  template <typename Pack, int pairs>
+  class StretchSystem
+  {
+  public:
+    using Number                  = Complex<Pack>;
+    static constexpr int lanes    = PackTraits<Pack>::size;
+    static constexpr bool largest = true; ///< is the size of a vector that of its largest element, else the mean square
+
+    StretchSystem(const LaneSetup &setup, const LaneHost &host)
+      : setup_(setup)
+      , host_(host)
+      , n_(static_cast<int>(setup.n_cells))
+      , rule_(static_cast<NodeRule>(setup.node_rule))
+    {
+    }
+
+    int
+    n_unknowns() const
+    {
+      return n_ + 1;
+    }
+    /// Of these the error is controlled.
+    int
+    n_controlled() const
+    {
+      return n_;
+    }
+    int
+    n_points() const
+    {
+      return n_;
+    }
+
+    void
+    lay_out(LaneMemory &memory)
+    {
+      const std::size_t n = n_;
+      memory.piece(w_, n);
+      memory.piece(slope_, n);
+      memory.piece(mobility_, n);
+      memory.piece(mobility_slope_, n);
+      memory.piece(force_, n);
+      memory.piece(force_by_w_, n);
+      memory.piece(force_by_rate_, n);
+      memory.piece(rate_, n);
+      memory.piece(lower_, n);
+      memory.piece(pivot_, n);
+      memory.piece(upper_, n);
+      memory.piece(complex_lower_, pairs * n);
+      memory.piece(complex_pivot_, pairs * n);
+      memory.piece(complex_upper_, pairs * n);
+    }
+
+    void
+    set_body(const int l, const LaneJob &job)
+    {
+      set_lane(k_, l, job.k);
+      set_lane(a_, l, job.a);
+      set_lane(friction_.a, l, -job.a);
+    }
+
+    void
+    sort_bodies()
+    {
+      friction_.sort();
+    }
+
+    /// Of the state @p q with the rates @p q_dot and the active stress @p m, at a time for each lane. Returns a number
+    /// that is not positive where the equation has no meaning.
+    Pack
+    residual(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, Pack *F)
+    {
+      const Pack least = evaluate(t, q, q_dot, m, /*slopes=*/false);
+      Pack left        = velocity_of_node(0);
+      F[n_]            = q_dot[n_] - left;
+      for (int j = 0; j < n_; ++j)
+      {
+        const Pack right = velocity_of_node(j + 1), change = (right - left) * (1. / setup_.sizes[j]);
+        F[j] = setup_.is_power ? q_dot[j] - change / slope_[j] : q_dot[j] - change;
+        left = right;
+      }
+      return least;
+    }
+
+    /// For the state (@p q, @p q_dot): the matrices with the eigenvalues of the method.
+    void
+    factorize(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, const Pack &inverse_h)
+    {
+      evaluate(t, q, q_dot, m, /*slopes=*/true);
+      Number shifts[pairs];
+      for (int p = 0; p < pairs; ++p)
+        shifts[p] = {setup_.eigenvalues[2 * p] * inverse_h, setup_.eigenvalues[2 * p + 1] * inverse_h};
+      shift_                 = setup_.real_eigenvalue * inverse_h;
+      const bool sees_rate   = setup_.sees_rate;
+      const double *h        = setup_.sizes;
+      const auto derivatives = [&](const int i, Node &node)
+      {
+        const NodeForce<Pack> f = node_force(rule_, n_, h, mobility_, force_, i);
+        Pack turn               = broadcast<Pack>(1.);
+        node.v                  = direct(f.slope * f.mobility.value, turn);
+        const Pack conductance  = turn * f.mobility.value * (1. / f.spacing), force = turn * f.slope;
+        node.by_left = node.by_right = node.by_left_rate = node.by_right_rate = Pack{};
+        if (i > 0)
+        {
+          node.by_left = (force * f.mobility.by_left * mobility_slope_[i - 1] - conductance * force_by_w_[i - 1]) *
+                         slope_[i - 1];
+          if (sees_rate)
+            node.by_left_rate = -conductance * force_by_rate_[i - 1];
+        }
+        if (i < n_)
+        {
+          node.by_right = (force * f.mobility.by_right * mobility_slope_[i] + conductance * force_by_w_[i]) * slope_[i];
+          if (sees_rate)
+            node.by_right_rate = conductance * force_by_rate_[i];
+        }
+      };
+      Node left, right;
+      derivatives(0, left);
+      end_by_w_    = -left.by_right;
+      end_by_rate_ = -left.by_right_rate;
+      for (int j = 0; j < n_; ++j)
+      {
+        derivatives(j + 1, right);
+        const Pack c = -1. / (h[j] * slope_[j]);
+        // K and M, below, on and above the diagonal.
+        Pack K[3] = {-c * left.by_left, c * (right.by_left - left.by_right), c * right.by_right};
+        if (setup_.is_power) // dc/dq = a/w
+          K[1] += a_ * (right.v - left.v) * (-1. / h[j]) / w_[j];
+        Pack M[3] = {Pack{}, broadcast<Pack>(1.), Pack{}};
+        if (sees_rate)
+        {
+          M[0] = -c * left.by_left_rate;
+          M[1] += c * (right.by_left_rate - left.by_right_rate);
+          M[2] = c * right.by_right_rate;
+        }
+        eliminate(j, shift_, K, M, lower_, pivot_, upper_);
+        for (int p = 0; p < pairs; ++p)
+          eliminate(j, shifts[p], K, M, complex_lower_ + p * n_, complex_pivot_ + p * n_, complex_upper_ + p * n_);
+        left = right;
+      }
+      for (int p = 0; p < pairs; ++p)
+        shifts_[p] = shifts[p];
+    }
+
+    void
+    solve(Pack *x) const
+    {
+      substitute(lower_, pivot_, upper_, x);
+      x[n_] = (x[n_] - (end_by_w_ + shift_ * end_by_rate_) * x[0]) / shift_;
+    }
+
+    void
+    solve_complex(const int p, Number *x) const
+    {
+      substitute(complex_lower_ + p * n_, complex_pivot_ + p * n_, complex_upper_ + p * n_, x);
+      Number rest    = x[n_];
+      const Number c = {end_by_w_ + shifts_[p].re * end_by_rate_, shifts_[p].im * end_by_rate_};
+      rest -= c * x[0];
+      x[n_] = rest * (1. / shifts_[p]);
+    }
+
+    /// The smallest and the largest stretch; the rates are the host's business.
+    void
+    look(const Pack *q, const Pack *, const Pack *, const bool, LaneLook<Pack> &result)
+    {
+      find_stretch(q);
+      for (int j = 0; j < n_; ++j)
+      {
+        const Pack place = broadcast<Pack>(j);
+        result.least_at  = w_[j] < result.least ? place : result.least_at;
+        result.least     = smaller(w_[j], result.least);
+        result.most_at   = w_[j] > result.most ? place : result.most_at;
+        result.most      = w_[j] > result.most ? w_[j] : result.most;
+      }
+    }
+
+    /// The displacement of all the body is the host's business, too.
+    Pack
+    integral(const Pack *) const
+    {
+      return Pack{};
+    }
+
+    void
+    velocity(const Pack *, const Pack *, Pack *)
+    {
+    }
+
+  private:
+    struct Node
+    {
+      Pack v, by_left, by_right, by_left_rate, by_right_rate;
+    };
+
+    /// v for the velocity that the ground would give without its direction, and the derivative.
+    Pack
+    direct(const Pack &v, Pack &slope) const
+    {
+      if constexpr (lanes == 1)
+        if (setup_.backward_ratio != 1.)
+          return NodeDirection{setup_.backward_ratio, setup_.switching_velocity}.velocity(v, slope);
+      return v;
+    }
+
+    Pack
+    velocity_of_node(const int i) const
+    {
+      const NodeForce<Pack> f = node_force(rule_, n_, setup_.sizes, mobility_, force_, i);
+      Pack slope{};
+      return direct(f.slope * f.mobility.value, slope);
+    }
+
+    /// w and dw/dq.
+    void
+    find_stretch(const Pack *q)
+    {
+      if (!setup_.is_power)
+      {
+        for (int j = 0; j < n_; ++j)
+        {
+          w_[j]     = q[j];
+          slope_[j] = broadcast<Pack>(1.);
+        }
+        return;
+      }
+      const Pack b = 1. + a_, inverse = 1. / b, least = least_power * inverse;
+      for (int j = 0; j < n_; ++j)
+        rate_[j] = b * (q[j] > least ? q[j] : least);
+      power_at_points(rate_, inverse, w_, n_);
+      for (int j = 0; j < n_; ++j)
+        slope_[j] = w_[j] / rate_[j];
+    }
+
+    Pack
+    evaluate(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, const bool slopes)
+    {
+      constexpr double nothing = 1e-300;
+      find_stretch(q);
+      Pack least = broadcast<Pack>(1.);
+      if constexpr (lanes == 1)
+        if (host_.laws != nullptr)
+        {
+          for (int j = 0; j < n_; ++j)
+            rate_[j] = q_dot[j] * slope_[j];
+          return host_.laws(
+            host_.context, *t, m, w_, rate_, mobility_, mobility_slope_, force_, force_by_w_, force_by_rate_);
+        }
+      for (int j = 0; j < n_; ++j)
+      {
+        force_[j] = m[j] + k_ * (w_[j] - 1.);
+        rate_[j]  = w_[j] > nothing ? w_[j] : broadcast<Pack>(nothing);
+        least     = a_ < 0. ? least : smaller(w_[j], least);
+      }
+      friction_(rate_, mobility_, n_);
+      for (int j = 0; j < n_; ++j)
+        mobility_[j] = w_[j] > nothing ? mobility_[j] : Pack{};
+      if (slopes)
+        for (int j = 0; j < n_; ++j)
+        {
+          mobility_slope_[j] = -a_ * mobility_[j] / rate_[j];
+          force_by_w_[j]     = k_;
+        }
+      return least;
+    }
+
+    template <typename Type>
+    static Type
+    shifted(const Pack &K, const Pack &M, const Type &shift)
+    {
+      if constexpr (sizeof(Type) == sizeof(Pack))
+        return K + shift * M;
+      else
+        return {K + shift.re * M, shift.im * M};
+    }
+
+    /// Row j of K + shift M: factors below the diagonal, 1/pivots, upper diagonal.
+    template <typename Type>
+    void
+    eliminate(const int j, const Type &shift, const Pack *K, const Pack *M, Type *lower, Type *pivot, Type *upper) const
+    {
+      Type diagonal = shifted(K[1], M[1], shift);
+      upper[j]      = shifted(K[2], M[2], shift);
+      if (j > 0)
+      {
+        lower[j] = shifted(K[0], M[0], shift) * pivot[j - 1];
+        diagonal -= lower[j] * upper[j - 1];
+      }
+      pivot[j] = 1. / diagonal;
+    }
+
+    template <typename Type>
+    void
+    substitute(const Type *lower, const Type *pivot, const Type *upper, Type *x) const
+    {
+      for (int j = 1; j < n_; ++j)
+        x[j] -= lower[j] * x[j - 1];
+      x[n_ - 1] *= pivot[n_ - 1];
+      for (int j = n_ - 2; j >= 0; --j)
+      {
+        x[j] -= upper[j] * x[j + 1];
+        x[j] *= pivot[j];
+      }
+    }
+
+    const LaneSetup &setup_;
+    const LaneHost &host_;
+    const int n_;
+    const NodeRule rule_;
+    LaneFriction<Pack> friction_; ///< of the mobility, w^-a
+    Pack k_, a_, shift_, end_by_w_, end_by_rate_;
+    Number shifts_[pairs];
+    Pack *w_, *slope_, *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell]
+    Pack *rate_;                                                                           ///< [cell] scratch
+    Pack *lower_, *pivot_, *upper_;
+    Number *complex_lower_, *complex_pivot_, *complex_upper_; ///< [pair][cell]
+  };
+} // namespace crawler::CRAWLER_INSTRUCTION_SET

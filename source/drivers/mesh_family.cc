@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/drivers/gait.h>
+#include <crawler/drivers/mesh_family.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    // The constants of the rule; doc/numerics.md says how they were found.
+    /// Cells of the finest mesh, and for a smaller Accuracy than accurate.
+    constexpr unsigned int most_cells = 3200, most_cells_if_accurate = 6400;
+    constexpr double accurate = 2e-6;
+    /// The error in time may be this part of the wanted one, and the time tolerance is made smaller so often for that.
+    constexpr double time_part             = 0.3;
+    constexpr unsigned int most_tolerances = 5;
+    constexpr double finer_tolerance       = 0.1;
+    /// The bound is at least this part of the wanted error: what all runs have in common.
+    constexpr double least_part = 0.5;
+    /// Observed orders between which second order is believed.
+    constexpr double least_order = 1.5, largest_order = 2.7;
+    /// A time tolerance, relative to the strain, that is so many times too large or small is chosen anew.
+    constexpr double too_large = 2., too_small = 0.05;
+    /// The displacement counts as no smaller than this part of the deformation.
+    constexpr double displacement_floor = 1e-4;
+    /// Meshes that lose a stretch at times that differ by this part of the duration do not agree.
+    constexpr double least_inversion_accuracy = 1e-4;
+
+    class Family
+    {
+    public:
+      Family(const Parameters &parameters,
+             const Scene &scene,
+             const NumericsChoice &choice,
+             const Simulation::Options &options,
+             const std::function<bool()> &keep_going)
+        : parameters_(parameters)
+        , scene_(scene)
+        , options_(options)
+        , keep_going_(keep_going)
+        , accuracy_(parameters.accuracy)
+      {
+        answer_.choice      = choice;
+        options_.resolution = true; // the size of the deformation
+        if (options_.cycles)
+          options_.cycles->accuracy *= 0.1; // displacements are compared
+      }
+
+      Answer
+      compute()
+      {
+        settle_time();
+        if (is_final(latest_))
+          return end();
+        const unsigned int most = accuracy_ < accurate ? most_cells_if_accurate : most_cells;
+        keep(latest_);
+        while (!is_good() && 2 * latest_.mesh->n_cells <= most)
+        {
+          numerics().parts *= 2;
+          latest_ = run(numerics());
+          if (is_final(latest_))
+            return end();
+          keep(latest_);
+        }
+        return end();
+      }
+
+    private:
+      Numerics &
+      numerics()
+      {
+        return answer_.choice.numerics;
+      }
+
+      SimulationResult
+      run(const Numerics &numerics)
+      {
+        ++n_runs_;
+        return Simulation(MPI_COMM_SELF, scene_, parameters_.time, numerics).run({}, options_, {}, keep_going_);
+      }
+
+      static bool
+      finished(const SimulationResult &result)
+      {
+        return result.time.status == "finished";
+      }
+
+      /// Does a finer mesh not say more?
+      static bool
+      is_final(const SimulationResult &result)
+      {
+        return result.time.status == "stopped" || result.time.reason == "inverted_at_end" ||
+               result.time.reason == "law_not_positive" || result.time.reason == "nonfinite";
+      }
+
+      static double
+      strain(const SimulationResult &result)
+      {
+        return std::max(1. - result.min_stretch.value, result.max_stretch.value - 1.);
+      }
+
+      void
+      measure_size()
+      {
+        if (finished(latest_))
+          size_ = std::max(std::abs(latest_.displacement), displacement_floor * latest_.largest_u);
+      }
+
+      double
+      wanted() const
+      {
+        return accuracy_ * size_;
+      }
+
+      /// The time tolerance: on the coarsest mesh a tenth of it must not change much.
+      void
+      settle_time()
+      {
+        latest_            = run(numerics());
+        const double right = numerics().tolerance * strain(latest_) / answer_.choice.strain;
+        if (!parameters_.time.tolerance && strain(latest_) > 0. &&
+            (numerics().tolerance > too_large * right || numerics().tolerance < too_small * right))
+        {
+          numerics().tolerance = std::min(right, numerics().tolerance * 100.);
+          latest_              = run(numerics());
+        }
+        measure_size();
+        for (unsigned int i = 0; i < most_tolerances && finished(latest_); ++i)
+        {
+          Numerics finer = numerics();
+          finer.tolerance *= finer_tolerance;
+          const SimulationResult other = run(finer);
+          if (!finished(other))
+          {
+            if (is_final(other))
+              latest_ = other;
+            break;
+          }
+          time_error_       = 2. * std::abs(other.displacement - latest_.displacement);
+          time_errors_      = number_errors(other, latest_, 2., 0.);
+          const bool enough = time_error_ <= time_part * wanted() || parameters_.time.tolerance;
+          if (enough)
+            break;
+          numerics().tolerance = finer.tolerance;
+          latest_              = other;
+          measure_size();
+        }
+      }
+
+      /// Extrapolates, and finds the error.
+      void
+      keep(const SimulationResult &result)
+      {
+        measure_size();
+        const bool now = finished(result);
+        if (!levels_.empty() && now != finished(levels_.back())) // what was believed before is not true
+          levels_.clear();
+        levels_.push_back(result);
+        space_error_ = HUGE_VAL;
+        if (!now)
+        {
+          judge_inversion();
+          return;
+        }
+        const std::size_t n = levels_.size();
+        extrapolated_       = result;
+        if (n == 1)
+          return;
+        const SimulationResult &before = levels_[n - 2];
+        extrapolate(before);
+        const double change = std::abs(result.displacement - before.displacement);
+        if (n == 2)
+        {
+          // Nothing is known of the order; the extrapolation cannot be wrong by more than all of it, twice.
+          space_error_ = change;
+          last_value_  = extrapolated_.displacement;
+          return;
+        }
+        const double change_before = std::abs(before.displacement - levels_[n - 3].displacement);
+        const double order         = std::log2(change_before / change);
+        const double settled       = std::abs(extrapolated_.displacement - last_value_);
+        last_value_                = extrapolated_.displacement;
+        space_error_               = order > least_order && order < largest_order ? settled
+                                     : order >= largest_order                     ? std::max(settled, change / 3.)
+                                     : order > 0.2 ? std::max(settled, change / (std::exp2(order) - 1.))
+                                                   : 5. * change;
+      }
+
+      void
+      extrapolate(const SimulationResult &coarse)
+      {
+        const auto better = [](const double fine, const double rough)
+        {
+          return (4. * fine - rough) / 3.;
+        };
+        SimulationResult &result = extrapolated_;
+        result.displacement      = better(result.displacement, coarse.displacement);
+        const auto ledger        = [&](std::optional<Ledger> &fine, const std::optional<Ledger> &rough)
+        {
+          if (fine && rough)
+            *fine = fine->combined(4. / 3., *rough, -1. / 3.);
+        };
+        ledger(result.ledger, coarse.ledger);
+        if (result.gait && coarse.gait && result.gait->period == coarse.gait->period)
+        {
+          result.gait->displacement = better(result.gait->displacement, coarse.gait->displacement);
+          ledger(result.gait->ledger, coarse.gait->ledger);
+        }
+        if (result.gait_efficiency)
+          result.gait_efficiency = gait_efficiency(scene_, result);
+      }
+
+      /// Two meshes must lose the stretch at the same time.
+      void
+      judge_inversion()
+      {
+        if (levels_.size() < 2 || !latest_.inversion || !levels_[levels_.size() - 2].inversion)
+          return;
+        space_error_ = std::abs(latest_.inversion->t - levels_[levels_.size() - 2].inversion->t);
+      }
+
+      bool
+      is_good() const
+      {
+        if (latest_.inversion)
+          return space_error_ <= std::max(accuracy_, least_inversion_accuracy) * scene_.end_time;
+        return finished(latest_) && std::max(space_error_, least_part * wanted()) + time_error_ <= wanted();
+      }
+
+      Answer
+      end()
+      {
+        answer_.choice.explanation += fmt::format("; {} runs with up to {} cells, tolerance {:.2g}",
+                                                  n_runs_,
+                                                  latest_.mesh ? latest_.mesh->n_cells : 0,
+                                                  numerics().tolerance);
+        answer_.choice.wanted_error = wanted();
+        answer_.result              = latest_;
+        SimulationResult &result    = answer_.result;
+        if (is_final(latest_))
+          return answer_;
+        if (finished(latest_))
+        {
+          result       = extrapolated_;
+          const double cycles = result.cycles ? result.cycles->bound : 0.;
+          const double floor  = std::max(least_part * wanted(), 1e-15 * scene_.body.length);
+          result.error        = {.total = std::max(space_error_, floor) + time_error_ + cycles,
+                                 .space = std::max(space_error_, floor),
+                                 .time  = time_error_ + cycles,
+                                 .model = 0.};
+          result.errors       = number_errors(result, latest_, 1., least_part * accuracy_);
+          for (std::size_t i = 0; i < NumberErrors::n; ++i)
+            result.errors->values[i] += time_errors_.values[i];
+          answer_.choice.promised_error = result.error->total;
+          if (!std::isfinite(space_error_))
+            result.error = DisplacementError();
+          if (!(result.error->total <= wanted() * (1. + 1e-9)))
+          {
+            result.time.status = "failed";
+            result.time.reason = accuracy_not_met;
+            result.time.message =
+              std::isfinite(space_error_)
+                ? fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}",
+                              result.error->total,
+                              wanted())
+                : "the error of the displacement is not known: the meshes do not agree";
+          }
+        }
+        else if (latest_.inversion)
+        {
+          result.inversion_error = std::isfinite(space_error_) ? std::optional(space_error_) : std::nullopt;
+          if (!std::isfinite(space_error_))
+          {
+            result.time.status  = "failed";
+            result.time.reason  = "under_resolved";
+            result.time.message = fmt::format("the stretch was lost at s = {:.6g}, t = {:.6g} with {} cells, but not on "
+                                              "the mesh with half as many: more cells or a smaller tolerance are needed",
+                                              latest_.inversion->s,
+                                              latest_.inversion->t,
+                                              latest_.mesh ? latest_.mesh->n_cells : 0);
+            result.inversion.reset();
+          }
+        }
+        return answer_;
+      }
+
+      const Parameters &parameters_;
+      const Scene &scene_;
+      Simulation::Options options_;
+      const std::function<bool()> &keep_going_;
+      const double accuracy_;
+      Answer answer_;
+      SimulationResult latest_, extrapolated_;
+      std::vector<SimulationResult> levels_;
+      NumberErrors time_errors_;
+      double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL, last_value_ = 0.;
+      unsigned int n_runs_ = 0;
+    };
+  } // namespace
+
+  Answer
+  answer_of_family(const Parameters &parameters,
+                   const Scene &scene,
+                   const NumericsChoice &choice,
+                   const Simulation::Options &options,
+                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
+                   const std::function<bool()> &keep_going)
+  {
+    Answer answer = Family(parameters, scene, choice, options, keep_going).compute();
+    if (!simulate || answer.result.time.status == "stopped")
+      return answer;
+    const SimulationResult files = simulate(answer.choice);
+    // Its frames make its steps a little different; the numbers are those that the bounds are for.
+    if (files.time.status == "stopped")
+      answer.result = files;
+    answer.result.output_seconds = files.output_seconds;
+    return answer;
+  }
+} // namespace crawler

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// What collapsing, stiff, inverting and soft bodies cost: the table of doc/numerics.md, "Stretch form". For each case and
+// Accuracy the CPU time of the whole answer with its bound, as a point of a sweep takes it (the faster of two), the true
+// error and the bound, both over Accuracy times the displacement. Prints Markdown; nothing is required of it.
+//
+//     stretch_table [part of a case's name] [formulation, for all cases]
+#include "../support/run_text.h"
+
+#include <crawler/drivers/compute.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+#include <ctime>
+#include <string>
+
+namespace
+{
+  using namespace crawler;
+
+  struct Case
+  {
+    std::string name;
+    double a, chi, k;
+    double reference; ///< displacement, or the time of the inversion
+    bool inverts;
+    double accurate; ///< the smallest Accuracy asked for
+  };
+
+  const Case cases[] = {{"a = -1, chi = 0.4", -1., 0.4, 1., .0900725298, false, 1e-6},
+                        {"a = -1, chi = 0.6", -1., 0.6, 1., .2349598824, false, 1e-6},
+                        {"a = -1, chi = 0.7", -1., 0.7, 1., .287958443, false, 1e-6},
+                        {"a = -1, chi = 0.8", -1., 0.8, 1., .328038004, false, 1e-6},
+                        {"a = -1, k = 10, chi = 0.6", -1., 0.6, 10., .26374413, false, 1e-6},
+                        {"a = -1, k = 100, chi = 0.56", -1., 0.56, 100., .24183304, false, 1e-6},
+                        {"a = -1, k = 1e-4, chi = 0.3", -1., 0.3, 1e-4, .0478959170, false, 1e-6},
+                        {"a = -1, k = 1e-5, chi = 0.3", -1., 0.3, 1e-5, .047935667, false, 1e-6},
+                        {"a = -1, k = 1e-6, chi = 0.3", -1., 0.3, 1e-6, .04794297, false, 1e-6},
+                        {"a = -7, k = 1e-4, chi = 0.3", -7., 0.3, 1e-4, .516944874, false, 1e-4},
+                        {"a = -0.8, chi = 0.77", -0.8, 0.77, 1., .322123, true, 1e-4}};
+
+  double
+  cpu_seconds()
+  {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  }
+
+  void
+  show(const Case &c, const double accuracy, const std::string &formulation)
+  {
+    test::Settings settings = test::wave(c.a, c.chi, 1., 1., c.k);
+    settings.emplace_back("Accuracy", test::text(accuracy));
+    if (!formulation.empty())
+      settings.emplace_back("Discretization/Formulation", formulation);
+    Task task;
+    double seconds = HUGE_VAL;
+    for (int i = 0; i < 2; ++i)
+    {
+      task              = Task();
+      task.parameters   = test::parameters_with(settings);
+      const double from = cpu_seconds();
+      compute_all({&task, 1}, 600., []() { return false; });
+      seconds = std::min(seconds, cpu_seconds() - from);
+    }
+    const SimulationResult &result = task.computed.result;
+    const bool inverted            = result.inversion.has_value();
+    const double value             = inverted ? result.inversion->t : result.displacement;
+    const double wanted            = accuracy * (inverted ? 1. : std::abs(value));
+    const double bound = inverted ? result.inversion_error.value_or(NAN) : result.error ? result.error->total : NAN;
+    fmt::print("| {} | {:.0e} | {:.3g} ms | {:.10g} | {:.2g} | {:.2g} | {} {}, {} cells, {} steps{} |\n",
+               c.name,
+               accuracy,
+               1e3 * seconds,
+               value,
+               std::abs(value - c.reference) / wanted,
+               bound / wanted,
+               result.formulation == Formulation::stretch ? "stretch" : "position",
+               result.time.status == "finished" || result.time.status == "inverted" ? result.time.status
+                                                                                     : result.time.reason,
+               result.mesh ? result.mesh->n_cells : 0,
+               result.time.steps,
+               inverted != c.inverts ? ", WRONG" : "");
+    if (std::getenv("VERBOSE") != nullptr)
+      fmt::print("    {}\n", task.computed.choice.explanation);
+    std::fflush(stdout);
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  int one            = 1;
+  char *no_options[] = {argv[0], nullptr}, **none = no_options;
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(one, none, 1);
+  const std::string part = argc > 1 ? argv[1] : "", formulation = argc > 2 ? argv[2] : "";
+  fmt::print("| case | Accuracy | CPU | displacement or t* | true error | bound | by |\n|---|---|---|---|---|---|---|\n");
+  for (const Case &c : cases)
+    if (c.name.find(part) != std::string::npos)
+      for (const double accuracy : {1e-3, 1e-4, 1e-5, 1e-6})
+        if (accuracy >= c.accurate)
+          show(c, accuracy, formulation);
+}
