@@ -28,8 +28,9 @@ namespace crawler
     constexpr double too_large = 2., too_small = 0.05;
     /// The displacement counts as no smaller than this part of the deformation.
     constexpr double displacement_floor = 1e-4;
-    /// Meshes that lose a stretch at times that differ by this part of the duration do not agree.
-    constexpr double least_inversion_accuracy = 1e-4;
+    /// Extrapolations that settle at least so fast are believed to go on so; and what settles faster than fourth order
+    /// does it by chance.
+    constexpr double fast = 5., credited = 4., fastest = 16.;
 
     class Family
     {
@@ -98,6 +99,21 @@ namespace crawler
                result.time.reason == "law_not_positive" || result.time.reason == "nonfinite";
       }
 
+      /// What has to settle: the displacement, or the time when the body inverts.
+      static std::optional<double>
+      value(const SimulationResult &result)
+      {
+        if (finished(result))
+          return result.displacement;
+        return result.inversion ? std::optional(result.inversion->t) : std::nullopt;
+      }
+
+      static bool
+      are_alike(const SimulationResult &a, const SimulationResult &b)
+      {
+        return value(a) && value(b) && finished(a) == finished(b);
+      }
+
       static double
       strain(const SimulationResult &result)
       {
@@ -107,8 +123,8 @@ namespace crawler
       void
       measure_size()
       {
-        if (finished(latest_))
-          size_ = std::max(std::abs(latest_.displacement), displacement_floor * latest_.largest_u);
+        size_ = finished(latest_) ? std::max(std::abs(latest_.displacement), displacement_floor * latest_.largest_u) :
+                                    scene_.end_time;
       }
 
       double
@@ -130,65 +146,81 @@ namespace crawler
           latest_              = run(numerics());
         }
         measure_size();
-        for (unsigned int i = 0; i < most_tolerances && finished(latest_); ++i)
+        for (unsigned int i = 0; i < most_tolerances && value(latest_); ++i)
         {
           Numerics finer = numerics();
           finer.tolerance *= finer_tolerance;
           const SimulationResult other = run(finer);
-          if (!finished(other))
+          if (!value(other))
           {
             if (is_final(other))
               latest_ = other;
             break;
           }
-          time_error_       = 2. * std::abs(other.displacement - latest_.displacement);
-          time_errors_      = number_errors(other, latest_, 2., 0.);
-          const bool enough = time_error_ <= time_part * wanted() || parameters_.time.tolerance;
-          if (enough)
-            break;
+          if (are_alike(other, latest_))
+          {
+            time_error_  = 2. * std::abs(*value(other) - *value(latest_));
+            time_errors_ = number_errors(other, latest_, 2., 0.);
+            if (time_error_ <= time_part * wanted() || parameters_.time.tolerance)
+              break;
+          }
           numerics().tolerance = finer.tolerance;
           latest_              = other;
           measure_size();
         }
       }
 
-      /// Extrapolates, and finds the error.
+      /// Extrapolates, and finds the error in space.
       void
       keep(const SimulationResult &result)
       {
         measure_size();
-        const bool now = finished(result);
-        if (!levels_.empty() && now != finished(levels_.back())) // what was believed before is not true
+        extrapolated_ = result;
+        space_error_  = HUGE_VAL;
+        if (!value(result))
+        {
           levels_.clear();
-        levels_.push_back(result);
-        space_error_ = HUGE_VAL;
-        if (!now)
-        {
-          judge_inversion();
           return;
         }
-        const std::size_t n = levels_.size();
-        extrapolated_       = result;
-        if (n == 1)
-          return;
-        const SimulationResult &before = levels_[n - 2];
-        extrapolate(before);
-        const double change = std::abs(result.displacement - before.displacement);
-        if (n == 2)
+        if (!levels_.empty() && !are_alike(result, levels_.back().result)) // what was believed before is not true
+          levels_.clear();
+        Level now{result, *value(result)};
+        if (!levels_.empty())
         {
-          // Nothing is known of the order; the extrapolation cannot be wrong by more than all of it, twice.
-          space_error_ = change;
-          last_value_  = extrapolated_.displacement;
-          return;
+          const Level &before = levels_.back();
+          const double change = std::abs(*value(result) - *value(before.result));
+          extrapolate(before.result);
+          now.value   = *value(extrapolated_);
+          now.change  = change;
+          now.settled = std::abs(now.value - before.value);
+          // Nothing is known of the order yet; the extrapolation cannot be wrong by more than all of it.
+          space_error_ = levels_.size() == 1 ? change : error_of(before, now);
         }
-        const double change_before = std::abs(before.displacement - levels_[n - 3].displacement);
-        const double order         = std::log2(change_before / change);
-        const double settled       = std::abs(extrapolated_.displacement - last_value_);
-        last_value_                = extrapolated_.displacement;
-        space_error_               = order > least_order && order < largest_order ? settled
-                                     : order >= largest_order                     ? std::max(settled, change / 3.)
-                                     : order > 0.2 ? std::max(settled, change / (std::exp2(order) - 1.))
-                                                   : 5. * change;
+        levels_.push_back(now);
+      }
+
+      struct Level
+      {
+        SimulationResult result;
+        double value;                          ///< extrapolated
+        double change = 0., settled = HUGE_VAL; ///< of the value itself and of the extrapolated one since the last level
+      };
+
+      /// Of the extrapolated value, from the last two changes.
+      double
+      error_of(const Level &before, const Level &now) const
+      {
+        const double order = std::log2(before.change / now.change);
+        if (!(order > 0.2))
+          return 5. * now.change;
+        if (order < least_order)
+          return std::max(now.settled, now.change / (std::exp2(order) - 1.));
+        if (order > largest_order)
+          return std::max(now.settled, now.change / 3.);
+        if (levels_.size() == 2)
+          return now.settled;
+        return before.settled > fast * now.settled ? std::max(now.settled, before.settled / fastest) / credited :
+                                                     now.settled;
       }
 
       void
@@ -199,6 +231,11 @@ namespace crawler
           return (4. * fine - rough) / 3.;
         };
         SimulationResult &result = extrapolated_;
+        if (result.inversion)
+        {
+          result.inversion->t = better(result.inversion->t, coarse.inversion->t);
+          return;
+        }
         result.displacement      = better(result.displacement, coarse.displacement);
         const auto ledger        = [&](std::optional<Ledger> &fine, const std::optional<Ledger> &rough)
         {
@@ -215,21 +252,10 @@ namespace crawler
           result.gait_efficiency = gait_efficiency(scene_, result);
       }
 
-      /// Two meshes must lose the stretch at the same time.
-      void
-      judge_inversion()
-      {
-        if (levels_.size() < 2 || !latest_.inversion || !levels_[levels_.size() - 2].inversion)
-          return;
-        space_error_ = std::abs(latest_.inversion->t - levels_[levels_.size() - 2].inversion->t);
-      }
-
       bool
       is_good() const
       {
-        if (latest_.inversion)
-          return space_error_ <= std::max(accuracy_, least_inversion_accuracy) * scene_.end_time;
-        return finished(latest_) && std::max(space_error_, least_part * wanted()) + time_error_ <= wanted();
+        return value(latest_) && std::max(space_error_, least_part * wanted()) + time_error_ <= wanted();
       }
 
       Answer
@@ -273,7 +299,9 @@ namespace crawler
         }
         else if (latest_.inversion)
         {
-          result.inversion_error = std::isfinite(space_error_) ? std::optional(space_error_) : std::nullopt;
+          result = extrapolated_;
+          if (std::isfinite(space_error_))
+            result.inversion_error = std::max(space_error_, least_part * wanted()) + time_error_;
           if (!std::isfinite(space_error_))
           {
             result.time.status  = "failed";
@@ -296,9 +324,9 @@ namespace crawler
       const double accuracy_;
       Answer answer_;
       SimulationResult latest_, extrapolated_;
-      std::vector<SimulationResult> levels_;
+      std::vector<Level> levels_; ///< those that agree
       NumberErrors time_errors_;
-      double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL, last_value_ = 0.;
+      double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL;
       unsigned int n_runs_ = 0;
     };
   } // namespace

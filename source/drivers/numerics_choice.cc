@@ -30,9 +30,9 @@ namespace crawler
     /// The coarsest mesh of the stretch form, cells for each length in which the active stress changes, and the part of
     /// Accuracy that the time tolerance is, relative to the strain, and at most.
     constexpr unsigned int first_family_cells = 25;
-    constexpr double cells_of_length = 4., family_tolerance = 10., largest_family_tolerance = 3e-3;
+    constexpr double cells_of_length = 4., family_tolerance = 10., largest_family_tolerance = 1e-3;
     /// Its layers: of this many lengths k/max|m_s|, at most this part of the body.
-    constexpr double layer_lengths = 3., largest_layer = 0.02;
+    constexpr double layer_lengths = 1., largest_layer = 0.02;
     constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000,
                            most_adaptive_pilot_cells = 1200;
     /// How well a pilot that ends when its cycles repeat must know the displacement.
