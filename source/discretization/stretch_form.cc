@@ -28,14 +28,15 @@ namespace crawler
   } // namespace
 
   StretchMethod
-  stretch_method(const Scene &scene)
+  stretch_method(const Scene &scene, const bool other)
   {
     const double a        = scene.friction_exponent();
     const bool may_invert = a > -1. && a < 0.;
     const NodeRule rule   = a >= 0.                                                                ? NodeRule::friction
                             : may_invert || (a <= steep_exponent && scene.body.elastic_modulus <= soft) ? NodeRule::upwind
                                                                                                    : NodeRule::fronts;
-    return {static_cast<unsigned char>(rule), may_invert && scene.is_plain()};
+    const NodeRule other_rule = rule == NodeRule::fronts ? NodeRule::upwind : NodeRule::fronts;
+    return {static_cast<unsigned char>(other ? other_rule : rule), may_invert && scene.is_plain()};
   }
 
   std::string
@@ -89,9 +90,9 @@ namespace crawler
     return bad;
   }
 
-  StretchForm::StretchForm(const Scene &scene, const Discretization &discretization)
+  StretchForm::StretchForm(const Scene &scene, const Discretization &discretization, const bool other)
     : Assembler(scene, discretization)
-    , method_(stretch_method(scene))
+    , method_(stretch_method(scene, other))
     , power_(1. + scene.friction_exponent())
     , laws_(scene, middles(discretization))
     , w_(discretization.n_cells())

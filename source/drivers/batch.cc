@@ -24,7 +24,7 @@ namespace crawler
         !(is_stretch ? reason_against_stretch_form(scene).empty() : fits_fused(scene)))
       return std::nullopt;
     FusedMethod result = {
-      numerics.degree, numerics.n_cells, method.n_stages, first_cell_ends(scene, numerics), is_stretch};
+      numerics.degree, numerics.n_cells, method.n_stages, first_cell_ends(scene, numerics), is_stretch, numerics.other_rule};
     if (!result.cell_ends.empty())
       result.n_cells = static_cast<unsigned int>(result.cell_ends.size() - 1);
     return result;

@@ -15,6 +15,8 @@ namespace crawler
     // The constants of the rule; doc/numerics.md says how they were found.
     /// Cells of the finest mesh, and for a smaller Accuracy than accurate.
     constexpr unsigned int most_cells = 3200, most_cells_if_accurate = 6400;
+    /// But of bodies that invert: more do not help where the time of that converges slowly.
+    constexpr unsigned int most_cells_if_inverted = 400;
     constexpr double accurate = 2e-6;
     /// The error in time may be this part of the wanted one, and the time tolerance is made smaller so often for that.
     constexpr double time_part             = 0.3;
@@ -60,7 +62,8 @@ namespace crawler
           return end();
         const unsigned int most = accuracy_ < accurate ? most_cells_if_accurate : most_cells;
         keep(latest_);
-        while (!is_good() && 2 * latest_.mesh->n_cells <= most)
+        while (!is_good() && 2 * latest_.mesh->n_cells <=
+                               (latest_.inversion && std::isfinite(space_error_) && accuracy_ >= accurate ? most_cells_if_inverted : most))
         {
           numerics().parts *= 2;
           latest_ = run(numerics());
@@ -68,6 +71,8 @@ namespace crawler
             return end();
           keep(latest_);
         }
+        if (latest_.inversion && std::isfinite(space_error_))
+          check_inversion();
         return end();
       }
 
@@ -221,6 +226,17 @@ namespace crawler
           return now.settled;
         return before.settled > fast * now.settled ? std::max(now.settled, before.settled / fastest) / credited :
                                                      now.settled;
+      }
+
+      /// Near an inversion the last of the stretch may be fed by tiny flows; what the rule for the nodes makes of them is
+      /// a part of the error.
+      void
+      check_inversion()
+      {
+        Numerics other             = numerics();
+        other.other_rule           = true;
+        const SimulationResult run = this->run(other);
+        space_error_ = are_alike(run, latest_) ? std::max(space_error_, std::abs(*value(run) - *value(latest_))) : HUGE_VAL;
       }
 
       void

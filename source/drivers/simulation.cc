@@ -109,7 +109,7 @@ namespace crawler
     stretch_form_   = nullptr;
     if (numerics_.formulation == Formulation::stretch)
     {
-      auto form     = std::make_unique<StretchForm>(scene_, *discretization_);
+      auto form     = std::make_unique<StretchForm>(scene_, *discretization_, numerics_.other_rule);
       stretch_form_ = form.get();
       assembler_    = std::move(form);
     }

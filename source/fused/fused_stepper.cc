@@ -18,7 +18,7 @@ namespace crawler
   {
     if (method.is_stretch)
     {
-      const StretchMethod stretch     = stretch_method(scene);
+      const StretchMethod stretch     = stretch_method(scene, method.other_rule);
       const StretchFeedback *feedback = scene.active_stress->feedback();
       setup_.node_rule                = stretch.node_rule;
       setup_.is_power                 = stretch.is_power;

@@ -13,9 +13,9 @@ namespace crawler
     bool is_power;
   };
 
-  /// @p scene is in natural units.
+  /// @p scene is in natural units. @p other: with another rule than the best one, as a check.
   StretchMethod
-  stretch_method(const Scene &scene);
+  stretch_method(const Scene &scene, bool other = false);
 
   /// Why the stretch form cannot compute a scene, in words; empty if it can.
   std::string
@@ -55,7 +55,8 @@ namespace crawler
   class StretchForm : public Assembler
   {
   public:
-    StretchForm(const Scene &scene, const Discretization &discretization);
+    /// @p other: see stretch_method().
+    StretchForm(const Scene &scene, const Discretization &discretization, bool other = false);
 
     Formulation
     formulation() const override

@@ -45,6 +45,7 @@ namespace crawler
     Grading grading               = {};    ///< of the first mesh, which has n_cells cells without it
     double layer       = 0.; ///< of the stretch form: see layered_cell_ends() [length]; 0: none
     unsigned int parts = 1;  ///< of the stretch form, into which each of n_cells is divided
+    bool other_rule    = false; ///< of the stretch form, see stretch_method()
     bool jumps_move               = false; ///< the active stress jumps at places that move through the cells
   };
 
