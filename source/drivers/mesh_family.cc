@@ -71,7 +71,7 @@ namespace crawler
             return end();
           keep(latest_);
         }
-        if (latest_.inversion && std::isfinite(space_error_))
+        if (latest_.inversion && std::isfinite(space_error_) && !has_order_)
           check_inversion();
         return end();
       }
@@ -213,9 +213,10 @@ namespace crawler
 
       /// Of the extrapolated value, from the last two changes.
       double
-      error_of(const Level &before, const Level &now) const
+      error_of(const Level &before, const Level &now)
       {
         const double order = std::log2(before.change / now.change);
+        has_order_         = order > least_order;
         if (!(order > 0.2))
           return 5. * now.change;
         if (order < least_order)
@@ -228,8 +229,8 @@ namespace crawler
                                                      now.settled;
       }
 
-      /// Near an inversion the last of the stretch may be fed by tiny flows; what the rule for the nodes makes of them is
-      /// a part of the error.
+      /// Near an inversion the last of the stretch may be fed by tiny flows, and the time converges slowly; what the rule
+      /// for the nodes makes of them is a part of the error.
       void
       check_inversion()
       {
@@ -344,6 +345,7 @@ namespace crawler
       NumberErrors time_errors_;
       double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL;
       unsigned int n_runs_ = 0;
+      bool has_order_      = false; ///< observed between the last meshes
     };
   } // namespace
 

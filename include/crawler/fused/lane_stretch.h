@@ -65,12 +65,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory.piece(force_by_w_, n);
       memory.piece(force_by_rate_, n);
       memory.piece(rate_, n);
-      memory.piece(lower_, n);
-      memory.piece(pivot_, n);
-      memory.piece(upper_, n);
-      memory.piece(complex_lower_, pairs * n);
-      memory.piece(complex_pivot_, pairs * n);
-      memory.piece(complex_upper_, pairs * n);
+      memory.piece(rows_, n);
+      memory.piece(real_, n);
+      for (int p = 0; p < pairs; ++p)
+        memory.piece(complex_[p], n);
     }
 
     void
@@ -144,41 +142,106 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       {
         derivatives(j + 1, right);
         const Pack c = -1. / (h[j] * slope_[j]);
-        // K and M, below, on and above the diagonal.
-        Pack K[3] = {-c * left.by_left, c * (right.by_left - left.by_right), c * right.by_right};
+        Row &row     = rows_[j];
+        row.K[0]     = -c * left.by_left;
+        row.K[1]     = c * (right.by_left - left.by_right);
+        row.K[2]     = c * right.by_right;
         if (setup_.is_power) // dc/dq = a/w
-          K[1] += a_ * (right.v - left.v) * (-1. / h[j]) / w_[j];
-        Pack M[3] = {Pack{}, broadcast<Pack>(1.), Pack{}};
+          row.K[1] += a_ * (right.v - left.v) * (-1. / h[j]) / w_[j];
         if (sees_rate)
         {
-          M[0] = -c * left.by_left_rate;
-          M[1] += c * (right.by_left_rate - left.by_right_rate);
-          M[2] = c * right.by_right_rate;
+          row.M[0] = -c * left.by_left_rate;
+          row.M[1] = 1. + c * (right.by_left_rate - left.by_right_rate);
+          row.M[2] = c * right.by_right_rate;
         }
-        eliminate(j, shift_, K, M, lower_, pivot_, upper_);
-        for (int p = 0; p < pairs; ++p)
-          eliminate(j, shifts[p], K, M, complex_lower_ + p * n_, complex_pivot_ + p * n_, complex_upper_ + p * n_);
         left = right;
       }
+      // From both ends to the middle, all systems at once: the processor does these chains of operations side by side.
+      const int middle = n_ / 2;
+      for (int j = 0; j < n_; ++j)
+      {
+        shifted(j, shift_, real_[j]);
+        for (int p = 0; p < pairs; ++p)
+          shifted(j, shifts[p], complex_[p][j]);
+      }
+      for (int i = 0; i < middle || n_ - 1 - i > middle; ++i)
+      {
+        const int up = n_ - 1 - i;
+        if (i < middle)
+        {
+          eliminate_down(real_[i], real_[i + 1]);
+          for (int p = 0; p < pairs; ++p)
+            eliminate_down(complex_[p][i], complex_[p][i + 1]);
+        }
+        if (up > middle)
+        {
+          eliminate_up(real_[up], real_[up - 1]);
+          for (int p = 0; p < pairs; ++p)
+            eliminate_up(complex_[p][up], complex_[p][up - 1]);
+        }
+      }
+      real_[middle].pivot = 1. / real_[middle].pivot;
       for (int p = 0; p < pairs; ++p)
-        shifts_[p] = shifts[p];
+      {
+        complex_[p][middle].pivot = 1. / complex_[p][middle].pivot;
+        shifts_[p]                = shifts[p];
+      }
     }
 
     void
     solve(Pack *x) const
     {
-      substitute(lower_, pivot_, upper_, x);
-      x[n_] = (x[n_] - (end_by_w_ + shift_ * end_by_rate_) * x[0]) / shift_;
+      solve_all(x, static_cast<Number *>(nullptr));
     }
 
+    /// The real system and those of all pairs, @p y [pair][unknown].
     void
-    solve_complex(const int p, Number *x) const
+    solve_all(Pack *x, Number *y) const
     {
-      substitute(complex_lower_ + p * n_, complex_pivot_ + p * n_, complex_upper_ + p * n_, x);
-      Number rest    = x[n_];
-      const Number c = {end_by_w_ + shifts_[p].re * end_by_rate_, shifts_[p].im * end_by_rate_};
-      rest -= c * x[0];
-      x[n_] = rest * (1. / shifts_[p]);
+      const int middle = n_ / 2;
+      for (int i = 0; i < middle || n_ - 1 - i > middle; ++i)
+      {
+        const int up = n_ - 1 - i;
+        if (i < middle)
+        {
+          x[i + 1] -= real_[i + 1].before * x[i];
+          for (int p = 0; p < pairs && y != nullptr; ++p)
+            y[p * (n_ + 1) + i + 1] -= complex_[p][i + 1].before * y[p * (n_ + 1) + i];
+        }
+        if (up > middle)
+        {
+          x[up - 1] -= real_[up - 1].after * x[up];
+          for (int p = 0; p < pairs && y != nullptr; ++p)
+            y[p * (n_ + 1) + up - 1] -= complex_[p][up - 1].after * y[p * (n_ + 1) + up];
+        }
+      }
+      x[middle] *= real_[middle].pivot;
+      for (int p = 0; p < pairs && y != nullptr; ++p)
+        y[p * (n_ + 1) + middle] *= complex_[p][middle].pivot;
+      for (int i = 1; middle - i >= 0 || middle + i < n_; ++i)
+      {
+        const int down = middle - i, up = middle + i;
+        if (down >= 0)
+        {
+          x[down] = x[down] * real_[down].pivot - real_[down].after * x[down + 1];
+          for (int p = 0; p < pairs && y != nullptr; ++p)
+            substitute(complex_[p][down].pivot, complex_[p][down].after, y + p * (n_ + 1) + down, 1);
+        }
+        if (up < n_)
+        {
+          x[up] = x[up] * real_[up].pivot - real_[up].before * x[up - 1];
+          for (int p = 0; p < pairs && y != nullptr; ++p)
+            substitute(complex_[p][up].pivot, complex_[p][up].before, y + p * (n_ + 1) + up, -1);
+        }
+      }
+      x[n_] = (x[n_] - (end_by_w_ + shift_ * end_by_rate_) * x[0]) / shift_;
+      for (int p = 0; p < pairs && y != nullptr; ++p)
+      {
+        Number &rest   = y[p * (n_ + 1) + n_];
+        const Number c = {end_by_w_ + shifts_[p].re * end_by_rate_, shifts_[p].im * end_by_rate_};
+        rest -= c * y[p * (n_ + 1)];
+        rest *= 1. / shifts_[p];
+      }
     }
 
     /// The smallest and the largest stretch; the rates are the host's business.
@@ -285,43 +348,71 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return least;
     }
 
-    template <typename Type>
-    static Type
-    shifted(const Pack &K, const Pack &M, const Type &shift)
+    /// K and M below, on and above the diagonal.
+    struct Row
     {
-      if constexpr (sizeof(Type) == sizeof(Pack))
-        return K + shift * M;
+      Pack K[3], M[3];
+    };
+
+    /**
+     * A row of K + shift M and then of its factors: what is taken of the row before and of the row after while the rows
+     * are eliminated from both ends, and 1/pivot; on the way back the same two, times the pivot.
+     */
+    template <typename Type>
+    struct Factors
+    {
+      Type before, pivot, after;
+    };
+
+    void
+    shifted(const int j, const Pack &shift, Factors<Pack> &result) const
+    {
+      const Row &row = rows_[j];
+      if (setup_.sees_rate)
+        result = {row.K[0] + shift * row.M[0], row.K[1] + shift * row.M[1], row.K[2] + shift * row.M[2]};
       else
-        return {K + shift.re * M, shift.im * M};
+        result = {row.K[0], row.K[1] + shift, row.K[2]};
     }
 
-    /// Row j of K + shift M: factors below the diagonal, 1/pivots, upper diagonal.
-    template <typename Type>
     void
-    eliminate(const int j, const Type &shift, const Pack *K, const Pack *M, Type *lower, Type *pivot, Type *upper) const
+    shifted(const int j, const Number &shift, Factors<Number> &result) const
     {
-      Type diagonal = shifted(K[1], M[1], shift);
-      upper[j]      = shifted(K[2], M[2], shift);
-      if (j > 0)
-      {
-        lower[j] = shifted(K[0], M[0], shift) * pivot[j - 1];
-        diagonal -= lower[j] * upper[j - 1];
-      }
-      pivot[j] = 1. / diagonal;
+      const Row &row = rows_[j];
+      if (setup_.sees_rate)
+        result = {{row.K[0] + shift.re * row.M[0], shift.im * row.M[0]},
+                  {row.K[1] + shift.re * row.M[1], shift.im * row.M[1]},
+                  {row.K[2] + shift.re * row.M[2], shift.im * row.M[2]}};
+      else
+        result = {{row.K[0], Pack{}}, {row.K[1] + shift.re, shift.im}, {row.K[2], Pack{}}};
     }
 
     template <typename Type>
-    void
-    substitute(const Type *lower, const Type *pivot, const Type *upper, Type *x) const
+    static void
+    eliminate_down(Factors<Type> &row, Factors<Type> &next)
     {
-      for (int j = 1; j < n_; ++j)
-        x[j] -= lower[j] * x[j - 1];
-      x[n_ - 1] *= pivot[n_ - 1];
-      for (int j = n_ - 2; j >= 0; --j)
-      {
-        x[j] -= upper[j] * x[j + 1];
-        x[j] *= pivot[j];
-      }
+      row.pivot   = 1. / row.pivot;
+      row.after   = row.after * row.pivot;
+      next.pivot -= next.before * row.after;
+      next.before = next.before * row.pivot;
+    }
+
+    template <typename Type>
+    static void
+    eliminate_up(Factors<Type> &row, Factors<Type> &next)
+    {
+      row.pivot  = 1. / row.pivot;
+      row.before = row.before * row.pivot;
+      next.pivot -= next.after * row.before;
+      next.after = next.after * row.pivot;
+    }
+
+    /// y = pivot y - factor (the next one).
+    static void
+    substitute(const Number &pivot, const Number &factor, Number *y, const int next)
+    {
+      Number result = pivot * y[0];
+      result -= factor * y[next];
+      y[0] = result;
     }
 
     const LaneSetup &setup_;
@@ -333,7 +424,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Number shifts_[pairs];
     Pack *w_, *slope_, *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell]
     Pack *rate_;                                                                           ///< [cell] scratch
-    Pack *lower_, *pivot_, *upper_;
-    Number *complex_lower_, *complex_pivot_, *complex_upper_; ///< [pair][cell]
+    Row *rows_;
+    Factors<Pack> *real_;
+    Factors<Number> *complex_[pairs];
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

@@ -147,6 +147,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       kernels_.complex_backward(N, block, x);
     }
 
+    /// The real system and those of all pairs, @p y [pair][unknown].
+    void
+    solve_all(Pack *x, Number *y) const
+    {
+      solve(x);
+      for (int p = 0; p < pairs; ++p)
+        solve_complex(p, y + p * n_unknowns());
+    }
+
     /// The velocity @p v in which all forces balance. Takes the place of the real factors.
     void
     velocity(const Pack *u, const Pack *m, Pack *v)

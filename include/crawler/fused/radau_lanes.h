@@ -224,9 +224,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           complex_[p * n_ + d] = r;
         }
       }
-      system_.solve(real_);
-      for (int p = 0; p < pairs; ++p)
-        system_.solve_complex(p, complex_ + p * n_);
+      system_.solve_all(real_, complex_);
       const Pack square = states_.template correct<System<Pack, pairs>::largest>(real_, complex_, mask > 0.);
       return relative(square, s * n_);
     }
