@@ -15,8 +15,8 @@ namespace crawler
     // The constants of the rule; doc/numerics.md says how they were found.
     /// Cells of the finest mesh, and for a smaller Accuracy than accurate.
     constexpr unsigned int most_cells = 3200, most_cells_if_accurate = 6400;
-    /// But of bodies that invert: more do not help where the time of that converges slowly.
-    constexpr unsigned int most_cells_if_inverted = 400;
+    /// But of bodies that invert: more do not help where the time of that converges slowly, -1 < a < 0.
+    constexpr unsigned int most_cells_if_inverted = 1600, most_cells_if_it_sticks = 400;
     constexpr double accurate = 2e-6;
     /// The error in time may be this part of the wanted one, and the time tolerance is made smaller so often for that.
     constexpr double time_part             = 0.3;
@@ -60,10 +60,8 @@ namespace crawler
         settle_time();
         if (is_final(latest_))
           return end();
-        const unsigned int most = accuracy_ < accurate ? most_cells_if_accurate : most_cells;
         keep(latest_);
-        while (!is_good() && 2 * latest_.mesh->n_cells <=
-                               (latest_.inversion && std::isfinite(space_error_) && accuracy_ >= accurate ? most_cells_if_inverted : most))
+        while (!is_good() && 2 * latest_.mesh->n_cells <= most_cells_now())
         {
           numerics().parts *= 2;
           latest_ = run(numerics());
@@ -71,12 +69,27 @@ namespace crawler
             return end();
           keep(latest_);
         }
-        if (latest_.inversion && std::isfinite(space_error_) && !has_order_)
+        if (latest_.inversion && std::isfinite(space_error_) && !has_order_ && sticks())
           check_inversion();
         return end();
       }
 
     private:
+      bool
+      sticks() const
+      {
+        const double a = scene_.friction_exponent();
+        return a > -1. && a < 0.;
+      }
+
+      unsigned int
+      most_cells_now() const
+      {
+        if (latest_.inversion && std::isfinite(space_error_))
+          return sticks() ? most_cells_if_it_sticks : most_cells_if_inverted;
+        return accuracy_ < accurate ? most_cells_if_accurate : most_cells;
+      }
+
       Numerics &
       numerics()
       {

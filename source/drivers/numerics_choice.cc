@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/drivers/form_choice.h>
 #include <crawler/drivers/graded_choice.h>
 #include <crawler/drivers/numerics_choice.h>
 #include <crawler/drivers/stress_scales.h>
@@ -21,8 +22,6 @@ namespace crawler
     constexpr unsigned int fewest_cells = 4, most_cells = 4096;
     /// A pilot that breaks off with a smaller stretch than this has lost it.
     constexpr double emptied = 0.1;
-    /// Bodies softer than this, in natural units, have thin layers.
-    constexpr double soft = 1e-3;
     /// Meshes that would need more cells than this are adaptive, with this degree.
     constexpr unsigned int most_uniform_cells = 256, adaptive_degree = 4;
     /// The error of the displacement, relative, is below this times the sum of the error indicators over the strain.
@@ -165,7 +164,7 @@ namespace crawler
           finish(fixed);
           return choice_;
         }
-        if (may_be_stretch() && stiffness() < soft)
+        if (may_be_stretch() && is_soft(stiffness(), scene_.friction_exponent(), accuracy_))
         {
           stretch_form();
           return choice_;
@@ -473,8 +472,8 @@ namespace crawler
       bool
       is_for_stretch() const
       {
-        return may_be_stretch() && pilot_.time.reason != "inverted_at_end" && pilot_.min_stretch.value < emptied &&
-               scene_.friction_exponent() < 0.;
+        return may_be_stretch() && pilot_.time.reason != "inverted_at_end" &&
+               empties(pilot_.min_stretch.value, scene_.friction_exponent(), accuracy_);
       }
 
       /// The stretch form: the first of a family of meshes (mesh_family.h), or what the user has set.

@@ -5,6 +5,9 @@
 // error and the bound, both over Accuracy times the displacement. Prints Markdown; nothing is required of it.
 //
 //     stretch_table [part of a case's name] [formulation, for all cases]
+//
+// With the word "trade" the CPU time of both forms for bodies that become emptier or softer: which one is the cheaper
+// one at which Accuracy (choose_form() follows that).
 #include "../support/run_text.h"
 
 #include <crawler/drivers/compute.h>
@@ -85,6 +88,60 @@ namespace
       fmt::print("    {}\n", task.computed.choice.explanation);
     std::fflush(stdout);
   }
+
+  /// The CPU time of an answer that is as accurate as wanted, or nothing.
+  std::optional<double>
+  cost(const Case &c, const double accuracy, const std::string &formulation, double &least)
+  {
+    test::Settings settings = test::wave(c.a, c.chi, 1., 1., c.k);
+    settings.emplace_back("Accuracy", test::text(accuracy));
+    settings.emplace_back("Discretization/Formulation", formulation);
+    double seconds = HUGE_VAL;
+    for (int i = 0; i < 2; ++i)
+    {
+      Task task;
+      task.parameters   = test::parameters_with(settings);
+      const double from = cpu_seconds();
+      compute_all({&task, 1}, 20., []() { return false; });
+      seconds = std::min(seconds, cpu_seconds() - from);
+      least   = task.computed.result.min_stretch.value;
+      if (task.computed.result.time.status != "finished")
+        return std::nullopt;
+      if (seconds > 1.)
+        break;
+    }
+    return seconds;
+  }
+
+  void
+  show_trade()
+  {
+    fmt::print("| a | chi | k | smallest stretch | form | 1e-3 | 1e-4 | 1e-5 | 1e-6 | 1e-7 | 1e-8 |\n"
+               "|---|---|---|---|---|---|---|---|---|---|---|\n");
+    std::vector<Case> list;
+    for (const double chi : {0.4, 0.45, 0.5, 0.525, 0.55, 0.575, 0.6})
+      list.push_back({"", -1., chi, 1., 0., false, 0.});
+    for (const double chi : {0.5, 0.55, 0.6})
+      list.push_back({"", -0.5, chi, 1., 0., false, 0.});
+    for (const double k : {1e-1, 1e-2, 1e-3, 3e-4, 1e-4})
+      list.push_back({"", -1., 0.3, k, 0., false, 0.});
+    for (const double a : {-3., -7., 2.})
+      for (const double k : {1e-2, 1e-3, 1e-4})
+        list.push_back({"", a, 0.2, k, 0., false, 0.});
+    for (const Case &c : list)
+      for (const char *form : {"position", "stretch"})
+      {
+        std::string line;
+        double least = 0.;
+        for (const double accuracy : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8})
+        {
+          const auto seconds = cost(c, accuracy, form, least);
+          line += seconds ? fmt::format(" {:.3g} ms |", 1e3 * *seconds) : std::string(" - |");
+        }
+        fmt::print("| {} | {} | {:g} | {:.2g} | {} |{}\n", c.a, c.chi, c.k, least, form, line);
+        std::fflush(stdout);
+      }
+  }
 } // namespace
 
 int
@@ -94,6 +151,11 @@ main(int argc, char **argv)
   char *no_options[] = {argv[0], nullptr}, **none = no_options;
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(one, none, 1);
   const std::string part = argc > 1 ? argv[1] : "", formulation = argc > 2 ? argv[2] : "";
+  if (part == "trade")
+  {
+    show_trade();
+    return 0;
+  }
   fmt::print("| case | Accuracy | CPU | displacement or t* | true error | bound | by |\n|---|---|---|---|---|---|---|\n");
   for (const Case &c : cases)
     if (c.name.find(part) != std::string::npos)

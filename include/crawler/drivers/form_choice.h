@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+/**
+ * Which form is the cheaper one, as measured by `stretch_table trade` (doc/numerics.md, "Which form"): the position form
+ * is of high order where the body deforms smoothly, the stretch form of second order everywhere. So the limits fall with
+ * Accuracy.
+ */
+namespace crawler
+{
+  /// Is a body of this stiffness k T/(gamma L^2) for the stretch form, because of its thin layers? Steep friction, with
+  /// the @p exponent a, makes them thinner.
+  bool
+  is_soft(double stiffness, double exponent, double accuracy);
+
+  /// Is one for the stretch form whose smallest stretch is this?
+  bool
+  empties(double smallest_stretch, double exponent, double accuracy);
+} // namespace crawler
