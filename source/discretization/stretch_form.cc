@@ -127,6 +127,53 @@ namespace crawler
     return u_;
   }
 
+  std::vector<double>
+  StretchForm::stretch_slopes(const ConstVector y) const
+  {
+    const auto w        = stretch(y);
+    const auto &h       = discretization_.cell_size();
+    const std::size_t n = w.size();
+    std::vector<double> slopes(n, 0.);
+    for (std::size_t j = 0; j < n; ++j)
+    {
+      const auto to = [&](const std::size_t other)
+      {
+        return (w[other] - w[j]) / (0.5 * (h[j] + h[other]));
+      };
+      const double left = j > 0 ? -to(j - 1) : to(j + 1), right = j + 1 < n ? to(j + 1) : left;
+      slopes[j] = left * right > 0. ? std::copysign(std::min(std::abs(left), std::abs(right)), left) * h[j] : 0.;
+      if (j == 0 || j + 1 == n) // not below 0 at the end of the body
+        slopes[j] = std::clamp(slopes[j], -2. * w[j], 2. * w[j]);
+    }
+    return slopes;
+  }
+
+  void
+  StretchForm::evaluate(const double t, const ConstVector y, const ConstVector v) const
+  {
+    const auto w = stretch(y);
+    for (std::size_t j = 0; j < w.size(); ++j)
+      rate_[j] = (v[j + 1] - v[j]) / discretization_.cell_size()[j];
+    laws_.evaluate(t, w, rate_);
+  }
+
+  std::vector<double>
+  StretchForm::node_friction(const double t, const ConstVector y, const ConstVector v) const
+  {
+    evaluate(t, y, v);
+    const int n = static_cast<int>(w_.size());
+    std::vector<double> friction(w_.size() + 1);
+    for (int i = 0; i <= n; ++i)
+      friction[i] = node_force(static_cast<NodeRule>(method_.node_rule),
+                               n,
+                               discretization_.cell_size().data(),
+                               laws_.mobility.data(),
+                               laws_.force().N.data(),
+                               i)
+                      .slope;
+    return friction;
+  }
+
   StretchRange
   StretchForm::stretch_range(const ConstVector y)
   {
@@ -257,12 +304,10 @@ namespace crawler
   CellIntegrals
   StretchForm::integrals(const double t, const ConstVector y, const ConstVector v)
   {
+    evaluate(t, y, v);
     const auto u  = displacement(y);
     const auto w  = ConstVector(w_);
     const auto &h = discretization_.cell_size();
-    for (std::size_t j = 0; j < w.size(); ++j)
-      rate_[j] = (v[j + 1] - v[j]) / h[j];
-    laws_.evaluate(t, w, rate_);
     const BodyForceAtPoints &force = laws_.force();
     CellIntegrals sum;
     for (std::size_t j = 0; j < w.size(); ++j)

@@ -152,6 +152,7 @@ namespace crawler
         job = {.k             = lane.k,
                .a             = scene.body.friction_exponent(),
                .tolerance     = numerics.tolerance / lane.units.length,
+               .newton_factor = 1.,
                .initial_step  = numerics.initial_step / lane.units.time,
                .limits        = lane.limits.data(),
                .n_limits      = static_cast<unsigned int>(lane.limits.size()),

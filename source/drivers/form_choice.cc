@@ -11,6 +11,8 @@ namespace crawler
     /// Limits at low accuracy, the Accuracy from which on they fall, and how.
     constexpr double softest = 1e-3, emptied = 0.06, emptied_if_it_inverts = 3e-3, moderate = 1e-5;
     constexpr double softness_power = 0.5, stretch_power = 0.35;
+    /// Beyond these an adaptive mesh is the cheaper one.
+    constexpr double most_lengths = 30., least_accuracy = 1e-7;
 
     double
     falling(const double limit, const double accuracy, const double power)
@@ -23,6 +25,12 @@ namespace crawler
   is_soft(const double stiffness, const double exponent, const double accuracy)
   {
     return stiffness < falling(softest, accuracy, softness_power) * std::max(1., exponent * exponent);
+  }
+
+  bool
+  is_cheaper_than_adaptive(const double lengths, const double accuracy)
+  {
+    return lengths < most_lengths && accuracy >= least_accuracy;
   }
 
   bool

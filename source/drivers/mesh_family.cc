@@ -18,6 +18,9 @@ namespace crawler
     /// But of bodies that invert: more do not help where the time of that converges slowly, -1 < a < 0.
     constexpr unsigned int most_cells_if_inverted = 1600, most_cells_if_it_sticks = 400;
     constexpr double accurate = 2e-6;
+    /// Cells times steps that the next mesh may take, about a second for each 2e6, and how many times as many as the last
+    /// one it does.
+    constexpr double most_work = 1e7, most_work_if_accurate = 2e7, more_work = 5.;
     /// The error in time may be this part of the wanted one, and the time tolerance is made smaller so often for that.
     constexpr double time_part             = 0.3;
     constexpr unsigned int most_tolerances = 5;
@@ -28,11 +31,15 @@ namespace crawler
     constexpr double least_order = 1.5, largest_order = 2.7;
     /// A time tolerance, relative to the strain, that is so many times too large or small is chosen anew.
     constexpr double too_large = 2., too_small = 0.05;
+    /// An inversion whose time is not known better than this, relative to it, may be none.
+    constexpr double believed = 0.1;
     /// The displacement counts as no smaller than this part of the deformation.
     constexpr double displacement_floor = 1e-4;
     /// Extrapolations that settle at least so fast are believed to go on so; and what settles faster than fourth order
     /// does it by chance.
     constexpr double fast = 5., credited = 4., fastest = 16.;
+    /// That is believed where the order is as near to 2 as this.
+    constexpr double clean = 0.25;
 
     class Family
     {
@@ -61,7 +68,7 @@ namespace crawler
         if (is_final(latest_))
           return end();
         keep(latest_);
-        while (!is_good() && 2 * latest_.mesh->n_cells <= most_cells_now())
+        while (!is_good() && 2 * latest_.mesh->n_cells <= most_cells_now() && is_worth_it())
         {
           numerics().parts *= 2;
           latest_ = run(numerics());
@@ -80,6 +87,13 @@ namespace crawler
       {
         const double a = scene_.friction_exponent();
         return a > -1. && a < 0.;
+      }
+
+      bool
+      is_worth_it() const
+      {
+        const double work = 1. * latest_.mesh->n_cells * latest_.time.steps;
+        return more_work * work <= (accuracy_ < accurate ? most_work_if_accurate : most_work);
       }
 
       unsigned int
@@ -211,8 +225,8 @@ namespace crawler
           now.value   = *value(extrapolated_);
           now.change  = change;
           now.settled = std::abs(now.value - before.value);
-          // Nothing is known of the order yet; the extrapolation cannot be wrong by more than all of it.
-          space_error_ = levels_.size() == 1 ? change : error_of(before, now);
+          if (levels_.size() > 1) // two displacements may agree by chance
+            space_error_ = error_of(before, now);
         }
         levels_.push_back(now);
       }
@@ -238,8 +252,8 @@ namespace crawler
           return std::max(now.settled, now.change / 3.);
         if (levels_.size() == 2)
           return now.settled;
-        return before.settled > fast * now.settled ? std::max(now.settled, before.settled / fastest) / credited :
-                                                     now.settled;
+        return before.settled > fast * now.settled && std::abs(order - 2.) < clean ? std::max(now.settled, before.settled / fastest) / credited :
+                                                     std::max(now.settled, before.settled / fastest);
       }
 
       /// Near an inversion the last of the stretch may be fed by tiny flows, and the time converges slowly; what the rule
@@ -332,16 +346,18 @@ namespace crawler
           result = extrapolated_;
           if (std::isfinite(space_error_))
             result.inversion_error = std::max(space_error_, least_part * wanted()) + time_error_;
-          if (!std::isfinite(space_error_))
+          if (!(result.inversion_error.value_or(HUGE_VAL) <= believed * latest_.inversion->t))
           {
             result.time.status  = "failed";
             result.time.reason  = "under_resolved";
-            result.time.message = fmt::format("the stretch was lost at s = {:.6g}, t = {:.6g} with {} cells, but not on "
-                                              "the mesh with half as many: more cells or a smaller tolerance are needed",
+            result.time.message = fmt::format("the stretch was lost at s = {:.6g}, t = {:.6g} with {} cells, but the "
+                                              "meshes do not agree on it: more cells or a smaller tolerance are needed",
                                               latest_.inversion->s,
                                               latest_.inversion->t,
                                               latest_.mesh ? latest_.mesh->n_cells : 0);
             result.inversion.reset();
+            result.inverted_places.reset();
+            result.inversion_error.reset();
           }
         }
         return answer_;

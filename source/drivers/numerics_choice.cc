@@ -173,6 +173,13 @@ namespace crawler
         if (mesh != "adaptive")
           enough =
             uniform(mesh == "uniform" || user_cells_ || choice_.numerics.linear ? most_cells : most_uniform_cells);
+        // What no uniform mesh resolves is steep, not fine, if the active stress is smooth: fronts of friction.
+        if (!enough && may_be_stretch() && scene_.friction_exponent() < 0. && pilot_.time.reason != "inverted_at_end" &&
+            is_cheaper_than_adaptive(L_ / scales_.length, accuracy_))
+        {
+          stretch_form();
+          return choice_;
+        }
         if (mesh == "adaptive" || (mesh == "automatic" && !enough && !is_for_stretch() && !user_cells_ && !choice_.numerics.linear))
           adaptive();
         if (is_for_stretch())

@@ -274,7 +274,8 @@ namespace crawler
     }
     agree_on_failure(communicator, result.time);
     // Either all ranks share the cells, or each computes the whole body and the first one writes.
-    shared = size_of(communicator) > 1 && chosen && parameters.discretization.shares(chosen->numerics.n_cells);
+    shared = size_of(communicator) > 1 && chosen && chosen->numerics.formulation == Formulation::position &&
+             parameters.discretization.shares(chosen->numerics.n_cells);
     const MPI_Comm computing = shared ? communicator : MPI_COMM_SELF;
     const auto keep_going    = [&]()
     {

@@ -48,6 +48,8 @@ namespace crawler
     job_     = {.k             = scene_.body.elastic_modulus,
                 .a             = scene_.body.friction_exponent(),
                 .tolerance     = tolerance,
+                // On a stiff body an error of the stretch is one of the forces, k times as large.
+                .newton_factor = setup_.is_stretch ? std::min(1., 10. / scene_.body.elastic_modulus) : 1.,
                 .initial_step  = initial_step,
                 .limits        = limits.data(),
                 .n_limits      = static_cast<unsigned int>(limits.size()),

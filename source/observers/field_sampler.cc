@@ -76,7 +76,9 @@ namespace crawler
     const Discretization &d = assembler_.discretization();
     const auto u_local      = d.to_local<double>(assembler_.displacement(y), u_local_);
     const auto v_local      = d.to_local<double>(v, v_local_);
-    const auto cells        = assembler_.stretch(y);
+    const std::vector<double> slopes = assembler_.stretch_slopes(y);
+    const std::vector<double> friction = assembler_.node_friction(t, y, v);
+    const auto cells                   = assembler_.stretch(y);
     const unsigned int n = d.element().n, q = d.element().degree;
     const double k = assembler_.scene().body.elastic_modulus;
     for (std::size_t p = 0; p < points_.size(); ++p)
@@ -93,8 +95,14 @@ namespace crawler
       fields_.displacement[p] = u_p * units_.length;
       fields_.position[p]     = coordinates_[p] + fields_.displacement[p];
       fields_.velocity[p]     = v_p;
-      const double strain     = stretch_.strain(u_local, cell, d.cell_size()[cell], place);
-      fields_.stretch[p]        = cells.empty() ? 1. + strain : cells[cell];
+      double strain      = stretch_.strain(u_local, cell, d.cell_size()[cell], place);
+      fields_.stretch[p] = 1. + strain;
+      if (!cells.empty())
+      {
+        const double drawn = slopes[cell] * (points_[p].x - 0.5);
+        strain += drawn;
+        fields_.stretch[p] = std::max(cells[cell] + drawn, 0.);
+      }
       fields_.elastic_stress[p] = units_.force * equation::body_force(strain, 0., k);
     }
     if (general_)
@@ -113,6 +121,10 @@ namespace crawler
       for (std::size_t p = 0; p < points_.size(); ++p)
         fields_.friction_force[p] = equation::friction_force(fields_.friction_force[p], fields_.velocity[p]);
     }
+    if (!friction.empty())
+      for (std::size_t p = 0; p < points_.size(); ++p)
+        fields_.friction_force[p] =
+          values_[p * n] * friction[points_[p].cell] + values_[p * n + 1] * friction[points_[p].cell + 1];
     require_finite(fields_.active_stress, t * units_.time, d);
     for (std::size_t p = 0; p < points_.size(); ++p)
     {

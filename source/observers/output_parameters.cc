@@ -26,8 +26,8 @@ namespace crawler
       ledger_tolerance,
       positive(),
       "Largest admissible ledger residual, relative to the work that the active stress exchanges with "
-      "the body; beyond it the run fails its self-check. Automatic: ten times Accuracy (300 times once log stretch was "
-      "used), at least 1e-8 "
+      "the body; beyond it the run fails its self-check. Automatic: ten times Accuracy (300 times in the stretch "
+      "form), at least 1e-8 "
       "(a Tolerance or an integrator of the user's own choice: 0.1).",
       "1");
     declarations.numbers("Active stress table",

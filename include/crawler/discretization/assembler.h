@@ -85,6 +85,20 @@ namespace crawler
       return {};
     }
 
+    /// How the stretch may be drawn within the cells: its slopes there, times the size of the cell; and the friction at
+    /// the nodes [force/length], which balances the forces where cells are empty and their own laws have no value. Both
+    /// empty in the position form.
+    virtual std::vector<double>
+    stretch_slopes(ConstVector) const
+    {
+      return {};
+    }
+    virtual std::vector<double>
+    node_friction(double, ConstVector, ConstVector) const
+    {
+      return {};
+    }
+
     /// The extreme stretches of the whole body, the same on all ranks. A stretch that is not a number counts as the
     /// smallest.
     virtual StretchRange

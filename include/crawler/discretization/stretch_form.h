@@ -78,6 +78,11 @@ namespace crawler
     /// An empty cell has the stretch 0.
     ConstVector
     stretch(ConstVector y) const override;
+    /// They do not make new extremes, and fronts stay sharp.
+    std::vector<double>
+    stretch_slopes(ConstVector y) const override;
+    std::vector<double>
+    node_friction(double t, ConstVector y, ConstVector v) const override;
     StretchRange
     stretch_range(ConstVector y) override;
     void
@@ -93,10 +98,14 @@ namespace crawler
     lost_places(double t, ConstVector y, double reach);
 
   private:
+    /// The laws for the state @p y with the velocity @p v at the nodes.
+    void
+    evaluate(double t, ConstVector y, ConstVector v) const;
+
     const StretchMethod method_;
     const double power_; ///< 1 + a
-    StretchLaws laws_;
-    mutable std::vector<double> w_, u_;
-    std::vector<double> rate_;
+    // What was looked at last.
+    mutable StretchLaws laws_;
+    mutable std::vector<double> w_, u_, rate_;
   };
 } // namespace crawler

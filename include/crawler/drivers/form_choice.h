@@ -13,6 +13,11 @@ namespace crawler
   bool
   is_soft(double stiffness, double exponent, double accuracy);
 
+  /// Is the stretch form cheaper than an adaptive mesh, where no uniform one is enough? @p lengths of the active stress
+  /// fit on the body.
+  bool
+  is_cheaper_than_adaptive(double lengths, double accuracy);
+
   /// Is one for the stretch form whose smallest stretch is this?
   bool
   empties(double smallest_stretch, double exponent, double accuracy);

@@ -43,7 +43,8 @@ namespace crawler
   struct LaneJob
   {
     double k, a;      ///< elastic modulus, friction exponent
-    double tolerance; ///< root mean square of the error of a step
+    double tolerance;     ///< root mean square of the error of a step; in the stretch form the largest one of a stretch
+    double newton_factor; ///< on LaneSetup::newton_fraction
     double initial_step;
     const StepLimit *limits; ///< of its steps
     unsigned int n_limits;

@@ -99,7 +99,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       lane       = Lane();
       lane.busy  = host_.next(host_.context, static_cast<unsigned int>(l), lane.job);
       if (!lane.busy)
-        lane.job = {1., 0., 1., 1., nullptr, 0, 0, 0., false, 0., nullptr, nullptr, 0, nullptr};
+        lane.job = {1., 0., 1., 1., 1., nullptr, 0, 0, 0., false, 0., nullptr, nullptr, 0, nullptr};
       lane.t    = lane.job.start_time;
       lane.next = lane.job.initial_step;
       system_.set_body(l, lane.job);
@@ -171,7 +171,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         for (int l = 0; l < lanes; ++l)
           if (lanes_[l].iterating)
             lanes_[l].look_at_correction(
-              it, get_lane(least, l), ::sqrt(get_lane(correction, l)), setup_.newton_fraction);
+              it, get_lane(least, l), ::sqrt(get_lane(correction, l)), setup_.newton_fraction * lanes_[l].job.newton_factor);
       }
       for (Lane &lane : lanes_)
         if (lane.iterating)
