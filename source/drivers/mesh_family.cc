@@ -68,9 +68,13 @@ namespace crawler
         if (is_final(latest_))
           return end();
         keep(latest_);
-        while (!is_good() && 2 * latest_.mesh->n_cells <= most_cells_now() && is_worth_it())
+        for (;;)
         {
-          numerics().parts *= 2;
+          const bool good = is_good();
+          if (good ? is_fine_in_time() : 2 * latest_.mesh->n_cells > most_cells_now() || !is_worth_it())
+            break;
+          if (!good)
+            numerics().parts *= 2;
           latest_ = run(numerics());
           if (is_final(latest_))
             return end();
@@ -200,6 +204,32 @@ namespace crawler
           latest_              = other;
           measure_size();
         }
+      }
+
+      /// The error in time grows with the number of cells on stiff bodies: so it is measured again on the last mesh but
+      /// one. If it is too large the last mesh must be done again, with the smaller tolerance.
+      bool
+      is_fine_in_time()
+      {
+        if (parameters_.time.tolerance || levels_.size() < 2)
+          return true;
+        Numerics other = numerics();
+        other.parts /= 2;
+        other.tolerance *= finer_tolerance;
+        const SimulationResult result = run(other);
+        SimulationResult &before      = levels_[levels_.size() - 2].result;
+        if (!are_alike(result, before))
+          return true;
+        const double error = 2. * std::abs(*value(result) - *value(before));
+        if (error <= time_part * wanted() || ++n_corrections_ > most_tolerances)
+        {
+          time_error_ = std::max(time_error_, error);
+          return true;
+        }
+        numerics().tolerance = other.tolerance;
+        before               = result;
+        levels_.pop_back();
+        return false;
       }
 
       /// Extrapolates, and finds the error in space.
@@ -373,7 +403,7 @@ namespace crawler
       std::vector<Level> levels_; ///< those that agree
       NumberErrors time_errors_;
       double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL;
-      unsigned int n_runs_ = 0;
+      unsigned int n_runs_ = 0, n_corrections_ = 0;
       bool has_order_      = false; ///< observed between the last meshes
     };
   } // namespace
