@@ -233,7 +233,7 @@ namespace crawler
     add(AtlasPoint::stretch,
         [&](const std::size_t i) -> std::optional<Parameters>
         {
-          // The log-stretch form is for a < 0 (doc/numerics.md).
+          // For a >= 0 its inversions are located less well than those of the position form.
           if (!both_forms(i) || points[i].runs[AtlasPoint::automatic].is_stretch ||
               parameters[i].body.friction_exponent() >= 0.)
             return std::nullopt;

@@ -355,6 +355,8 @@ namespace crawler
         Answer answer           = run_as_promised(
           computing, parameters, input.scene, *chosen, simulate, run_options, /*writes=*/true, keep_going);
         result                  = std::move(answer.result);
+        if (answer.choice.is_family)
+          log.line("  (" + answer.choice.explanation + ")");
         result.estimate_seconds = answer.estimate_seconds;
         result.refinements      = answer.refinements;
       });
