@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/run_text.h"
 
-#include <crawler/discretization/general_log_form.h>
 #include <crawler/discretization/general_position_form.h>
 
 #include <gtest/gtest.h>
@@ -61,13 +60,13 @@ namespace
     return list;
   }
 
-  /// A form on three cells, with a state of stretches between about 0.6 and 1.4.
+  /// The form on three cells, with a state of stretches between about 0.6 and 1.4.
   struct Case
   {
-    Case(const Feature &feature, const Formulation formulation, const unsigned int degree)
+    Case(const Feature &feature, const unsigned int degree)
       : scene(test::parameters_with(feature.settings).create_scene())
       , d(MPI_COMM_SELF, 1., 3, degree)
-      , form(create_assembler(formulation, scene, d))
+      , form(create_position_form(scene, d))
       , y(form->n_owned())
       , y_dot(form->n_owned())
     {
@@ -78,21 +77,9 @@ namespace
         {
           const double s         = d.cell_left()[c] + d.cell_size()[c] * element.nodes[i];
           const std::size_t node = c * q + i;
-          const double v         = 0.3 * std::cos(4. * s) - 0.1;
           y[node]                = 0.06 * std::sin(5. * s) + 0.02 * s * s;
-          if (formulation == Formulation::position)
-            y_dot[node] = v;
-          else
-            y[y.size() - d.n_unknowns() + node] = v;
+          y_dot[node]            = 0.3 * std::cos(4. * s) - 0.1;
         }
-      if (formulation == Formulation::log_stretch)
-      {
-        const auto s = d.points(element.stretch_points);
-        for (std::size_t i = 0; i < s.size(); ++i)
-          y[d.n_unknowns() + i] = std::log(1. + 0.3 * std::cos(5. * s[i]) + 0.04 * s[i]);
-        for (std::size_t i = 0; i < y_dot.size(); ++i)
-          y_dot[i] = 0.1 * std::cos(0.9 * static_cast<double>(i)) - 0.03;
-      }
     }
 
     std::vector<double>
@@ -123,7 +110,7 @@ namespace
 
     Scene scene;
     Discretization d;
-    std::unique_ptr<Assembler> form;
+    std::unique_ptr<PositionForm> form;
     std::vector<double> y, y_dot;
   };
 
@@ -147,7 +134,7 @@ namespace
 
   /// Solves J x = b by Gauss elimination, J column by column from products.
   std::vector<double>
-  dense_solution(Assembler &form, std::vector<double> b)
+  dense_solution(PositionForm &form, std::vector<double> b)
   {
     const std::size_t n = b.size();
     std::vector<std::vector<double>> A(n, std::vector<double>(n));
@@ -189,14 +176,11 @@ TEST(GeneralForms, ProductsMatchDifferences)
 {
   constexpr double sigma = 37.;
   for (const Feature &feature : features())
-    for (const Formulation formulation : {Formulation::position, Formulation::log_stretch})
       for (const unsigned int q : {1u, 2u, 4u})
       {
-        Case test(feature, formulation, q);
+        Case test(feature, q);
         ASSERT_FALSE(test.scene.is_plain());
-        const std::string what = feature.name +
-                                 (formulation == Formulation::position ? ", position" : ", log stretch") + ", degree " +
-                                 std::to_string(q);
+        const std::string what = feature.name + ", degree " + std::to_string(q);
         const std::size_t n = test.y.size();
         for (const double roughness : {1., 40.})
         {
@@ -229,12 +213,11 @@ TEST(GeneralForms, ProductsMatchDifferences)
 /// The complex systems of Radau methods, by their real and imaginary parts.
 TEST(GeneralForms, ComplexSolutionsInvertTheProduct)
 {
-  using Complex                     = Assembler::Complex;
+  using Complex                     = PositionForm::Complex;
   const std::vector<Complex> shifts = {{11., 7.}};
   for (const Feature &feature : features())
-    for (const Formulation formulation : {Formulation::position, Formulation::log_stretch})
     {
-      Case test(feature, formulation, 3);
+      Case test(feature, 3);
       const StretchFeedback *stress = test.scene.active_stress->feedback();
       if (stress != nullptr && stress->sees_near())
         continue;
@@ -269,9 +252,8 @@ TEST(GeneralForms, NewtonConvergesQuadratically)
 {
   constexpr double sigma = 20.;
   for (const Feature &feature : features())
-    for (const Formulation formulation : {Formulation::position, Formulation::log_stretch})
     {
-      Case test(feature, formulation, 3);
+      Case test(feature, 3);
       std::vector<double> y = test.y, rate = test.y_dot, F(y.size()), norms;
       for (int i = 0; i < 12 && (norms.empty() || norms.back() > 1e-12); ++i)
       {
@@ -299,16 +281,12 @@ TEST(GeneralForms, NewtonConvergesQuadratically)
 TEST(GeneralForms, IdentitiesOfAState)
 {
   for (const Feature &feature : features())
-    for (const Formulation formulation : {Formulation::position, Formulation::log_stretch})
     {
-      Case test(feature, formulation, 4);
+      Case test(feature, 4);
       std::vector<double> v(test.d.n_unknowns()), F(test.y.size());
       ASSERT_TRUE(test.form->velocity(t, test.y, v)) << feature.name;
-      if (formulation == Formulation::position)
-      {
-        ASSERT_TRUE(test.form->residual(t, test.y, v, F));
-        EXPECT_LT(largest(F), 1e-11) << feature.name;
-      }
+      ASSERT_TRUE(test.form->residual(t, test.y, v, F));
+      EXPECT_LT(largest(F), 1e-11) << feature.name;
       const CellIntegrals sums = test.form->integrals(t, test.y, v);
       EXPECT_LT(std::abs(sums.net_friction), 1e-11 * sums.abs_friction) << feature.name;
       EXPECT_GT(sums.dissipation, 0.) << feature.name;
