@@ -132,9 +132,8 @@ main(int argc, char **argv)
   if (cells.empty())
     cells = {10, 100, 1000, 5000, 10000, 50000, 100000, 500000, 1000000};
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-    fmt::print(
-      "| ranks | shift | cells | unknowns | ms per step, median | smallest | CPU | ns per cell (smallest) |\n"
-      "|---|---|---|---|---|---|---|---|\n");
+    fmt::print("| ranks | shift | cells | unknowns | ms per step, median | smallest | CPU | ns per cell (smallest) |\n"
+               "|---|---|---|---|---|---|---|---|\n");
   for (const bool is_complex : {false, true})
     for (const unsigned int n_cells : cells)
       print_row(is_complex, n_cells);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// What collapsing, stiff, inverting and soft bodies cost: the table of doc/numerics.md, "Stretch form". For each case and
-// Accuracy the CPU time of the whole answer with its bound, as a point of a sweep takes it (the faster of two), the true
-// error and the bound, both over Accuracy times the displacement. Prints Markdown; nothing is required of it.
+// What collapsing, stiff, inverting and soft bodies cost: the table of doc/numerics.md, "Stretch form". For each case
+// and Accuracy the CPU time of the whole answer with its bound, as a point of a sweep takes it (the faster of two), the
+// true error and the bound, both over Accuracy times the displacement. Prints Markdown; nothing is required of it.
 //
 //     stretch_table [part of a case's name] [formulation, for all cases]
 #include "../support/run_text.h"
@@ -60,7 +60,12 @@ namespace
       task              = Task();
       task.parameters   = test::parameters_with(settings);
       const double from = cpu_seconds();
-      compute_all({&task, 1}, 600., []() { return false; });
+      compute_all({&task, 1},
+                  600.,
+                  []()
+                  {
+                    return false;
+                  });
       seconds = std::min(seconds, cpu_seconds() - from);
     }
     const SimulationResult &result = task.computed.result;
@@ -77,7 +82,7 @@ namespace
                bound / wanted,
                result.formulation == Formulation::stretch ? "stretch" : "position",
                result.time.status == "finished" || result.time.status == "inverted" ? result.time.status
-                                                                                     : result.time.reason,
+                                                                                    : result.time.reason,
                result.mesh ? result.mesh->n_cells : 0,
                result.time.steps,
                inverted != c.inverts ? ", WRONG" : "");
@@ -94,7 +99,8 @@ main(int argc, char **argv)
   char *no_options[] = {argv[0], nullptr}, **none = no_options;
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(one, none, 1);
   const std::string part = argc > 1 ? argv[1] : "", formulation = argc > 2 ? argv[2] : "";
-  fmt::print("| case | Accuracy | CPU | displacement or t* | true error | bound | by |\n|---|---|---|---|---|---|---|\n");
+  fmt::print(
+    "| case | Accuracy | CPU | displacement or t* | true error | bound | by |\n|---|---|---|---|---|---|---|\n");
   for (const Case &c : cases)
     if (c.name.find(part) != std::string::npos)
       for (const double accuracy : {1e-3, 1e-4, 1e-5, 1e-6})

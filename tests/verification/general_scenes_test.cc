@@ -150,8 +150,9 @@ TEST(GeneralScenes, StrainModesDecay)
                              {"Body/Friction coefficient", text(gamma)},
                              {"Body/Initial stretch", "1+" + text(small) + "*sin(" + std::to_string(mode) + "*pi*s)"},
                              {"Time/End time", text(T / (mode * mode))}};
-        settings          = settings + numerics(stretch) + (viscosity > 0. ? feedback(text(viscosity) + "*w_t")
-                                                       : Settings{{"Active stress/Generator", "none"}});
+        settings =
+          settings + numerics(stretch) +
+          (viscosity > 0. ? feedback(text(viscosity) + "*w_t") : Settings{{"Active stress/Generator", "none"}});
         expect_near(energy_left(settings), std::exp(-2. * rate * T / (mode * mode)), 1e-4);
       }
 }
@@ -249,8 +250,8 @@ TEST(GeneralScenes, SensorsSeeTheMean)
   for (const double distance : {0., 0.3, -0.45})
     for (const double sensor : {0.2, 0.5, 1.})
       for (const Settings &own : {Settings{{"Discretization/Number of cells", "12"}},
-                                       Settings{{"Discretization/Mesh", "adaptive"}},
-                                       Settings{{"Time/Integrator", "bdf"}}})
+                                  Settings{{"Discretization/Mesh", "adaptive"}},
+                                  Settings{{"Time/Integrator", "bdf"}}})
       {
         const std::string left = "min(max(s+" + text(distance) + "-b/2,0),1-b)";
         const std::string mean = "(1+E*sin(t)*(cos(pi*" + left + ")-cos(pi*(" + left + "+b)))/(pi*b))";
@@ -321,8 +322,8 @@ TEST(GeneralScenes, IntegratorsAgree)
              {"Ground/Switching velocity", "0.2"}};
   const Settings fine    = {{"Discretization/Number of cells", "16"}, {"Time/Tolerance", "1e-9"}};
   const double reference = displacement(all + fine);
-  for (const Settings &other : {fine + Settings{{"Time/Integrator", "bdf"}},
-                                fine + Settings{{"Time/Integrator", "radau 9"}}})
+  for (const Settings &other :
+       {fine + Settings{{"Time/Integrator", "bdf"}}, fine + Settings{{"Time/Integrator", "radau 9"}}})
     expect_near(displacement(all + other), reference, 1e-5);
 }
 

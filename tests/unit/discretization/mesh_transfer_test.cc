@@ -77,10 +77,10 @@ namespace
     for (unsigned int c = 0; c < d.n_local_cells(); ++c)
       for (unsigned int i = 0; i < element.n; ++i)
       {
-        const double s   = d.cell_left()[c] + d.cell_size()[c] * element.nodes[i];
-        local[c * q + i] = 0.06 * std::sin(5. * s) + 0.02 * s * s +
-                           roughness * d.cell_size()[c] / (q * q) *
-                             scattered((d.first_cell() + c) * static_cast<std::size_t>(q) + i);
+        const double s = d.cell_left()[c] + d.cell_size()[c] * element.nodes[i];
+        local[c * q + i] =
+          0.06 * std::sin(5. * s) + 0.02 * s * s +
+          roughness * d.cell_size()[c] / (q * q) * scattered((d.first_cell() + c) * static_cast<std::size_t>(q) + i);
       }
     return {local.begin() + (d.has_left_neighbour() ? 1 : 0), local.end()};
   }
@@ -95,52 +95,52 @@ namespace
 TEST(MeshTransfer, DivisionKeepsLengthCentreAndEnergy)
 {
   for (unsigned int q = 1; q <= ReferenceElement::highest_degree; ++q)
-    {
-      const Meshes meshes(q);
-      ASSERT_EQ(meshes.fine->n_cells(), 8u);
-      const auto from = create_position_form(meshes.scene, *meshes.coarse),
-                 to   = create_position_form(meshes.scene, *meshes.fine);
-      const auto y    = state(*from, 0.1);
-      const auto z    = MeshTransfer(meshes.coarse->element()).transfer(*from, y, *to);
-      ASSERT_EQ(z.size(), to->n_owned());
-      const Invariants before = invariants(*from, y), after = invariants(*to, z);
-      expect_same_shape(before, after, name(q));
-      EXPECT_NEAR(before.elastic_energy, after.elastic_energy, 1e-14) << name(q);
-    }
+  {
+    const Meshes meshes(q);
+    ASSERT_EQ(meshes.fine->n_cells(), 8u);
+    const auto from = create_position_form(meshes.scene, *meshes.coarse),
+               to   = create_position_form(meshes.scene, *meshes.fine);
+    const auto y    = state(*from, 0.1);
+    const auto z    = MeshTransfer(meshes.coarse->element()).transfer(*from, y, *to);
+    ASSERT_EQ(z.size(), to->n_owned());
+    const Invariants before = invariants(*from, y), after = invariants(*to, z);
+    expect_same_shape(before, after, name(q));
+    EXPECT_NEAR(before.elastic_energy, after.elastic_energy, 1e-14) << name(q);
+  }
 }
 
 TEST(MeshTransfer, JoiningKeepsLengthAndCentreAndEnergyAtMost)
 {
   for (unsigned int q = 1; q <= ReferenceElement::highest_degree; ++q)
-      for (const double roughness : {0., 0.1, 0.3})
-      {
-        const Meshes meshes(q);
-        ASSERT_EQ(meshes.again->n_cells(), 5u);
-        const auto from = create_position_form(meshes.scene, *meshes.fine),
-                   to   = create_position_form(meshes.scene, *meshes.again);
-        const auto y    = state(*from, roughness);
-        const auto z    = MeshTransfer(meshes.fine->element()).transfer(*from, y, *to);
-        ASSERT_EQ(z.size(), to->n_owned());
-        const Invariants before = invariants(*from, y), after = invariants(*to, z);
-        const std::string which = name(q) + ", roughness " + test::text(roughness);
-        expect_same_shape(before, after, which);
-        EXPECT_LE(after.elastic_energy, before.elastic_energy * (1. + 1e-14)) << which;
-      }
+    for (const double roughness : {0., 0.1, 0.3})
+    {
+      const Meshes meshes(q);
+      ASSERT_EQ(meshes.again->n_cells(), 5u);
+      const auto from = create_position_form(meshes.scene, *meshes.fine),
+                 to   = create_position_form(meshes.scene, *meshes.again);
+      const auto y    = state(*from, roughness);
+      const auto z    = MeshTransfer(meshes.fine->element()).transfer(*from, y, *to);
+      ASSERT_EQ(z.size(), to->n_owned());
+      const Invariants before = invariants(*from, y), after = invariants(*to, z);
+      const std::string which = name(q) + ", roughness " + test::text(roughness);
+      expect_same_shape(before, after, which);
+      EXPECT_LE(after.elastic_energy, before.elastic_energy * (1. + 1e-14)) << which;
+    }
 }
 
 TEST(MeshTransfer, ThereAndBackAgain)
 {
   for (unsigned int q = 1; q <= ReferenceElement::highest_degree; ++q)
-    {
-      const Meshes meshes(q);
-      const auto from = create_position_form(meshes.scene, *meshes.coarse),
-                 via  = create_position_form(meshes.scene, *meshes.fine),
-                 to   = create_position_form(meshes.scene, *meshes.again);
-      const MeshTransfer transfer(meshes.coarse->element());
-      const auto y    = state(*from, 0.1);
-      const auto back = transfer.transfer(*via, transfer.transfer(*from, y, *via), *to);
-      ASSERT_EQ(back.size(), y.size());
-      for (std::size_t i = 0; i < y.size(); ++i)
-        EXPECT_NEAR(back[i], y[i], 1e-13) << name(q) << ", unknown " << i;
-    }
+  {
+    const Meshes meshes(q);
+    const auto from = create_position_form(meshes.scene, *meshes.coarse),
+               via  = create_position_form(meshes.scene, *meshes.fine),
+               to   = create_position_form(meshes.scene, *meshes.again);
+    const MeshTransfer transfer(meshes.coarse->element());
+    const auto y    = state(*from, 0.1);
+    const auto back = transfer.transfer(*via, transfer.transfer(*from, y, *via), *to);
+    ASSERT_EQ(back.size(), y.size());
+    for (std::size_t i = 0; i < y.size(); ++i)
+      EXPECT_NEAR(back[i], y[i], 1e-13) << name(q) << ", unknown " << i;
+  }
 }
