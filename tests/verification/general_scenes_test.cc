@@ -76,12 +76,12 @@ namespace
   const Settings petsc           = {{"Time/Engine", "petsc"}};
   const Settings stretch_form    = {{"Discretization/Formulation", "stretch"}};
 
-  /// Of high order in space, in the position form; or in the stretch form, to 1e-5.
+  /// Of high order in space, in the position form; or the stretch form with many cells.
   Settings
   numerics(const bool stretch, const std::string &degree = "4", const std::string &n_cells = "8")
   {
     if (stretch)
-      return stretch_form + Settings{{"Accuracy", "1e-5"}};
+      return stretch_form + Settings{{"Discretization/Number of cells", "400"}, {"Time/Tolerance", "1e-13"}};
     return {{"Discretization/Degree", degree},
             {"Discretization/Number of cells", n_cells},
             {"Time/Integrator", "radau 9"},
