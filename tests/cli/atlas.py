@@ -19,7 +19,7 @@ import time
 import h5py
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
-RUNS = ("run", "position", "log stretch", "refined")
+RUNS = ("run", "position", "stretch", "refined")
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
                    OPENBLAS_NUM_THREADS="1")
 SCENE = """
@@ -75,9 +75,9 @@ def check_rows(rows):
     check(outcomes == {"finished"}, f"outcomes {outcomes}")
     check(all(row["verdict"] == "agree" for row in rows), "all answers agree")
     theory = {"0": -1, "2": 1}  # -a chi^2/2
-    # The log-stretch form is for a < 0, p > 1.
-    runs = {"0": [run for run in RUNS if run != "log stretch"], "2": RUNS}
-    check(not any(row["log stretch status"] for row in rows if row[P] == "0"), "no log stretch where a >= 0")
+    # The stretch form is tried for a < 0, p > 1.
+    runs = {"0": [run for run in RUNS if run != "stretch"], "2": RUNS}
+    check(not any(row["stretch status"] for row in rows if row[P] == "0"), "no stretch form where a >= 0")
     check(all(abs(number(row[f"{run} displacement"]) / (theory[row[P]] * float(row[CHI]) ** 2 / 2) - 1) < 0.25
               for row in rows for run in runs[row[P]]), "small displacements are those of the theory")
     check(all(0 <= number(row[f"{run} measured error"]) <= number(row[f"{run} promised error"])
@@ -126,7 +126,7 @@ def check_refused(program, folder):
     check(result.returncode == 0 and not result.stdout and not result.stderr, "quiet is quiet")
     check([row["outcome"] for row in rows] == ["refused"] * 2 + ["finished"] * 2
           and "no wave spends the energy" in rows[0]["explanation"], "an inadmissible scene is a row with its reason")
-    check(not any(row["position status"] + row["log stretch status"] for row in rows), "only one form if one is set")
+    check(not any(row["position status"] + row["stretch status"] for row in rows), "only one form if one is set")
     check(rows[2]["verdict"] == "unchecked" and not rows[2]["run promised error"], "no promise where cells are set")
 
 

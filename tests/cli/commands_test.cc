@@ -441,7 +441,7 @@ TEST_F(Commands, UnusedPetscOptionsAreReported)
             "crawler run scene.prm --output results --set Output/Statistics=false -- -ts_adapt_clp 0.1,2 -ts_type bdf");
 }
 
-/// For -1 < a < 0 only log stretch with degree 1 is believed when it says that a body inverts.
+/// For -1 < a < 0 only the stretch form is believed when it says that a body inverts.
 TEST_F(Commands, InversionOfThePositionFormIsNotBelieved)
 {
   const ProgramResult result = run({"--set",

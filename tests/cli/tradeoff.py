@@ -116,7 +116,7 @@ def check_rows(rows, summary):
     finished = [row for row in finished if row["model"] == "nonlinear"]
     check({row["engine"] for row in finished} == {"fused", "petsc", "batch"}
           and {row["mesh"] for row in finished} == {"uniform", "adaptive"}
-          and {row["formulation"] for row in finished} == {"position", "log stretch"}, "all ways have finished")
+          and {row["formulation"] for row in finished} == {"position", "stretch"}, "all ways have finished")
 
 
 def check_pareto(rows):

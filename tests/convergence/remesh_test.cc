@@ -24,8 +24,8 @@ namespace
   {
     OnMesh(const Scene &scene, const TimeParameters &time, std::unique_ptr<Discretization> discretization)
       : mesh(std::move(discretization))
-      , form(create_assembler(Formulation::position, scene, *mesh))
-      , stepper(MPI_COMM_WORLD, form->weights(), time)
+      , form(create_position_form(scene, *mesh))
+      , stepper(MPI_COMM_WORLD, form->n_owned(), time)
     {
       form->keep_stresses(integrator(time.integrator).n_stages);
       stepper.implicit_function = [this](double t, auto y, auto y_dot, auto F)
@@ -59,7 +59,7 @@ namespace
     }
 
     std::unique_ptr<Discretization> mesh;
-    std::unique_ptr<Assembler> form;
+    std::unique_ptr<PositionForm> form;
     TimeStepper stepper;
   };
 

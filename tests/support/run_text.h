@@ -45,11 +45,10 @@ namespace crawler::test
     NumericsChoice choice;
   };
 
-  /// What `crawler run` computes with these parameters, without files.
+  /// What `crawler run` computes with these parameters and this scene, without files.
   inline Outcome
-  run_with(const Parameters &parameters, const Simulation::Options &options = {.ledger = true})
+  run_with(const Parameters &parameters, const Scene &scene, const Simulation::Options &options = {.ledger = true})
   {
-    const Scene scene = parameters.create_scene();
     Outcome outcome;
     outcome.choice = *choose_numerics(MPI_COMM_WORLD, parameters, scene);
     if (outcome.choice.is_family)
@@ -60,6 +59,12 @@ namespace crawler::test
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, outcome.choice.numerics);
     outcome.result = simulation.run({}, options);
     return outcome;
+  }
+
+  inline Outcome
+  run_with(const Parameters &parameters, const Simulation::Options &options = {.ledger = true})
+  {
+    return run_with(parameters, parameters.create_scene(), options);
   }
 
   inline Outcome

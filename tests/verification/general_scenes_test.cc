@@ -74,6 +74,19 @@ namespace
 
   const std::string wave_formula = "0.3*sin(2*pi*(s+t))*s*(1-s)*4";
   const Settings petsc           = {{"Time/Engine", "petsc"}};
+  const Settings stretch_form    = {{"Discretization/Formulation", "stretch"}};
+
+  /// Of high order in space, in the position form; or the stretch form with many cells.
+  Settings
+  numerics(const bool stretch, const std::string &degree = "4", const std::string &n_cells = "8")
+  {
+    if (stretch)
+      return stretch_form + Settings{{"Discretization/Number of cells", "400"}, {"Time/Tolerance", "1e-13"}};
+    return {{"Discretization/Degree", degree},
+            {"Discretization/Number of cells", n_cells},
+            {"Time/Integrator", "radau 9"},
+            {"Time/Tolerance", "1e-13"}};
+  }
 } // namespace
 
 TEST(GeneralScenes, ConstantProfilesAreNumbers)
@@ -119,7 +132,7 @@ TEST(GeneralScenes, LinearFeedbackIsAModulus)
   const Settings same = feedback(wave_formula + "-0.4*(w-1)");
   for (const std::string integrator : {"automatic", "bdf", "radau 9"})
     expect_near(displacement(same + Settings{{"Time/Integrator", integrator}}), softer, 2e-6);
-  expect_near(displacement(same + Settings{{"Discretization/Formulation", "log stretch"}}), softer, 2e-6);
+  expect_near(displacement(same + stretch_form), softer, 2e-6);
   expect_near(displacement(same + Settings{{"Discretization/Mesh", "adaptive"}}), softer, 2e-6);
 }
 
@@ -130,20 +143,16 @@ TEST(GeneralScenes, StrainModesDecay)
   constexpr double k = 0.7, gamma = 1.3, eta = 0.2, T = 0.4, small = 1e-5;
   for (const int mode : {1, 2})
     for (const double viscosity : {0., eta})
-      for (const std::string form : {"position", "log stretch"})
+      for (const bool stretch : {false, true})
       {
         const double q = mode * pi, rate = k * q * q / (gamma + viscosity * q * q);
         Settings settings = {{"Body/Elastic modulus", text(k)},
                              {"Body/Friction coefficient", text(gamma)},
                              {"Body/Initial stretch", "1+" + text(small) + "*sin(" + std::to_string(mode) + "*pi*s)"},
-                             {"Discretization/Formulation", form},
-                             {"Discretization/Degree", "4"},
-                             {"Discretization/Number of cells", "8"},
-                             {"Time/Integrator", "radau 9"},
-                             {"Time/Tolerance", "1e-13"},
                              {"Time/End time", text(T / (mode * mode))}};
-        settings          = settings + (viscosity > 0. ? feedback(text(viscosity) + "*w_t")
-                                                       : Settings{{"Active stress/Generator", "none"}});
+        settings =
+          settings + numerics(stretch) +
+          (viscosity > 0. ? feedback(text(viscosity) + "*w_t") : Settings{{"Active stress/Generator", "none"}});
         expect_near(energy_left(settings), std::exp(-2. * rate * T / (mode * mode)), 1e-4);
       }
 }
@@ -203,20 +212,14 @@ TEST(GeneralScenes, ModesOfASensorAsLongAsTheBody)
   EXPECT_NEAR(std::tanh(y), 0.5 * y, 1e-12);
   for (const Case &mode : {Case{k, -4. * k * x * x, "cos(" + text(2. * x) + "*(s-0.5))"},
                            Case{-2. * k, 4. * k * y * y, "cosh(" + text(2. * y) + "*(s-0.5))"}})
-    for (const std::string form : {"position", "log stretch"})
-    {
-      const double T = 0.2, expected = std::exp(2. * mode.rate * T);
-      const double left = energy_left(feedback(text(mode.K) + "*(w_near-1)", 0., 0., 1.) +
-                                      Settings{{"Body/Elastic modulus", text(k)},
-                                               {"Body/Initial stretch", "1+1e-5*" + mode.mode},
-                                               {"Discretization/Formulation", form},
-                                               {"Discretization/Degree", "4"},
-                                               {"Discretization/Number of cells", "8"},
-                                               {"Time/Integrator", "radau 9"},
-                                               {"Time/Tolerance", "1e-13"},
-                                               {"Time/End time", text(T)}});
-      expect_near(left, expected, 5e-4);
-    }
+  {
+    const double T = 0.2, expected = std::exp(2. * mode.rate * T);
+    const double left = energy_left(feedback(text(mode.K) + "*(w_near-1)", 0., 0., 1.) + numerics(/*stretch=*/false) +
+                                    Settings{{"Body/Elastic modulus", text(k)},
+                                             {"Body/Initial stretch", "1+1e-5*" + mode.mode},
+                                             {"Time/End time", text(T)}});
+    expect_near(left, expected, 5e-4);
+  }
 }
 
 /// The mode of prm/examples/feedback.prm that grows, by contrib/feedback_modes.py: rate 4.8993, period 0.8765. The
@@ -224,20 +227,18 @@ TEST(GeneralScenes, ModesOfASensorAsLongAsTheBody)
 TEST(GeneralScenes, AModeGrowsByItself)
 {
   constexpr double rate = 4.8993, half_period = 0.43825, start = 1.6;
-  const auto energy = [&](const double T, const std::string &form)
+  const auto energy = [&](const double T)
   {
     return energy_left(feedback("0.05*tanh(10*(w_near-1))", -0.25, 0., 0.2) +
                        Settings{{"Body/Elastic modulus", "0.1"},
                                 {"Body/Initial stretch", "1+1e-7*exp(-((s-0.425)/0.05)^2)"},
-                                {"Discretization/Formulation", form},
                                 {"Discretization/Degree", "6"},
                                 {"Discretization/Number of cells", "16"},
                                 {"Time/Integrator", "radau 9"},
                                 {"Time/Tolerance", "1e-10"},
                                 {"Time/End time", text(T)}});
   };
-  for (const std::string form : {"position", "log stretch"})
-    expect_near(energy(start + half_period, form) / energy(start, form), std::exp(2. * rate * half_period), 1e-3);
+  expect_near(energy(start + half_period) / energy(start), std::exp(2. * rate * half_period), 1e-3);
 }
 
 /// A motion that is known: w = 1 + E sin(t) sin(pi s), at a = 0 driven by m = -(E/pi^2) cos(t) sin(pi s) - k E sin(t)
@@ -248,16 +249,15 @@ TEST(GeneralScenes, SensorsSeeTheMean)
   constexpr double E = 0.3, T = 1.;
   for (const double distance : {0., 0.3, -0.45})
     for (const double sensor : {0.2, 0.5, 1.})
-      for (const Settings &numerics : {Settings{{"Discretization/Number of cells", "12"}},
-                                       Settings{{"Discretization/Formulation", "log stretch"}},
-                                       Settings{{"Discretization/Mesh", "adaptive"}},
-                                       Settings{{"Time/Integrator", "bdf"}}})
+      for (const Settings &own : {Settings{{"Discretization/Number of cells", "12"}},
+                                  Settings{{"Discretization/Mesh", "adaptive"}},
+                                  Settings{{"Time/Integrator", "bdf"}}})
       {
         const std::string left = "min(max(s+" + text(distance) + "-b/2,0),1-b)";
         const std::string mean = "(1+E*sin(t)*(cos(pi*" + left + ")-cos(pi*(" + left + "+b)))/(pi*b))";
         const auto result =
           run(feedback("-E/pi^2*cos(t)*sin(pi*s)-E*sin(t)*sin(pi*s)+1.5*(w_near-" + mean + ")", distance, 0., sensor) +
-              numerics +
+              own +
               Settings{{"Active stress/Strain feedback/Constants", "E=" + text(E) + ", b=" + text(sensor)},
                        {"Body/Anchoring exponent", "1"},
                        {"Time/Tolerance", "1e-8"},
@@ -286,8 +286,7 @@ TEST(GeneralScenes, GroundThatBecomesSticky)
                                   {"Body/Anchoring exponent", "1"},
                                   {"Ground/Profile", "exp(1.2*x)"}};
   const double at_end = 1. + E * std::sin(1.) * std::sin(1.), expected = 0.5 * (at_end - 1.) + h(at_end);
-  for (const std::string form : {"position", "log stretch"})
-    expect_near(displacement(scene + Settings{{"Discretization/Formulation", form}}), expected, 2e-6);
+  expect_near(displacement(scene), expected, 2e-6);
   EXPECT_LT(expected, 0.); // the sticky end holds less of the body back... and pulls it
 }
 
@@ -308,8 +307,8 @@ TEST(GeneralScenes, DirectionOfTheGround)
   expect_near(with_ratio(0.25, 4.), -forward, 1e-5);
 }
 
-/// Everything at once, in both forms and with other integrators.
-TEST(GeneralScenes, FormsAndIntegratorsAgree)
+/// Everything at once, with other integrators.
+TEST(GeneralScenes, IntegratorsAgree)
 {
   const Settings all =
     feedback("0.2*sin(2*pi*(s+t))*s*(1-s)*4-0.1*(w-1)+0.05*w_t+0.1*(w_near-1)-0.05*(w_delayed-1)", 0.5, 0.25) +
@@ -323,9 +322,8 @@ TEST(GeneralScenes, FormsAndIntegratorsAgree)
              {"Ground/Switching velocity", "0.2"}};
   const Settings fine    = {{"Discretization/Number of cells", "16"}, {"Time/Tolerance", "1e-9"}};
   const double reference = displacement(all + fine);
-  for (const Settings &other : {fine + Settings{{"Discretization/Formulation", "log stretch"}},
-                                fine + Settings{{"Time/Integrator", "bdf"}},
-                                fine + Settings{{"Time/Integrator", "radau 9"}}})
+  for (const Settings &other :
+       {fine + Settings{{"Time/Integrator", "bdf"}}, fine + Settings{{"Time/Integrator", "radau 9"}}})
     expect_near(displacement(all + other), reference, 1e-5);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/run_text.h"
 
-#include <crawler/discretization/general_log_form.h>
 #include <crawler/discretization/general_position_form.h>
 
 #include <gtest/gtest.h>
@@ -61,13 +60,13 @@ namespace
     return list;
   }
 
-  /// A form on three cells, with a state of stretches between about 0.6 and 1.4.
+  /// The form on three cells, with a state of stretches between about 0.6 and 1.4.
   struct Case
   {
-    Case(const Feature &feature, const Formulation formulation, const unsigned int degree)
+    Case(const Feature &feature, const unsigned int degree)
       : scene(test::parameters_with(feature.settings).create_scene())
       , d(MPI_COMM_SELF, 1., 3, degree)
-      , form(create_assembler(formulation, scene, d))
+      , form(create_position_form(scene, d))
       , y(form->n_owned())
       , y_dot(form->n_owned())
     {
@@ -78,21 +77,9 @@ namespace
         {
           const double s         = d.cell_left()[c] + d.cell_size()[c] * element.nodes[i];
           const std::size_t node = c * q + i;
-          const double v         = 0.3 * std::cos(4. * s) - 0.1;
           y[node]                = 0.06 * std::sin(5. * s) + 0.02 * s * s;
-          if (formulation == Formulation::position)
-            y_dot[node] = v;
-          else
-            y[y.size() - d.n_unknowns() + node] = v;
+          y_dot[node]            = 0.3 * std::cos(4. * s) - 0.1;
         }
-      if (formulation == Formulation::log_stretch)
-      {
-        const auto s = d.points(element.stretch_points);
-        for (std::size_t i = 0; i < s.size(); ++i)
-          y[d.n_unknowns() + i] = std::log(1. + 0.3 * std::cos(5. * s[i]) + 0.04 * s[i]);
-        for (std::size_t i = 0; i < y_dot.size(); ++i)
-          y_dot[i] = 0.1 * std::cos(0.9 * static_cast<double>(i)) - 0.03;
-      }
     }
 
     std::vector<double>
@@ -123,7 +110,7 @@ namespace
 
     Scene scene;
     Discretization d;
-    std::unique_ptr<Assembler> form;
+    std::unique_ptr<PositionForm> form;
     std::vector<double> y, y_dot;
   };
 
@@ -147,7 +134,7 @@ namespace
 
   /// Solves J x = b by Gauss elimination, J column by column from products.
   std::vector<double>
-  dense_solution(Assembler &form, std::vector<double> b)
+  dense_solution(PositionForm &form, std::vector<double> b)
   {
     const std::size_t n = b.size();
     std::vector<std::vector<double>> A(n, std::vector<double>(n));
@@ -189,78 +176,74 @@ TEST(GeneralForms, ProductsMatchDifferences)
 {
   constexpr double sigma = 37.;
   for (const Feature &feature : features())
-    for (const Formulation formulation : {Formulation::position, Formulation::log_stretch})
-      for (const unsigned int q : {1u, 2u, 4u})
+    for (const unsigned int q : {1u, 2u, 4u})
+    {
+      Case test(feature, q);
+      ASSERT_FALSE(test.scene.is_plain());
+      const std::string what = feature.name + ", degree " + std::to_string(q);
+      const std::size_t n    = test.y.size();
+      for (const double roughness : {1., 40.})
       {
-        Case test(feature, formulation, q);
-        ASSERT_FALSE(test.scene.is_plain());
-        const std::string what = feature.name +
-                                 (formulation == Formulation::position ? ", position" : ", log stretch") + ", degree " +
-                                 std::to_string(q);
-        const std::size_t n = test.y.size();
-        for (const double roughness : {1., 40.})
+        std::vector<double> x(n), x_dot(n), sigma_x(n), product(n);
+        for (std::size_t i = 0; i < n; ++i)
         {
-          std::vector<double> x(n), x_dot(n), sigma_x(n), product(n);
-          for (std::size_t i = 0; i < n; ++i)
-          {
-            x[i]       = 0.1 * std::sin(roughness * static_cast<double>(i) + 0.3);
-            sigma_x[i] = sigma * x[i];
-            x_dot[i]   = std::cos(roughness * static_cast<double>(i));
-          }
-          ASSERT_TRUE(test.form->setup_jacobian(t, test.y, test.y_dot, sigma));
-          test.form->jacobian_vmult(x, product);
-          expect_close(product, test.slope(x, sigma_x), what);
-          test.form->setup_stage(1, t, test.y, test.y_dot);
-          test.form->stage_vmult(1, x, x_dot, product);
-          expect_close(product, test.slope(x, x_dot), what + ", stage");
-
-          // The elimination is the inverse, unless a stretch at another place is in the equation.
-          const StretchFeedback *stress = test.scene.active_stress->feedback();
-          if (stress != nullptr && stress->sees_near())
-            continue;
-          std::vector<double> back(n);
-          test.form->jacobian_vmult(x, product);
-          test.form->solve_with_jacobian(product, back);
-          expect_close(back, x, what + ", solution");
+          x[i]       = 0.1 * std::sin(roughness * static_cast<double>(i) + 0.3);
+          sigma_x[i] = sigma * x[i];
+          x_dot[i]   = std::cos(roughness * static_cast<double>(i));
         }
+        ASSERT_TRUE(test.form->setup_jacobian(t, test.y, test.y_dot, sigma));
+        test.form->jacobian_vmult(x, product);
+        expect_close(product, test.slope(x, sigma_x), what);
+        test.form->setup_stage(1, t, test.y, test.y_dot);
+        test.form->stage_vmult(1, x, x_dot, product);
+        expect_close(product, test.slope(x, x_dot), what + ", stage");
+
+        // The elimination is the inverse, unless a stretch at another place is in the equation.
+        const StretchFeedback *stress = test.scene.active_stress->feedback();
+        if (stress != nullptr && stress->sees_near())
+          continue;
+        std::vector<double> back(n);
+        test.form->jacobian_vmult(x, product);
+        test.form->solve_with_jacobian(product, back);
+        expect_close(back, x, what + ", solution");
       }
+    }
 }
 
 /// The complex systems of Radau methods, by their real and imaginary parts.
 TEST(GeneralForms, ComplexSolutionsInvertTheProduct)
 {
-  using Complex                     = Assembler::Complex;
+  using Complex                     = PositionForm::Complex;
   const std::vector<Complex> shifts = {{11., 7.}};
   for (const Feature &feature : features())
-    for (const Formulation formulation : {Formulation::position, Formulation::log_stretch})
+  {
+    Case test(feature, 3);
+    const StretchFeedback *stress = test.scene.active_stress->feedback();
+    if (stress != nullptr && stress->sees_near())
+      continue;
+    const std::size_t n = test.y.size();
+    std::vector<double> real(n), imaginary(n), first(n), second(n), scaled(n);
+    for (std::size_t i = 0; i < n; ++i)
     {
-      Case test(feature, formulation, 3);
-      const StretchFeedback *stress = test.scene.active_stress->feedback();
-      if (stress != nullptr && stress->sees_near())
-        continue;
-      const std::size_t n = test.y.size();
-      std::vector<double> real(n), imaginary(n), first(n), second(n), scaled(n);
-      for (std::size_t i = 0; i < n; ++i)
-      {
-        real[i]      = std::sin(static_cast<double>(i));
-        imaginary[i] = std::cos(1.3 * static_cast<double>(i));
-      }
-      // (K + (a + i b) M)(r + i m) = K r + M (a r - b m) + i (K m + M (a m + b r))
-      ASSERT_TRUE(test.form->setup_complex_jacobians(t, test.y, test.y_dot, shifts));
-      test.form->setup_stage(0, t, test.y, test.y_dot);
-      for (std::size_t i = 0; i < n; ++i)
-        scaled[i] = 11. * real[i] - 7. * imaginary[i];
-      test.form->stage_vmult(0, real, scaled, first);
-      for (std::size_t i = 0; i < n; ++i)
-        scaled[i] = 11. * imaginary[i] + 7. * real[i];
-      test.form->stage_vmult(0, imaginary, scaled, second);
-      std::vector<Complex> b(n), x(n);
-      for (std::size_t i = 0; i < n; ++i)
-        b[i] = {first[i], second[i]};
-      test.form->solve_with_complex_jacobian(0, b, x);
-      for (std::size_t i = 0; i < n; ++i)
-        ASSERT_LT(std::abs(x[i] - Complex(real[i], imaginary[i])), 1e-9) << feature.name << ", row " << i;
+      real[i]      = std::sin(static_cast<double>(i));
+      imaginary[i] = std::cos(1.3 * static_cast<double>(i));
     }
+    // (K + (a + i b) M)(r + i m) = K r + M (a r - b m) + i (K m + M (a m + b r))
+    ASSERT_TRUE(test.form->setup_complex_jacobians(t, test.y, test.y_dot, shifts));
+    test.form->setup_stage(0, t, test.y, test.y_dot);
+    for (std::size_t i = 0; i < n; ++i)
+      scaled[i] = 11. * real[i] - 7. * imaginary[i];
+    test.form->stage_vmult(0, real, scaled, first);
+    for (std::size_t i = 0; i < n; ++i)
+      scaled[i] = 11. * imaginary[i] + 7. * real[i];
+    test.form->stage_vmult(0, imaginary, scaled, second);
+    std::vector<Complex> b(n), x(n);
+    for (std::size_t i = 0; i < n; ++i)
+      b[i] = {first[i], second[i]};
+    test.form->solve_with_complex_jacobian(0, b, x);
+    for (std::size_t i = 0; i < n; ++i)
+      ASSERT_LT(std::abs(x[i] - Complex(real[i], imaginary[i])), 1e-9) << feature.name << ", row " << i;
+  }
 }
 
 /// Newton's method with these Jacobians for one backward Euler step: each residual is about the square of the one
@@ -269,48 +252,42 @@ TEST(GeneralForms, NewtonConvergesQuadratically)
 {
   constexpr double sigma = 20.;
   for (const Feature &feature : features())
-    for (const Formulation formulation : {Formulation::position, Formulation::log_stretch})
+  {
+    Case test(feature, 3);
+    std::vector<double> y = test.y, rate = test.y_dot, F(y.size()), norms;
+    for (int i = 0; i < 12 && (norms.empty() || norms.back() > 1e-12); ++i)
     {
-      Case test(feature, formulation, 3);
-      std::vector<double> y = test.y, rate = test.y_dot, F(y.size()), norms;
-      for (int i = 0; i < 12 && (norms.empty() || norms.back() > 1e-12); ++i)
+      ASSERT_TRUE(test.form->residual(t, y, rate, F)) << feature.name;
+      norms.push_back(largest(F));
+      ASSERT_TRUE(test.form->setup_jacobian(t, y, rate, sigma));
+      const auto change = dense_solution(*test.form, F);
+      for (std::size_t k = 0; k < y.size(); ++k)
       {
-        ASSERT_TRUE(test.form->residual(t, y, rate, F)) << feature.name;
-        norms.push_back(largest(F));
-        ASSERT_TRUE(test.form->setup_jacobian(t, y, rate, sigma));
-        const auto change = dense_solution(*test.form, F);
-        for (std::size_t k = 0; k < y.size(); ++k)
-        {
-          y[k] -= change[k];
-          rate[k] -= sigma * change[k];
-        }
-      }
-      ASSERT_LT(norms.back(), 1e-12) << feature.name;
-      for (std::size_t i = 1; i + 1 < norms.size(); ++i)
-      {
-        const bool is_near = norms[i] < 1e-2; // the root
-        EXPECT_TRUE(!is_near || norms[i + 1] < 50. * norms[i] * norms[i] + 1e-13)
-          << feature.name << ", iteration " << i;
+        y[k] -= change[k];
+        rate[k] -= sigma * change[k];
       }
     }
+    ASSERT_LT(norms.back(), 1e-12) << feature.name;
+    for (std::size_t i = 1; i + 1 < norms.size(); ++i)
+    {
+      const bool is_near = norms[i] < 1e-2; // the root
+      EXPECT_TRUE(!is_near || norms[i + 1] < 50. * norms[i] * norms[i] + 1e-13) << feature.name << ", iteration " << i;
+    }
+  }
 }
 
 /// The velocity balances the forces, and the friction alone, for every feature.
 TEST(GeneralForms, IdentitiesOfAState)
 {
   for (const Feature &feature : features())
-    for (const Formulation formulation : {Formulation::position, Formulation::log_stretch})
-    {
-      Case test(feature, formulation, 4);
-      std::vector<double> v(test.d.n_unknowns()), F(test.y.size());
-      ASSERT_TRUE(test.form->velocity(t, test.y, v)) << feature.name;
-      if (formulation == Formulation::position)
-      {
-        ASSERT_TRUE(test.form->residual(t, test.y, v, F));
-        EXPECT_LT(largest(F), 1e-11) << feature.name;
-      }
-      const CellIntegrals sums = test.form->integrals(t, test.y, v);
-      EXPECT_LT(std::abs(sums.net_friction), 1e-11 * sums.abs_friction) << feature.name;
-      EXPECT_GT(sums.dissipation, 0.) << feature.name;
-    }
+  {
+    Case test(feature, 4);
+    std::vector<double> v(test.d.n_unknowns()), F(test.y.size());
+    ASSERT_TRUE(test.form->velocity(t, test.y, v)) << feature.name;
+    ASSERT_TRUE(test.form->residual(t, test.y, v, F));
+    EXPECT_LT(largest(F), 1e-11) << feature.name;
+    const CellIntegrals sums = test.form->integrals(t, test.y, v);
+    EXPECT_LT(std::abs(sums.net_friction), 1e-11 * sums.abs_friction) << feature.name;
+    EXPECT_GT(sums.dissipation, 0.) << feature.name;
+  }
 }

@@ -96,3 +96,64 @@ TEST(GradedMesh, CanBeAdapted)
   for (std::size_t c = 0; c < first.size(); ++c)
     EXPECT_NEAR(mesh->cells()[c].size, first[c].size, 1e-15);
 }
+
+TEST(LayeredMesh, EndsAtTheBreaks)
+{
+  for (const double layer : {1e-9, 1e-3, 0.02, 0.5})
+    for (const unsigned int parts : {1u, 2u, 8u})
+    {
+      const std::vector<double> breaks = {0.05, 0.4, 0.7};
+      const std::vector<double> ends   = layered_cell_ends(26, parts, breaks, layer);
+      // In proportion to the lengths of the pieces, 4 at least.
+      EXPECT_EQ(ends.size(), parts * (4 + 9 + 8 + 8) + 1);
+      EXPECT_EQ(ends.front(), 0.);
+      EXPECT_EQ(ends.back(), 1.);
+      for (const double s : breaks)
+        EXPECT_NE(std::find(ends.begin(), ends.end(), s), ends.end());
+      for (std::size_t i = 1; i < ends.size(); ++i)
+        EXPECT_GT(ends[i], ends[i - 1]);
+    }
+}
+
+/// Each mesh of a family contains the coarser ones: extrapolation asks for it.
+TEST(LayeredMesh, FinerOnesContainTheCoarser)
+{
+  for (const double layer : {1e-6, 1e-2, 0.5})
+    for (const unsigned int parts : {2u, 3u, 64u})
+    {
+      const auto coarse = layered_cell_ends(25, 1, {0.3}, layer), fine = layered_cell_ends(25, parts, {0.3}, layer);
+      ASSERT_EQ(fine.size() - 1, parts * (coarse.size() - 1));
+      for (std::size_t i = 0; i < coarse.size(); ++i)
+        EXPECT_NEAR(fine[parts * i], coarse[i], 1e-14 * coarse[i]);
+    }
+}
+
+TEST(LayeredMesh, HalfOfTheCellsAreInTheLayers)
+{
+  constexpr unsigned int n = 4000;
+  for (const double layer : {1e-7, 1e-5})
+  {
+    const auto ends = layered_cell_ends(n, 1, {}, layer);
+    ASSERT_EQ(ends.size(), n + 1);
+    for (std::size_t i = 0; i <= n; ++i)
+      EXPECT_NEAR(ends[i], 1. - ends[n - i], 1e-13);
+    // Without the layers half as many cells would be as long as the one in the middle.
+    const double in_the_middle = ends[n / 2 + 1] - ends[n / 2];
+    EXPECT_NEAR(in_the_middle * 0.5 * n, 1., 4. / std::log(1. / layer));
+    EXPECT_LT(in_the_middle * 0.5 * n, 1.);
+    // Near an end the size is proportional to layer + s.
+    const auto size_at = [&](const double s)
+    {
+      const auto i = std::upper_bound(ends.begin(), ends.end(), s) - ends.begin();
+      return ends[i] - ends[i - 1];
+    };
+    EXPECT_NEAR(size_at(layer) / size_at(0.), 2., 0.03);
+    EXPECT_NEAR(size_at(9. * layer) / size_at(0.), 10., 0.3);
+    // As many for each factor of the distance.
+    const auto cells_between = [&](const double from, const double to)
+    {
+      return std::upper_bound(ends.begin(), ends.end(), to) - std::upper_bound(ends.begin(), ends.end(), from);
+    };
+    EXPECT_NEAR(1. * cells_between(0., 9. * layer) / n, 0.25 * std::log(10.) / std::log(1. / layer), 0.01);
+  }
+}

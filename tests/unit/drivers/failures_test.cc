@@ -149,7 +149,8 @@ TEST(Failures, OfTheSecondRunLeaveTheAnswer)
     return Simulation(MPI_COMM_SELF, scene, parameters.time, chosen.numerics).run({}, {.ledger = true});
   };
   const SimulationResult first = simulate(choice);
-  const Answer answer          = run_as_promised(MPI_COMM_SELF, parameters, scene, choice, simulate, {});
+  const Answer answer =
+    run_as_promised(MPI_COMM_SELF, parameters, scene, choice, simulate, {.ledger = true}, /*writes=*/false, {});
   EXPECT_EQ(answer.result.displacement, first.displacement);
   EXPECT_EQ(answer.result.time.steps, first.time.steps);
   EXPECT_EQ(answer.result.time.status, "failed");

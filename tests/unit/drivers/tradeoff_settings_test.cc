@@ -31,7 +31,7 @@ namespace
   }
 
   const std::string small = "set Degrees = 2, 4\nset Tolerances = 1e-4, 1e-2, 1e-6\nset Mesh tolerances = 1e-3\n";
-  const MeshErrors meshes = {{2, {{8, 1e-3}, {16, 1e-7}}}, {4, {{4, 1e-11}}}};
+  const MeshErrors meshes = {{1, {{16, 1e-7}}}, {2, {{8, 1e-3}, {16, 1e-7}}}, {4, {{4, 1e-11}}}};
 
   std::vector<TradeoffFamily>
   families_of(const Parameters &p)
@@ -74,23 +74,40 @@ TEST(TradeoffFamilies, WhatTheProgramCannotDoIsOneSettingWithItsReason)
   {
     if (family.setting.is_rung())
       continue;
-    const bool radau  = family.setting.integrator != "bdf";
-    const bool can_do = family.setting.engine == "petsc" ||
-                        (radau && family.setting.formulation == "position" && family.setting.mesh == "uniform");
+    const bool in_position = family.setting.formulation == "position",
+               fused       = family.setting.integrator != "bdf" && family.setting.mesh == "uniform";
+    const bool can_do =
+      family.setting.engine == "petsc" ? in_position : fused && (in_position || family.setting.engine == "fused");
     EXPECT_EQ(family.not_offered.empty(), can_do) << in_words(family.setting);
     EXPECT_EQ(family.setting.degree == 0, !can_do);
     not_offered += !can_do;
   }
-  EXPECT_EQ(not_offered, 2 * 2 * 2 * 3 - 2 * 2); // fused and batch: all but radau in position on uniform meshes
+  // Position: all by PETSc; fused and batch have radau on uniform meshes. Stretch: the latter by fused only.
+  EXPECT_EQ(not_offered, 2 * 2 * 3 * 3 - 2 * 3 - 2 * 2 - 2);
 }
 
-TEST(TradeoffFamilies, LogStretchIsForNegativeExponents)
+/// One stretch in each cell, whatever the degrees of the position form are.
+TEST(TradeoffFamilies, StretchHasDegreeOne)
 {
   unsigned int n = 0;
-  for (const TradeoffFamily &family : families_of(parameters(small, /*p=*/"0.5")))
-    if (family.setting.formulation == "log stretch")
+  for (const TradeoffFamily &family : families_of(parameters(small)))
+    if (family.setting.formulation == "stretch" && family.not_offered.empty())
     {
-      EXPECT_NE(family.not_offered.find("a = 0.5"), std::string::npos) << family.not_offered;
+      EXPECT_EQ(family.setting.degree, 1u);
+      ++n;
+    }
+  EXPECT_EQ(n, 2); // radau 5 and 9
+}
+
+TEST(TradeoffFamilies, StretchIsNotForGroundsThatChange)
+{
+  Parameters other     = parameters(small);
+  other.ground.profile = "1+0.1*x";
+  unsigned int n       = 0;
+  for (const TradeoffFamily &family : families_of(other))
+    if (family.setting.formulation == "stretch")
+    {
+      EXPECT_NE(family.not_offered.find("depends on the place"), std::string::npos) << family.not_offered;
       ++n;
     }
   EXPECT_EQ(n, 2 * 3 * 3);

@@ -21,7 +21,7 @@ namespace
   {
   public:
     explicit ScalarEquation(const TimeParameters &parameters)
-      : stepper(MPI_COMM_SELF, {1.}, parameters)
+      : stepper(MPI_COMM_SELF, 1, parameters)
     {
       stepper.implicit_function = [this](double t, auto y, auto y_dot, auto F)
       {
