@@ -76,15 +76,15 @@ namespace crawler
                     const std::vector<double> &breaks,
                     const double layer)
   {
-    constexpr double fewest = 4.;
+    constexpr double fewest    = 4.;
     std::vector<double> pieces = {0.}, ends = {0.};
     pieces.insert(pieces.end(), breaks.begin(), breaks.end());
     pieces.push_back(1.);
     for (std::size_t i = 0; i + 1 < pieces.size(); ++i)
     {
       const double left = pieces[i], length = pieces[i + 1] - left, d = std::min(layer / length, 1.);
-      const auto cells   = static_cast<unsigned int>(std::max(fewest, std::round(n_cells * length))) * parts;
-      const double A     = 0.25 / std::log1p(1. / d), B = 0.5;
+      const auto cells = static_cast<unsigned int>(std::max(fewest, std::round(n_cells * length))) * parts;
+      const double A = 0.25 / std::log1p(1. / d), B = 0.5;
       const auto part_of = [&](const double x) // of the cells, to the left of x
       {
         return A * (std::log1p(x / d) - std::log1p(-x / (1. + d))) + B * x;
@@ -96,7 +96,7 @@ namespace crawler
         double low = x, high = 1.;
         for (int j = 0; j < 60 && high - low > 1e-16; ++j) // Newton's method, kept in the bracket
         {
-          const double excess = part_of(x) - wanted;
+          const double excess        = part_of(x) - wanted;
           (excess > 0. ? high : low) = x;
           double next                = x - excess / (A / (d + x) + A / (d + 1. - x) + B);
           if (!(next > low && next < high))

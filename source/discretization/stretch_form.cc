@@ -30,11 +30,12 @@ namespace crawler
   StretchMethod
   stretch_method(const Scene &scene, const bool other)
   {
-    const double a        = scene.friction_exponent();
-    const bool may_invert = a > -1. && a < 0.;
-    const NodeRule rule   = a >= 0.                                                                ? NodeRule::friction
-                            : may_invert || (a <= steep_exponent && scene.body.elastic_modulus <= soft) ? NodeRule::upwind
-                                                                                                   : NodeRule::fronts;
+    const double a            = scene.friction_exponent();
+    const bool may_invert     = a > -1. && a < 0.;
+    const NodeRule rule       = a >= 0. ? NodeRule::friction
+                                : may_invert || (a <= steep_exponent && scene.body.elastic_modulus <= soft)
+                                  ? NodeRule::upwind
+                                  : NodeRule::fronts;
     const NodeRule other_rule = rule == NodeRule::fronts ? NodeRule::upwind : NodeRule::fronts;
     return {static_cast<unsigned char>(other ? other_rule : rule), may_invert && scene.is_plain()};
   }
@@ -107,9 +108,10 @@ namespace crawler
     for (std::size_t j = 0; j < w_.size(); ++j)
     {
       const double positive = std::max(y[j], 0.);
-      w_[j]                 = std::isnan(y[j]) ? y[j]
-                              : method_.is_power ? std::pow(power_ * positive, 1. / power_)
-                                                 : scene_.friction_exponent() < 0. ? positive : y[j];
+      w_[j]                 = std::isnan(y[j])                  ? y[j]
+                              : method_.is_power                ? std::pow(power_ * positive, 1. / power_)
+                              : scene_.friction_exponent() < 0. ? positive
+                                                                : y[j];
     }
     return w_;
   }
@@ -180,7 +182,7 @@ namespace crawler
     const auto w        = stretch(y);
     const std::size_t n = w.size();
     const auto &left = discretization_.cell_left(), &size = discretization_.cell_size();
-    const auto middle   = [&](const std::size_t j)
+    const auto middle = [&](const std::size_t j)
     {
       return left[j] + 0.5 * size[j];
     };
@@ -198,12 +200,11 @@ namespace crawler
       {
         const std::size_t next = j == 0 ? 1 : n - 2, end = j == 0 ? 0 : n - 1;
         const double value = w[end] + (w[end] - w[next]) * 0.5 * size[end] / std::abs(middle(next) - middle(end));
-        return w[end] > nearly_empty ? StretchAt{value, j == 0 ? 0. : discretization_.length()} :
-                                       StretchAt{w[j], middle(j)};
+        return w[end] > nearly_empty ? StretchAt{value, j == 0 ? 0. : discretization_.length()}
+                                     : StretchAt{w[j], middle(j)};
       }
-      const auto [s, value] =
-        parabola_vertex(middle(j - 1), w[j - 1], middle(j), w[j], middle(j + 1), w[j + 1]);
-      const bool inside = s > middle(j - 1) && s < middle(j + 1) && std::isfinite(value) && w[j] > nearly_empty;
+      const auto [s, value] = parabola_vertex(middle(j - 1), w[j - 1], middle(j), w[j], middle(j + 1), w[j + 1]);
+      const bool inside     = s > middle(j - 1) && s < middle(j + 1) && std::isfinite(value) && w[j] > nearly_empty;
       return inside ? StretchAt{value, s} : StretchAt{w[j], middle(j)};
     };
     return {sharpened(least), sharpened(most)};
@@ -229,7 +230,7 @@ namespace crawler
     }
     for (std::size_t j = 0; j < n; ++j)
       y[j] = method_.is_power ? std::pow(w[j], power_) / power_ : w[j];
-    y[n]        = 0.;
+    y[n]         = 0.;
     const auto u = displacement(y);
     double mean  = 0.;
     for (std::size_t j = 0; j < n; ++j)
@@ -277,7 +278,7 @@ namespace crawler
       double largest = 0., scale = 0.;
       for (int j = 0; j < n; ++j)
       {
-        rest[j] = rate_[j] - (v[j + 1] - v[j]) / h[j];
+        rest[j]  = rate_[j] - (v[j + 1] - v[j]) / h[j];
         lower[j] = by_left[j] / h[j];
         diagonal[j] -= (by_left[j + 1] - by_right[j]) / h[j];
         upper[j] = -by_right[j + 1] / h[j];
@@ -305,9 +306,9 @@ namespace crawler
   StretchForm::integrals(const double t, const ConstVector y, const ConstVector v)
   {
     evaluate(t, y, v);
-    const auto u  = displacement(y);
-    const auto w  = ConstVector(w_);
-    const auto &h = discretization_.cell_size();
+    const auto u                   = displacement(y);
+    const auto w                   = ConstVector(w_);
+    const auto &h                  = discretization_.cell_size();
     const BodyForceAtPoints &force = laws_.force();
     CellIntegrals sum;
     for (std::size_t j = 0; j < w.size(); ++j)

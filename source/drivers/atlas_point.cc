@@ -83,9 +83,9 @@ namespace crawler
         run.reason.clear();
         run.message.clear();
       }
-      run.min_stretch    = result.min_stretch.value;
-      run.steps          = result.time.steps;
-      run.is_stretch = computed.choice.numerics.formulation == Formulation::stretch;
+      run.min_stretch = result.min_stretch.value;
+      run.steps       = result.time.steps;
+      run.is_stretch  = computed.choice.numerics.formulation == Formulation::stretch;
       if (run.status == "finished")
         run.displacement = result.displacement;
       if (result.inversion)
@@ -240,8 +240,7 @@ namespace crawler
           return with_formulation(parameters[i], "stretch");
         });
     for (std::size_t i = 0; i < points.size(); ++i)
-      if (both_forms(i) &&
-          points[i].runs[AtlasPoint::automatic].is_stretch) // the automatic choice was this very run
+      if (both_forms(i) && points[i].runs[AtlasPoint::automatic].is_stretch) // the automatic choice was this very run
         points[i].runs[AtlasPoint::stretch] = points[i].runs[AtlasPoint::automatic];
     // Where the choice of mesh and steps does not depend on it, Accuracy is divided once more: a run is no check of
     // itself.

@@ -19,12 +19,16 @@ namespace crawler
     const std::string &name   = time.integrator == "automatic" ? numerics.integrator : time.integrator;
     const Integrator &method  = integrator(name.empty() ? "automatic" : name);
     const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == "adaptive";
-    const bool is_stretch = numerics.formulation == Formulation::stretch;
+    const bool is_stretch     = numerics.formulation == Formulation::stretch;
     if (numerics.linear || time.engine != "automatic" || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
         !(is_stretch ? reason_against_stretch_form(scene).empty() : fits_fused(scene)))
       return std::nullopt;
-    FusedMethod result = {
-      numerics.degree, numerics.n_cells, method.n_stages, first_cell_ends(scene, numerics), is_stretch, numerics.other_rule};
+    FusedMethod result = {numerics.degree,
+                          numerics.n_cells,
+                          method.n_stages,
+                          first_cell_ends(scene, numerics),
+                          is_stretch,
+                          numerics.other_rule};
     if (!result.cell_ends.empty())
       result.n_cells = static_cast<unsigned int>(result.cell_ends.size() - 1);
     return result;
@@ -149,21 +153,21 @@ namespace crawler
         lane.most.start({});
         if (options_.ledger)
           lane.result.ledger.emplace();
-        job = {.k             = lane.k,
-               .a             = scene.body.friction_exponent(),
-               .tolerance     = numerics.tolerance / lane.units.length,
-               .newton_factor = 1.,
-               .initial_step  = numerics.initial_step / lane.units.time,
-               .limits        = lane.limits.data(),
-               .n_limits      = static_cast<unsigned int>(lane.limits.size()),
-               .most_steps    = runs_[lane.run].time->max_steps,
-               .least_stretch = small_stretch,
+        job = {.k              = lane.k,
+               .a              = scene.body.friction_exponent(),
+               .tolerance      = numerics.tolerance / lane.units.length,
+               .newton_factor  = 1.,
+               .initial_step   = numerics.initial_step / lane.units.time,
+               .limits         = lane.limits.data(),
+               .n_limits       = static_cast<unsigned int>(lane.limits.size()),
+               .most_steps     = runs_[lane.run].time->max_steps,
+               .least_stretch  = small_stretch,
                .is_last_resort = false,
-               .start_time    = 0.,
-               .start         = nullptr,
-               .frames        = lane.frames.data(),
-               .n_frames      = static_cast<unsigned int>(lane.frames.size()),
-               .restarts      = lane.restarts.data()};
+               .start_time     = 0.,
+               .start          = nullptr,
+               .frames         = lane.frames.data(),
+               .n_frames       = static_cast<unsigned int>(lane.frames.size()),
+               .restarts       = lane.restarts.data()};
       }
 
       /// The run starts from rest, which may be where the last stride starts, too.

@@ -125,8 +125,8 @@ namespace crawler
       std::vector<BatchRun> runs[2]; // without and with ledger
       std::vector<Task *> members[2];
       for (Task &task : tasks)
-        if (is_ready(task) && !task.computed.choice.is_family && batch_method(*task.scene, task.parameters.time, task.computed.choice.numerics) &&
-            !is_faster_alone(task))
+        if (is_ready(task) && !task.computed.choice.is_family &&
+            batch_method(*task.scene, task.parameters.time, task.computed.choice.numerics) && !is_faster_alone(task))
         {
           const bool ledger = task.parameters.output.ledger;
           runs[ledger].push_back({&*task.scene, &task.parameters.time, &task.computed.choice.numerics});

@@ -2,8 +2,8 @@
 #include <crawler/base/communication.h>
 #include <crawler/drivers/batch.h>
 #include <crawler/drivers/error_estimate.h>
-#include <crawler/drivers/mesh_family.h>
 #include <crawler/drivers/graded_choice.h>
+#include <crawler/drivers/mesh_family.h>
 #include <crawler/drivers/self_check.h>
 #include <crawler/time/failure.h>
 

@@ -18,8 +18,8 @@ namespace crawler
     /// But of bodies that invert: more do not help where the time of that converges slowly, -1 < a < 0.
     constexpr unsigned int most_cells_if_inverted = 1600, most_cells_if_it_sticks = 400;
     constexpr double accurate = 2e-6;
-    /// Cells times steps that the next mesh may take, about a second for each 2e6, and how many times as many as the last
-    /// one it does.
+    /// Cells times steps that the next mesh may take, about a second for each 2e6, and how many times as many as the
+    /// last one it does.
     constexpr double most_work = 1e7, most_work_if_accurate = 2e7, more_work = 5.;
     /// The error in time may be this part of the wanted one, and the time tolerance is made smaller so often for that.
     constexpr double time_part             = 0.3;
@@ -159,8 +159,8 @@ namespace crawler
       void
       measure_size()
       {
-        size_ = finished(latest_) ? std::max(std::abs(latest_.displacement), displacement_floor * latest_.largest_u) :
-                                    scene_.end_time;
+        size_ = finished(latest_) ? std::max(std::abs(latest_.displacement), displacement_floor * latest_.largest_u)
+                                  : scene_.end_time;
       }
 
       double
@@ -264,8 +264,9 @@ namespace crawler
       struct Level
       {
         SimulationResult result;
-        double value;                          ///< extrapolated
-        double change = 0., settled = HUGE_VAL; ///< of the value itself and of the extrapolated one since the last level
+        double value; ///< extrapolated
+        double change  = 0.,
+               settled = HUGE_VAL; ///< of the value itself and of the extrapolated one since the last level
       };
 
       /// Of the extrapolated value, from the last two changes.
@@ -282,19 +283,21 @@ namespace crawler
           return std::max(now.settled, now.change / 3.);
         if (levels_.size() == 2)
           return now.settled;
-        return before.settled > fast * now.settled && std::abs(order - 2.) < clean ? std::max(now.settled, before.settled / fastest) / credited :
-                                                     std::max(now.settled, before.settled / fastest);
+        return before.settled > fast * now.settled && std::abs(order - 2.) < clean
+                 ? std::max(now.settled, before.settled / fastest) / credited
+                 : std::max(now.settled, before.settled / fastest);
       }
 
-      /// Near an inversion the last of the stretch may be fed by tiny flows, and the time converges slowly; what the rule
-      /// for the nodes makes of them is a part of the error.
+      /// Near an inversion the last of the stretch may be fed by tiny flows, and the time converges slowly; what the
+      /// rule for the nodes makes of them is a part of the error.
       void
       check_inversion()
       {
         Numerics other             = numerics();
         other.other_rule           = true;
         const SimulationResult run = this->run(other);
-        space_error_ = are_alike(run, latest_) ? std::max(space_error_, std::abs(*value(run) - *value(latest_))) : HUGE_VAL;
+        space_error_ =
+          are_alike(run, latest_) ? std::max(space_error_, std::abs(*value(run) - *value(latest_))) : HUGE_VAL;
       }
 
       void
@@ -310,8 +313,8 @@ namespace crawler
           result.inversion->t = better(result.inversion->t, coarse.inversion->t);
           return;
         }
-        result.displacement      = better(result.displacement, coarse.displacement);
-        const auto ledger        = [&](std::optional<Ledger> &fine, const std::optional<Ledger> &rough)
+        result.displacement = better(result.displacement, coarse.displacement);
+        const auto ledger   = [&](std::optional<Ledger> &fine, const std::optional<Ledger> &rough)
         {
           if (fine && rough)
             *fine = fine->combined(4. / 3., *rough, -1. / 3.);
@@ -346,7 +349,7 @@ namespace crawler
           return answer_;
         if (finished(latest_))
         {
-          result       = extrapolated_;
+          result              = extrapolated_;
           const double cycles = result.cycles ? result.cycles->bound : 0.;
           const double floor  = std::max(least_part * wanted(), 1e-15 * scene_.body.length);
           result.error        = {.total = std::max(space_error_, floor) + time_error_ + cycles,
@@ -404,7 +407,7 @@ namespace crawler
       NumberErrors time_errors_;
       double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL;
       unsigned int n_runs_ = 0, n_corrections_ = 0;
-      bool has_order_      = false; ///< observed between the last meshes
+      bool has_order_ = false; ///< observed between the last meshes
     };
   } // namespace
 

@@ -144,7 +144,7 @@ namespace crawler
           stretch_form();
           return choice_;
         }
-        choice_.is_users        = user_cells_ || user_tolerance_ || fixed || parameters_.discretization.mesh_tolerance;
+        choice_.is_users = user_cells_ || user_tolerance_ || fixed || parameters_.discretization.mesh_tolerance;
         if (user_cells_ && (user_tolerance_ || fixed) && mesh != "adaptive")
         {
           choice_.numerics.n_cells   = *user_cells_;
@@ -180,7 +180,8 @@ namespace crawler
           stretch_form();
           return choice_;
         }
-        if (mesh == "adaptive" || (mesh == "automatic" && !enough && !is_for_stretch() && !user_cells_ && !choice_.numerics.linear))
+        if (mesh == "adaptive" ||
+            (mesh == "automatic" && !enough && !is_for_stretch() && !user_cells_ && !choice_.numerics.linear))
           adaptive();
         if (is_for_stretch())
         {
@@ -470,7 +471,8 @@ namespace crawler
       {
         const DiscretizationParameters &own = parameters_.discretization;
         return own.formulation == "automatic" && own.mesh == "automatic" && !own.degree && !user_cells_ &&
-               !user_tolerance_ && adaptive_steps_ && !choice_.numerics.linear && parameters_.time.engine == "automatic" &&
+               !user_tolerance_ && adaptive_steps_ && !choice_.numerics.linear &&
+               parameters_.time.engine == "automatic" &&
                (parameters_.time.integrator == "automatic" || parameters_.time.integrator.starts_with("radau")) &&
                reason_against_stretch_form(scene_).empty();
       }
@@ -499,9 +501,9 @@ namespace crawler
         n.layer          = m_s > 0. ? std::min(largest_layer * L_, layer_lengths / a * k / m_s) : largest_layer * L_;
         if (parameters_.discretization.mesh == "uniform")
           n.layer = 0.;
-        n.parts          = 1;
-        n.integrator     = "radau 5";
-        choice_.strain   = std::min(scale_ / std::min(L_, scales_.length), 0.3);
+        n.parts        = 1;
+        n.integrator   = "radau 5";
+        choice_.strain = std::min(scale_ / std::min(L_, scales_.length), 0.3);
         const double first =
           std::clamp(std::ceil(cells_of_length * L_ / scales_.length), 1. * first_family_cells, 0.25 * most_cells);
         n.n_cells   = user_cells_.value_or(static_cast<unsigned int>(first));
@@ -509,13 +511,14 @@ namespace crawler
           std::max(std::min(family_tolerance * accuracy_, largest_family_tolerance) * choice_.strain * L_, 1e-13 * L_));
         if (!parameters_.time.initial_step)
           n.initial_step = 1e-4 * T_;
-        choice_.is_family = !user_cells_;
-        choice_.is_users  = !choice_.is_family;
+        choice_.is_family      = !user_cells_;
+        choice_.is_users       = !choice_.is_family;
         choice_.promised_error = choice_.wanted_error = choice_.space_share = std::numeric_limits<double>::quiet_NaN();
         choice_.explanation =
           choice_.is_family
-            ? fmt::format("for Accuracy {:g}: the stretch form, on meshes that become finer until the displacement settles",
-                          accuracy_)
+            ? fmt::format(
+                "for Accuracy {:g}: the stretch form, on meshes that become finer until the displacement settles",
+                accuracy_)
             : "stretch form, with cells as set by the user";
       }
 
@@ -620,9 +623,7 @@ namespace crawler
         const double wanted  = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
         const double by_rule = std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
                                         std::max(1e-15 * scale_, smallest()));
-        n.tolerance          = user_tolerance_.value_or(jumps_move_ ? tolerance_
-                                               : is_graded ? n.tolerance
-                                                           : by_rule);
+        n.tolerance          = user_tolerance_.value_or(jumps_move_ ? tolerance_ : is_graded ? n.tolerance : by_rule);
         if (predicts && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {
@@ -679,8 +680,8 @@ namespace crawler
       NumericsChoice choice_;
       SimulationResult pilot_; ///< the last one that counts
       double tolerance_ = 0., size_ = 0.;
-      unsigned int n_pilots_ = 0;
-      bool jumps_move_       = false;
+      unsigned int n_pilots_  = 0;
+      bool jumps_move_        = false;
       double space_over_time_ = 1.; ///< errors as the rule expects them
     };
   } // namespace

@@ -346,15 +346,15 @@ namespace crawler
       }
       SimulationResult run = simulation->run(
         frame_times(output.n_snapshots, parameters.time.end_time), run_options, create_observers(), keep_going);
-      latest               = run.time;
+      latest = run.time;
       return run;
     };
     guarded(
       [&]()
       {
-        Answer answer           = run_as_promised(
+        Answer answer = run_as_promised(
           computing, parameters, input.scene, *chosen, simulate, run_options, /*writes=*/true, keep_going);
-        result                  = std::move(answer.result);
+        result = std::move(answer.result);
         if (answer.choice.is_family)
           log.line("  (" + answer.choice.explanation + ")");
         result.estimate_seconds = answer.estimate_seconds;

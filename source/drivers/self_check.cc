@@ -16,7 +16,7 @@ namespace crawler
     return parameters.output.ledger_tolerance.value_or(
       result.jumps_move ? 0.2
       : own_numerics    ? 0.1
-                        : std::max(1e-8, (result.formulation == Formulation::stretch ? 300. : 10.) * parameters.accuracy));
+                     : std::max(1e-8, (result.formulation == Formulation::stretch ? 300. : 10.) * parameters.accuracy));
   }
 
   void

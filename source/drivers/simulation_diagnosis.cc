@@ -26,8 +26,8 @@ namespace crawler
     constexpr double nearly_lost = 1e-4;
 
     /**
-     * In the stretch form cells may be empty if they then stick, a <= -1. For -1 < a < 0 w^(1+a) goes linearly to 0 near
-     * an inversion, so this is where 1e-6 of it is left.
+     * In the stretch form cells may be empty if they then stick, a <= -1. For -1 < a < 0 w^(1+a) goes linearly to 0
+     * near an inversion, so this is where 1e-6 of it is left.
      */
     double
     lost_in_stretch_form(const double a)
@@ -239,17 +239,17 @@ namespace crawler
   Simulation::under_resolved(const double value, const double s, const double t)
   {
     const bool positive = scene_.friction_exponent() <= -1.;
-    diagnosis_ = {
-      "failed",
-      "under_resolved",
-      fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, {}: {} cells of degree {} "
-                  "are too coarse, or the steps too long; {}a larger Discretization/Number of cells or a smaller "
-                  "Time/Tolerance is needed",
+    diagnosis_          = {
+               "failed",
+               "under_resolved",
+               fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, {}: {} cells of degree {} "
+                           "are too coarse, or the steps too long; {}a larger Discretization/Number of cells or a smaller "
+                           "Time/Tolerance is needed",
                   value,
                   s * units_.length,
                   t * units_.time,
                   positive ? "where the body itself stays uninverted (a <= -1)"
-                           : "which for a < 0 only the stretch form is believed",
+                                    : "which for a < 0 only the stretch form is believed",
                   discretization_->n_cells(),
                   discretization_->element().degree,
                   position_ != nullptr ? "Discretization/Formulation = stretch, or " : "")};

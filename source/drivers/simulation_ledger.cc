@@ -55,11 +55,7 @@ namespace crawler
     if (delay_ == 0. || step.size == 0.)
       return;
     // The step starts from the last accepted state, of which the integrator may know less than of what is inside.
-    StretchHistory::Step record{accepted_time_,
-                                step.time,
-                                history_cells_,
-                                &discretization_->element(),
-                                {}};
+    StretchHistory::Step record{accepted_time_, step.time, history_cells_, &discretization_->element(), {}};
     std::vector<double> inside(y.size());
     for (std::size_t i = 0; i < record.coefficients.size(); ++i)
     {

@@ -57,13 +57,13 @@ namespace crawler
       result.engine       = "fused";
       result.error        = DisplacementError{0., 0., 0., 0.};
       result.errors.emplace();
-      result.ledger            = Ledger{};
-      result.inversion         = SimulationResult::Extreme{};
-      result.inversion_error   = 0.;
-      result.cycles            = Cycles{1., 1, 1, 0.};
-      result.gait              = Gait{1., true, 1., 1., StretchWave{1., 1.}, Ledger{}};
-      result.gait_efficiency   = 1.;
-      result.mesh              = SimulationResult::Mesh{1, 1, 1, false};
+      result.ledger          = Ledger{};
+      result.inversion       = SimulationResult::Extreme{};
+      result.inversion_error = 0.;
+      result.cycles          = Cycles{1., 1, 1, 0.};
+      result.gait            = Gait{1., true, 1., 1., StretchWave{1., 1.}, Ledger{}};
+      result.gait_efficiency = 1.;
+      result.mesh            = SimulationResult::Mesh{1, 1, 1, false};
       return summary_of(result, Parameters());
     }
 

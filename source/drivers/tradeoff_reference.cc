@@ -233,8 +233,8 @@ namespace crawler
         // The position form if it gave the reference, or the check.
         const bool in_position = reference_.first.method.starts_with("position") ||
                                  reference_.second.method.starts_with("position") || scene_.friction_exponent() >= 0.;
-        TradeoffSetting setting = crawler::setting(
-          in_position ? "position" : "stretch", "fused", "radau 9", in_position ? degree : 1);
+        TradeoffSetting setting =
+          crawler::setting(in_position ? "position" : "stretch", "fused", "radau 9", in_position ? degree : 1);
         setting.tolerance = mesh_tolerance;
         std::vector<std::pair<unsigned int, double>> result;
         const auto add = [&](const unsigned int cells)

@@ -45,9 +45,9 @@ namespace crawler
     frames_                   = frames;
     if (frames_.empty() || frames_.back() < end_time)
       frames_.push_back(end_time);
-    job_     = {.k             = scene_.body.elastic_modulus,
-                .a             = scene_.body.friction_exponent(),
-                .tolerance     = tolerance,
+    job_     = {.k         = scene_.body.elastic_modulus,
+                .a         = scene_.body.friction_exponent(),
+                .tolerance = tolerance,
                 // On a stiff body an error of the stretch is one of the forces, k times as large.
                 .newton_factor = setup_.is_stretch ? std::min(1., 10. / scene_.body.elastic_modulus) : 1.,
                 .initial_step  = initial_step,
@@ -55,13 +55,13 @@ namespace crawler
                 .n_limits      = static_cast<unsigned int>(limits.size()),
                 .most_steps    = std::numeric_limits<unsigned int>::max(), // the monitor's business
                 // Cells may be empty where friction then holds them.
-                .least_stretch = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
+                .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
                 .is_last_resort = setup_.is_stretch,
-                .start_time    = start_time,
-                .start         = y.data(),
-                .frames        = frames_.data(),
-                .n_frames      = static_cast<unsigned int>(frames_.size()),
-                .restarts      = nullptr}; // a solve for each piece
+                .start_time     = start_time,
+                .start          = y.data(),
+                .frames         = frames_.data(),
+                .n_frames       = static_cast<unsigned int>(frames_.size()),
+                .restarts       = nullptr}; // a solve for each piece
     started_ = false;
     bad_friction_.reset();
     y_       = &y;

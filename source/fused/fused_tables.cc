@@ -47,24 +47,24 @@ namespace crawler
       for (const double place : method.is_stretch ? sample_places_ : element_.points)
         points.push_back(uniform ? (c + place) / method.n_cells : method.cell_ends[c] + place * sizes_[c]);
     }
-    setup = {method.degree,
-             method.n_cells,
-             method.n_stages,
-             sizes_.data(),
-             element_.values.data(),
-             element_.derivatives.data(),
-             element_.weights.data(),
-             element_.stiffness.data(),
-             static_cast<unsigned int>(sample_places_.size()),
-             samples_.data(),
-             tableau.c.data(),
-             tableau.inverse.data(),
-             tableau.error_weights.data(),
-             tableau.newton_fraction,
-             tableau.real_eigenvalue,
-             eigenvalues_.data(),
-             vectors_.data(),
-             rows_.data()};
+    setup            = {method.degree,
+                        method.n_cells,
+                        method.n_stages,
+                        sizes_.data(),
+                        element_.values.data(),
+                        element_.derivatives.data(),
+                        element_.weights.data(),
+                        element_.stiffness.data(),
+                        static_cast<unsigned int>(sample_places_.size()),
+                        samples_.data(),
+                        tableau.c.data(),
+                        tableau.inverse.data(),
+                        tableau.error_weights.data(),
+                        tableau.newton_fraction,
+                        tableau.real_eigenvalue,
+                        eigenvalues_.data(),
+                        vectors_.data(),
+                        rows_.data()};
     setup.is_stretch = method.is_stretch;
   }
 

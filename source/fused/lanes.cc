@@ -11,8 +11,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     std::size_t
     memory_of(const LaneSetup &setup)
     {
-      return setup.n_stages == 3 ? RadauLanes<Pack, 3, System>::memory(setup) :
-                                   RadauLanes<Pack, 5, System>::memory(setup);
+      return setup.n_stages == 3 ? RadauLanes<Pack, 3, System>::memory(setup)
+                                 : RadauLanes<Pack, 5, System>::memory(setup);
     }
 
     template <typename Pack, template <typename, int> class System>

@@ -73,10 +73,10 @@ namespace crawler
   const Fields &
   FieldSampler::sample(const double t, const std::span<const double> y, const std::span<const double> v)
   {
-    const Discretization &d = assembler_.discretization();
-    const auto u_local      = d.to_local<double>(assembler_.displacement(y), u_local_);
-    const auto v_local      = d.to_local<double>(v, v_local_);
-    const std::vector<double> slopes = assembler_.stretch_slopes(y);
+    const Discretization &d            = assembler_.discretization();
+    const auto u_local                 = d.to_local<double>(assembler_.displacement(y), u_local_);
+    const auto v_local                 = d.to_local<double>(v, v_local_);
+    const std::vector<double> slopes   = assembler_.stretch_slopes(y);
     const std::vector<double> friction = assembler_.node_friction(t, y, v);
     const auto cells                   = assembler_.stretch(y);
     const unsigned int n = d.element().n, q = d.element().degree;
@@ -95,8 +95,8 @@ namespace crawler
       fields_.displacement[p] = u_p * units_.length;
       fields_.position[p]     = coordinates_[p] + fields_.displacement[p];
       fields_.velocity[p]     = v_p;
-      double strain      = stretch_.strain(u_local, cell, d.cell_size()[cell], place);
-      fields_.stretch[p] = 1. + strain;
+      double strain           = stretch_.strain(u_local, cell, d.cell_size()[cell], place);
+      fields_.stretch[p]      = 1. + strain;
       if (!cells.empty())
       {
         const double drawn = slopes[cell] * (points_[p].x - 0.5);

@@ -42,10 +42,7 @@ namespace crawler
 
   struct TimeStepper::Implementation
   {
-    Implementation(TimeStepper &owner,
-                   MPI_Comm communicator,
-                   std::size_t n_owned,
-                   const TimeParameters &parameters);
+    Implementation(TimeStepper &owner, MPI_Comm communicator, std::size_t n_owned, const TimeParameters &parameters);
 
     TimeStepper &owner;
     const TimeParameters parameters;
@@ -469,7 +466,7 @@ namespace crawler
     if (it >= 2 && self.last_correction > 0.)
       self.convergence_constant = d / (self.last_correction * self.last_correction);
     self.last_correction = d;
-    const bool small = d <= newton_fraction || self.convergence_constant * d * d <= predicted_fraction;
+    const bool small     = d <= newton_fraction || self.convergence_constant * d * d <= predicted_fraction;
     if (small || d <= rounding)
       *reason = SNES_CONVERGED_SNORM_RELATIVE;
     return 0;
@@ -660,9 +657,9 @@ namespace crawler
                      const std::span<const StepLimit> limits,
                      const double start_time)
   {
-    Implementation &self      = *implementation_;
-    TS ts                     = self.ts.get();
-    self.frames               = frames;
+    Implementation &self = *implementation_;
+    TS ts                = self.ts.get();
+    self.frames          = frames;
     if (self.frames.empty() || self.frames.back() < self.parameters.end_time)
       self.frames.push_back(self.parameters.end_time);
     self.next_frame           = 0;

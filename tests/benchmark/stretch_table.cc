@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// What collapsing, stiff, inverting and soft bodies cost: the table of doc/numerics.md, "Stretch form". For each case and
-// Accuracy the CPU time of the whole answer with its bound, as a point of a sweep takes it (the faster of two), the true
-// error and the bound, both over Accuracy times the displacement. Prints Markdown; nothing is required of it.
+// What collapsing, stiff, inverting and soft bodies cost: the table of doc/numerics.md, "Stretch form". For each case
+// and Accuracy the CPU time of the whole answer with its bound, as a point of a sweep takes it (the faster of two), the
+// true error and the bound, both over Accuracy times the displacement. Prints Markdown; nothing is required of it.
 //
 //     stretch_table [part of a case's name] [formulation, for all cases]
 //
@@ -63,7 +63,12 @@ namespace
       task              = Task();
       task.parameters   = test::parameters_with(settings);
       const double from = cpu_seconds();
-      compute_all({&task, 1}, 600., []() { return false; });
+      compute_all({&task, 1},
+                  600.,
+                  []()
+                  {
+                    return false;
+                  });
       seconds = std::min(seconds, cpu_seconds() - from);
     }
     const SimulationResult &result = task.computed.result;
@@ -80,7 +85,7 @@ namespace
                bound / wanted,
                result.formulation == Formulation::stretch ? "stretch" : "position",
                result.time.status == "finished" || result.time.status == "inverted" ? result.time.status
-                                                                                     : result.time.reason,
+                                                                                    : result.time.reason,
                result.mesh ? result.mesh->n_cells : 0,
                result.time.steps,
                inverted != c.inverts ? ", WRONG" : "");
@@ -102,7 +107,12 @@ namespace
       Task task;
       task.parameters   = test::parameters_with(settings);
       const double from = cpu_seconds();
-      compute_all({&task, 1}, 20., []() { return false; });
+      compute_all({&task, 1},
+                  20.,
+                  []()
+                  {
+                    return false;
+                  });
       seconds = std::min(seconds, cpu_seconds() - from);
       least   = task.computed.result.min_stretch.value;
       if (task.computed.result.time.status != "finished")
@@ -156,7 +166,8 @@ main(int argc, char **argv)
     show_trade();
     return 0;
   }
-  fmt::print("| case | Accuracy | CPU | displacement or t* | true error | bound | by |\n|---|---|---|---|---|---|---|\n");
+  fmt::print(
+    "| case | Accuracy | CPU | displacement or t* | true error | bound | by |\n|---|---|---|---|---|---|---|\n");
   for (const Case &c : cases)
     if (c.name.find(part) != std::string::npos)
       for (const double accuracy : {1e-3, 1e-4, 1e-5, 1e-6})

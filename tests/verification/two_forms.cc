@@ -2,8 +2,8 @@
 //
 // Random scenes over wide ranges, p from -20 to 21 and k from 1e-6 to 1e6 (in units of gamma L^2 nu), by the form that
 // the program chooses and by the other one. Where both give an answer these must agree within their error bounds; how
-// many end with a failure, and with which name, is counted. The exit code is 1 if an answer is silently wrong or if more
-// than a hundredth of the automatic answers are failures.
+// many end with a failure, and with which name, is counted. The exit code is 1 if an answer is silently wrong or if
+// more than a hundredth of the automatic answers are failures.
 //
 //     two_forms FIRST-LAST OUT.csv [Accuracy] [seconds that a run of the other form may take]
 #include "random_scenes.h"
@@ -30,8 +30,9 @@ namespace
   {
     test::Random r(7000 + number);
     test::RandomScene scene;
-    const double p = r.chance(0.3) ? static_cast<double>(r.whole(0, 41)) - 20. : r.chance(0.5) ? r.uniform(-20., 21.)
-                                                                                                : r.uniform(0., 4.);
+    const double p = r.chance(0.3)   ? static_cast<double>(r.whole(0, 41)) - 20.
+                     : r.chance(0.5) ? r.uniform(-20., 21.)
+                                     : r.uniform(0., 4.);
     const double L = r.log_uniform(0.1, 10.), gamma = r.log_uniform(0.1, 10.), nu = r.log_uniform(0.1, 10.);
     const double unit = gamma * L * L * nu, k = r.log_uniform(1e-6, 1e6) * unit;
     const double T = r.log_uniform(0.3, 4.) / nu;
@@ -102,7 +103,12 @@ namespace
     settings.emplace_back("Discretization/Formulation", formulation);
     Task task;
     task.parameters = test::parameters_with(settings);
-    compute_all({&task, 1}, limit, []() { return false; });
+    compute_all({&task, 1},
+                limit,
+                []()
+                {
+                  return false;
+                });
     FormAnswer answer{task.computed.result, task.is_out_of_time, task.seconds, ""};
     if (task.error)
       try
@@ -177,8 +183,8 @@ main(int argc, char **argv)
           return std::stod(value);
       return 1.;
     }();
-    const FormAnswer own = answer(scene.settings, "automatic", accuracy, 60.);
-    const bool is_stretch = own.result.formulation == Formulation::stretch;
+    const FormAnswer own      = answer(scene.settings, "automatic", accuracy, 60.);
+    const bool is_stretch     = own.result.formulation == Formulation::stretch;
     const FormAnswer other    = answer(scene.settings, is_stretch ? "position" : "stretch", accuracy, limit);
     const std::string verdict = judge(own, other, T);
     ++verdicts[verdict];
@@ -211,7 +217,8 @@ main(int argc, char **argv)
       for (const auto &[entry, value] : scene.settings)
         fmt::print("  --set \"{}={}\"", entry, value);
     if (verdict.starts_with("WRONG"))
-      fmt::print("{}: {}: {} {}\n   {}\n   {}\n", number, verdict, scene.kind, is_stretch, numbers(own), numbers(other));
+      fmt::print(
+        "{}: {}: {} {}\n   {}\n   {}\n", number, verdict, scene.kind, is_stretch, numbers(own), numbers(other));
     std::fflush(stdout);
   }
   fmt::print("{} scenes at Accuracy {:g}; {} answers took more than 3 s\n", n, accuracy, n_slow);

@@ -142,7 +142,8 @@ namespace crawler
       return history_;
     }
 
-    /// The first law that was not positive, of the last state that was refused because of one (on each rank its own). @p units are those of the user.
+    /// The first law that was not positive, of the last state that was refused because of one (on each rank its own).
+    /// @p units are those of the user.
     std::optional<BadLaw>
     bad_law(const Units &units) const
     {

@@ -23,10 +23,10 @@ namespace crawler
   cell_ends(unsigned int n_cells, const std::vector<double> &breaks, const Grading &grading);
 
   /**
-   * The ends of cells of a body of length 1 that are images of cells of one size: half of them are in layers at the ends
-   * of the body and at the @p breaks, where at the distance @p layer cells are about twice as large. Each of the pieces
-   * between the breaks has its part of @p n_cells (4 at least), each divided into @p parts: such meshes are one family,
-   * and errors of second order fall with the square of @p parts.
+   * The ends of cells of a body of length 1 that are images of cells of one size: half of them are in layers at the
+   * ends of the body and at the @p breaks, where at the distance @p layer cells are about twice as large. Each of the
+   * pieces between the breaks has its part of @p n_cells (4 at least), each divided into @p parts: such meshes are one
+   * family, and errors of second order fall with the square of @p parts.
    *
    * The density of the cells of a piece of length l is A/(layer + s) + A/(layer + l - s) + B.
    */

@@ -10,7 +10,8 @@ namespace crawler
    *
    * A halved cell keeps its polynomials. In a cell that is joined from two halves the stretch becomes the L2 projection
    * of what it was; so the displacement at the cell's ends, the length of each cell and (degree 2 and above) the
-   * cell's centre of mass stay, and elastic energy can only be lost. Finally a rigid shift makes the centre of mass exact for every degree.
+   * cell's centre of mass stay, and elastic energy can only be lost. Finally a rigid shift makes the centre of mass
+   * exact for every degree.
    */
   class MeshTransfer
   {
@@ -23,8 +24,8 @@ namespace crawler
 
   private:
     const ReferenceElement &element_;
-    std::vector<double> u_half_[2];   ///< [n][n] from a cell's nodes to those of its left and right half
-    std::vector<double> u_join_;      ///< [n][2q+1] from the nodes of two halves to those of the cell
+    std::vector<double> u_half_[2]; ///< [n][n] from a cell's nodes to those of its left and right half
+    std::vector<double> u_join_;    ///< [n][2q+1] from the nodes of two halves to those of the cell
   };
 
   /// The transfer between meshes of a degree, made once for each.

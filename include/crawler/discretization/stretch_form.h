@@ -48,9 +48,9 @@ namespace crawler
   };
 
   /**
-   * The stretch form (doc/numerics.md, "Stretch form"): one stretch in each cell of a mesh of degree 1, on one rank. The
-   * unknowns y are those of the cells, w or q = w^(1+a)/(1+a) (StretchMethod), and last the displacement of the left
-   * end; the fused engine integrates them.
+   * The stretch form (doc/numerics.md, "Stretch form"): one stretch in each cell of a mesh of degree 1, on one rank.
+   * The unknowns y are those of the cells, w or q = w^(1+a)/(1+a) (StretchMethod), and last the displacement of the
+   * left end; the fused engine integrates them.
    */
   class StretchForm : public Assembler
   {

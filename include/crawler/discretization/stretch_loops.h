@@ -49,7 +49,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     // by_left stands for the receiver, by_right for the cell that gives.
     const Number A = giver - beyond, B = receiver - giver, product = A * B;
     const auto limited = product > 0.;
-    const Number sum = limited ? A + B : 1. + Number{}, x = limited ? A / sum : Number{}, y = limited ? B / sum : Number{};
+    const Number sum = limited ? A + B : 1. + Number{}, x = limited ? A / sum : Number{},
+                 y = limited ? B / sum : Number{};
     return {giver + x * B, x * x, 1. + y * y - x * x};
   }
 
@@ -57,23 +58,17 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   /// velocity has. A positive velocity takes length from the right cell.
   template <typename Number>
   inline NodeMobility<Number>
-  node_mobility(const NodeRule rule,
-                const int n,
-                const double *h,
-                const Number *mobility,
-                const int i,
-                const Number &difference)
+  node_mobility(
+    const NodeRule rule, const int n, const double *h, const Number *mobility, const int i, const Number &difference)
   {
     const Number left = mobility[i - 1], right = mobility[i];
     if (rule == NodeRule::upwind)
     {
       const Number &after = mobility[i + 1 < n ? i + 1 : i], &before = mobility[i > 1 ? i - 2 : i - 1];
-      const auto from_right            = difference > 0.;
-      const NodeMobility<Number> mixed = upwind_mobility<Number>(
-        from_right ? left : right, from_right ? right : left, from_right ? after : before);
-      return {mixed.value,
-              from_right ? mixed.by_left : mixed.by_right,
-              from_right ? mixed.by_right : mixed.by_left};
+      const auto from_right = difference > 0.;
+      const NodeMobility<Number> mixed =
+        upwind_mobility<Number>(from_right ? left : right, from_right ? right : left, from_right ? after : before);
+      return {mixed.value, from_right ? mixed.by_left : mixed.by_right, from_right ? mixed.by_right : mixed.by_left};
     }
     NodeMobility<Number> result = mobility_of_mean_friction(h[i - 1], h[i], left, right);
     if (rule == NodeRule::fronts)
@@ -98,7 +93,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
   template <typename Number>
   inline NodeForce<Number>
-  node_force(const NodeRule rule, const int n, const double *h, const Number *mobility, const Number *force, const int i)
+  node_force(
+    const NodeRule rule, const int n, const double *h, const Number *mobility, const Number *force, const int i)
   {
     const Number none{}, one = 1. + Number{};
     if (i == 0)
@@ -129,8 +125,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 0; i < 100; ++i)
       {
         const double th = ::tanh(v / switching_velocity), f = (mean + half * th) * v - q,
-                     df = mean + half * (th + v / switching_velocity * (1. - th * th));
-        slope           = 1. / df;
+                     df       = mean + half * (th + v / switching_velocity * (1. - th * th));
+        slope                 = 1. / df;
         (f > 0. ? high : low) = v;
         double next           = v - f / df;
         if (!(next >= low && next <= high))

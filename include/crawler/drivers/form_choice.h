@@ -2,9 +2,9 @@
 #pragma once
 
 /**
- * Which form is the cheaper one, as measured by `stretch_table trade` (doc/numerics.md, "Which form"): the position form
- * is of high order where the body deforms smoothly, the stretch form of second order everywhere. So the limits fall with
- * Accuracy.
+ * Which form is the cheaper one, as measured by `stretch_table trade` (doc/numerics.md, "Which form"): the position
+ * form is of high order where the body deforms smoothly, the stretch form of second order everywhere. So the limits
+ * fall with Accuracy.
  */
 namespace crawler
 {

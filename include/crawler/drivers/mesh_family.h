@@ -6,8 +6,8 @@
 namespace crawler
 {
   /**
-   * The answer of the stretch form, of which a @p choice is one (NumericsChoice::is_family): runs on a family of meshes,
-   * each twice as fine as the one before, until the extrapolated displacement
+   * The answer of the stretch form, of which a @p choice is one (NumericsChoice::is_family): runs on a family of
+   * meshes, each twice as fine as the one before, until the extrapolated displacement
    *
    *   R_i = (4 D_i - D_{i-1})/3
    *

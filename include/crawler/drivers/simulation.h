@@ -38,15 +38,15 @@ namespace crawler
     std::vector<StepLimit> step_limits = {}; ///< of adaptive steps [time]
     double least_event = 0.; ///< an event of the active stress within a step, if it is this large, is stepped over
                              ///< again [force]; 0: not looked for
-    Formulation formulation       = Formulation::position;
-    MeshLimits mesh               = {};    ///< of an adaptive mesh
-    bool linear                   = false; ///< the rung for a = 0: radau, position form, uniform mesh
-    std::string integrator        = "";    ///< what an automatic integrator is (time/integrators.h); empty: bdf
-    Grading grading               = {};    ///< of the first mesh, which has n_cells cells without it
-    double layer       = 0.; ///< of the stretch form: see layered_cell_ends() [length]; 0: none
-    unsigned int parts = 1;  ///< of the stretch form, into which each of n_cells is divided
-    bool other_rule    = false; ///< of the stretch form, see stretch_method()
-    bool jumps_move               = false; ///< the active stress jumps at places that move through the cells
+    Formulation formulation = Formulation::position;
+    MeshLimits mesh         = {};    ///< of an adaptive mesh
+    bool linear             = false; ///< the rung for a = 0: radau, position form, uniform mesh
+    std::string integrator  = "";    ///< what an automatic integrator is (time/integrators.h); empty: bdf
+    Grading grading         = {};    ///< of the first mesh, which has n_cells cells without it
+    double layer            = 0.;    ///< of the stretch form: see layered_cell_ends() [length]; 0: none
+    unsigned int parts      = 1;     ///< of the stretch form, into which each of n_cells is divided
+    bool other_rule         = false; ///< of the stretch form, see stretch_method()
+    bool jumps_move         = false; ///< the active stress jumps at places that move through the cells
   };
 
   /// In natural units.
@@ -155,9 +155,9 @@ namespace crawler
     enum class Request
     {
       none,
-      mesh,    ///< change the mesh by changes_
-      retry,   ///< the active stress did something within the step
-      restart  ///< the active stress jumps
+      mesh,   ///< change the mesh by changes_
+      retry,  ///< the active stress did something within the step
+      restart ///< the active stress jumps
     };
 
     void
@@ -258,7 +258,7 @@ namespace crawler
 
     std::unique_ptr<Discretization> discretization_;
     std::unique_ptr<Assembler> assembler_;
-    PositionForm *position_ = nullptr; ///< the assembler, if the form is that
+    PositionForm *position_    = nullptr; ///< the assembler, if the form is that
     StretchForm *stretch_form_ = nullptr;
     // Who integrates; built when they are needed.
     std::unique_ptr<TimeStepper> petsc_stepper_;

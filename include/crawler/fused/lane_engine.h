@@ -7,10 +7,10 @@
 
 /**
  * Kernels and time integration of a form in one piece, for meshes that do not change: the position form with the
- * p-model of friction, and the stretch form. Radau IIA with the simplified Newton method, as in time/radau.h, without an object of PETSc. Several bodies
- * are computed side by side in the lanes of vector registers, each with its own parameters and its own steps; a lane
- * that is done takes the next body. No operation mixes lanes, so an answer does not depend on which bodies share a
- * batch.
+ * p-model of friction, and the stretch form. Radau IIA with the simplified Newton method, as in time/radau.h, without
+ * an object of PETSc. Several bodies are computed side by side in the lanes of vector registers, each with its own
+ * parameters and its own steps; a lane that is done takes the next body. No operation mixes lanes, so an answer does
+ * not depend on which bodies share a batch.
  *
  * Only plain data here: this header is included by code for instruction sets that the processor may not have.
  * Everything is in natural units (scene/scene.h).
@@ -42,7 +42,7 @@ namespace crawler
   /// One body to compute.
   struct LaneJob
   {
-    double k, a;      ///< elastic modulus, friction exponent
+    double k, a;          ///< elastic modulus, friction exponent
     double tolerance;     ///< root mean square of the error of a step; in the stretch form the largest one of a stretch
     double newton_factor; ///< on LaneSetup::newton_fraction
     double initial_step;

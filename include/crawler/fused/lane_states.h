@@ -121,7 +121,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
             const Complex<Pack> &x = complex[p * n + d];
             change += 2. * vector[0] * x.re - 2. * vector[1] * x.im;
           }
-          square = added<largest>(square, change * change);
+          square      = added<largest>(square, change * change);
           Pack &moved = z[i * n + d];
           moved       = moves ? moved - change : moved;
         }

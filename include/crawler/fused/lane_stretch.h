@@ -118,12 +118,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         const NodeForce<Pack> f = node_force(rule_, n_, h, mobility_, force_, i);
         Pack turn               = broadcast<Pack>(1.);
         node.v                  = direct(f.slope * f.mobility.value, turn);
-        const Pack conductance  = turn * f.mobility.value * (1. / f.spacing), force = turn * f.slope;
+        const Pack conductance = turn * f.mobility.value * (1. / f.spacing), force = turn * f.slope;
         node.by_left = node.by_right = node.by_left_rate = node.by_right_rate = Pack{};
         if (i > 0)
         {
-          node.by_left = (force * f.mobility.by_left * mobility_slope_[i - 1] - conductance * force_by_w_[i - 1]) *
-                         slope_[i - 1];
+          node.by_left =
+            (force * f.mobility.by_left * mobility_slope_[i - 1] - conductance * force_by_w_[i - 1]) * slope_[i - 1];
           if (sees_rate)
             node.by_left_rate = -conductance * force_by_rate_[i - 1];
         }
@@ -390,8 +390,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static void
     eliminate_down(Factors<Type> &row, Factors<Type> &next)
     {
-      row.pivot   = 1. / row.pivot;
-      row.after   = row.after * row.pivot;
+      row.pivot = 1. / row.pivot;
+      row.after = row.after * row.pivot;
       next.pivot -= next.before * row.after;
       next.before = next.before * row.pivot;
     }
@@ -423,7 +423,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack k_, a_, shift_, end_by_w_, end_by_rate_;
     Number shifts_[pairs];
     Pack *w_, *slope_, *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell]
-    Pack *rate_;                                                                           ///< [cell] scratch
+    Pack *rate_;                                                                             ///< [cell] scratch
     Row *rows_;
     Factors<Pack> *real_;
     Factors<Number> *complex_[pairs];

@@ -164,14 +164,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         for (int i = 0; i < s; ++i)
         {
           states_.go_to_stage(i, inverse_h_);
-          least = smaller(
-            least, system_.residual(times_[i], states_.u, states_.v, m_ + i * n_points_, F_ + i * n_));
+          least = smaller(least, system_.residual(times_[i], states_.u, states_.v, m_ + i * n_points_, F_ + i * n_));
         }
         const Pack correction = correct();
         for (int l = 0; l < lanes; ++l)
           if (lanes_[l].iterating)
-            lanes_[l].look_at_correction(
-              it, get_lane(least, l), ::sqrt(get_lane(correction, l)), setup_.newton_fraction * lanes_[l].job.newton_factor);
+            lanes_[l].look_at_correction(it,
+                                         get_lane(least, l),
+                                         ::sqrt(get_lane(correction, l)),
+                                         setup_.newton_fraction * lanes_[l].job.newton_factor);
       }
       for (Lane &lane : lanes_)
         if (lane.iterating)
@@ -369,15 +370,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     end(const int l, const LaneOutcome::Status status)
     {
       const Lane &lane = lanes_[l];
-      host_.done(host_.context,
-                 static_cast<unsigned int>(l),
-                 {status,
-                  lane.t,
-                  lane.next,
-                  lane.steps,
-                  lane.rejected,
-                  lane.newton,
-                  get_lane(system_.integral(states_.y), l)});
+      host_.done(
+        host_.context,
+        static_cast<unsigned int>(l),
+        {status, lane.t, lane.next, lane.steps, lane.rejected, lane.newton, get_lane(system_.integral(states_.y), l)});
       take_next(l);
     }
 
