@@ -32,7 +32,7 @@ namespace crawler
     /// A time tolerance, relative to the strain, that is so many times too large or small is chosen anew.
     constexpr double too_large = 2., too_small = 0.05;
     /// An inversion whose time is not known better than this, relative to it, may be none.
-    constexpr double believed = 0.1;
+    constexpr double believed = 0.3;
     /// The displacement counts as no smaller than this part of the deformation.
     constexpr double displacement_floor = 1e-4;
     /// Extrapolations that settle at least so fast are believed to go on so; and what settles faster than fourth order
