@@ -50,6 +50,52 @@ namespace
     return {name, in_section("Active stress/Optimal wave", lines), message};
   }
 
+  /// The stretch form with what it does not have.
+  std::vector<BadInput>
+  stretch_form()
+  {
+    const std::string chosen  = in_section("Discretization", "set Formulation = stretch");
+    const auto with           = [&](const std::string &section, const std::string &line)
+    {
+      return chosen + in_section(section, line);
+    };
+    const std::string feedback = in_section("Active stress", "set Generator = strain feedback");
+    return {
+      {"FormulationOfOldTimes",
+       in_section("Discretization", "set Formulation = log stretch"),
+       {"bad.prm, line 2", "\"log stretch\"", "the nearest is \"stretch\""}},
+      {"StretchOnAdaptiveMesh",
+       with("Discretization", "set Mesh = adaptive"),
+       {"bad.prm, line 5", "Formulation is stretch and Mesh is adaptive, but automatic or uniform is expected"}},
+      {"StretchOfDegree3",
+       with("Discretization", "set Degree = 3"),
+       {"bad.prm, line 5", "Formulation is stretch and Degree is 3, but 1 is expected"}},
+      {"StretchByPetsc",
+       with("Time", "set Engine = petsc"),
+       {"bad.prm, line 5", "Formulation is stretch and Engine is petsc, but automatic is expected"}},
+      {"StretchByBdf",
+       with("Time", "set Integrator = bdf"),
+       {"bad.prm, line 5", "Formulation is stretch and Integrator is bdf, but automatic, radau 5 or radau 9 is expected"}},
+      {"StretchByFixedSteps",
+       with("Time", "set Step control = fixed\nset Initial step = 0.1"),
+       {"bad.prm, line 5", "Formulation is stretch and Step control is fixed, but adaptive is expected"}},
+      {"StretchOnSharedCells",
+       with("Discretization", "set Share cells = yes"),
+       {"bad.prm, line 5", "Formulation is stretch and Share cells is yes, but automatic or no is expected"}},
+      {"StretchOnAGround",
+       with("Ground", "set Profile = 1+0.1*x"),
+       {"bad.prm, line 2", "Formulation is stretch, but position or automatic is expected", "place of each cell"}},
+      {"StretchWithDelay",
+       feedback +
+         in_section("Active stress/Strain feedback", "set Active stress = 0.1*(w_delayed-1)\nset Delay = 0.2") + chosen,
+       {"bad.prm, line 11", "Formulation is stretch, but position or automatic is expected", "other places or times"}},
+      {"StretchWithSensors",
+       feedback +
+         in_section("Active stress/Strain feedback", "set Active stress = 0.1*(w_near-1)\nset Distance = 0.2") + chosen,
+       {"bad.prm, line 11", "Formulation is stretch, but position or automatic is expected", "other places or times"}},
+    };
+  }
+
   /// Actuators of robots, and measurements.
   std::vector<BadInput>
   generators()
@@ -581,6 +627,7 @@ INSTANTIATE_TEST_SUITE_P(Values, BadInputTest, testing::ValuesIn(values()), name
 INSTANTIATE_TEST_SUITE_P(Formulas, BadInputTest, testing::ValuesIn(formulas()), name_of);
 INSTANTIATE_TEST_SUITE_P(Waves, BadInputTest, testing::ValuesIn(waves()), name_of);
 INSTANTIATE_TEST_SUITE_P(Generators, BadInputTest, testing::ValuesIn(generators()), name_of);
+INSTANTIATE_TEST_SUITE_P(StretchForm, BadInputTest, testing::ValuesIn(stretch_form()), name_of);
 INSTANTIATE_TEST_SUITE_P(Sums, BadInputTest, testing::ValuesIn(sums()), name_of);
 INSTANTIATE_TEST_SUITE_P(Atlases, BadInputTest, testing::ValuesIn(atlases()), name_of);
 INSTANTIATE_TEST_SUITE_P(Tradeoffs, BadInputTest, testing::ValuesIn(tradeoffs()), name_of);
