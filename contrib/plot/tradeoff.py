@@ -21,8 +21,7 @@ WAYS = {("position", "uniform", "fused"): ("position, fused engine", "#0072B2"),
         ("position", "uniform", "batch"): ("position, batch of 8, per body", "#009E73"),
         ("position", "uniform", "petsc"): ("position, PETSc", "#E69F00"),
         ("position", "adaptive", "petsc"): ("position, adaptive mesh, PETSc", "#CC79A7"),
-        ("log stretch", "uniform", "petsc"): ("log stretch, PETSc", "#D55E00"),
-        ("log stretch", "adaptive", "petsc"): ("log stretch, adaptive mesh, PETSc", "#56B4E9")}
+        ("stretch", "uniform", "fused"): ("stretch, fused engine", "#D55E00")}
 # Rungs of the model that need no mesh: name, colour, marker.
 RUNGS = {"perturbation": ("perturbation, closed form", "#000000", "*"),
          "kinematic": ("kinematic, quadrature", "#7F7F7F", "X")}

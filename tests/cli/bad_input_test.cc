@@ -54,8 +54,8 @@ namespace
   std::vector<BadInput>
   stretch_form()
   {
-    const std::string chosen  = in_section("Discretization", "set Formulation = stretch");
-    const auto with           = [&](const std::string &section, const std::string &line)
+    const std::string chosen = in_section("Discretization", "set Formulation = stretch");
+    const auto with          = [&](const std::string &section, const std::string &line)
     {
       return chosen + in_section(section, line);
     };
@@ -75,7 +75,8 @@ namespace
        {"bad.prm, line 5", "Formulation is stretch and Engine is petsc, but automatic is expected"}},
       {"StretchByBdf",
        with("Time", "set Integrator = bdf"),
-       {"bad.prm, line 5", "Formulation is stretch and Integrator is bdf, but automatic, radau 5 or radau 9 is expected"}},
+       {"bad.prm, line 5",
+        "Formulation is stretch and Integrator is bdf, but automatic, radau 5 or radau 9 is expected"}},
       {"StretchByFixedSteps",
        with("Time", "set Step control = fixed\nset Initial step = 0.1"),
        {"bad.prm, line 5", "Formulation is stretch and Step control is fixed, but adaptive is expected"}},

@@ -46,10 +46,10 @@ TEST(MeshFamily, IsOfSecondOrder)
   std::vector<double> displacements, errors;
   for (const double n : cells)
   {
-    const auto result = test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch),
-                                                  {{"Discretization/Number of cells", test::text(n)},
-                                                   {"Time/Tolerance", "1e-9"}}))
-                          .result;
+    const auto result =
+      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch),
+                                {{"Discretization/Number of cells", test::text(n)}, {"Time/Tolerance", "1e-9"}}))
+        .result;
     ASSERT_EQ(result.time.status, "finished");
     EXPECT_EQ(result.mesh->n_cells, n);
     displacements.push_back(result.displacement);
@@ -73,7 +73,8 @@ TEST(MeshFamily, ErrorsAreTrueAndSmallEnough)
   {
     SCOPED_TRACE(accuracy);
     const auto result =
-      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch), {{"Accuracy", test::text(accuracy)}})).result;
+      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch), {{"Accuracy", test::text(accuracy)}}))
+        .result;
     expect_true(result, 0.0900725298, 1e-10, accuracy);
   }
 }
@@ -89,9 +90,10 @@ TEST(MeshFamily, NumbersOfTheTable)
     for (const std::string formulation : {"stretch", "automatic"})
     {
       SCOPED_TRACE(fmt::format("k = {:g}, chi = {:g}, {}", row.k, row.chi, formulation));
-      const auto result = test::run_with(test::with(test::wave(row.a, row.chi, 1., 1., row.k),
-                                                    {{"Accuracy", "1e-4"}, {"Discretization/Formulation", formulation}}))
-                            .result;
+      const auto result =
+        test::run_with(test::with(test::wave(row.a, row.chi, 1., 1., row.k),
+                                  {{"Accuracy", "1e-4"}, {"Discretization/Formulation", formulation}}))
+          .result;
       expect_true(result, row.displacement, 1e-9, 1e-4);
     }
 }
@@ -102,8 +104,7 @@ TEST(MeshFamily, TimeOfAnInversion)
 {
   for (const double accuracy : {1e-3, 1e-4})
   {
-    const auto result =
-      test::run_with(test::with(test::wave(-0.8, 0.77), {{"Accuracy", test::text(accuracy)}})).result;
+    const auto result = test::run_with(test::with(test::wave(-0.8, 0.77), {{"Accuracy", test::text(accuracy)}})).result;
     EXPECT_EQ(result.time.status, "inverted");
     EXPECT_EQ(result.time.reason, "inverted_inside");
     EXPECT_EQ(result.formulation, Formulation::stretch);
@@ -136,13 +137,18 @@ TEST(MeshFamily, WorksEnergiesAndTheirErrors)
   };
   const auto exact = json_of(test::with(settings, {{"Accuracy", "1e-9"}})),
              found = json_of(test::with(test::with(settings, stretch), {{"Accuracy", "1e-4"}}));
-  for (const char *key :
-       {"stress_power", "dissipation", "elastic_energy", "paper_energy", "positive_power", "min_stretch", "max_stretch"})
+  for (const char *key : {"stress_power",
+                          "dissipation",
+                          "elastic_energy",
+                          "paper_energy",
+                          "positive_power",
+                          "min_stretch",
+                          "max_stretch"})
   {
     const auto value = [&](const auto &summary)
     {
-      return summary.at(key).is_object() ? summary.at(key).at("value").template get<double>() :
-                                           summary.at(key).template get<double>();
+      return summary.at(key).is_object() ? summary.at(key).at("value").template get<double>()
+                                         : summary.at(key).template get<double>();
     };
     const double error = found.at("errors").at(key).get<double>();
     EXPECT_NEAR(value(found), value(exact), error + 1e-5 * std::abs(value(exact))) << key;
@@ -161,7 +167,8 @@ TEST(MeshFamily, IsChosenWhereTheStretchIsSmallOrTheBodySoft)
   EXPECT_EQ(form(test::wave(-1., 0.6)), Formulation::stretch);
   EXPECT_EQ(form(test::wave(-1., 0.2, 1., 1., 1e-5)), Formulation::stretch);
   // What only the other form has.
-  EXPECT_EQ(form(test::with(test::wave(-1., 0.2, 1., 1., 1e-4), {{"Discretization/Degree", "4"}})), Formulation::position);
+  EXPECT_EQ(form(test::with(test::wave(-1., 0.2, 1., 1., 1e-4), {{"Discretization/Degree", "4"}})),
+            Formulation::position);
 }
 
 /// Whoever does not want to wait gets no answer.
@@ -171,8 +178,8 @@ TEST(MeshFamily, CanBeStopped)
   const Scene scene           = parameters.create_scene();
   const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene);
   ASSERT_TRUE(choice && choice->is_family);
-  unsigned int n_steps    = 0;
-  const auto keep_going   = [&]()
+  unsigned int n_steps  = 0;
+  const auto keep_going = [&]()
   {
     return ++n_steps < 100;
   };
