@@ -136,6 +136,8 @@ namespace crawler
     const auto &h       = discretization_.cell_size();
     const std::size_t n = w.size();
     std::vector<double> slopes(n, 0.);
+    if (n == 1)
+      return slopes;
     for (std::size_t j = 0; j < n; ++j)
     {
       const auto to = [&](const std::size_t other)
@@ -186,6 +188,8 @@ namespace crawler
     {
       return left[j] + 0.5 * size[j];
     };
+    if (n == 1)
+      return {{w[0], middle(0)}, {w[0], middle(0)}};
     std::size_t least = 0, most = 0;
     for (std::size_t j = 0; j < n; ++j)
     {
