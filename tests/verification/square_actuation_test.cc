@@ -59,6 +59,7 @@ namespace
   {
     const Parameters parameters = test::parameters_with(settings);
     const Scene scene           = parameters.create_scene();
+    const Simulation::Options options{.ledger = true};
     return run_as_promised(
       MPI_COMM_SELF,
       parameters,
@@ -66,8 +67,10 @@ namespace
       *choose_numerics(MPI_COMM_SELF, parameters, scene),
       [&](const NumericsChoice &choice)
       {
-        return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics).run({}, {.ledger = true});
-      });
+        return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics).run({}, options);
+      },
+      options,
+      /*writes=*/false);
   }
 
   SimulationResult
