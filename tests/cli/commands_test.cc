@@ -455,7 +455,7 @@ TEST_F(Commands, InversionOfThePositionFormIsNotBelieved)
                                     "--set",
                                     "Discretization/Formulation=position"});
   EXPECT_EQ(result.exit_code, 3);
-  EXPECT_TRUE(contains(result.err, "Discretization/Formulation = automatic")) << result.err;
+  EXPECT_TRUE(contains(result.err, "Discretization/Formulation = stretch")) << result.err;
   const json summary = summary_of(results);
   EXPECT_EQ(summary.at("reason"), "under_resolved");
   EXPECT_TRUE(summary.at("inversion").is_null());
