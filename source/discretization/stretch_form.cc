@@ -258,7 +258,10 @@ namespace crawler
     for (unsigned int i = 0; i < (sees_rate ? 20 : 1); ++i)
     {
       if (laws_.evaluate(t, w, rate_) >= 0)
+      {
+        look_at_friction(w, laws_.friction);
         return false;
+      }
       const auto &N = laws_.force().N;
       std::vector<double> by_left(n + 1, 0.), by_right(n + 1, 0.);
       for (int node = 0; node <= n; ++node)

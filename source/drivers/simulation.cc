@@ -527,6 +527,8 @@ namespace crawler
     if (options_.ledger || adaptive || (has_observers_ && (step.is_frame || step.number == 0)))
       if (!velocity(step.time, step.size, y, v_))
       {
+        if (law_failed())
+          return false;
         diagnosis_ = {"failed",
                       "linear_failed",
                       fmt::format("the velocity at t = {:.6g} cannot be computed: the friction matrix is singular",

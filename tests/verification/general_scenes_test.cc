@@ -351,7 +351,7 @@ namespace
   {
     const auto position = run(scene + Settings{{"Discretization/Formulation", "position"}, {"Accuracy", "1e-7"}}),
                stretch =
-                 run(scene + stretch_form + Settings{{"Accuracy", accuracy}, {"Time/Maximum number of steps", "1000"}},
+                 run(scene + stretch_form + Settings{{"Accuracy", accuracy}, {"Time/Maximum number of steps", "20000"}},
                      /*most_residual=*/1e-4);
     EXPECT_EQ(position.formulation, Formulation::position) << name;
     EXPECT_EQ(stretch.formulation, Formulation::stretch) << name;
