@@ -63,6 +63,8 @@ namespace crawler
         if (!promised)
           n.n_cells *= 2;
       }
+      else if (n.formulation == Formulation::stretch)
+        n.parts *= 2; // one family of meshes
       else
       {
         const double factor = promised ? more_cells : more_cells_without_promise;
@@ -118,6 +120,7 @@ namespace crawler
       Numerics numerics         = choice.numerics;
       const Numerics finer_mesh = finer(choice, parameters.time.integrator, scene);
       numerics.n_cells          = finer_mesh.n_cells;
+      numerics.parts            = finer_mesh.parts;
       numerics.mesh.tolerance   = finer_mesh.mesh.tolerance;
       numerics.grading          = finer_mesh.grading;
       TimeParameters time       = parameters.time;

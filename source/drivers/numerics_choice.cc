@@ -346,7 +346,7 @@ namespace crawler
         {
           pilot_ = pilot(pilot_numerics(pilot_degree, n_cells, tolerance_));
           measure_size();
-          if (is_for_stretch())
+          if (accuracy_ >= 1e-7 && is_for_stretch())
             return true;
           const bool finished = pilot_.time.status == "finished";
           const bool resolves = user_cells_ || pilot_.unresolved <= std::max(resolved, accuracy_) || n_cells >= most;
@@ -481,7 +481,9 @@ namespace crawler
       bool
       is_for_stretch() const
       {
+        // It has few digits; so for a smaller Accuracy only where the position form cannot go on.
         return may_be_stretch() && pilot_.time.reason != "inverted_at_end" &&
+               (accuracy_ >= 1e-7 || pilot_.time.status != "finished") &&
                empties(pilot_.min_stretch.value, scene_.friction_exponent(), accuracy_);
       }
 

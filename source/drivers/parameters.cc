@@ -79,6 +79,10 @@ namespace crawler
               "automatic, radau 5 or radau 9");
       require(p.time.engine == "automatic", "Time/Engine", p.time.engine, "automatic");
       require(p.time.step_control == "adaptive", "Time/Step control", p.time.step_control, "adaptive");
+      require(!p.time.tolerance || *p.time.tolerance <= 1e-3 * p.body.length,
+              "Time/Tolerance",
+              fmt::format("{:g}", p.time.tolerance.value_or(0.)),
+              fmt::format("at most a thousandth of the Length, {:g},", 1e-3 * p.body.length));
       if (const std::string reason = reason_against_stretch_form(scene); !reason.empty())
         throw InputError(fmt::format("Formulation is stretch, but position or automatic is expected, since {}", reason),
                          "Discretization/Formulation");

@@ -540,6 +540,14 @@ namespace crawler
     if (!compute_integrals(step, y))
       return false;
     look_at_extremes(step.time, stretch_, step.number == 0);
+    if (options_.resolution && stretch_form_ != nullptr)
+    {
+      const auto u  = assembler_->displacement(y);
+      double square = 0.;
+      for (const double value : u)
+        square += value * value;
+      result_.largest_u = std::max(result_.largest_u, std::sqrt(square / static_cast<double>(u.size())));
+    }
     if (options_.resolution && position_ != nullptr)
     {
       if (!adaptive && velocity(step.time, step.size, y, v_))

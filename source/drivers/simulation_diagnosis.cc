@@ -116,6 +116,8 @@ namespace crawler
     double t = step.time;
     if (step.size > 0.)
       t = first_zero(above, step.time - step.size, step.time);
+    if (step.size > 0.)
+      above(t); // the smallest stretch of that time
     const bool at_end  = smallest.s == 0. || smallest.s == 1.;
     const double reach = at_end ? end_reach_at_end : end_reach;
     if (at_end && !assembler_->has_known_ends())
@@ -128,7 +130,8 @@ namespace crawler
         // There disturbances travel without bound, so all of these places are lost at once.
         constexpr double at_once = 1e-6;
         stepper_->interpolate(t, y);
-        result_.inverted_places = stretch_form_->lost_places(t, y, at_once);
+        const auto [first, last] = stretch_form_->lost_places(t, y, at_once);
+        result_.inverted_places  = {std::min(first, smallest.s), std::max(last, smallest.s)};
       }
     }
   }

@@ -130,8 +130,14 @@ namespace crawler
         if (reference_.is_checked())
           reference_.bar += std::abs(reference_.first.displacement - reference_.second.displacement);
         if (std::find(lists_.meshes.begin(), lists_.meshes.end(), "uniform") != lists_.meshes.end())
+        {
           for (const unsigned int degree : lists_.degrees)
             reference_.meshes[degree] = meshes(degree);
+          const bool stretch =
+            std::find(lists_.formulations.begin(), lists_.formulations.end(), "stretch") != lists_.formulations.end();
+          if (stretch && !reference_.meshes.contains(1)) // the degree of that form
+            reference_.meshes[1] = meshes(1);
+        }
         reference_.message.clear(); // of methods that failed
         if (interrupted_())
           reference_.status = "stopped";

@@ -392,10 +392,11 @@ TEST(GeneralScenes, FormsAgree)
   expect_forms_agree("all but rate", all + direction + feedback(wave_formula + "-0.2*(w-1)"));
 }
 
-/// A body with viscosity on a ground that holds more in one direction.
-TEST(GeneralScenes, FormsAgreeOnRatesAndDirection)
+/// Viscosity on a ground that holds more in one direction is for the position form.
+TEST(GeneralScenes, ViscosityAndDirectionAreForThePositionForm)
 {
-  const Settings direction = {{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.2"}};
-  expect_forms_agree("viscosity", direction + feedback(wave_formula + "+0.05*w_t"));
-  expect_forms_agree("viscosity, stretch", direction + feedback(wave_formula + "-0.2*(w-1)+0.05*w_t*w"));
+  const Settings scene = feedback(wave_formula + "+0.05*w_t") +
+                         Settings{{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.2"}};
+  EXPECT_THROW(run(scene + stretch_form), InputError);
+  EXPECT_EQ(run(scene + Settings{{"Accuracy", "1e-4"}}, /*most_residual=*/1e-3).formulation, Formulation::position);
 }
