@@ -196,8 +196,9 @@ def test_rows_that_fail(program, folder):
     check((folder / "some" / "points" / "1" / "solution.pvd").is_file(), "the fields of a point are kept")
     strict = call(program, folder, "sweep", "sweep.prm", "--output", "strict", "--strict")
     check(strict.returncode == 8, f"--strict: exit code 8 ({strict.returncode})")
-    write(folder, f"{P} : 2; {CHI} : 0.1, 0.8", "set Time limit per point = 0.3\n set Design = grid")
-    result = call(program, folder, "sweep", "sweep.prm", "--output", "slow", "--set", "Accuracy=1e-3")
+    write(folder, f"{P} : 2; {CHI} : 0.01, 0.8", "set Time limit per point = 0.3\n set Design = grid")
+    result = call(program, folder, "sweep", "sweep.prm", "--output", "slow", "--set", "Accuracy=1e-7", "--set",
+                  "Discretization/Formulation=stretch", "--set", "Time/End time=8")
     rows = table(folder / "slow")
     check(result.returncode == 0 and rows["status"][1] == "stopped" and rows["reason"][1] == "time_limit",
           f"a point that takes too long is a row ({rows['status'][1]}, {rows['reason'][1]})")
