@@ -98,6 +98,7 @@ namespace crawler
     : Assembler(scene, discretization)
     , method_(stretch_method(scene, other))
     , power_(1. + scene.friction_exponent())
+    , may_be_empty_(scene.friction_exponent() < 0.)
     , laws_(scene, middles(discretization))
     , w_(discretization.n_cells())
     , u_(discretization.n_unknowns())
@@ -111,10 +112,10 @@ namespace crawler
     for (std::size_t j = 0; j < w_.size(); ++j)
     {
       const double positive = std::max(y[j], 0.);
-      w_[j]                 = std::isnan(y[j])                  ? y[j]
-                              : method_.is_power                ? std::pow(power_ * positive, 1. / power_)
-                              : scene_.friction_exponent() < 0. ? positive
-                                                                : y[j];
+      w_[j]                 = std::isnan(y[j])   ? y[j]
+                              : method_.is_power ? std::pow(power_ * positive, 1. / power_)
+                              : may_be_empty_    ? positive
+                                                 : y[j];
     }
     return w_;
   }

@@ -527,7 +527,7 @@ namespace crawler
     if (options_.ledger || adaptive || (has_observers_ && (step.is_frame || step.number == 0)))
       if (!velocity(step.time, step.size, y, v_))
       {
-        if (law_failed())
+        if (law_failed() || stress_failed())
           return false;
         diagnosis_ = {"failed",
                       "linear_failed",

@@ -95,31 +95,25 @@ namespace crawler
     self.stress_->values(t, {m, self.tables_.points.size()});
   }
 
-  double
-  FusedStepper::laws(void *context,
-                     const double t,
-                     const double *m,
-                     const double *w,
-                     const double *rate,
-                     double *mobility,
-                     double *mobility_by_w,
-                     double *force,
-                     double *force_by_w,
-                     double *force_by_rate)
+  LaneLaws
+  FusedStepper::laws(void *context, const double t, const double *m, const double *w, const double *rate)
   {
     auto &self          = *static_cast<FusedStepper *>(context);
     StretchLaws &laws   = *self.laws_;
     const std::size_t n = self.tables_.points.size();
     const long bad      = laws.evaluate(t, {w, n}, {rate, n}, m);
-    std::copy_n(laws.mobility.begin(), n, mobility);
-    std::copy_n(laws.mobility_by_w.begin(), n, mobility_by_w);
-    std::copy_n(laws.force().N.begin(), n, force);
-    std::copy_n(laws.force().by_w.begin(), n, force_by_w);
-    std::copy(laws.force().by_rate.begin(), laws.force().by_rate.end(), force_by_rate);
     if (bad >= 0)
       self.bad_friction_ = {w[bad], laws.friction[static_cast<std::size_t>(bad)]};
-    const bool may_be_empty = self.scene_.friction_exponent() < 0.;
-    return bad >= 0 ? -1. : may_be_empty ? 1. : *std::min_element(w, w + n);
+    const bool may_be_empty        = self.scene_.friction_exponent() < 0.;
+    const BodyForceAtPoints &force = laws.force();
+    return {laws.mobility.data(),
+            laws.mobility_by_w.data(),
+            force.N.data(),
+            force.by_w.data(),
+            force.by_rate.data(),
+            bad >= 0       ? -1.
+            : may_be_empty ? 1.
+                           : *std::min_element(w, w + n)};
   }
 
   bool

@@ -56,7 +56,8 @@ namespace crawler::test
       Answer answer = answer_of_family(parameters, scene, outcome.choice, options, {}, {});
       return {std::move(answer.result), std::move(answer.choice)};
     }
-    Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, outcome.choice.numerics);
+    const bool stretch = outcome.choice.numerics.formulation == Formulation::stretch; // its cells are not shared
+    Simulation simulation(stretch ? MPI_COMM_SELF : MPI_COMM_WORLD, scene, parameters.time, outcome.choice.numerics);
     outcome.result = simulation.run({}, options);
     return outcome;
   }

@@ -50,9 +50,6 @@ namespace crawler
     virtual ~Assembler();
     Assembler(const Assembler &) = delete;
 
-    virtual Formulation
-    formulation() const = 0;
-
     /// Number of unknowns of this rank, and of all ranks.
     virtual std::size_t
     n_owned() const = 0;

@@ -26,11 +26,6 @@ namespace crawler
     PositionForm(const Scene &scene, const Discretization &discretization);
     ~PositionForm() override;
 
-    Formulation
-    formulation() const override
-    {
-      return Formulation::position;
-    }
     std::size_t
     n_owned() const override
     {

@@ -58,11 +58,6 @@ namespace crawler
     /// @p other: see stretch_method().
     StretchForm(const Scene &scene, const Discretization &discretization, bool other = false);
 
-    Formulation
-    formulation() const override
-    {
-      return Formulation::stretch;
-    }
     std::size_t
     n_owned() const override
     {
@@ -103,7 +98,8 @@ namespace crawler
     evaluate(double t, ConstVector y, ConstVector v) const;
 
     const StretchMethod method_;
-    const double power_; ///< 1 + a
+    const double power_;      ///< 1 + a
+    const bool may_be_empty_; ///< a < 0
     // What was looked at last.
     mutable StretchLaws laws_;
     mutable std::vector<double> w_, u_, rate_;

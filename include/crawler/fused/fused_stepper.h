@@ -54,17 +54,8 @@ namespace crawler
     accepted(void *context, unsigned int lane, const LaneStep &step);
     static void
     done(void *context, unsigned int lane, const LaneOutcome &outcome);
-    static double
-    laws(void *context,
-         double t,
-         const double *m,
-         const double *w,
-         const double *rate,
-         double *mobility,
-         double *mobility_by_w,
-         double *force,
-         double *force_by_w,
-         double *force_by_rate);
+    static LaneLaws
+    laws(void *context, double t, const double *m, const double *w, const double *rate);
     void
     show_rates();
 

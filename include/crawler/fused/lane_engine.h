@@ -98,6 +98,14 @@ namespace crawler
     double displacement; ///< int u ds at that time
   };
 
+  /// The laws of a general body in the stretch form, at all cells: the mobility 1/(g b), the force N, and their
+  /// derivatives by w and w_t. The arrays belong to the host and are good until it is asked again.
+  struct LaneLaws
+  {
+    const double *mobility, *mobility_by_w, *force, *force_by_w, *force_by_rate;
+    double least; ///< not positive if one of them has no meaning
+  };
+
   /// Who gives the bodies and takes the answers. Lanes are numbered 0 to lanes - 1.
   struct LaneHost
   {
@@ -110,20 +118,9 @@ namespace crawler
     /// Sees each accepted step; false stops the lane. May be null.
     bool (*accepted)(void *context, unsigned int lane, const LaneStep &step);
     void (*done)(void *context, unsigned int lane, const LaneOutcome &outcome);
-    bool look_inside; ///< stretch and rates in all stages
-    /// The laws of a general body in the stretch form, for an engine with one lane, at all cells: from the stretch and
-    /// its rate the mobility 1/(g b), the force N, and their derivatives by w and w_t. Returns a number that is not
-    /// positive if one of them has no meaning. Null: those of a plain body.
-    double (*laws)(void *context,
-                   double t,
-                   const double *m,
-                   const double *w,
-                   const double *rate,
-                   double *mobility,
-                   double *mobility_by_w,
-                   double *force,
-                   double *force_by_w,
-                   double *force_by_rate) = nullptr;
+    bool look_inside; ///< stretch and rates in all stages, of the position form
+    /// For the stretch @p w and its rate at each cell, for an engine with one lane. Null: the laws of a plain body.
+    LaneLaws (*laws)(void *context, double t, const double *m, const double *w, const double *rate) = nullptr;
   };
 
   /// The engine as compiled for one instruction set and one number of lanes.

@@ -5,6 +5,7 @@
 #include <crawler/fused/lane_engine.h>
 #include <crawler/fused/lane_kernels.h>
 #include <crawler/fused/lane_memory.h>
+#include <crawler/fused/lane_tridiagonal.h>
 
 #include <cstddef>
 
@@ -27,12 +28,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     using Number                  = Complex<Pack>;
     static constexpr int lanes    = PackTraits<Pack>::size;
     static constexpr bool largest = true; ///< is the size of a vector that of its largest element, else the mean square
+    static constexpr bool gives_rates = false; ///< for LaneHost::look_inside
 
     StretchSystem(const LaneSetup &setup, const LaneHost &host)
       : setup_(setup)
       , host_(host)
       , n_(static_cast<int>(setup.n_cells))
       , rule_(static_cast<NodeRule>(setup.node_rule))
+      , cells_(static_cast<int>(setup.n_cells))
     {
     }
 
@@ -59,16 +62,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       const std::size_t n = n_;
       memory.piece(w_, n);
       memory.piece(slope_, n);
-      memory.piece(mobility_, n);
-      memory.piece(mobility_slope_, n);
-      memory.piece(force_, n);
-      memory.piece(force_by_w_, n);
-      memory.piece(force_by_rate_, n);
+      memory.piece(own_mobility_, n);
+      memory.piece(own_mobility_slope_, n);
+      memory.piece(own_force_, n);
+      memory.piece(own_force_by_w_, n);
       memory.piece(rate_, n);
-      memory.piece(rows_, n);
-      memory.piece(real_, n);
-      for (int p = 0; p < pairs; ++p)
-        memory.piece(complex_[p], n);
+      cells_.lay_out(memory);
     }
 
     void
@@ -107,9 +106,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     factorize(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, const Pack &inverse_h)
     {
       evaluate(t, q, q_dot, m, /*slopes=*/true);
-      Number shifts[pairs];
       for (int p = 0; p < pairs; ++p)
-        shifts[p] = {setup_.eigenvalues[2 * p] * inverse_h, setup_.eigenvalues[2 * p + 1] * inverse_h};
+        shifts_[p] = {setup_.eigenvalues[2 * p] * inverse_h, setup_.eigenvalues[2 * p + 1] * inverse_h};
       shift_                 = setup_.real_eigenvalue * inverse_h;
       const bool sees_rate   = setup_.sees_rate;
       const double *h        = setup_.sizes;
@@ -142,7 +140,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       {
         derivatives(j + 1, right);
         const Pack c = -1. / (h[j] * slope_[j]);
-        Row &row     = rows_[j];
+        auto &row    = cells_.row(j);
         row.K[0]     = -c * left.by_left;
         row.K[1]     = c * (right.by_left - left.by_right);
         row.K[2]     = c * right.by_right;
@@ -156,95 +154,31 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         }
         left = right;
       }
-      // From both ends to the middle, all systems at once: the processor does these chains of operations side by side.
-      const int middle = n_ / 2;
-      for (int j = 0; j < n_; ++j)
-      {
-        shifted(j, shift_, real_[j]);
-        for (int p = 0; p < pairs; ++p)
-          shifted(j, shifts[p], complex_[p][j]);
-      }
-      for (int i = 0; i < middle || n_ - 1 - i > middle; ++i)
-      {
-        const int up = n_ - 1 - i;
-        if (i < middle)
-        {
-          eliminate_down(real_[i], real_[i + 1]);
-          for (int p = 0; p < pairs; ++p)
-            eliminate_down(complex_[p][i], complex_[p][i + 1]);
-        }
-        if (up > middle)
-        {
-          eliminate_up(real_[up], real_[up - 1]);
-          for (int p = 0; p < pairs; ++p)
-            eliminate_up(complex_[p][up], complex_[p][up - 1]);
-        }
-      }
-      real_[middle].pivot = 1. / real_[middle].pivot;
-      for (int p = 0; p < pairs; ++p)
-      {
-        complex_[p][middle].pivot = 1. / complex_[p][middle].pivot;
-        shifts_[p]                = shifts[p];
-      }
+      cells_.factorize(shift_, shifts_, sees_rate);
     }
 
     void
     solve(Pack *x) const
     {
-      solve_all(x, static_cast<Number *>(nullptr));
+      solve_all(x, nullptr);
     }
 
-    /// The real system and those of all pairs, @p y [pair][unknown].
+    /// The real system and those of all pairs, @p y [pair][unknown]; null: the real one alone.
     void
     solve_all(Pack *x, Number *y) const
     {
-      const int middle = n_ / 2;
-      for (int i = 0; i < middle || n_ - 1 - i > middle; ++i)
-      {
-        const int up = n_ - 1 - i;
-        if (i < middle)
-        {
-          x[i + 1] -= real_[i + 1].before * x[i];
-          for (int p = 0; p < pairs && y != nullptr; ++p)
-            y[p * (n_ + 1) + i + 1] -= complex_[p][i + 1].before * y[p * (n_ + 1) + i];
-        }
-        if (up > middle)
-        {
-          x[up - 1] -= real_[up - 1].after * x[up];
-          for (int p = 0; p < pairs && y != nullptr; ++p)
-            y[p * (n_ + 1) + up - 1] -= complex_[p][up - 1].after * y[p * (n_ + 1) + up];
-        }
-      }
-      x[middle] *= real_[middle].pivot;
-      for (int p = 0; p < pairs && y != nullptr; ++p)
-        y[p * (n_ + 1) + middle] *= complex_[p][middle].pivot;
-      for (int i = 1; middle - i >= 0 || middle + i < n_; ++i)
-      {
-        const int down = middle - i, up = middle + i;
-        if (down >= 0)
-        {
-          x[down] = x[down] * real_[down].pivot - real_[down].after * x[down + 1];
-          for (int p = 0; p < pairs && y != nullptr; ++p)
-            substitute(complex_[p][down].pivot, complex_[p][down].after, y + p * (n_ + 1) + down, 1);
-        }
-        if (up < n_)
-        {
-          x[up] = x[up] * real_[up].pivot - real_[up].before * x[up - 1];
-          for (int p = 0; p < pairs && y != nullptr; ++p)
-            substitute(complex_[p][up].pivot, complex_[p][up].before, y + p * (n_ + 1) + up, -1);
-        }
-      }
+      cells_.solve(x, y, n_unknowns());
       x[n_] = (x[n_] - (end_by_w_ + shift_ * end_by_rate_) * x[0]) / shift_;
       for (int p = 0; p < pairs && y != nullptr; ++p)
       {
-        Number &rest   = y[p * (n_ + 1) + n_];
+        Number *own    = y + p * n_unknowns();
         const Number c = {end_by_w_ + shifts_[p].re * end_by_rate_, shifts_[p].im * end_by_rate_};
-        rest -= c * y[p * (n_ + 1)];
-        rest *= 1. / shifts_[p];
+        own[n_] -= c * own[0];
+        own[n_] *= 1. / shifts_[p];
       }
     }
 
-    /// The smallest and the largest stretch; the rates are the host's business.
+    /// The smallest and the largest stretch.
     void
     look(const Pack *q, const Pack *, const Pack *, const bool, LaneLook<Pack> &result)
     {
@@ -259,16 +193,19 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    /// The displacement of all the body is the host's business, too.
+    /// int u ds.
     Pack
-    integral(const Pack *) const
+    integral(const Pack *q)
     {
-      return Pack{};
-    }
-
-    void
-    velocity(const Pack *, const Pack *, Pack *)
-    {
+      find_stretch(q);
+      Pack u = q[n_], sum = Pack{};
+      for (int j = 0; j < n_; ++j)
+      {
+        const Pack change = setup_.sizes[j] * (w_[j] - 1.);
+        sum += setup_.sizes[j] * (u + 0.5 * change);
+        u += change;
+      }
+      return sum;
     }
 
   private:
@@ -327,92 +264,34 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         {
           for (int j = 0; j < n_; ++j)
             rate_[j] = q_dot[j] * slope_[j];
-          return host_.laws(
-            host_.context, *t, m, w_, rate_, mobility_, mobility_slope_, force_, force_by_w_, force_by_rate_);
+          const LaneLaws laws = host_.laws(host_.context, *t, m, w_, rate_);
+          mobility_           = laws.mobility;
+          mobility_slope_     = laws.mobility_by_w;
+          force_              = laws.force;
+          force_by_w_         = laws.force_by_w;
+          force_by_rate_      = laws.force_by_rate;
+          return laws.least;
         }
       for (int j = 0; j < n_; ++j)
       {
-        force_[j] = m[j] + k_ * (w_[j] - 1.);
-        rate_[j]  = w_[j] > nothing ? w_[j] : broadcast<Pack>(nothing);
-        least     = a_ < 0. ? least : smaller(w_[j], least);
+        own_force_[j] = m[j] + k_ * (w_[j] - 1.);
+        rate_[j]      = w_[j] > nothing ? w_[j] : broadcast<Pack>(nothing);
+        least         = a_ < 0. ? least : smaller(w_[j], least);
       }
-      friction_(rate_, mobility_, n_);
+      friction_(rate_, own_mobility_, n_);
       for (int j = 0; j < n_; ++j)
-        mobility_[j] = w_[j] > nothing ? mobility_[j] : Pack{};
+        own_mobility_[j] = w_[j] > nothing ? own_mobility_[j] : Pack{};
       if (slopes)
         for (int j = 0; j < n_; ++j)
         {
-          mobility_slope_[j] = -a_ * mobility_[j] / rate_[j];
-          force_by_w_[j]     = k_;
+          own_mobility_slope_[j] = -a_ * own_mobility_[j] / rate_[j];
+          own_force_by_w_[j]     = k_;
         }
+      mobility_       = own_mobility_;
+      mobility_slope_ = own_mobility_slope_;
+      force_          = own_force_;
+      force_by_w_     = own_force_by_w_;
       return least;
-    }
-
-    /// K and M below, on and above the diagonal.
-    struct Row
-    {
-      Pack K[3], M[3];
-    };
-
-    /**
-     * A row of K + shift M and then of its factors: what is taken of the row before and of the row after while the rows
-     * are eliminated from both ends, and 1/pivot; on the way back the same two, times the pivot.
-     */
-    template <typename Type>
-    struct Factors
-    {
-      Type before, pivot, after;
-    };
-
-    void
-    shifted(const int j, const Pack &shift, Factors<Pack> &result) const
-    {
-      const Row &row = rows_[j];
-      if (setup_.sees_rate)
-        result = {row.K[0] + shift * row.M[0], row.K[1] + shift * row.M[1], row.K[2] + shift * row.M[2]};
-      else
-        result = {row.K[0], row.K[1] + shift, row.K[2]};
-    }
-
-    void
-    shifted(const int j, const Number &shift, Factors<Number> &result) const
-    {
-      const Row &row = rows_[j];
-      if (setup_.sees_rate)
-        result = {{row.K[0] + shift.re * row.M[0], shift.im * row.M[0]},
-                  {row.K[1] + shift.re * row.M[1], shift.im * row.M[1]},
-                  {row.K[2] + shift.re * row.M[2], shift.im * row.M[2]}};
-      else
-        result = {{row.K[0], Pack{}}, {row.K[1] + shift.re, shift.im}, {row.K[2], Pack{}}};
-    }
-
-    template <typename Type>
-    static void
-    eliminate_down(Factors<Type> &row, Factors<Type> &next)
-    {
-      row.pivot = 1. / row.pivot;
-      row.after = row.after * row.pivot;
-      next.pivot -= next.before * row.after;
-      next.before = next.before * row.pivot;
-    }
-
-    template <typename Type>
-    static void
-    eliminate_up(Factors<Type> &row, Factors<Type> &next)
-    {
-      row.pivot  = 1. / row.pivot;
-      row.before = row.before * row.pivot;
-      next.pivot -= next.after * row.before;
-      next.after = next.after * row.pivot;
-    }
-
-    /// y = pivot y - factor (the next one).
-    static void
-    substitute(const Number &pivot, const Number &factor, Number *y, const int next)
-    {
-      Number result = pivot * y[0];
-      result -= factor * y[next];
-      y[0] = result;
     }
 
     const LaneSetup &setup_;
@@ -422,10 +301,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     LaneFriction<Pack> friction_; ///< of the mobility, w^-a
     Pack k_, a_, shift_, end_by_w_, end_by_rate_;
     Number shifts_[pairs];
-    Pack *w_, *slope_, *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell]
-    Pack *rate_;                                                                             ///< [cell] scratch
-    Row *rows_;
-    Factors<Pack> *real_;
-    Factors<Number> *complex_[pairs];
+    LaneTridiagonal<Pack, pairs> cells_;
+    Pack *w_, *slope_;                                                               ///< [cell]
+    Pack *own_mobility_, *own_mobility_slope_, *own_force_, *own_force_by_w_;        ///< [cell] of plain bodies
+    Pack *rate_;                                                                     ///< [cell] scratch
+    const Pack *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell] own or the host's
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

@@ -16,8 +16,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   class PositionSystem
   {
   public:
-    using Number                  = Complex<Pack>;
-    static constexpr bool largest = false; ///< the size of a vector is its mean square
+    using Number                      = Complex<Pack>;
+    static constexpr bool largest     = false; ///< the size of a vector is its mean square
+    static constexpr bool gives_rates = true;  ///< for LaneHost::look_inside
 
     PositionSystem(const LaneSetup &setup, const LaneHost &)
       : setup_(setup)

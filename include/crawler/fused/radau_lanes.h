@@ -296,9 +296,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       states_.go_to_end(accepted);
       for (int i = 0; i < n_points_; ++i)
         m_start_[i] = accepted ? m_[(s - 1) * n_points_ + i] : m_start_[i];
-      if (host_.look_inside)
-        system_.velocity(
-          states_.y, m_ + (s - 1) * n_points_, states_.v); // that of the stage is Newton's, with its error
+      if constexpr (System<Pack, pairs>::gives_rates)
+        if (host_.look_inside)
+          system_.velocity(
+            states_.y, m_ + (s - 1) * n_points_, states_.v); // that of the stage is Newton's, with its error
       look_at_stage(s - 1, states_.y);
       for (int l = 0; l < lanes; ++l)
         if (lanes_[l].busy && lanes_[l].accepted)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/derivative.h"
 #include "../../support/run_text.h"
 
 #include <crawler/discretization/general_position_form.h>
@@ -95,17 +96,15 @@ namespace
       return F;
     }
 
-    /// The derivative of the residual by differences of fourth order.
+    /// The derivative of the residual.
     std::vector<double>
     slope(const std::vector<double> &by, const std::vector<double> &by_dot)
     {
-      constexpr double e = 1e-4;
-      const auto plus = residual(by, by_dot, e), minus = residual(by, by_dot, -e),
-                 plus_2 = residual(by, by_dot, 2. * e), minus_2 = residual(by, by_dot, -2. * e);
-      std::vector<double> result(plus.size());
-      for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = (8. * (plus[i] - minus[i]) - (plus_2[i] - minus_2[i])) / (12. * e);
-      return result;
+      return test::derivative(
+        [&](const double step)
+        {
+          return residual(by, by_dot, step);
+        });
     }
 
     Scene scene;

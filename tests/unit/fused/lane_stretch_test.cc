@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // The equations of the stretch form in the fused engine, and their linear systems, for one body and in packs.
+#include "../../support/derivative.h"
 #include "../../support/run_text.h"
 
 #define CRAWLER_PACK pack2 // of what is compiled here
@@ -115,28 +116,19 @@ namespace
     }
     Case(const Case &) = delete;
 
-    static double
-    evaluate(void *context,
-             const double time,
-             const double *known_m,
-             const double *w,
-             const double *rate,
-             double *mobility,
-             double *mobility_by_w,
-             double *force,
-             double *force_by_w,
-             double *force_by_rate)
+    static LaneLaws
+    evaluate(void *context, const double time, const double *known_m, const double *w, const double *rate)
     {
       auto &self         = *static_cast<Case *>(context);
       StretchLaws &laws  = self.laws;
       const auto n_cells = static_cast<std::size_t>(self.n);
       EXPECT_LT(laws.evaluate(time, {w, n_cells}, {rate, n_cells}, known_m), 0);
-      std::copy_n(laws.mobility.begin(), n_cells, mobility);
-      std::copy_n(laws.mobility_by_w.begin(), n_cells, mobility_by_w);
-      std::copy_n(laws.force().N.begin(), n_cells, force);
-      std::copy_n(laws.force().by_w.begin(), n_cells, force_by_w);
-      std::copy(laws.force().by_rate.begin(), laws.force().by_rate.end(), force_by_rate);
-      return 1.;
+      return {laws.mobility.data(),
+              laws.mobility_by_w.data(),
+              laws.force().N.data(),
+              laws.force().by_w.data(),
+              laws.force().by_rate.data(),
+              1.};
     }
 
     Scene scene;
@@ -199,17 +191,15 @@ namespace
       return F;
     }
 
-    /// The derivative of the residual by differences of fourth order.
+    /// The derivative of the residual.
     std::vector<double>
     slope(const std::vector<double> &by, const std::vector<double> &by_dot)
     {
-      constexpr double e = 1e-4;
-      const auto plus = residual(by, by_dot, e), minus = residual(by, by_dot, -e),
-                 plus_2 = residual(by, by_dot, 2. * e), minus_2 = residual(by, by_dot, -2. * e);
-      std::vector<double> result(plus.size());
-      for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = (8. * (plus[i] - minus[i]) - (plus_2[i] - minus_2[i])) / (12. * e);
-      return result;
+      return test::derivative(
+        [&](const double step)
+        {
+          return residual(by, by_dot, step);
+        });
     }
   };
 
@@ -298,6 +288,15 @@ TEST(LaneStretch, SolutionsInvertTheDerivative)
         }
         expect(test.slope(x, shifted), im);
       }
+}
+
+/// The size of a vector in which one element is not a number is none, wherever that stands.
+TEST(LaneStretch, WhatIsNotANumberStays)
+{
+  EXPECT_TRUE(std::isnan(generic::added</*largest=*/true>(std::numeric_limits<double>::quiet_NaN(), 1.)));
+  EXPECT_TRUE(std::isnan(generic::added</*largest=*/true>(1., std::numeric_limits<double>::quiet_NaN())));
+  EXPECT_EQ(generic::added</*largest=*/true>(1., 2.), 2.);
+  EXPECT_EQ(generic::added</*largest=*/true>(2., 1.), 2.);
 }
 
 /// Bodies with other moduli and exponents do not see each other.
