@@ -14,7 +14,7 @@ import sys
 
 def strangers(nm, namespace, path):
     """Symbols that a linker may use for other files, and constructors that run at the start."""
-    own = re.compile(rf"_Z(GVN|T[VTIS]N|N)K?7crawler{len(namespace)}{namespace}")
+    own = re.compile(rf"_Z(GVN|T[VTIS]N|Z?N)K?7crawler{len(namespace)}{namespace}")
     found = []
     for line in subprocess.run([nm, "--defined-only", "--format=posix", path], capture_output=True, text=True, check=True).stdout.splitlines():
         name, kind = line.split()[:2]
