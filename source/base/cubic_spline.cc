@@ -64,22 +64,15 @@ namespace crawler
   {
     const std::size_t n = knots_.size(), last = n - 2, m = n_splines;
     std::vector<double> M(n * m, 0.);
-    const auto y = [&](const std::size_t i)
-    {
-      return values.data() + i * m;
-    };
-    const auto row = [&](const std::size_t i)
-    {
-      return M.data() + i * m;
-    };
+    const auto y   = [&](const std::size_t i) { return values.data() + i * m; };
+    const auto row = [&](const std::size_t i) { return M.data() + i * m; };
     /// 6 ( slope_i - slope_(i-1) ), with the knots before, at and after the place.
     const auto right_side = [&](const std::size_t before,
                                 const std::size_t at,
                                 const std::size_t after,
                                 const double h_before,
                                 const double h_after,
-                                double *result)
-    {
+                                double *result) {
       const double *y0 = y(before), *y1 = y(at), *y2 = y(after);
       for (std::size_t c = 0; c < m; ++c)
         result[c] = 6. * ((y2[c] - y1[c]) / h_after - (y1[c] - y0[c]) / h_before);

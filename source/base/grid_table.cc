@@ -170,13 +170,9 @@ namespace crawler
       if (!values.empty())
       {
         const double same = round_off * (values.back() - values.front());
-        values.erase(std::unique(values.begin(),
-                                 values.end(),
-                                 [same](const double a, const double b)
-                                 {
-                                   return b - a <= same;
-                                 }),
-                     values.end());
+        values.erase(
+          std::unique(values.begin(), values.end(), [same](const double a, const double b) { return b - a <= same; }),
+          values.end());
       }
       return values;
     }
@@ -271,8 +267,7 @@ namespace crawler
     Dataset
     read_dataset(const hid_t file, const std::string &name, const std::string &form, const Source &source)
     {
-      const auto wrong = [&](const std::string &what)
-      {
+      const auto wrong = [&](const std::string &what) {
         source.refuse(fmt::format(
           "\"{}\" {}, but the datasets s[ns], t[nt] and {}[nt,ns] are expected", source.file, what, source.name));
       };

@@ -54,12 +54,7 @@ namespace crawler
       if (distance <= std::max<std::size_t>(3, std::max(wanted.size(), other.size()) / 2))
         ranked.emplace_back(distance, candidate);
     }
-    std::stable_sort(ranked.begin(),
-                     ranked.end(),
-                     [](const auto &a, const auto &b)
-                     {
-                       return a.first < b.first;
-                     });
+    std::stable_sort(ranked.begin(), ranked.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
     std::vector<std::string> result;
     for (const auto &[distance, candidate] : ranked)
       if (result.size() < count)

@@ -225,10 +225,7 @@ namespace crawler
             column.width,
             first,
             std::min(together, n_rows - first),
-            [&](const unsigned long i)
-            {
-              return known.value(number, first + i);
-            },
+            [&](const unsigned long i) { return known.value(number, first + i); },
             H5P_DEFAULT,
             path);
       }
@@ -281,10 +278,7 @@ namespace crawler
         columns_[i].width,
         first,
         rows.size(),
-        [&](const unsigned long row) -> const Value &
-        {
-          return rows[row][i];
-        },
+        [&](const unsigned long row) -> const Value & { return rows[row][i]; },
         handles_->transfer,
         path_);
   }
@@ -353,8 +347,7 @@ namespace crawler
     const hsize_t start = first, count = n;
     const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose), space(H5Dget_space(dataset), H5Sclose);
     H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
-    const auto fill = [&](const hid_t memory_type, void *data)
-    {
+    const auto fill = [&](const hid_t memory_type, void *data) {
       checked(H5Dread(dataset, memory_type, memory, space, H5P_DEFAULT, data), path_, "read");
     };
     if (H5Tget_class(type) == H5T_STRING)

@@ -46,12 +46,7 @@ namespace crawler
     std::size_t
     size_of(const Column &column)
     {
-      return std::visit(
-        [](const auto &values)
-        {
-          return values.size();
-        },
-        column.values);
+      return std::visit([](const auto &values) { return values.size(); }, column.values);
     }
 
     /// Throws FileError if HDF5 says that a call went wrong.
@@ -100,8 +95,7 @@ namespace crawler
       std::replace(name.begin(), name.end(), '/', '.');
       const hsize_t size = size_of(column);
       const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-      const auto write = [&](const hid_t type, const void *values)
-      {
+      const auto write = [&](const hid_t type, const void *values) {
         const Handle dataset(H5Dcreate(group, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                              H5Dclose);
         if (size > 0)

@@ -66,8 +66,7 @@ namespace crawler
     for (std::size_t i = 0; i < g.size(); ++i)
       if (!(g[i] > 0. && std::isfinite(g[i])))
       {
-        describe_bad_law_ = [stretch = w[i], friction = g[i]](const Units &)
-        {
+        describe_bad_law_ = [stretch = w[i], friction = g[i]](const Units &) {
           return BadLaw{fmt::format("the friction law is {} at the stretch w = {:.6g}, which the body has reached; a "
                                     "positive number is expected",
                                     friction > 0. || friction <= 0. ? "not positive" : "not a finite number",
@@ -82,12 +81,9 @@ namespace crawler
   void
   Assembler::find_piece_ends(const unsigned int n_pieces)
   {
-    const auto &left = discretization_.cell_left();
-    const auto &size = discretization_.cell_size();
-    const auto s     = [&](const unsigned int end)
-    {
-      return discretization_.length() * end / n_pieces;
-    };
+    const auto &left  = discretization_.cell_left();
+    const auto &size  = discretization_.cell_size();
+    const auto s      = [&](const unsigned int end) { return discretization_.length() * end / n_pieces; };
     piece_ends_       = {n_pieces, 0, {}, {}};
     unsigned int next = 0;
     while (next <= n_pieces && !left.empty() && s(next) < left.front())

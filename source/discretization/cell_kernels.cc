@@ -30,10 +30,7 @@ namespace crawler
       static auto
       friction_of(const CellInput &in)
       {
-        return [&in](const double *w, double *g)
-        {
-          in.friction->values({w, n}, {g, n});
-        };
+        return [&in](const double *w, double *g) { in.friction->values({w, n}, {g, n}); };
       }
 
       static long

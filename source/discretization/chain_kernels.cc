@@ -32,10 +32,7 @@ namespace crawler
       condense(const unsigned int n_cells, Number *blocks, Number *schur)
       {
         bool ok           = true;
-        const auto usable = [&ok](const Number &pivot)
-        {
-          ok = ok && pivot != 0. && is_finite(pivot);
-        };
+        const auto usable = [&ok](const Number &pivot) { ok = ok && pivot != 0. && is_finite(pivot); };
         for (unsigned int c = 0; c < n_cells; ++c)
           condense_cell<q>(blocks + c * n * n, schur + 4 * c, usable);
         return ok;

@@ -31,10 +31,7 @@ namespace crawler
                                                       dealii::Triangulation<1>::none,
                                                       /*allow_artificial_cells=*/false,
                                                       Triangulation::partition_custom_signal);
-      const auto assign = [this]()
-      {
-        assign_ranks();
-      };
+      const auto assign = [this]() { assign_ranks(); };
       triangulation->signals.create.connect(assign); // the first mesh does not count as a refinement
       triangulation->signals.post_refinement.connect(assign);
       if (ends.empty())
@@ -63,12 +60,9 @@ namespace crawler
       for (const auto &cell : triangulation->active_cell_iterators())
         cells.push_back(cell);
       if (triangulation->n_levels() > 1)
-        std::sort(cells.begin(),
-                  cells.end(),
-                  [](const Iterator &a, const Iterator &b)
-                  {
-                    return a->vertex(0)[0] < b->vertex(0)[0];
-                  });
+        std::sort(cells.begin(), cells.end(), [](const Iterator &a, const Iterator &b) {
+          return a->vertex(0)[0] < b->vertex(0)[0];
+        });
       return cells;
     }
 
@@ -195,12 +189,10 @@ namespace crawler
           changes[c] = CellChange::keep;
       }
     // Neighbours differ by one level at most.
-    const auto level = [&](const unsigned int c)
-    {
+    const auto level = [&](const unsigned int c) {
       return static_cast<int>(cells_[c].level) + static_cast<int>(changes[c]);
     };
-    const auto keep = [&](const unsigned int c)
-    {
+    const auto keep = [&](const unsigned int c) {
       // The other half cannot be joined alone.
       changes[c]                                      = CellChange::keep;
       changes[cells_[c].is_left_half ? c + 1 : c - 1] = CellChange::keep;

@@ -142,8 +142,7 @@ namespace crawler
   void
   StretchElsewhere::evaluate(const double t, const std::span<const double> own, const StretchHistory *history)
   {
-    const auto to_stretch = [](std::vector<double> &values)
-    {
+    const auto to_stretch = [](std::vector<double> &values) {
       for (double &value : values)
         value += 1.;
     };
@@ -160,12 +159,8 @@ namespace crawler
       delayed = at_start_;
       return;
     }
-    auto known = std::find_if(places_.begin(),
-                              places_.end(),
-                              [&](const auto &entry)
-                              {
-                                return entry.first == step->cells;
-                              });
+    auto known =
+      std::find_if(places_.begin(), places_.end(), [&](const auto &entry) { return entry.first == step->cells; });
     if (known == places_.end())
     {
       constexpr std::size_t most = 4;

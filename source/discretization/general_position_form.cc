@@ -49,10 +49,7 @@ namespace crawler
     scene_.friction->values_and_log_derivatives(w_, g_, w_dg_);
     bad = sliding_.evaluate(u_, v_);
     if (bad >= 0)
-      describe_bad_law_ = [this, bad](const Units &units)
-      {
-        return sliding_.describe(bad, units);
-      };
+      describe_bad_law_ = [this, bad](const Units &units) { return sliding_.describe(bad, units); };
     else
       bad = look_at_friction(w_, g_);
     return bad;
@@ -189,12 +186,8 @@ namespace crawler
     return newton_velocity(
       discretization_,
       v,
-      [&](const ConstVector at, const Vector F)
-      {
-        return residual(t, u, at, F);
-      },
-      [&](const ConstVector at, const Vector change)
-      {
+      [&](const ConstVector at, const Vector F) { return residual(t, u, at, F); },
+      [&](const ConstVector at, const Vector change) {
         mass_blocks(t, u, input(t, u, at), mass_->blocks().data());
         if (!mass_->factorize())
           return false;

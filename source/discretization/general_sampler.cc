@@ -30,24 +30,13 @@ namespace crawler
 
   GeneralSampler::GeneralSampler(const Assembler &assembler, const std::vector<Place> &places)
     : GeneralSampler(assembler,
-                     parts(places,
-                           [](const Place &place)
-                           {
-                             return place.cell;
-                           }),
-                     parts(places,
-                           [](const Place &place)
-                           {
-                             return place.x;
-                           }),
-                     parts(places,
-                           [&](const Place &place)
-                           {
-                             const Discretization &d = assembler.discretization();
-                             return d.cell_left().empty()
-                                      ? 0.
-                                      : d.cell_left()[place.cell] + place.x * d.cell_size()[place.cell];
-                           }))
+                     parts(places, [](const Place &place) { return place.cell; }),
+                     parts(places, [](const Place &place) { return place.x; }),
+                     parts(places, [&](const Place &place) {
+                       const Discretization &d = assembler.discretization();
+                       return d.cell_left().empty() ? 0.
+                                                    : d.cell_left()[place.cell] + place.x * d.cell_size()[place.cell];
+                     }))
   {
   }
 

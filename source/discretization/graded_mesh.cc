@@ -86,9 +86,7 @@ namespace crawler
       const auto cells = static_cast<unsigned int>(std::max(fewest, std::round(n_cells * length))) * parts;
       const double A = 0.25 / std::log1p(1. / d), B = 0.5;
       const auto part_of = [&](const double x) // of the cells, to the left of x
-      {
-        return A * (std::log1p(x / d) - std::log1p(-x / (1. + d))) + B * x;
-      };
+      { return A * (std::log1p(x / d) - std::log1p(-x / (1. + d))) + B * x; };
       double x = 0.;
       for (unsigned int c = 1; c < cells; ++c)
       {

@@ -24,18 +24,12 @@ namespace crawler
   {
     constexpr double rest = 0.1;
     const unsigned int n  = mesh.n_cells();
-    const auto divisible  = [&](const unsigned int c)
-    {
-      return 0.5 * mesh.cells()[c].size >= limits.smallest_cell;
-    };
+    const auto divisible  = [&](const unsigned int c) { return 0.5 * mesh.cells()[c].size >= limits.smallest_cell; };
     std::vector<unsigned int> order(n);
     std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(),
-              order.end(),
-              [&](const unsigned int a, const unsigned int b)
-              {
-                return indicators[a] > indicators[b];
-              });
+    std::sort(order.begin(), order.end(), [&](const unsigned int a, const unsigned int b) {
+      return indicators[a] > indicators[b];
+    });
     double sum = std::accumulate(indicators.begin(), indicators.end(), 0.);
     std::vector<CellChange> changes(n, CellChange::keep);
     bool any = false;

@@ -77,12 +77,8 @@ namespace crawler
   const std::vector<double> &
   PositionForm::stress_at(const double t)
   {
-    auto found = std::find_if(stresses_.begin(),
-                              stresses_.end(),
-                              [t](const StressAtTime &stress)
-                              {
-                                return stress.time == t;
-                              });
+    auto found =
+      std::find_if(stresses_.begin(), stresses_.end(), [t](const StressAtTime &stress) { return stress.time == t; });
     if (found == stresses_.end())
     {
       found          = stresses_.begin() + oldest_stress_;
@@ -134,12 +130,8 @@ namespace crawler
     const unsigned n          = discretization_.element().n;
     constexpr double infinity = std::numeric_limits<double>::infinity();
 
-    const auto place = [&](const unsigned int i)
-    {
-      return sampler_.places()[i];
-    };
-    const auto stretch_at = [&](const unsigned int c, const unsigned int i)
-    {
+    const auto place      = [&](const unsigned int i) { return sampler_.places()[i]; };
+    const auto stretch_at = [&](const unsigned int c, const unsigned int i) {
       return sampler_.stretch(local, c, discretization_.cell_size()[c], i);
     };
 
@@ -160,8 +152,7 @@ namespace crawler
       }
 
     // Inside a cell the parabola through the neighbours comes closer to the extreme than the sample.
-    const auto sharpened = [&](const Found &found)
-    {
+    const auto sharpened = [&](const Found &found) {
       double x = place(found.i), w = found.w;
       if (discretization_.n_local_cells() == 0)
         return StretchAt{w, 0.};

@@ -144,10 +144,7 @@ namespace crawler
       return slopes;
     for (std::size_t j = 0; j < n; ++j)
     {
-      const auto to = [&](const std::size_t other)
-      {
-        return (w[other] - w[j]) / (0.5 * (h[j] + h[other]));
-      };
+      const auto to     = [&](const std::size_t other) { return (w[other] - w[j]) / (0.5 * (h[j] + h[other])); };
       const double left = j > 0 ? -to(j - 1) : to(j + 1), right = j + 1 < n ? to(j + 1) : left;
       slopes[j] = left * right > 0. ? std::copysign(std::min(std::abs(left), std::abs(right)), left) * h[j] : 0.;
       if (j == 0 || j + 1 == n) // not below 0 at the end of the body
@@ -188,10 +185,7 @@ namespace crawler
     const auto w        = stretch(y);
     const std::size_t n = w.size();
     const auto &left = discretization_.cell_left(), &size = discretization_.cell_size();
-    const auto middle = [&](const std::size_t j)
-    {
-      return left[j] + 0.5 * size[j];
-    };
+    const auto middle = [&](const std::size_t j) { return left[j] + 0.5 * size[j]; };
     if (n == 1)
       return {{w[0], middle(0)}, {w[0], middle(0)}};
     std::size_t least = 0, most = 0;
@@ -202,8 +196,7 @@ namespace crawler
       if (w[j] > w[most])
         most = j;
     }
-    const auto sharpened = [&](const std::size_t j) -> StretchAt
-    {
+    const auto sharpened = [&](const std::size_t j) -> StretchAt {
       if (j == 0 || j + 1 == n) // the end of the body, from the two cells there
       {
         const std::size_t next = j == 0 ? 1 : n - 2, end = j == 0 ? 0 : n - 1;

@@ -15,14 +15,9 @@ namespace crawler
     std::vector<double> in_cells;
     for (const double s : points)
     {
-      const auto next = std::upper_bound(cells.begin(),
-                                         cells.end(),
-                                         s,
-                                         [](const double place, const Cell &cell)
-                                         {
-                                           return place < cell.left;
-                                         });
-      const auto c    = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - cells.begin(), 1)) - 1;
+      const auto next = std::upper_bound(
+        cells.begin(), cells.end(), s, [](const double place, const Cell &cell) { return place < cell.left; });
+      const auto c = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - cells.begin(), 1)) - 1;
       cells_.push_back(c);
       in_cells.push_back(std::clamp((s - cells[c].left) / cells[c].size, 0., 1.));
     }
@@ -43,8 +38,7 @@ namespace crawler
   const std::array<double, 6> &
   StretchHistory::places()
   {
-    static const std::array<double, 6> list = []()
-    {
+    static const std::array<double, 6> list = []() {
       std::array<double, 6> result{};
       for (unsigned int i = 0; i < 6; ++i)
         result[i] = 0.5 - 0.5 * std::cos(std::numbers::pi * i / 5.);
@@ -73,13 +67,8 @@ namespace crawler
   {
     if (steps_.empty() || t < steps_.front().from)
       return nullptr;
-    const auto found = std::lower_bound(steps_.begin(),
-                                        steps_.end(),
-                                        t,
-                                        [](const Step &step, const double time)
-                                        {
-                                          return step.to < time;
-                                        });
+    const auto found = std::lower_bound(
+      steps_.begin(), steps_.end(), t, [](const Step &step, const double time) { return step.to < time; });
     return found == steps_.end() ? &steps_.back() : &*found;
   }
 

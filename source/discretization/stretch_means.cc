@@ -34,15 +34,10 @@ namespace crawler
     Integrals result;
     for (const double s : places)
     {
-      const auto next = std::upper_bound(cells.begin(),
-                                         cells.end(),
-                                         s,
-                                         [](const double place, const Cell &cell)
-                                         {
-                                           return place < cell.left;
-                                         });
-      const auto c    = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - cells.begin(), 1)) - 1;
-      const double x  = std::clamp((s - cells[c].left) / cells[c].size, 0., 1.);
+      const auto next = std::upper_bound(
+        cells.begin(), cells.end(), s, [](const double place, const Cell &cell) { return place < cell.left; });
+      const auto c   = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - cells.begin(), 1)) - 1;
+      const double x = std::clamp((s - cells[c].left) / cells[c].size, 0., 1.);
       // Gauss points of the part from 0 to x: exact for the polynomials of degree q - 1.
       std::vector<double> points = element.stretch_points;
       for (double &point : points)
@@ -70,8 +65,7 @@ namespace crawler
       for (unsigned int p = 0; p < q_; ++p)
         before[c + 1] += cell_weights_[c * q_ + p] * field[c * q_ + p];
     }
-    const auto integral = [&](const Integrals &to, const std::size_t i)
-    {
+    const auto integral = [&](const Integrals &to, const std::size_t i) {
       double sum = before[to.cells[i]];
       for (unsigned int p = 0; p < q_; ++p)
         sum += to.weights[i * q_ + p] * field[to.cells[i] * q_ + p];

@@ -81,8 +81,7 @@ namespace crawler
     {
       Form scratch(file);
       const std::string first_name = "Atlas/First axis", second_name = "Atlas/Second axis";
-      const auto read = [&](const std::string &text, const std::string &name)
-      {
+      const auto read = [&](const std::string &text, const std::string &name) {
         const Axis axis = parse_axis(text, name);
         if (axis.entry.starts_with("Atlas/"))
           throw InputError(
@@ -169,8 +168,7 @@ namespace crawler
       const std::vector<double> first = numbers_of(axes.first, ""), second = numbers_of(axes.second, "");
       WorkQueue queue(communicator, axes.n_points());
       StudyProgress progress(log, axes.n_points(), "points");
-      const auto interrupted = [&]()
-      {
+      const auto interrupted = [&]() {
         queue.serve();
         return stop_signal.arrived_anywhere(MPI_COMM_SELF);
       };
@@ -220,12 +218,7 @@ namespace crawler
       for (const std::string &text : gather(pack(own), communicator))
         for (const AtlasPoint &point : unpack(text))
           all.push_back(point);
-      std::sort(all.begin(),
-                all.end(),
-                [](const AtlasPoint &a, const AtlasPoint &b)
-                {
-                  return a.index < b.index;
-                });
+      std::sort(all.begin(), all.end(), [](const AtlasPoint &a, const AtlasPoint &b) { return a.index < b.index; });
       return all;
     }
 
@@ -260,19 +253,17 @@ namespace crawler
     const auto folder           = output_folder(options.output, options.file);
     const unsigned int n_ranks  = size_of(communicator);
 
-    on_first_rank(communicator,
-                  [&]()
-                  {
-                    require_usable(folder, options.overwrite);
-                    require_no_sweep(folder);
-                    prepare(folder);
-                    std::filesystem::remove_all(folder / "rows"); // of an atlas that was killed
-                    std::filesystem::create_directories(folder / "rows");
-                    write_file(folder / "original.prm", file.text());
-                    write_file(folder / "parameters.prm", effective);
-                    log.open(folder / "log.txt");
-                    return "";
-                  });
+    on_first_rank(communicator, [&]() {
+      require_usable(folder, options.overwrite);
+      require_no_sweep(folder);
+      prepare(folder);
+      std::filesystem::remove_all(folder / "rows"); // of an atlas that was killed
+      std::filesystem::create_directories(folder / "rows");
+      write_file(folder / "original.prm", file.text());
+      write_file(folder / "parameters.prm", effective);
+      log.open(folder / "log.txt");
+      return "";
+    });
     log.line(fmt::format("Atlas: {} values of {} times {} of {}, {} points on {} rank{}",
                          axes.first.values.size(),
                          axes.first.entry,
@@ -286,24 +277,21 @@ namespace crawler
     const auto points    = collect(communicator, compute_own_points(communicator, file, axes, stop_signal, rows, log));
     const auto summary   = summarize(points, axes);
     const double seconds = now() - start;
-    on_first_rank(
-      communicator,
-      [&]()
-      {
-        const Table table = atlas_table(points, axes);
-        write_file(folder / "atlas.csv", csv(table));
-        write_hdf5(folder / "atlas.h5", "atlas", table, provenance(effective, options.command_line));
-        std::filesystem::remove_all(folder / "rows");
-        const std::string status = summary.computed() == summary.points ? "finished" : "stopped";
-        write_file(folder / "summary.json", atlas_json(summary, axes, status, seconds, n_ranks, options.command_line));
-        report_wrong_answers(points, axes, log);
-        log.line(in_words(summary, axes, seconds, n_ranks));
-        if (status == "stopped")
-          log.warn(fmt::format("stopped by a signal after {} of {} points", summary.computed(), summary.points));
-        draw("atlas.py", folder, log);
-        log.line(fmt::format("Results are in {}/.", folder.string()));
-        return "";
-      });
+    on_first_rank(communicator, [&]() {
+      const Table table = atlas_table(points, axes);
+      write_file(folder / "atlas.csv", csv(table));
+      write_hdf5(folder / "atlas.h5", "atlas", table, provenance(effective, options.command_line));
+      std::filesystem::remove_all(folder / "rows");
+      const std::string status = summary.computed() == summary.points ? "finished" : "stopped";
+      write_file(folder / "summary.json", atlas_json(summary, axes, status, seconds, n_ranks, options.command_line));
+      report_wrong_answers(points, axes, log);
+      log.line(in_words(summary, axes, seconds, n_ranks));
+      if (status == "stopped")
+        log.warn(fmt::format("stopped by a signal after {} of {} points", summary.computed(), summary.points));
+      draw("atlas.py", folder, log);
+      log.line(fmt::format("Results are in {}/.", folder.string()));
+      return "";
+    });
     int code = static_cast<int>(summary.computed() == summary.points ? ExitCode::finished : ExitCode::stopped);
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
     return static_cast<ExitCode>(code);

@@ -210,35 +210,26 @@ namespace crawler
   compute_points(const std::vector<Parameters> &parameters, const std::function<bool()> &interrupted)
   {
     std::vector<AtlasPoint> points(parameters.size());
-    const auto add = [&](const AtlasPoint::Run which, const std::function<std::optional<Parameters>(std::size_t)> &own)
-    {
+    const auto add = [&](const AtlasPoint::Run which,
+                         const std::function<std::optional<Parameters>(std::size_t)> &own) {
       add_runs(points, which, own, interrupted);
     };
-    const auto both_forms = [&](const std::size_t i)
-    {
+    const auto both_forms = [&](const std::size_t i) {
       return parameters[i].discretization.formulation == "automatic";
     };
-    add(AtlasPoint::automatic,
-        [&](const std::size_t i)
-        {
-          return parameters[i];
-        });
-    add(AtlasPoint::position,
-        [&](const std::size_t i) -> std::optional<Parameters>
-        {
-          if (!both_forms(i))
-            return std::nullopt;
-          return with_formulation(parameters[i], "position");
-        });
-    add(AtlasPoint::stretch,
-        [&](const std::size_t i) -> std::optional<Parameters>
-        {
-          // For a >= 0 its inversions are located less well than those of the position form.
-          if (!both_forms(i) || points[i].runs[AtlasPoint::automatic].is_stretch ||
-              parameters[i].body.friction_exponent() >= 0.)
-            return std::nullopt;
-          return with_formulation(parameters[i], "stretch");
-        });
+    add(AtlasPoint::automatic, [&](const std::size_t i) { return parameters[i]; });
+    add(AtlasPoint::position, [&](const std::size_t i) -> std::optional<Parameters> {
+      if (!both_forms(i))
+        return std::nullopt;
+      return with_formulation(parameters[i], "position");
+    });
+    add(AtlasPoint::stretch, [&](const std::size_t i) -> std::optional<Parameters> {
+      // For a >= 0 its inversions are located less well than those of the position form.
+      if (!both_forms(i) || points[i].runs[AtlasPoint::automatic].is_stretch ||
+          parameters[i].body.friction_exponent() >= 0.)
+        return std::nullopt;
+      return with_formulation(parameters[i], "stretch");
+    });
     for (std::size_t i = 0; i < points.size(); ++i)
       if (both_forms(i) && points[i].runs[AtlasPoint::automatic].is_stretch) // the automatic choice was this very run
         points[i].runs[AtlasPoint::stretch] = points[i].runs[AtlasPoint::automatic];
@@ -246,14 +237,12 @@ namespace crawler
     // itself.
     std::vector<Parameters> refined = parameters;
     for (int round = 0; round < 2; ++round)
-      add(AtlasPoint::refined,
-          [&](const std::size_t i) -> std::optional<Parameters>
-          {
-            if (round > 0 && !same_run(points[i].runs[AtlasPoint::automatic], points[i].runs[AtlasPoint::refined]))
-              return std::nullopt;
-            refined[i] = refined_parameters(refined[i]);
-            return refined[i];
-          });
+      add(AtlasPoint::refined, [&](const std::size_t i) -> std::optional<Parameters> {
+        if (round > 0 && !same_run(points[i].runs[AtlasPoint::automatic], points[i].runs[AtlasPoint::refined]))
+          return std::nullopt;
+        refined[i] = refined_parameters(refined[i]);
+        return refined[i];
+      });
     if (interrupted())
       return std::nullopt;
     for (std::size_t i = 0; i < points.size(); ++i)

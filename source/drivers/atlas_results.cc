@@ -128,45 +128,22 @@ namespace crawler
   {
     Table table;
     const auto add =
-      [&](const std::string &name, const std::string &unit, const std::string &description, const auto &value)
-    {
-      table.push_back(column(name, unit, description, points, value));
-    };
-    add("index",
-        "1",
-        "number of the point; the second axis varies fastest",
-        [](const AtlasPoint &point)
-        {
-          return static_cast<double>(point.index);
-        });
-    add(axes.first.entry,
-        axes.first_unit,
-        "value on the first axis",
-        [](const AtlasPoint &point)
-        {
-          return point.first;
-        });
-    add(axes.second.entry,
-        axes.second_unit,
-        "value on the second axis",
-        [](const AtlasPoint &point)
-        {
-          return point.second;
-        });
-    add("outcome",
-        "",
-        "name of the point in the picture",
-        [](const AtlasPoint &point)
-        {
-          return point.outcome;
-        });
-    add("verdict",
-        "",
-        "agree, unchecked or silent wrong answer",
-        [](const AtlasPoint &point)
-        {
-          return point.verdict.in_words();
-        });
+      [&](const std::string &name, const std::string &unit, const std::string &description, const auto &value) {
+        table.push_back(column(name, unit, description, points, value));
+      };
+    add("index", "1", "number of the point; the second axis varies fastest", [](const AtlasPoint &point) {
+      return static_cast<double>(point.index);
+    });
+    add(axes.first.entry, axes.first_unit, "value on the first axis", [](const AtlasPoint &point) {
+      return point.first;
+    });
+    add(axes.second.entry, axes.second_unit, "value on the second axis", [](const AtlasPoint &point) {
+      return point.second;
+    });
+    add("outcome", "", "name of the point in the picture", [](const AtlasPoint &point) { return point.outcome; });
+    add("verdict", "", "agree, unchecked or silent wrong answer", [](const AtlasPoint &point) {
+      return point.verdict.in_words();
+    });
     add("explanation", "", "of a wrong answer, or of what \"crawler run\" says if it does not finish", explanation);
     for (std::size_t i = 0; i < AtlasPoint::n_runs; ++i)
     {
@@ -174,25 +151,12 @@ namespace crawler
       add(run + "status",
           "",
           "finished, inverted, failed, stopped or refused; empty if this run was not asked for",
-          [i](const AtlasPoint &point)
-          {
-            return point.runs[i].status;
-          });
-      add(run + "reason",
-          "",
-          "name of what went wrong",
-          [i](const AtlasPoint &point)
-          {
-            return point.runs[i].reason;
-          });
+          [i](const AtlasPoint &point) { return point.runs[i].status; });
+      add(run + "reason", "", "name of what went wrong", [i](const AtlasPoint &point) { return point.runs[i].reason; });
       for (const RunNumber &entry : run_numbers)
-        add(run + entry.name,
-            entry.unit,
-            entry.description,
-            [i, &entry](const AtlasPoint &point)
-            {
-              return point.runs[i].*entry.member;
-            });
+        add(run + entry.name, entry.unit, entry.description, [i, &entry](const AtlasPoint &point) {
+          return point.runs[i].*entry.member;
+        });
     }
     return table;
   }

@@ -309,8 +309,7 @@ namespace crawler
       look_at_extremes(Lane &lane, const LaneStep &step, const unsigned int i, const double t) const
       {
         const LaneStage &stage = step.stages[i];
-        const auto show        = [&](ExtremeHistory &history, const double value, const unsigned int sample)
-        {
+        const auto show        = [&](ExtremeHistory &history, const double value, const unsigned int sample) {
           Extreme now{value, tables_.place_of_sample(sample), t};
           const double record = history.extreme().value;
           const double margin = sharpening * std::abs(record - 1.);
@@ -329,8 +328,7 @@ namespace crawler
         const unsigned int place = sample % setup.n_samples, cell = sample / setup.n_samples;
         if (place == 0 || place + 1 == setup.n_samples)
           return;
-        const auto stretch_at = [&](const unsigned int p)
-        {
+        const auto stretch_at = [&](const unsigned int p) {
           const std::size_t n = setup.degree + 1, unknowns = setup.n_cells * setup.degree + 1;
           double sum = 0.;
           for (unsigned int j = 0; j < n; ++j)
@@ -397,8 +395,7 @@ namespace crawler
         result.displacement           = outcome.displacement * units.length;
         result.most_cells             = tables_.setup.n_cells;
         result.mesh = {result.most_cells, tables_.setup.degree, result.most_cells * tables_.setup.degree + 1, false};
-        const auto in_units = [&units](const Extreme &extreme)
-        {
+        const auto in_units = [&units](const Extreme &extreme) {
           return Extreme{extreme.value, extreme.s * units.length, extreme.t * units.time};
         };
         result.min_stretch = in_units(lane.least.extreme());

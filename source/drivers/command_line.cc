@@ -97,11 +97,7 @@ namespace crawler
     require_command(const CLI::App &app, const std::vector<std::string> &arguments)
     {
       std::vector<std::string> names;
-      for (const CLI::App *command : app.get_subcommands(
-             [](const CLI::App *)
-             {
-               return true;
-             }))
+      for (const CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
         names.push_back(command->get_name());
       if (arguments.empty())
         throw InputError("the command is missing; " + quoted_list(names) + " is expected (see crawler --help)");
@@ -130,8 +126,7 @@ namespace crawler
       options.command_line = fmt::format("crawler {}", fmt::join(arguments, " "));
       if (!petsc_options.empty())
         options.command_line += fmt::format(" -- {}", fmt::join(petsc_options, " "));
-      const auto common = [&](CLI::App *command)
-      {
+      const auto common = [&](CLI::App *command) {
         command->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();
         command->add_option("--set", options.overrides, "Sets an entry: \"Section/Entry=value\" (repeatable)")
           ->allow_extra_args(false)
@@ -203,12 +198,7 @@ namespace crawler
   run_command_line(int argc, char **argv)
   {
     // What stands behind "--" is for PETSc, everything before it for us.
-    char **separator = std::find_if(argv,
-                                    argv + argc,
-                                    [](const char *text)
-                                    {
-                                      return std::strcmp(text, "--") == 0;
-                                    });
+    char **separator = std::find_if(argv, argv + argc, [](const char *text) { return std::strcmp(text, "--") == 0; });
     const std::vector<std::string> arguments(argv + 1, separator);
     const std::vector<std::string> petsc_options(separator == argv + argc ? separator : separator + 1, argv + argc);
     static char no_signal_handler[] = "-no_signal_handler", yes[] = "true";

@@ -83,33 +83,30 @@ namespace crawler
     void
     prepare(Task &task, const double time_limit, const std::function<bool()> &interrupted)
     {
-      guarded(task,
-              [&]()
-              {
-                const Clock clock;
-                task.scene.emplace(task.parameters.create_scene());
-                const auto keep_going = [&]()
-                {
-                  task.is_out_of_time = clock.seconds() > time_limit;
-                  return !task.is_out_of_time && !interrupted();
-                };
-                const ModelChoice model = choose_model(task.parameters, *task.scene);
-                task.parameters.model   = model.model;
-                if (!model.needs_mesh())
-                {
-                  Rung rung(*task.scene, model.model);
-                  SimulationResult &result = task.computed.result;
-                  result = rung.compute(task.parameters.accuracy, task.parameters.output.ledger, keep_going);
-                  if (task.gait)
-                    rung.describe_gait(*task.scene, result);
-                  return;
-                }
-                const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
-                if (choice)
-                  task.computed.choice = *choice;
-                else
-                  task.computed.result.time.status = "stopped";
-              });
+      guarded(task, [&]() {
+        const Clock clock;
+        task.scene.emplace(task.parameters.create_scene());
+        const auto keep_going = [&]() {
+          task.is_out_of_time = clock.seconds() > time_limit;
+          return !task.is_out_of_time && !interrupted();
+        };
+        const ModelChoice model = choose_model(task.parameters, *task.scene);
+        task.parameters.model   = model.model;
+        if (!model.needs_mesh())
+        {
+          Rung rung(*task.scene, model.model);
+          SimulationResult &result = task.computed.result;
+          result                   = rung.compute(task.parameters.accuracy, task.parameters.output.ledger, keep_going);
+          if (task.gait)
+            rung.describe_gait(*task.scene, result);
+          return;
+        }
+        const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
+        if (choice)
+          task.computed.choice = *choice;
+        else
+          task.computed.result.time.status = "stopped";
+      });
     }
 
     bool
@@ -139,12 +136,9 @@ namespace crawler
         std::vector<std::optional<SimulationResult>> results;
         try
         {
-          results = run_batch(runs[ledger],
-                              {.ledger = ledger, .gait = gait_wish(tasks.front())},
-                              [&]()
-                              {
-                                return clock.seconds() <= n * time_limit && !interrupted();
-                              });
+          results = run_batch(runs[ledger], {.ledger = ledger, .gait = gait_wish(tasks.front())}, [&]() {
+            return clock.seconds() <= n * time_limit && !interrupted();
+          });
         }
         catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
         {
@@ -163,8 +157,7 @@ namespace crawler
     {
       const double before = task.seconds;
       const Clock clock;
-      const auto keep_going = [&]()
-      {
+      const auto keep_going = [&]() {
         task.is_out_of_time = before + clock.seconds() > time_limit;
         return !task.is_out_of_time && !interrupted();
       };
@@ -174,8 +167,7 @@ namespace crawler
         task.parameters,
         *task.scene,
         task.computed.choice,
-        [&](const NumericsChoice &choice)
-        {
+        [&](const NumericsChoice &choice) {
           return std::exchange(is_computed, false)
                       ? task.computed.result
                       : simulate(task.parameters, *task.scene, choice.numerics, gait_wish(task), keep_going);
@@ -205,11 +197,7 @@ namespace crawler
     for (Task &task : tasks)
     {
       if (task.scene && !task.error && task.computed.result.time.status != "stopped" && !task.computed.result.error)
-        guarded(task,
-                [&]()
-                {
-                  finish(task, time_limit, interrupted);
-                });
+        guarded(task, [&]() { finish(task, time_limit, interrupted); });
       if (!task.error)
         check_identities(task.computed.result, task.parameters);
     }

@@ -92,17 +92,9 @@ namespace crawler
     const std::vector<bool> none(tasks.size(), false);
     const double start    = now();
     const auto n_wanted   = std::count(wanted.begin(), wanted.end(), true);
-    const auto is_in_time = [&]()
-    {
-      return now() - start <= time_limit && !interrupted();
-    };
+    const auto is_in_time = [&]() { return now() - start <= time_limit && !interrupted(); };
     if (tasks.size() < fewest || n_wanted == 0 ||
-        !std::all_of(tasks.begin(),
-                     tasks.end(),
-                     [](const Task &task)
-                     {
-                       return may_share(task.parameters);
-                     }))
+        !std::all_of(tasks.begin(), tasks.end(), [](const Task &task) { return may_share(task.parameters); }))
       return none;
     std::vector<bool> done = none;
     try

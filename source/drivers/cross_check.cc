@@ -102,8 +102,7 @@ namespace crawler
           return {Verdict::silent_wrong_answer, why};
 
     bool compared           = false;
-    const auto look_at_pair = [&](const Claim &a, const Claim &b)
-    {
+    const auto look_at_pair = [&](const Claim &a, const Claim &b) {
       const Comparison comparison = compare(a, b, facts);
       compared                    = compared || comparison.possible;
       return comparison.contradiction;

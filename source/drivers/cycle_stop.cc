@@ -205,15 +205,8 @@ namespace crawler
   {
     const std::size_t n = ends_.size() - 1;
     const double left   = static_cast<double>(n_cycles_ - n);
-    const auto go_on    = [&](double &value, const auto of)
-    {
-      value += left * (of(ends_[n]) - of(ends_[n - 1]));
-    };
-    go_on(displacement,
-          [](const End &end)
-          {
-            return end.displacement;
-          });
+    const auto go_on    = [&](double &value, const auto of) { value += left * (of(ends_[n]) - of(ends_[n - 1])); };
+    go_on(displacement, [](const End &end) { return end.displacement; });
     if (ledger)
       for (double Ledger::*integral : {&Ledger::stress_power,
                                        &Ledger::dissipation,
@@ -221,11 +214,7 @@ namespace crawler
                                        &Ledger::exchanged,
                                        &Ledger::end_work,
                                        &Ledger::transfer_loss})
-        go_on(ledger->*integral,
-              [&](const End &end)
-              {
-                return end.ledger.*integral;
-              });
+        go_on(ledger->*integral, [&](const End &end) { return end.ledger.*integral; });
     return {wish_.period, static_cast<unsigned int>(n), static_cast<unsigned int>(n_cycles_ - n), bound_};
   }
 } // namespace crawler

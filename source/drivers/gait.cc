@@ -284,8 +284,7 @@ namespace crawler
     for (std::size_t j = samples_.size() - n_searched; j < samples_.size(); ++j)
       times.push_back(samples_[j].time);
     const CubicSpline in_time(times);
-    const auto interpolate = [&](const CubicSpline &spline, const auto &of, const double t)
-    {
+    const auto interpolate = [&](const CubicSpline &spline, const auto &of, const double t) {
       values.clear();
       for (std::size_t j = 0; j < spline.size(); ++j)
         values.push_back(of(j));
@@ -295,13 +294,9 @@ namespace crawler
              place.d * M[place.i + 1];
     };
     const std::size_t first = samples_.size() - n_searched;
-    const double moved      = samples_.back().displacement - interpolate(
-                                                          in_time,
-                                                          [&](const std::size_t j)
-                                                          {
-                                                            return samples_[first + j].displacement;
-                                                          },
-                                                          start);
+    const double moved      = samples_.back().displacement -
+                         interpolate(
+                           in_time, [&](const std::size_t j) { return samples_[first + j].displacement; }, start);
     std::vector<std::vector<double>> stretch(n_phases, std::vector<double>(n_pieces));
     for (unsigned int i = 0; i < n_pieces; ++i)
     {
@@ -326,12 +321,7 @@ namespace crawler
       Ledger before;
       for (double Ledger::*energy : Ledger::energies())
         before.*energy = interpolate(
-          at_steps,
-          [&](const std::size_t j)
-          {
-            return (*steps_[j].ledger).*energy;
-          },
-          start);
+          at_steps, [&](const std::size_t j) { return (*steps_[j].ledger).*energy; }, start);
       gait.ledger = difference(*steps_.back().ledger, before);
     }
     return gait;

@@ -80,33 +80,20 @@ namespace crawler
             return std::nullopt;
         }
         if (task_.choose_tolerance)
-          refine(time_change_,
-                 [](Numerics &n)
-                 {
-                   n.tolerance *= finer_tolerance;
-                 });
+          refine(time_change_, [](Numerics &n) { n.tolerance *= finer_tolerance; });
         for (bool again = true; again && possible_;)
         {
           again                = false;
           double levels_change = 0., cells_change = 0., ratio_change = 0.;
-          refine(levels_change,
-                 [](Numerics &n)
-                 {
-                   ++n.grading.levels;
-                 });
-          if (now_.grading.ratio > fine_ratio * 0.99 || try_one(ratio_change,
-                                                                [](Numerics &n)
-                                                                {
-                                                                  n.grading = finer(n.grading);
-                                                                }))
+          refine(levels_change, [](Numerics &n) { ++n.grading.levels; });
+          if (now_.grading.ratio > fine_ratio * 0.99 ||
+              try_one(ratio_change, [](Numerics &n) { n.grading = finer(n.grading); }))
             ratio_change = 0.;
-          again         = refine(cells_change,
-                         [this](Numerics &n)
-                         {
-                           // One more in each piece between breaks, at least: else the mesh may stay as it is.
-                           n.n_cells = std::max(static_cast<unsigned int>(std::ceil(more_cells * n.n_cells)),
-                                                n.n_cells + (n_pieces_ > 1 ? n_pieces_ : 0));
-                         });
+          again         = refine(cells_change, [this](Numerics &n) {
+            // One more in each piece between breaks, at least: else the mesh may stay as it is.
+            n.n_cells = std::max(static_cast<unsigned int>(std::ceil(more_cells * n.n_cells)),
+                                 n.n_cells + (n_pieces_ > 1 ? n_pieces_ : 0));
+          });
           space_change_ = levels_change + ratio_change + cells_change;
         }
         if (!possible_)

@@ -47,10 +47,7 @@ namespace crawler
       const std::string source = "Given by = " + given_by;
       const auto &travelling   = p.active_stress.travelling_wave;
       const auto &standing     = p.active_stress.standing_wave;
-      const auto smoothed      = [](const WaveProfileParameters &profile)
-      {
-        return profile.profile == "smoothed square";
-      };
+      const auto smoothed  = [](const WaveProfileParameters &profile) { return profile.profile == "smoothed square"; };
       const bool by_energy = wave.choose_wave_by == "energy";
       std::vector<Rule> rules;
       rules_of_generators("Active stress/", p.active_stress, rules);
@@ -102,12 +99,8 @@ namespace crawler
       for (const Assignment &assignment : file.assignments())
       {
         const auto &entries = declarations.entries();
-        const auto entry    = std::find_if(entries.begin(),
-                                        entries.end(),
-                                        [&](const EntryInfo &e)
-                                        {
-                                          return e.path == assignment.path;
-                                        });
+        const auto entry =
+          std::find_if(entries.begin(), entries.end(), [&](const EntryInfo &e) { return e.path == assignment.path; });
         if (entry == entries.end() || entry->default_value == assignment.value)
           continue;
         for (const Rule &rule : rules)
@@ -125,11 +118,7 @@ namespace crawler
   ParameterFile
   read_file(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides)
   {
-    const std::string text = on_first_rank(communicator,
-                                           [&]()
-                                           {
-                                             return ParameterFile::read(file_name).text();
-                                           });
+    const std::string text = on_first_rank(communicator, [&]() { return ParameterFile::read(file_name).text(); });
     ParameterFile file     = ParameterFile::from_text(text, file_name == "-" ? "standard input" : file_name);
     for (const std::string &assignment : overrides)
       file.add_override(assignment);

@@ -312,10 +312,7 @@ namespace crawler
       void
       extrapolate(const SimulationResult &coarse)
       {
-        const auto better = [](const double fine, const double rough)
-        {
-          return (4. * fine - rough) / 3.;
-        };
+        const auto better        = [](const double fine, const double rough) { return (4. * fine - rough) / 3.; };
         SimulationResult &result = extrapolated_;
         if (result.inversion)
         {
@@ -323,8 +320,7 @@ namespace crawler
           return;
         }
         result.displacement = better(result.displacement, coarse.displacement);
-        const auto ledger   = [&](std::optional<Ledger> &fine, const std::optional<Ledger> &rough)
-        {
+        const auto ledger   = [&](std::optional<Ledger> &fine, const std::optional<Ledger> &rough) {
           if (fine && rough)
             *fine = fine->combined(4. / 3., *rough, -1. / 3.);
         };

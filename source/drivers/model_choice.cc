@@ -28,8 +28,7 @@ namespace crawler
         return;
       const StrainExtremes start = find_extremes(*history, scene.body.length, 0., 129, 2),
                            all   = find_extremes(*history, scene.body.length, scene.end_time, 65, 65);
-      const auto size            = [](const StrainExtremes &e)
-      {
+      const auto size            = [](const StrainExtremes &e) {
         return std::max(std::abs(e.smallest.strain), std::abs(e.largest.strain));
       };
       const StrainExtreme &worst =

@@ -31,12 +31,10 @@ namespace crawler
     {
       Numbers numbers;
       auto next         = numbers.begin();
-      const auto energy = [&](auto value, const bool is_sampled = false)
-      {
+      const auto energy = [&](auto value, const bool is_sampled = false) {
         *next++ = result.ledger ? Number{value(*result.ledger), result.ledger->exchanged, is_sampled} : Number();
       };
-      const auto cost = [&](auto value, const bool is_sampled = false)
-      {
+      const auto cost = [&](auto value, const bool is_sampled = false) {
         *next++ = Number();
         if (!result.gait || !result.gait->ledger)
           return;
@@ -44,62 +42,27 @@ namespace crawler
         if (const auto per_distance = gait.cost_of_transport(value(*gait.ledger)))
           *(next - 1) = {*per_distance, gait.ledger->exchanged / std::abs(gait.displacement), is_sampled};
       };
-      const auto stress_power = [](const Ledger &l)
-      {
-        return l.stress_power;
-      };
-      const auto dissipation = [](const Ledger &l)
-      {
-        return l.dissipation;
-      };
-      const auto paper_energy = [](const Ledger &l)
-      {
-        return l.paper_energy();
-      };
-      const auto positive_power = [](const Ledger &l)
-      {
-        return l.positive_power;
-      };
+      const auto stress_power   = [](const Ledger &l) { return l.stress_power; };
+      const auto dissipation    = [](const Ledger &l) { return l.dissipation; };
+      const auto paper_energy   = [](const Ledger &l) { return l.paper_energy(); };
+      const auto positive_power = [](const Ledger &l) { return l.positive_power; };
       energy(stress_power);
       energy(dissipation);
-      energy(
-        [](const Ledger &l)
-        {
-          return l.elastic_energy;
-        });
+      energy([](const Ledger &l) { return l.elastic_energy; });
       energy(paper_energy);
       energy(positive_power, true);
       const double strain = std::max(1. - result.min_stretch.value, result.max_stretch.value - 1.);
       *next++             = {result.min_stretch.value, strain, true};
       *next++             = {result.max_stretch.value, strain, true};
-      const auto of_gait  = [&](auto value)
-      {
-        *next++ = result.gait ? with_own_scale(value(*result.gait)) : Number();
-      };
-      of_gait(
-        [](const Gait &g)
-        {
-          return std::optional(g.displacement);
-        });
-      of_gait(
-        [](const Gait &g)
-        {
-          return std::optional(g.speed());
-        });
+      const auto of_gait  = [&](auto value) { *next++ = result.gait ? with_own_scale(value(*result.gait)) : Number(); };
+      of_gait([](const Gait &g) { return std::optional(g.displacement); });
+      of_gait([](const Gait &g) { return std::optional(g.speed()); });
       cost(stress_power);
       cost(positive_power, true);
       cost(paper_energy);
       cost(dissipation);
-      of_gait(
-        [](const Gait &g)
-        {
-          return g.slip();
-        });
-      of_gait(
-        [](const Gait &g)
-        {
-          return g.wave_speed();
-        });
+      of_gait([](const Gait &g) { return g.slip(); });
+      of_gait([](const Gait &g) { return g.wave_speed(); });
       *next            = with_own_scale(result.gait_efficiency);
       next->is_sampled = true; // it follows from the extreme stretches
       return numbers;

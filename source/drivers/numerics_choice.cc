@@ -302,18 +302,13 @@ namespace crawler
                                              .tolerance_factor  = name == "radau 9"   ? graded_radau_9
                                                                   : name == "radau 5" ? graded_radau_5
                                                                                       : graded_others,
-                                             .run =
-                                               [this](const Numerics &numerics)
-                                             {
-                                               return pilot(numerics);
-                                             },
+                                             .run = [this](const Numerics &numerics) { return pilot(numerics); },
                                              .size =
-                                               [this](const SimulationResult &result)
-                                             {
-                                               pilot_ = result;
-                                               measure_size();
-                                               return size_;
-                                             }});
+                                               [this](const SimulationResult &result) {
+                                                 pilot_ = result;
+                                                 measure_size();
+                                                 return size_;
+                                               }});
         cycles_          = cycles;
         if (!found)
         {
@@ -378,13 +373,11 @@ namespace crawler
         // that.
         const double enough_cells = n_cells; // fewer failed or left too much unresolved
         const double full_rate = 2. * pilot_degree - 2., wanted_part = accuracy_ / space_factor;
-        const auto rate_of = [full_rate](const double coarse, const double fine)
-        {
+        const auto rate_of = [full_rate](const double coarse, const double fine) {
           return std::clamp(std::log2(coarse / fine), 0.5, full_rate);
         };
         double unresolved = pilot_.unresolved, indicator = pilot_.largest_indicator, rate = 0., indicator_rate = 0.;
-        const auto unbalanced = [&]()
-        {
+        const auto unbalanced = [&]() {
           return most < most_cells && indicator_factor * indicator > accuracy_ * pilot_.strain &&
                  indicator_rate < 0.5 * full_rate;
         };

@@ -35,14 +35,13 @@ namespace crawler
     require_linear(const Parameters &p)
     {
       const auto require =
-        [](const bool ok, const std::string &entry, const std::string &found, const std::string &expected)
-      {
-        if (!ok)
-          throw InputError(
-            fmt::format(
-              "Model is linear and {} is {}, but {} is expected", entry.substr(entry.find('/') + 1), found, expected),
-            entry);
-      };
+        [](const bool ok, const std::string &entry, const std::string &found, const std::string &expected) {
+          if (!ok)
+            throw InputError(
+              fmt::format(
+                "Model is linear and {} is {}, but {} is expected", entry.substr(entry.find('/') + 1), found, expected),
+              entry);
+        };
       require(
         p.discretization.mesh != "adaptive", "Discretization/Mesh", p.discretization.mesh, "automatic or uniform");
       require(p.discretization.formulation != "stretch",
@@ -60,15 +59,14 @@ namespace crawler
     require_stretch_form(const Parameters &p, const Scene &scene)
     {
       const auto require =
-        [](const bool ok, const std::string &entry, const std::string &found, const std::string &expected)
-      {
-        if (!ok)
-          throw InputError(fmt::format("Formulation is stretch and {} is {}, but {} is expected",
-                                       entry.substr(entry.find('/') + 1),
-                                       found,
-                                       expected),
-                           entry);
-      };
+        [](const bool ok, const std::string &entry, const std::string &found, const std::string &expected) {
+          if (!ok)
+            throw InputError(fmt::format("Formulation is stretch and {} is {}, but {} is expected",
+                                         entry.substr(entry.find('/') + 1),
+                                         found,
+                                         expected),
+                             entry);
+        };
       const DiscretizationParameters &d = p.discretization;
       require(d.mesh != "adaptive", "Discretization/Mesh", d.mesh, "automatic or uniform");
       require(!d.degree || *d.degree == 1, "Discretization/Degree", fmt::format("{}", d.degree.value_or(1)), "1");

@@ -177,14 +177,10 @@ namespace crawler
     if (!model.needs_mesh())
       return check_rung(input, model, log);
     PilotProgress pilots(log);
-    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF,
-                                                   input.parameters,
-                                                   input.scene,
-                                                   [&]()
-                                                   {
-                                                     pilots.step();
-                                                     return true;
-                                                   });
+    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, input.parameters, input.scene, [&]() {
+      pilots.step();
+      return true;
+    });
     const Simulation simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);
     report_plan(log, input, model, choice);
     log.line(
@@ -209,24 +205,20 @@ namespace crawler
     const Parameters &parameters   = input.parameters;
     const OutputParameters &output = parameters.output;
     const auto folder              = output_folder(options.output, options.file);
-    on_first_rank(communicator,
-                  [&]()
-                  {
-                    require_usable(folder, options.overwrite);
-                    require_no_sweep(folder);
-                    return "";
-                  });
+    on_first_rank(communicator, [&]() {
+      require_usable(folder, options.overwrite);
+      require_no_sweep(folder);
+      return "";
+    });
 
     SimulationResult result;
     bool shared              = false; // the cells, by all ranks
-    const auto write_summary = [&]()
-    {
+    const auto write_summary = [&]() {
       write_file(folder / "summary.json",
                  summary_json(result, parameters, size_of(communicator), options.command_line));
     };
     // What a part of the work throws is how the run ends, with all that an end has.
-    const auto guarded = [&](const auto &work)
-    {
+    const auto guarded = [&](const auto &work) {
       try
       {
         if (result.time.status.empty())
@@ -244,29 +236,19 @@ namespace crawler
     };
     std::optional<ModelChoice> model;
     std::optional<NumericsChoice> chosen;
-    guarded(
-      [&]()
-      {
-        model = choose_model(input);
-      });
+    guarded([&]() { model = choose_model(input); });
     agree_on_failure(communicator, result.time);
     if (model && !model->needs_mesh())
       return run_rung(communicator, options, input, *model, stop_signal, start, log);
-    guarded(
-      [&]()
-      {
-        input.parameters.model = model->model;
-        // The linear rung (a = 0) is computed by what follows, as the nonlinear one.
-        PilotProgress pilots(log);
-        chosen = choose_numerics(MPI_COMM_SELF,
-                                 parameters,
-                                 input.scene,
-                                 [&]()
-                                 {
-                                   pilots.step();
-                                   return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
-                                 });
+    guarded([&]() {
+      input.parameters.model = model->model;
+      // The linear rung (a = 0) is computed by what follows, as the nonlinear one.
+      PilotProgress pilots(log);
+      chosen = choose_numerics(MPI_COMM_SELF, parameters, input.scene, [&]() {
+        pilots.step();
+        return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
       });
+    });
     if (stop_signal.arrived_anywhere(communicator))
     {
       log.warn("stopped by a signal during the pilot runs; nothing was written");
@@ -277,34 +259,23 @@ namespace crawler
     shared = size_of(communicator) > 1 && chosen && chosen->numerics.formulation == Formulation::position &&
              parameters.discretization.shares(chosen->numerics.n_cells);
     const MPI_Comm computing = shared ? communicator : MPI_COMM_SELF;
-    const auto keep_going    = [&]()
-    {
-      return !stop_signal.arrived_anywhere(computing);
-    };
+    const auto keep_going    = [&]() { return !stop_signal.arrived_anywhere(computing); };
     std::unique_ptr<Simulation> simulation;
-    const auto build = [&](const Numerics &numerics)
-    {
+    const auto build = [&](const Numerics &numerics) {
       simulation = std::make_unique<Simulation>(computing, input.scene, parameters.time, numerics);
     };
-    guarded(
-      [&]()
-      {
-        build(chosen->numerics);
-      });
+    guarded([&]() { build(chosen->numerics); });
 
     // Everything is in order, or as good as it will be: from here on there are files.
-    on_first_rank(communicator,
-                  [&]()
-                  {
-                    begin_files(log, input, folder);
-                    return "";
-                  });
+    on_first_rank(communicator, [&]() {
+      begin_files(log, input, folder);
+      return "";
+    });
     if (chosen)
       report_plan(log, input, *model, *chosen);
 
     const bool writes           = shared || first;
-    const auto create_observers = [&]()
-    {
+    const auto create_observers = [&]() {
       std::vector<std::unique_ptr<Observer>> observers;
       if (writes && output.n_snapshots > 0)
       {
@@ -325,23 +296,20 @@ namespace crawler
                                              .resolution = false,
                                              .cycles     = cycle_wish(parameters, input.scene, output.n_snapshots),
                                              .gait       = Simulation::GaitWish::any};
-    const auto simulate                   = [&](const NumericsChoice &choice)
-    {
+    const auto simulate                   = [&](const NumericsChoice &choice) {
       if (choice.is_family)
         build(choice.numerics);
       else if (++n_runs > 1)
       {
         log.line((latest.status == "failed" ? latest.reason + ": " + latest.message
-                                            : "The error is larger than Accuracy asks for") +
+                                                              : "The error is larger than Accuracy asks for") +
                  ": once more, finer.");
         build(choice.numerics);
         if (writes)
-          on_first_rank(computing,
-                        [&]()
-                        {
-                          remove_fields(folder);
-                          return "";
-                        });
+          on_first_rank(computing, [&]() {
+            remove_fields(folder);
+            return "";
+          });
         log.line(describe(choice.numerics, input));
       }
       SimulationResult run = simulation->run(
@@ -349,17 +317,15 @@ namespace crawler
       latest = run.time;
       return run;
     };
-    guarded(
-      [&]()
-      {
-        Answer answer = run_as_promised(
-          computing, parameters, input.scene, *chosen, simulate, run_options, /*writes=*/true, keep_going);
-        result = std::move(answer.result);
-        if (answer.choice.is_family)
-          log.line("  (" + answer.choice.explanation + ")");
-        result.estimate_seconds = answer.estimate_seconds;
-        result.refinements      = answer.refinements;
-      });
+    guarded([&]() {
+      Answer answer = run_as_promised(
+        computing, parameters, input.scene, *chosen, simulate, run_options, /*writes=*/true, keep_going);
+      result = std::move(answer.result);
+      if (answer.choice.is_family)
+        log.line("  (" + answer.choice.explanation + ")");
+      result.estimate_seconds = answer.estimate_seconds;
+      result.refinements      = answer.refinements;
+    });
     result.setup_seconds = setup_seconds;
     if (result.time.status == "stopped" && result.time.reason.empty())
     {
@@ -371,12 +337,10 @@ namespace crawler
       log.warn("the error of the displacement is not known: the second run, which measures it, did not finish");
     report_unused_options(log);
 
-    on_first_rank(communicator,
-                  [&]()
-                  {
-                    write_summary();
-                    return "";
-                  });
+    on_first_rank(communicator, [&]() {
+      write_summary();
+      return "";
+    });
     for (const std::string &line : summary_lines(result, parameters))
       log.line(line);
     if (result.time.status != "finished")

@@ -71,35 +71,28 @@ namespace crawler
         statistics.emplace(input.scene.body.length, true, folder, output.ledger);
       unsigned int number = 0;
       bool stopped        = false;
-      rung.replay(
-        equidistant(n + 1),
-        points,
-        [&](const double t, const Rung::State &state)
+      rung.replay(equidistant(n + 1), points, [&](const double t, const Rung::State &state) {
+        const double time = number == n ? input.scene.end_time : input.scene.end_time * number / n;
+        const Step step{time, number == 0 ? 0. : input.scene.end_time / n, number, true, 0, 0};
+        const Fields fields = physical_fields(state.fields, points, rung.rungs().scene(), units);
+        if (output.n_snapshots > 0)
         {
-          const double time = number == n ? input.scene.end_time : input.scene.end_time * number / n;
-          const Step step{time, number == 0 ? 0. : input.scene.end_time / n, number, true, 0, 0};
-          const Fields fields = physical_fields(state.fields, points, rung.rungs().scene(), units);
-          if (output.n_snapshots > 0)
-          {
-            pictures.write(
-              time, number, {{0., units.length}}, static_cast<unsigned int>(points.size()), fields, MPI_COMM_SELF);
-            kymograph.add(time, fields);
-          }
-          const auto stretch_at = [&](const StrainExtreme &e)
-          {
-            return StretchAt{1. + e.strain, e.s * units.length};
-          };
-          if (statistics)
-            statistics->write({step,
-                               state.displacement * units.length,
-                               {stretch_at(state.smallest), stretch_at(state.largest)},
-                               state.velocity * units.velocity(),
-                               ledger_of(state.energies).scaled(units.energy()),
-                               state.net_friction * units.force});
-          ++number;
-          stopped = signal.arrived_anywhere(MPI_COMM_SELF);
-          return !stopped && t <= 1.;
-        });
+          pictures.write(
+            time, number, {{0., units.length}}, static_cast<unsigned int>(points.size()), fields, MPI_COMM_SELF);
+          kymograph.add(time, fields);
+        }
+        const auto stretch_at = [&](const StrainExtreme &e) { return StretchAt{1. + e.strain, e.s * units.length}; };
+        if (statistics)
+          statistics->write({step,
+                             state.displacement * units.length,
+                             {stretch_at(state.smallest), stretch_at(state.largest)},
+                             state.velocity * units.velocity(),
+                             ledger_of(state.energies).scaled(units.energy()),
+                             state.net_friction * units.force});
+        ++number;
+        stopped = signal.arrived_anywhere(MPI_COMM_SELF);
+        return !stopped && t <= 1.;
+      });
       if (statistics)
         statistics->end();
       if (output.n_snapshots > 0 && output.kymograph)
@@ -120,66 +113,58 @@ namespace crawler
     const OutputParameters &output = input.parameters.output;
     const auto folder              = output_folder(options.output, options.file);
     int code                       = 0;
-    on_first_rank(communicator,
-                  [&]()
-                  {
-                    using Clock             = std::chrono::steady_clock;
-                    const auto seconds_from = [](const Clock::time_point from)
-                    {
-                      return std::chrono::duration<double>(Clock::now() - from).count();
-                    };
-                    begin_files(log, input, folder);
-                    report_scene(log, input);
-                    log.line(choice.explanation);
+    on_first_rank(communicator, [&]() {
+      using Clock             = std::chrono::steady_clock;
+      const auto seconds_from = [](const Clock::time_point from) {
+        return std::chrono::duration<double>(Clock::now() - from).count();
+      };
+      begin_files(log, input, folder);
+      report_scene(log, input);
+      log.line(choice.explanation);
 
-                    Parameters parameters = input.parameters;
-                    parameters.model      = choice.model;
-                    const double setup    = seconds_from(start);
-                    SimulationResult result;
-                    try
-                    {
-                      Rung rung(input.scene, choice.model);
-                      result               = rung.compute(parameters.accuracy,
-                                            output.ledger,
-                                            [&]()
-                                            {
-                                              return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
-                                            });
-                      result.setup_seconds = setup;
-                      rung.describe_gait(input.scene, result);
-                      if (std::isfinite(result.net_friction)) // the series has no balance to check
-                        check_identities(result, parameters);
-                      log.line(rung.description());
+      Parameters parameters = input.parameters;
+      parameters.model      = choice.model;
+      const double setup    = seconds_from(start);
+      SimulationResult result;
+      try
+      {
+        Rung rung(input.scene, choice.model);
+        result = rung.compute(
+          parameters.accuracy, output.ledger, [&]() { return !stop_signal.arrived_anywhere(MPI_COMM_SELF); });
+        result.setup_seconds = setup;
+        rung.describe_gait(input.scene, result);
+        if (std::isfinite(result.net_friction)) // the series has no balance to check
+          check_identities(result, parameters);
+        log.line(rung.description());
 
-                      const auto before = Clock::now();
-                      if (result.error && (output.n_snapshots > 0 || output.statistics) &&
-                          !write_pictures(rung, input, folder, stop_signal))
-                        result.time.status = "stopped";
-                      result.output_seconds = seconds_from(before);
-                    }
-                    catch (...)
-                    {
-                      result.time = failure_of(std::current_exception());
-                    }
-                    if (result.time.status == "stopped")
-                    {
-                      result.time.reason  = "signal";
-                      result.time.message = "stopped by a signal";
-                    }
-                    write_file(folder / "summary.json",
-                               summary_json(result, parameters, size_of(communicator), options.command_line));
-                    for (const std::string &line : summary_lines(result, parameters))
-                      log.line(line);
-                    if (result.time.status != "finished")
-                      log.warn(result.time.reason + ": " + result.time.message);
-                    log.line(output.n_snapshots > 0 && result.error
-                               ? fmt::format("Results are in {}/; open {} in ParaView.",
-                                             folder.string(),
-                                             (folder / "solution.pvd").string())
-                               : fmt::format("Results are in {}/.", folder.string()));
-                    code = static_cast<int>(exit_code(result.time));
-                    return "";
-                  });
+        const auto before = Clock::now();
+        if (result.error && (output.n_snapshots > 0 || output.statistics) &&
+            !write_pictures(rung, input, folder, stop_signal))
+          result.time.status = "stopped";
+        result.output_seconds = seconds_from(before);
+      }
+      catch (...)
+      {
+        result.time = failure_of(std::current_exception());
+      }
+      if (result.time.status == "stopped")
+      {
+        result.time.reason  = "signal";
+        result.time.message = "stopped by a signal";
+      }
+      write_file(folder / "summary.json",
+                 summary_json(result, parameters, size_of(communicator), options.command_line));
+      for (const std::string &line : summary_lines(result, parameters))
+        log.line(line);
+      if (result.time.status != "finished")
+        log.warn(result.time.reason + ": " + result.time.message);
+      log.line(
+        output.n_snapshots > 0 && result.error
+          ? fmt::format("Results are in {}/; open {} in ParaView.", folder.string(), (folder / "solution.pvd").string())
+          : fmt::format("Results are in {}/.", folder.string()));
+      code = static_cast<int>(exit_code(result.time));
+      return "";
+    });
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
     return static_cast<ExitCode>(code);
   }

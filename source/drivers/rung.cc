@@ -220,17 +220,14 @@ namespace crawler
     std::vector<double> ends;
     for (unsigned int i = 0; i <= GaitMeter::n_pieces; ++i)
       ends.push_back(static_cast<double>(i) / GaitMeter::n_pieces);
-    replay(meter.times(),
-           ends,
-           [&](const double t, const State &state)
-           {
-             meter.see(state.fields.displacement, state.displacement);
-             meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // of the whole motion
-             meter.see_extremes(1. + state.smallest.strain, 1. + state.largest.strain);
-             const Ledger ledger = ledger_of(state.energies);
-             meter.see_step(t, state.displacement, &ledger);
-             return true;
-           });
+    replay(meter.times(), ends, [&](const double t, const State &state) {
+      meter.see(state.fields.displacement, state.displacement);
+      meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // of the whole motion
+      meter.see_extremes(1. + state.smallest.strain, 1. + state.largest.strain);
+      const Ledger ledger = ledger_of(state.energies);
+      meter.see_step(t, state.displacement, &ledger);
+      return true;
+    });
     if (const auto gait = meter.gait())
       result.gait = gait->in_units(rungs_.units());
   }

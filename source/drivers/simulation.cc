@@ -274,8 +274,7 @@ namespace crawler
         return before_;
       const std::vector<double> ends = frames_of_piece();
       const bool ends_at_frame       = ends_at_frame_;
-      stepper_->monitor              = [&](const Step &part, const std::span<const double> y)
-      {
+      stepper_->monitor              = [&](const Step &part, const std::span<const double> y) {
         if (resumed) // the state from which this part starts has been seen already
         {
           resumed = false;
@@ -379,8 +378,7 @@ namespace crawler
     const double reach = pieces_.is_last() ? HUGE_VAL : pieces_.end() - least_time_between_breaks;
     std::vector<double> result;
     std::size_t i         = next_frame_;
-    const auto frame_time = [&]()
-    {
+    const auto frame_time = [&]() {
       return i + 1 == frames_.size() && frames_[i] == physical_scene_.end_time ? 1. : frames_[i] / units_.time;
     };
     for (; i < frames_.size() && frame_time() < reach; ++i)
@@ -608,12 +606,7 @@ namespace crawler
   void
   Simulation::keep_rate(const double t, const std::span<const double> y_dot)
   {
-    auto found = std::find_if(rates_.begin(),
-                              rates_.end(),
-                              [t](const Rate &rate)
-                              {
-                                return rate.time == t;
-                              });
+    auto found = std::find_if(rates_.begin(), rates_.end(), [t](const Rate &rate) { return rate.time == t; });
     if (found == rates_.end())
     {
       std::rotate(rates_.begin(), rates_.begin() + 1, rates_.end());
@@ -631,12 +624,9 @@ namespace crawler
   bool
   Simulation::velocity(const double t, const double size, const std::span<const double> y, std::vector<double> &v)
   {
-    const auto known = std::find_if(rates_.begin(),
-                                    rates_.end(),
-                                    [&](const Rate &rate)
-                                    {
-                                      return size > 0. && std::abs(rate.time - t) <= 1e-9 * size;
-                                    });
+    const auto known = std::find_if(rates_.begin(), rates_.end(), [&](const Rate &rate) {
+      return size > 0. && std::abs(rate.time - t) <= 1e-9 * size;
+    });
     if (!keeps_rate() || known == rates_.end())
       return assembler_->velocity(t, y, v);
     if (numerics_.linear)
@@ -753,8 +743,7 @@ namespace crawler
     result.largest_indicator *= units_.length;
     if (result.ledger)
       result.ledger = result.ledger->scaled(units_.energy());
-    const auto scale = [this](SimulationResult::Extreme &extreme)
-    {
+    const auto scale = [this](SimulationResult::Extreme &extreme) {
       extreme.s *= units_.length;
       extreme.t *= units_.time;
     };

@@ -62,8 +62,7 @@ namespace crawler
   Simulation::end_inverts(const double from, const double to)
   {
     constexpr int parts = 4;
-    const auto smallest = [this](const double t)
-    {
+    const auto smallest = [this](const double t) {
       const auto [left, right] = assembler_->end_stretches(t);
       return std::min(left, right);
     };
@@ -107,8 +106,7 @@ namespace crawler
     const double threshold = lost_stretch();
     std::vector<double> y(assembler_->n_owned());
     StretchAt smallest = stretch_.min;
-    const auto above   = [&](const double t)
-    {
+    const auto above   = [&](const double t) {
       stepper_->interpolate(t, y);
       smallest = assembler_->stretch_range(y).min;
       return smallest.value - threshold;

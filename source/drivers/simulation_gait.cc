@@ -13,8 +13,7 @@ namespace crawler
   bool
   Simulation::cycle_repeats(const Step &step, const std::span<const double> y)
   {
-    const auto see = [&](const std::span<const double> state)
-    {
+    const auto see = [&](const std::span<const double> state) {
       const double extremes[] = {result_.min_stretch.value, result_.max_stretch.value};
       double g[2];
       scene_.friction->values(extremes, g);
@@ -56,8 +55,7 @@ namespace crawler
   void
   Simulation::watch_gait(const Step &step, const std::span<const double> y)
   {
-    const auto see = [&](const std::span<const double> state)
-    {
+    const auto see = [&](const std::span<const double> state) {
       const auto u = assembler_->displacement_at(GaitMeter::n_pieces, state);
       gait_meter_->see(u, assembler_->integrals(step.time, state, v_).displacement);
     };

@@ -62,10 +62,7 @@ namespace crawler
       throw std::logic_error("the linear model is for a = 0, the position form, uniform meshes and radau");
     linear_stepper_ = std::make_unique<LinearStepper>(
       scene_, *discretization_, integrator(time_.integrator).n_stages, time_.step_control == "adaptive");
-    linear_stepper_->stage_rates = [this](const double t, const std::span<const double> v)
-    {
-      keep_rate(t, v);
-    };
+    linear_stepper_->stage_rates = [this](const double t, const std::span<const double> v) { keep_rate(t, v); };
   }
 
   void
@@ -73,10 +70,7 @@ namespace crawler
   {
     fused_stepper_ = std::make_unique<FusedStepper>(scene_, *fused_method(scene_, time_, numerics_));
     if (keeps_rate())
-      fused_stepper_->stage_rates = [this](const double t, const std::span<const double> v)
-      {
-        keep_rate(t, v);
-      };
+      fused_stepper_->stage_rates = [this](const double t, const std::span<const double> v) { keep_rate(t, v); };
   }
 
   void
@@ -90,54 +84,40 @@ namespace crawler
     stepper.exact_elimination =
       scene_.active_stress->feedback() == nullptr || !scene_.active_stress->feedback()->sees_near();
 
-    stepper.implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F)
-    {
+    stepper.implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F) {
       if (keeps_rate())
         keep_rate(t, y_dot);
       return position_->residual(t, y, y_dot, F);
     };
-    stepper.setup_jacobian = [this](const double t, const ConstVector y, const ConstVector y_dot, const double shift)
-    {
+    stepper.setup_jacobian = [this](const double t, const ConstVector y, const ConstVector y_dot, const double shift) {
       return position_->setup_jacobian(t, y, y_dot, shift);
     };
-    stepper.solve_with_jacobian = [this](const ConstVector b, const Vector x)
-    {
-      position_->solve_with_jacobian(b, x);
-    };
+    stepper.solve_with_jacobian = [this](const ConstVector b, const Vector x) { position_->solve_with_jacobian(b, x); };
     stepper.setup_complex_jacobians =
-      [this](const double t, const ConstVector y, const ConstVector y_dot, const std::span<const Complex> sigma)
-    {
-      return position_->setup_complex_jacobians(t, y, y_dot, sigma);
-    };
+      [this](const double t, const ConstVector y, const ConstVector y_dot, const std::span<const Complex> sigma) {
+        return position_->setup_complex_jacobians(t, y, y_dot, sigma);
+      };
     stepper.solve_with_complex_jacobian =
-      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x)
-    {
-      position_->solve_with_complex_jacobian(i, b, x);
-    };
-    stepper.setup_stage = [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot)
-    {
-      position_->setup_stage(stage, t, y, y_dot);
-    };
-    stepper.stage_vmult = [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector y)
-    {
-      position_->stage_vmult(stage, x, x_dot, y);
-    };
-    stepper.jacobian_vmult = [this](const ConstVector x, const Vector y)
-    {
-      position_->jacobian_vmult(x, y);
-    };
+      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x) {
+        position_->solve_with_complex_jacobian(i, b, x);
+      };
+    stepper.setup_stage =
+      [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot) {
+        position_->setup_stage(stage, t, y, y_dot);
+      };
+    stepper.stage_vmult =
+      [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector y) {
+        position_->stage_vmult(stage, x, x_dot, y);
+      };
+    stepper.jacobian_vmult = [this](const ConstVector x, const Vector y) { position_->jacobian_vmult(x, y); };
   }
 
   /// The limit of steps at this time.
   double
   Simulation::longest_step(const double t) const
   {
-    const auto after = std::find_if(step_limits_.begin(),
-                                    step_limits_.end(),
-                                    [t](const StepLimit &limit)
-                                    {
-                                      return limit.from > t;
-                                    });
+    const auto after =
+      std::find_if(step_limits_.begin(), step_limits_.end(), [t](const StepLimit &limit) { return limit.from > t; });
     return after == step_limits_.begin() ? HUGE_VAL : std::prev(after)->longest;
   }
 
@@ -149,19 +129,12 @@ namespace crawler
     constexpr double shortest = 1e-6, part = 0.125;
     if (!watch_ || step.size <= shortest || watch_->is_calm(step.time - step.size, step.time))
       return false;
-    const auto after = std::find_if(step_limits_.begin(),
-                                    step_limits_.end(),
-                                    [&](const StepLimit &limit)
-                                    {
-                                      return limit.from > step.time;
-                                    });
+    const auto after = std::find_if(
+      step_limits_.begin(), step_limits_.end(), [&](const StepLimit &limit) { return limit.from > step.time; });
     const StepLimit later{step.time, longest_step(step.time)};
-    const auto begin = std::find_if(step_limits_.begin(),
-                                    step_limits_.end(),
-                                    [&](const StepLimit &limit)
-                                    {
-                                      return limit.from > step.time - step.size;
-                                    });
+    const auto begin = std::find_if(step_limits_.begin(), step_limits_.end(), [&](const StepLimit &limit) {
+      return limit.from > step.time - step.size;
+    });
     const auto place = step_limits_.erase(begin, after);
     step_limits_.insert(place, {{step.time - step.size, part * step.size}, later});
     request_ = Request::retry;

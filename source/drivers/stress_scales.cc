@@ -64,8 +64,7 @@ namespace crawler
       {
         double place, time;
       };
-      const auto is_there = [&](const double place, const double t)
-      {
+      const auto is_there = [&](const double place, const double t) {
         const std::vector<double> points = {std::max(0., place - beside), std::min(L, place + beside)};
         std::vector<double> m(2);
         scene.active_stress->at(points)->values(t, m);
@@ -203,12 +202,8 @@ namespace crawler
         for (unsigned int j = 0; j < n; ++j)
         {
           stress->values(T_ * j / n, m);
-          n_quiet += std::all_of(m.begin(),
-                                 m.end(),
-                                 [&](const double value)
-                                 {
-                                   return std::abs(value) <= quiet * largest;
-                                 });
+          n_quiet +=
+            std::all_of(m.begin(), m.end(), [&](const double value) { return std::abs(value) <= quiet * largest; });
         }
         return n_quiet > often * n;
       }
@@ -296,8 +291,7 @@ namespace crawler
       const std::size_t n = 2 + in_space.size();
       std::vector<double> before(n, 0.), now(n);
       SuddenChange largest{0., 0.};
-      const auto look = [&](const double t)
-      {
+      const auto look = [&](const double t) {
         stress->values(t * T, m);
         now[0] = m[0];
         now[1] = m[1];
@@ -345,18 +339,10 @@ namespace crawler
       L,
       0.,
       P,
-      [&](const double from, const double to)
-      {
-        return std::max(usual, samples.largest_rate(from, to));
-      },
+      [&](const double from, const double to) { return std::max(usual, samples.largest_rate(from, to)); },
       samples.largest);
     changes.insert(changes.end(), found.list.begin(), found.list.end());
-    std::sort(changes.begin(),
-              changes.end(),
-              [](const FastChange &a, const FastChange &b)
-              {
-                return a.from < b.from;
-              });
+    std::sort(changes.begin(), changes.end(), [](const FastChange &a, const FastChange &b) { return a.from < b.from; });
     for (std::size_t i = 0; i < changes.size(); i += 1 + changes.size() / most_looks)
       samples.look_at(0.5 * (changes[i].from + changes[i].to));
 
@@ -388,15 +374,7 @@ namespace crawler
       longest = std::max(longest, limit.longest);
     const double usual      = longest > 0. ? largest / longest : 0.;
     const FastChanges found = find_fast_changes(
-      stress,
-      L,
-      0.,
-      P,
-      [usual](double, double)
-      {
-        return usual;
-      },
-      largest);
+      stress, L, 0., P, [usual](double, double) { return usual; }, largest);
     if (found.list.empty())
       return known.empty() ? known : std::vector<StepLimit>{{0., longest}};
     return step_limits(found.list, largest, usual, P, T);

@@ -101,8 +101,7 @@ namespace crawler
   std::vector<std::string>
   differences(const std::string &before, const std::string &after, const std::vector<std::string> &others)
   {
-    const auto values = [](const std::string &text)
-    {
+    const auto values = [](const std::string &text) {
       Parameters parameters;
       Declarations declarations;
       const ParameterFile file = ParameterFile::from_text(text, "parameters.prm");
@@ -114,20 +113,16 @@ namespace crawler
         list.emplace(declarations.entries()[i].path, declarations.value(i));
       return list;
     };
-    const auto are_same_number = [](const std::string &a, const std::string &b)
-    {
-      const auto number = [](const std::string &quoted)
-      {
+    const auto are_same_number = [](const std::string &a, const std::string &b) {
+      const auto number = [](const std::string &quoted) {
         return quoted.size() < 2 ? std::nullopt : to_number(quoted.substr(1, quoted.size() - 2));
       };
       return number(a) && number(a) == number(b);
     };
     const auto old_values = values(before), new_values = values(after);
     std::vector<std::string> list;
-    const auto compare = [&](const std::string &entry)
-    {
-      const auto value_in = [&](const auto &all)
-      {
+    const auto compare = [&](const std::string &entry) {
+      const auto value_in = [&](const auto &all) {
         const auto found = all.find(entry);
         return found == all.end() ? std::string("not there") : "\"" + found->second + "\"";
       };

@@ -42,73 +42,27 @@ namespace crawler
     Json
     gait_numbers(const SimulationResult &result)
     {
-      const auto of_gait = [&](auto value) -> std::optional<double>
-      {
+      const auto of_gait = [&](auto value) -> std::optional<double> {
         return result.gait ? std::optional<double>(value(*result.gait)) : std::nullopt;
       };
-      const auto cost = [&](auto energy) -> Json
-      {
+      const auto cost = [&](auto energy) -> Json {
         if (!result.gait || !result.gait->ledger)
           return nullptr;
         return number(result.gait->cost_of_transport(energy(*result.gait->ledger)));
       };
       const bool has_wave = result.gait && result.gait->wave;
       Json json;
-      json["period"]       = number(of_gait(
-        [](const Gait &g)
-        {
-          return g.period;
-        }));
-      json["frequency"]    = number(of_gait(
-        [](const Gait &g)
-        {
-          return 1. / g.period;
-        }));
+      json["period"]       = number(of_gait([](const Gait &g) { return g.period; }));
+      json["frequency"]    = number(of_gait([](const Gait &g) { return 1. / g.period; }));
       json["period_from"]  = result.gait ? Json(result.gait->is_declared ? "active stress" : "stretch") : Json(nullptr);
-      json["strides"]      = number(of_gait(
-        [](const Gait &g)
-        {
-          return g.n_strides;
-        }));
-      json["displacement"] = number(of_gait(
-        [](const Gait &g)
-        {
-          return g.displacement;
-        }));
-      json["body_lengths"] = number(of_gait(
-        [](const Gait &g)
-        {
-          return g.body_lengths();
-        }));
-      json["speed"]        = number(of_gait(
-        [](const Gait &g)
-        {
-          return g.speed();
-        }));
-      json["cost_of_transport"] = {{"stress_power",
-                                    cost(
-                                      [](const Ledger &l)
-                                      {
-                                        return l.stress_power;
-                                      })},
-                                   {"positive_power",
-                                    cost(
-                                      [](const Ledger &l)
-                                      {
-                                        return l.positive_power;
-                                      })},
-                                   {"paper_energy",
-                                    cost(
-                                      [](const Ledger &l)
-                                      {
-                                        return l.paper_energy();
-                                      })},
-                                   {"dissipation",
-                                    cost(
-                                      [](const Ledger &l)
-                                      {
-                                        return l.dissipation;
-                                      })}};
+      json["strides"]      = number(of_gait([](const Gait &g) { return g.n_strides; }));
+      json["displacement"] = number(of_gait([](const Gait &g) { return g.displacement; }));
+      json["body_lengths"] = number(of_gait([](const Gait &g) { return g.body_lengths(); }));
+      json["speed"]        = number(of_gait([](const Gait &g) { return g.speed(); }));
+      json["cost_of_transport"] = {{"stress_power", cost([](const Ledger &l) { return l.stress_power; })},
+                                   {"positive_power", cost([](const Ledger &l) { return l.positive_power; })},
+                                   {"paper_energy", cost([](const Ledger &l) { return l.paper_energy(); })},
+                                   {"dissipation", cost([](const Ledger &l) { return l.dissipation; })}};
       json["slip"]              = result.gait ? number(result.gait->slip()) : Json(nullptr);
       json["wave"]              = {{"direction", result.gait ? Json(result.gait->direction()) : Json(nullptr)},
                                    {"speed", result.gait ? number(result.gait->wave_speed()) : Json(nullptr)},
@@ -180,10 +134,7 @@ namespace crawler
   summary_of(const SimulationResult &result, const Parameters &parameters)
   {
     const auto &mesh  = result.mesh;
-    const auto ledger = [&](auto value)
-    {
-      return result.ledger ? Json(value(*result.ledger)) : Json(nullptr);
-    };
+    const auto ledger = [&](auto value) { return result.ledger ? Json(value(*result.ledger)) : Json(nullptr); };
     Json json;
     json["status"]                = result.time.status;
     json["reason"]                = result.time.status == "finished" ? Json(nullptr) : Json(result.time.reason);
@@ -192,43 +143,19 @@ namespace crawler
     const DisplacementError error = result.error.value_or(DisplacementError());
     json["displacement_error"]    = {
          {"total", error.total}, {"space", error.space}, {"time", error.time}, {"model", error.model}};
-    json["end_time"]     = result.time.time;
-    json["cycles"]       = result.cycles ? Json{{"period", result.cycles->period},
+    json["end_time"]           = result.time.time;
+    json["cycles"]             = result.cycles ? Json{{"period", result.cycles->period},
                                           {"computed", result.cycles->computed},
                                           {"extrapolated", result.cycles->extrapolated},
                                           {"error", result.cycles->bound}}
-                                         : Json(nullptr);
-    json["model"]        = parameters.model;
-    json["stress_power"] = ledger(
-      [](const Ledger &l)
-      {
-        return l.stress_power;
-      });
-    json["dissipation"] = ledger(
-      [](const Ledger &l)
-      {
-        return l.dissipation;
-      });
-    json["elastic_energy"] = ledger(
-      [](const Ledger &l)
-      {
-        return l.elastic_energy;
-      });
-    json["ledger_residual"] = ledger(
-      [](const Ledger &l)
-      {
-        return l.residual();
-      });
-    json["paper_energy"] = ledger(
-      [](const Ledger &l)
-      {
-        return l.paper_energy();
-      });
-    json["positive_power"] = ledger(
-      [](const Ledger &l)
-      {
-        return l.positive_power;
-      });
+                                               : Json(nullptr);
+    json["model"]              = parameters.model;
+    json["stress_power"]       = ledger([](const Ledger &l) { return l.stress_power; });
+    json["dissipation"]        = ledger([](const Ledger &l) { return l.dissipation; });
+    json["elastic_energy"]     = ledger([](const Ledger &l) { return l.elastic_energy; });
+    json["ledger_residual"]    = ledger([](const Ledger &l) { return l.residual(); });
+    json["paper_energy"]       = ledger([](const Ledger &l) { return l.paper_energy(); });
+    json["positive_power"]     = ledger([](const Ledger &l) { return l.positive_power; });
     json["net_friction"]       = result.ledger ? Json(result.net_friction) : Json(nullptr);
     json["min_stretch"]        = extreme(result.min_stretch);
     json["max_stretch"]        = extreme(result.max_stretch);

@@ -57,14 +57,12 @@ namespace crawler
     throw_on_all_ranks(MPI_Comm communicator, const std::string &problem)
     {
       const auto problems = gather(problem, communicator);
-      on_first_rank(communicator,
-                    [&]()
-                    {
-                      for (const std::string &one : problems)
-                        if (!one.empty())
-                          throw FileError(one + "; the rows that were written are there, and --resume makes the rest");
-                      return "";
-                    });
+      on_first_rank(communicator, [&]() {
+        for (const std::string &one : problems)
+          if (!one.empty())
+            throw FileError(one + "; the rows that were written are there, and --resume makes the rest");
+        return "";
+      });
     }
 
     /// The folders points/NUMBER of the points whose fields are kept, by `crawler run` with their values. Points that
@@ -135,8 +133,7 @@ namespace crawler
         RowFile results(communicator, folder / "results.h5", sweep_group, written);
         WorkQueue queue(communicator, blocks.size());
         StudyProgress progress(log, static_cast<unsigned long>(std::count(done.begin(), done.end(), false)), "points");
-        const auto show_progress = [&]()
-        {
+        const auto show_progress = [&]() {
           if (rank_of(communicator) != 0 || !progress.is_due())
             return;
           const auto all = queue.so_far();
@@ -149,8 +146,7 @@ namespace crawler
           return interrupted();
         };
         SweepWorker worker(points, written, done, results, stops);
-        const auto see = [&](const unsigned long n, const unsigned long failed)
-        {
+        const auto see = [&](const unsigned long n, const unsigned long failed) {
           queue.done(n, failed);
           show_progress();
         };
@@ -214,11 +210,7 @@ namespace crawler
     const fs::path path        = output_folder(options.output, options.file);
     SweepFolder folder(path, options, log);
     const std::vector<bool> done =
-      unpacked(on_first_rank(communicator,
-                             [&]()
-                             {
-                               return packed(folder.begin_or_resume(file, points, columns));
-                             }));
+      unpacked(on_first_rank(communicator, [&]() { return packed(folder.begin_or_resume(file, points, columns)); }));
     const auto n_done = static_cast<unsigned long>(std::count(done.begin(), done.end(), true));
     log.line(fmt::format("Sweep: {}, on {} rank{}{}",
                          in_words(design, own.design),
@@ -226,8 +218,7 @@ namespace crawler
                          n_ranks == 1 ? "" : "s",
                          n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
 
-    const std::function<bool()> interrupted = [&]()
-    {
+    const std::function<bool()> interrupted = [&]() {
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - start > *own.time_limit);
     };
     bool is_whole      = compute_rows(communicator, path, points, columns, done, interrupted, log);
@@ -242,21 +233,17 @@ namespace crawler
     {
       const SweepCounts counts = write_results_csv(communicator, path);
       end.seconds              = now() - start;
-      const std::string code =
-        on_first_rank(communicator,
-                      [&]()
-                      {
-                        write_file(path / "summary.json", sweep_json(counts, end));
-                        report(counts, end, path, log);
-                        folder.leave();
-                        const auto finished = counts.statuses.find("finished");
-                        const auto not_finished =
-                          counts.n_points - (finished == counts.statuses.end() ? 0 : finished->second);
-                        return fmt::format("{}",
-                                           static_cast<int>(!is_whole                            ? ExitCode::stopped
-                                                            : options.strict && not_finished > 0 ? ExitCode::rows_failed
-                                                                                                 : ExitCode::finished));
-                      });
+      const std::string code   = on_first_rank(communicator, [&]() {
+        write_file(path / "summary.json", sweep_json(counts, end));
+        report(counts, end, path, log);
+        folder.leave();
+        const auto finished     = counts.statuses.find("finished");
+        const auto not_finished = counts.n_points - (finished == counts.statuses.end() ? 0 : finished->second);
+        return fmt::format("{}",
+                           static_cast<int>(!is_whole                            ? ExitCode::stopped
+                                              : options.strict && not_finished > 0 ? ExitCode::rows_failed
+                                                                                   : ExitCode::finished));
+      });
       return static_cast<ExitCode>(std::stoi(code));
     }
     catch (const FileError &error)

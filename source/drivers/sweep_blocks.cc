@@ -47,12 +47,7 @@ namespace crawler
       const Parameters &p        = points.parameters(block.first);
       list.emplace_back(p.time.end_time * std::log10(1. / p.accuracy) * static_cast<double>(block.size), number);
     }
-    std::stable_sort(list.begin(),
-                     list.end(),
-                     [](const auto &a, const auto &b)
-                     {
-                       return a.first > b.first;
-                     });
+    std::stable_sort(list.begin(), list.end(), [](const auto &a, const auto &b) { return a.first > b.first; });
     for (const auto &[expected, number] : list)
       sorted_.push_back(number);
   }

@@ -64,11 +64,8 @@ namespace crawler
       std::vector<Task> tasks(block.size);
       for (unsigned long j = 0; j < block.size; ++j)
         tasks[j].parameters = points.parameters(block.first + j);
-      const auto never = []()
-      {
-        return false;
-      };
-      auto done = compute_similar(tasks, std::vector<bool>(block.size, true), limit, never);
+      const auto never = []() { return false; };
+      auto done        = compute_similar(tasks, std::vector<bool>(block.size, true), limit, never);
       for (unsigned long j = 0; j < block.size; ++j)
         if (!done[j])
           compute_all({&tasks[j], 1}, limit, never);

@@ -65,12 +65,9 @@ namespace crawler
     bool
     is_text(const std::string &line)
     {
-      if (std::any_of(line.begin(),
-                      line.end(),
-                      [](const unsigned char c)
-                      {
-                        return (c < ' ' && c != '\t' && c != '\r') || c == 0x7f;
-                      }))
+      if (std::any_of(line.begin(), line.end(), [](const unsigned char c) {
+            return (c < ' ' && c != '\t' && c != '\r') || c == 0x7f;
+          }))
         return false;
       try
       {
@@ -372,11 +369,6 @@ namespace crawler
   bool
   SweepDesign::varies(const std::string &entry) const
   {
-    return std::any_of(axes_.begin(),
-                       axes_.end(),
-                       [&](const SweepAxis &axis)
-                       {
-                         return axis.entry == entry;
-                       });
+    return std::any_of(axes_.begin(), axes_.end(), [&](const SweepAxis &axis) { return axis.entry == entry; });
   }
 } // namespace crawler

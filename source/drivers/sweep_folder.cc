@@ -137,8 +137,7 @@ namespace crawler
                                const SweepPoints &points,
                                const std::vector<RowFile::Column> &columns)
   {
-    const auto require_own = [&]()
-    {
+    const auto require_own = [&]() {
       if (options_.resume && state() == State::foreign)
         throw InputError("\"" + path_.string() +
                          "\" has no sweep that could be resumed; another folder is expected for --output, or "

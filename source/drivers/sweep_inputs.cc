@@ -35,8 +35,7 @@ namespace crawler
             const std::string &otherwise,
             std::vector<std::string> &list)
     {
-      const auto text_in = [&](const Texts &texts, const std::string &name)
-      {
+      const auto text_in = [&](const Texts &texts, const std::string &name) {
         const auto found = texts.find(name);
         return found == texts.end() ? otherwise : found->second;
       };
@@ -57,8 +56,7 @@ namespace crawler
   SweepInputs
   SweepInputs::from_attributes(const Texts &attributes)
   {
-    const auto parsed = [&](const std::string &name)
-    {
+    const auto parsed = [&](const std::string &name) {
       const auto json = nlohmann::json::parse(attributes.at(name), nullptr, /*allow_exceptions=*/false);
       if (!json.is_object() && !json.is_null())
         throw InputError("the attribute \"" + name + "\" of the table is damaged: JSON is expected");
@@ -71,14 +69,12 @@ namespace crawler
   sweep_inputs(const SweepPoints &points)
   {
     SweepInputs inputs{without_comments(points.effective()), {}, {}};
-    const auto add_file = [&](const std::string &name)
-    {
+    const auto add_file = [&](const std::string &name) {
       std::error_code ignored;
       if (!name.empty() && inputs.files.count(name) == 0 && std::filesystem::is_regular_file(name, ignored))
         inputs.files.emplace(name, fingerprint(name));
     };
-    const auto values = [&](const Declarations &declarations)
-    {
+    const auto values = [&](const Declarations &declarations) {
       Texts texts;
       for (unsigned int i = 0; i < declarations.entries().size(); ++i)
       {
@@ -121,8 +117,7 @@ namespace crawler
         "the parameters that are kept in results.h5 cannot be read: it is damaged, or of another version "
         "of crawler; a whole one is expected");
     }
-    const auto scene_in = [](const SweepInputs &inputs, const std::string &name)
-    {
+    const auto scene_in = [](const SweepInputs &inputs, const std::string &name) {
       const auto found = inputs.scenes.find(name);
       return found == inputs.scenes.end() ? Texts() : found->second;
     };

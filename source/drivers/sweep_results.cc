@@ -143,19 +143,17 @@ namespace crawler
       }
       size = file.size();
     }
-    on_first_rank(communicator,
-                  [&]()
-                  {
-                    // What the file system says late is seen in the size.
-                    std::error_code error;
-                    if (!is_good || fs::file_size(temporary, error) != size)
-                    {
-                      fs::remove(temporary, error);
-                      throw FileError("cannot write \"" + path.string() + "\" (is the disk full?)");
-                    }
-                    fs::rename(temporary, path);
-                    return "";
-                  });
+    on_first_rank(communicator, [&]() {
+      // What the file system says late is seen in the size.
+      std::error_code error;
+      if (!is_good || fs::file_size(temporary, error) != size)
+      {
+        fs::remove(temporary, error);
+        throw FileError("cannot write \"" + path.string() + "\" (is the disk full?)");
+      }
+      fs::rename(temporary, path);
+      return "";
+    });
     return sum(communicator, counts);
   }
 

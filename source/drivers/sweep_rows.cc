@@ -150,14 +150,10 @@ namespace crawler
                          "axis of the sweep",
                          is_number ? 0 : std::min(static_cast<unsigned int>(widest), most_axis_width)});
     }
-    for_each_value(
-      full_summary(),
-      "",
-      [&](const std::string &key, const Json &value)
-      {
-        const bool is_text = value.is_string();
-        columns.push_back({key, is_text ? "" : unit_of_key(key), "as in summary.json", is_text ? word_width : 0});
-      });
+    for_each_value(full_summary(), "", [&](const std::string &key, const Json &value) {
+      const bool is_text = value.is_string();
+      columns.push_back({key, is_text ? "" : unit_of_key(key), "as in summary.json", is_text ? word_width : 0});
+    });
     columns.push_back(
       {"seconds", "s", "wall time of the point; points that were computed side by side share theirs", 0});
     columns.push_back({"reason", "", "name of what went wrong", reason_width});
@@ -195,9 +191,7 @@ namespace crawler
   RowFile::Known
   known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design)
   {
-    return {1 + design.axes().size(),
-            [&](const std::size_t column, const unsigned long point) -> RowFile::Value
-            {
+    return {1 + design.axes().size(), [&](const std::size_t column, const unsigned long point) -> RowFile::Value {
               if (column == 0)
                 return static_cast<double>(point);
               const std::string text = design.value(column - 1, point);
@@ -214,8 +208,7 @@ namespace crawler
     RowFile::Row row;
     for (const RowFile::Column &column : columns)
       row.push_back(column.width > 0 ? RowFile::Value(std::string()) : RowFile::Value(not_known));
-    const auto column = [&](const std::string &name, std::size_t first)
-    {
+    const auto column = [&](const std::string &name, std::size_t first) {
       while (first < columns.size() && columns[first].name != name)
         ++first;
       return first;
@@ -223,16 +216,14 @@ namespace crawler
     // The keys come in the order of the columns; a part that is not known as a whole has none.
     std::size_t next = 0;
     if (!task.error && !task.computed.result.time.status.empty())
-      for_each_value(summary_of(task.computed.result, task.parameters),
-                     "",
-                     [&](const std::string &key, const Json &value)
-                     {
-                       const std::size_t found = column(key, next);
-                       if (found == columns.size())
-                         return;
-                       row[found] = value_of(value, columns[found].width > 0);
-                       next       = found + 1;
-                     });
+      for_each_value(
+        summary_of(task.computed.result, task.parameters), "", [&](const std::string &key, const Json &value) {
+          const std::size_t found = column(key, next);
+          if (found == columns.size())
+            return;
+          row[found] = value_of(value, columns[found].width > 0);
+          next       = found + 1;
+        });
     row[column("seconds", next)] = task.seconds;
     row[column("reason", next)]  = status.reason;
     row[column("message", next)] = shortened(status.message, message_width);

@@ -28,12 +28,7 @@ namespace crawler
     std::vector<bool> missing(block.size);
     for (unsigned long i = 0; i < block.size; ++i)
       missing[i] = !done_[block.first + i];
-    if (std::none_of(missing.begin(),
-                     missing.end(),
-                     [](const bool is)
-                     {
-                       return is;
-                     }))
+    if (std::none_of(missing.begin(), missing.end(), [](const bool is) { return is; }))
       return true;
     std::vector<Task> tasks(block.size);
     for (unsigned long i = 0; i < block.size; ++i)

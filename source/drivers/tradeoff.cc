@@ -252,8 +252,7 @@ namespace crawler
     Log log(first, options.quiet);
     const Input input            = read_input(communicator, options.file, options.overrides);
     const Parameters &parameters = input.parameters;
-    const TradeoffLists lists    = [&]()
-    {
+    const TradeoffLists lists    = [&]() {
       try
       {
         // The reference needs the whole equation.
@@ -267,39 +266,33 @@ namespace crawler
         throw input.file.with_place(error);
       }
     }();
-    const auto folder         = output_folder(options.output, options.file);
-    const auto reference_file = folder / "rows" / "reference.json";
-    const auto is_out_of_time = [&]()
-    {
-      return now() - start > parameters.tradeoff.time_limit;
-    };
-    const std::function<bool()> interrupted = [&]()
-    {
+    const auto folder                       = output_folder(options.output, options.file);
+    const auto reference_file               = folder / "rows" / "reference.json";
+    const auto is_out_of_time               = [&]() { return now() - start > parameters.tradeoff.time_limit; };
+    const std::function<bool()> interrupted = [&]() {
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || is_out_of_time();
     };
 
     Start how = Start::anew;
     std::map<unsigned long, TradeoffRow> kept;
-    std::string known = on_first_rank(communicator,
-                                      [&]() -> std::string
-                                      {
-                                        how = how_to_start(folder, options, input.effective);
-                                        if (how == Start::nothing_left)
-                                          return "done";
-                                        if (how == Start::resumed)
-                                        {
-                                          log.open(folder / "log.txt", /*append=*/true);
-                                          kept = recover_rows(folder);
-                                          return fs::exists(reference_file) ? read_whole_file(reference_file) : "";
-                                        }
-                                        prepare(folder);
-                                        fs::remove_all(folder / "rows"); // of a study that was killed
-                                        fs::create_directories(folder / "rows");
-                                        write_file(folder / "original.prm", input.file.text());
-                                        write_file(folder / "parameters.prm", input.effective);
-                                        log.open(folder / "log.txt");
-                                        return "";
-                                      });
+    std::string known = on_first_rank(communicator, [&]() -> std::string {
+      how = how_to_start(folder, options, input.effective);
+      if (how == Start::nothing_left)
+        return "done";
+      if (how == Start::resumed)
+      {
+        log.open(folder / "log.txt", /*append=*/true);
+        kept = recover_rows(folder);
+        return fs::exists(reference_file) ? read_whole_file(reference_file) : "";
+      }
+      prepare(folder);
+      fs::remove_all(folder / "rows"); // of a study that was killed
+      fs::create_directories(folder / "rows");
+      write_file(folder / "original.prm", input.file.text());
+      write_file(folder / "parameters.prm", input.effective);
+      log.open(folder / "log.txt");
+      return "";
+    });
     if (known == "done")
     {
       log.line(fmt::format("The tradeoff in {} is finished; nothing is left to do.", folder.string()));
@@ -324,10 +317,7 @@ namespace crawler
     if (known.empty())
     {
       // On every rank alike, that no one has an idle core beside it; what counts is the first one's.
-      const auto report = [&log](const std::string &line)
-      {
-        log.line(line);
-      };
+      const auto report = [&log](const std::string &line) { log.line(line); };
       known = broadcast(pack(make_reference(parameters, input.scene, lists, interrupted, report)), communicator);
       if (first && unpack_reference(known).status == "finished")
         write_file(reference_file, known);
@@ -356,27 +346,22 @@ namespace crawler
       std::map<unsigned long, TradeoffRow> by_index;
       for (const TradeoffRow &row : rows)
         by_index.emplace(row.index, row);
-      const bool finished = std::none_of(all_families.begin(),
-                                         all_families.end(),
-                                         [&](const TradeoffFamily &family)
-                                         {
-                                           return next_of(study, family, rows_of(family, by_index)).has_value();
-                                         });
+      const bool finished = std::none_of(all_families.begin(), all_families.end(), [&](const TradeoffFamily &family) {
+        return next_of(study, family, rows_of(family, by_index)).has_value();
+      });
       course.status       = finished ? "finished" : "stopped";
       course.reason       = finished ? "" : is_out_of_time() ? "time_limit" : "signal";
       code                = static_cast<int>(finished ? ExitCode::finished : ExitCode::stopped);
       course.seconds      = now() - start;
     }
-    on_first_rank(communicator,
-                  [&]()
-                  {
-                    write_results(folder, evaluate(reference, std::move(rows)), course, input.effective, log);
-                    if (course.status == "stopped")
-                      log.warn(fmt::format("stopped by {} after {} settings; --resume goes on",
-                                           course.reason == "signal" ? "a signal" : "Tradeoff/Time limit",
-                                           kept.size() + own.size()));
-                    return "";
-                  });
+    on_first_rank(communicator, [&]() {
+      write_results(folder, evaluate(reference, std::move(rows)), course, input.effective, log);
+      if (course.status == "stopped")
+        log.warn(fmt::format("stopped by {} after {} settings; --resume goes on",
+                             course.reason == "signal" ? "a signal" : "Tradeoff/Time limit",
+                             kept.size() + own.size()));
+      return "";
+    });
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
     return static_cast<ExitCode>(code);
   }

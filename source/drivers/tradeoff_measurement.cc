@@ -78,13 +78,7 @@ namespace crawler
     if (choice_ || family_.setting.is_rung())
       return true;
     const double start = processor_seconds();
-    choice_            = choose_numerics(MPI_COMM_SELF,
-                              own,
-                              scene_,
-                              [&]()
-                              {
-                                return now() < end && !interrupted_();
-                              });
+    choice_            = choose_numerics(MPI_COMM_SELF, own, scene_, [&]() { return now() < end && !interrupted_(); });
     if (family_.setting.mesh == "adaptive")
       choice_seconds_ = processor_seconds() - start;
     return choice_.has_value();
@@ -152,8 +146,7 @@ namespace crawler
   {
     const double limit = parameters_.tradeoff.run_time_limit, end = now() + limit;
     const Parameters own = with_setting(parameters_, row.setting, size_);
-    const auto too_long  = [&]()
-    {
+    const auto too_long  = [&]() {
       not_computed(row, "stopped", "time_limit", fmt::format("stopped after {:g} s", limit));
       return !interrupted_();
     };
@@ -174,15 +167,12 @@ namespace crawler
     unsigned long n_steps      = 0;
     bool is_out_of_time        = false;
     const double start         = processor_seconds();
-    SimulationResult result    = run(own,
-                                  numerics,
-                                  [&]()
-                                  {
-                                    if (++n_steps <= looks_at_heap || n_steps % steps_between_looks == 0)
-                                      most_heap = std::fmax(most_heap, heap_bytes());
-                                    is_out_of_time = now() > end;
-                                    return !is_out_of_time && !interrupted_();
-                                  });
+    SimulationResult result    = run(own, numerics, [&]() {
+      if (++n_steps <= looks_at_heap || n_steps % steps_between_looks == 0)
+        most_heap = std::fmax(most_heap, heap_bytes());
+      is_out_of_time = now() > end;
+      return !is_out_of_time && !interrupted_();
+    });
     const double first_seconds = processor_seconds() - start;
     if (is_out_of_time)
       return too_long();
@@ -228,12 +218,8 @@ namespace crawler
       seconds.push_back(first_seconds / n_bodies);
     row.repetitions = static_cast<double>(seconds.size());
     // Short runs are not asked anything: that would be a part of their cost.
-    const KeepGoing keep_going = first_seconds > long_run ? KeepGoing(
-                                                              [this]()
-                                                              {
-                                                                return !interrupted_();
-                                                              })
-                                                          : KeepGoing();
+    const KeepGoing keep_going =
+      first_seconds > long_run ? KeepGoing([this]() { return !interrupted_(); }) : KeepGoing();
     while (seconds.size() < parameters_.tradeoff.repetitions)
     {
       const double start = processor_seconds();

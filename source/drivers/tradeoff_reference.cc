@@ -117,10 +117,7 @@ namespace crawler
           return reference_;
         std::sort(settled_ones.begin(),
                   settled_ones.end(),
-                  [](const RefinedDisplacement &a, const RefinedDisplacement &b)
-                  {
-                    return a.change < b.change;
-                  });
+                  [](const RefinedDisplacement &a, const RefinedDisplacement &b) { return a.change < b.change; });
         reference_.status = "finished";
         reference_.first  = settled_ones[0];
         if (settled_ones.size() > 1)
@@ -157,11 +154,8 @@ namespace crawler
       {
         const Parameters parameters = with_setting(parameters_, setting, size_);
         const double end            = now() + parameters.tradeoff.run_time_limit;
-        const auto keep_going       = [&]()
-        {
-          return now() < end && !interrupted_();
-        };
-        const auto choice = choose_numerics(MPI_COMM_SELF, parameters, scene_, keep_going);
+        const auto keep_going       = [&]() { return now() < end && !interrupted_(); };
+        const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene_, keep_going);
         SimulationResult result;
         result.time.status = "stopped";
         if (choice)
@@ -243,8 +237,7 @@ namespace crawler
           crawler::setting(in_position ? "position" : "stretch", "fused", "radau 9", in_position ? degree : 1);
         setting.tolerance = mesh_tolerance;
         std::vector<std::pair<unsigned int, double>> result;
-        const auto add = [&](const unsigned int cells)
-        {
+        const auto add = [&](const unsigned int cells) {
           setting.cells              = cells;
           const SimulationResult run = guarded_run(setting);
           const bool finished        = run.time.status == "finished";

@@ -36,10 +36,7 @@ namespace crawler
     bool
     same_mesh(const TradeoffSetting &a, const TradeoffSetting &b)
     {
-      const auto same = [](const double x, const double y)
-      {
-        return x == y || (std::isnan(x) && std::isnan(y));
-      };
+      const auto same = [](const double x, const double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
       return a.model == b.model && a.formulation == b.formulation && a.mesh == b.mesh && a.engine == b.engine &&
              a.integrator == b.integrator && a.degree == b.degree && a.cells == b.cells &&
              same(a.mesh_tolerance, b.mesh_tolerance);
@@ -128,8 +125,7 @@ namespace crawler
     Json
     reference_json(const TradeoffReference &reference)
     {
-      const auto refined = [](const RefinedDisplacement &d)
-      {
+      const auto refined = [](const RefinedDisplacement &d) {
         return d.method.empty()
                  ? Json(nullptr)
                  : Json{{"method", d.method}, {"displacement", d.displacement}, {"last_change", d.change}};
@@ -150,12 +146,9 @@ namespace crawler
     for (std::size_t i = 0; i < costs.size(); ++i)
       if (!std::isnan(costs[i]) && !std::isnan(errors[i]))
         order.push_back(i);
-    std::stable_sort(order.begin(),
-                     order.end(),
-                     [&](const std::size_t i, const std::size_t j)
-                     {
-                       return std::pair(costs[i], errors[i]) < std::pair(costs[j], errors[j]);
-                     });
+    std::stable_sort(order.begin(), order.end(), [&](const std::size_t i, const std::size_t j) {
+      return std::pair(costs[i], errors[i]) < std::pair(costs[j], errors[j]);
+    });
     std::vector<bool> front(costs.size(), false);
     double best = HUGE_VAL;
     for (const std::size_t i : order)
@@ -172,12 +165,7 @@ namespace crawler
   {
     TradeoffResults results;
     results.reference = reference;
-    std::sort(rows.begin(),
-              rows.end(),
-              [](const TradeoffRow &a, const TradeoffRow &b)
-              {
-                return a.index < b.index;
-              });
+    std::sort(rows.begin(), rows.end(), [](const TradeoffRow &a, const TradeoffRow &b) { return a.index < b.index; });
     results.rows = std::move(rows);
     std::vector<double> single, batch;
     for (const TradeoffRow &row : results.rows)
@@ -204,85 +192,41 @@ namespace crawler
     const auto &rows = results.rows;
     Table table;
     const auto add =
-      [&](const std::string &name, const std::string &unit, const std::string &description, const auto &value)
-    {
-      std::vector<std::decay_t<decltype(value(std::size_t()))>> values;
-      for (std::size_t i = 0; i < rows.size(); ++i)
-        values.push_back(value(i));
-      table.push_back({name, unit, description, std::move(values)});
-    };
-    const auto add_text = [&](const std::string &name, const std::string &description, std::string TradeoffRow::*member)
-    {
-      add(name,
-          "",
-          description,
-          [&, member](const std::size_t i)
-          {
-            return rows[i].*member;
-          });
-    };
+      [&](const std::string &name, const std::string &unit, const std::string &description, const auto &value) {
+        std::vector<std::decay_t<decltype(value(std::size_t()))>> values;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          values.push_back(value(i));
+        table.push_back({name, unit, description, std::move(values)});
+      };
+    const auto add_text =
+      [&](const std::string &name, const std::string &description, std::string TradeoffRow::*member) {
+        add(name, "", description, [&, member](const std::size_t i) { return rows[i].*member; });
+      };
     const auto add_word =
-      [&](const std::string &name, const std::string &description, std::string TradeoffSetting::*member)
-    {
-      add(name,
-          "",
-          description,
-          [&, member](const std::size_t i)
-          {
-            return rows[i].setting.*member;
-          });
+      [&](const std::string &name, const std::string &description, std::string TradeoffSetting::*member) {
+        add(name, "", description, [&, member](const std::size_t i) { return rows[i].setting.*member; });
+      };
+    const auto add_number = [&](const std::string &name,
+                                const std::string &unit,
+                                const std::string &description,
+                                double TradeoffRow::*member) {
+      add(name, unit, description, [&, member](const std::size_t i) { return rows[i].*member; });
     };
-    const auto add_number =
-      [&](const std::string &name, const std::string &unit, const std::string &description, double TradeoffRow::*member)
-    {
-      add(name,
-          unit,
-          description,
-          [&, member](const std::size_t i)
-          {
-            return rows[i].*member;
-          });
-    };
-    add("index",
-        "1",
-        "number of the setting",
-        [&](const std::size_t i)
-        {
-          return static_cast<double>(rows[i].index);
-        });
+    add("index", "1", "number of the setting", [&](const std::size_t i) { return static_cast<double>(rows[i].index); });
     add_word("model", "rung of the model", &TradeoffSetting::model);
     add_word("formulation", "position or stretch", &TradeoffSetting::formulation);
     add_word("mesh", "uniform or adaptive", &TradeoffSetting::mesh);
     add_word("engine", "fused, petsc, or batch: 8 bodies side by side by the fused engine", &TradeoffSetting::engine);
     add_word("integrator", "time integrator", &TradeoffSetting::integrator);
-    add("degree",
-        "1",
-        "polynomial degree",
-        [&](const std::size_t i)
-        {
-          return count(rows[i].setting.degree);
-        });
-    add("cells",
-        "1",
-        "cells of a uniform mesh",
-        [&](const std::size_t i)
-        {
-          return count(rows[i].setting.cells);
-        });
-    add("mesh tolerance",
-        "1",
-        "of an adaptive mesh, relative to the square of the strain",
-        [&](const std::size_t i)
-        {
-          return rows[i].setting.mesh_tolerance;
-        });
+    add("degree", "1", "polynomial degree", [&](const std::size_t i) { return count(rows[i].setting.degree); });
+    add("cells", "1", "cells of a uniform mesh", [&](const std::size_t i) { return count(rows[i].setting.cells); });
+    add("mesh tolerance", "1", "of an adaptive mesh, relative to the square of the strain", [&](const std::size_t i) {
+      return rows[i].setting.mesh_tolerance;
+    });
     add("tolerance",
         "1",
         "time tolerance over the size of the displacement; of a rung without a mesh: Accuracy",
-        [&](const std::size_t i)
-        {
-          return rows[i].setting.tolerance;
-        });
+        [&](const std::size_t i) { return rows[i].setting.tolerance; });
     add_text("status", "finished, inverted, failed, stopped, refused, or not offered", &TradeoffRow::status);
     add_text("reason", "name of what went wrong", &TradeoffRow::reason);
     add_text("message", "what went wrong, or what the rung says about its error, in words", &TradeoffRow::message);
@@ -290,31 +234,18 @@ namespace crawler
     add("error",
         "1",
         "distance of the displacement to the reference, over the size of the displacement",
-        [&](const std::size_t i)
-        {
-          return results.errors[i];
-        });
-    add("shown error",
-        "1",
-        "the same, but no smaller than the reference's bar",
-        [&](const std::size_t i)
-        {
-          return results.shown[i];
-        });
+        [&](const std::size_t i) { return results.errors[i]; });
+    add("shown error", "1", "the same, but no smaller than the reference's bar", [&](const std::size_t i) {
+      return results.shown[i];
+    });
     add("below bar",
         "",
         "true if the error cannot be told from 0: it is below the reference's bar",
-        [&](const std::size_t i)
-        {
-          return std::string(yes_no(results.errors[i] < results.shown[i]));
-        });
+        [&](const std::size_t i) { return std::string(yes_no(results.errors[i] < results.shown[i])); });
     add("pareto",
         "",
         "true if no other single run (for a batch: no other batch) is as cheap and as accurate, and better in one",
-        [&](const std::size_t i)
-        {
-          return std::string(yes_no(results.on_front[i]));
-        });
+        [&](const std::size_t i) { return std::string(yes_no(results.on_front[i])); });
     add_number("seconds",
                "s",
                "processor time to build the simulation and run it, median; of a body, in a batch",
@@ -411,12 +342,9 @@ namespace crawler
     const auto [shortest, longest] = course.calibration.range();
     auto statuses                  = counts(results, &TradeoffRow::status);
     const auto on_front            = std::count(results.on_front.begin(), results.on_front.end(), true);
-    const auto below_bar           = std::count_if(results.errors.begin(),
-                                         results.errors.end(),
-                                         [&](const double error)
-                                         {
-                                           return error < results.reference.relative_bar();
-                                         });
+    const auto below_bar = std::count_if(results.errors.begin(), results.errors.end(), [&](const double error) {
+      return error < results.reference.relative_bar();
+    });
     return fmt::format(
       "Tradeoff: {} settings tried of {}{}; {} finished, {} of them below the bar, {} on the Pareto "
       "fronts; gaps: {}. The same short run took {} to {}, over ranks and time. {:.0f} s on {} rank{}.",

@@ -213,13 +213,11 @@ namespace crawler
   {
     std::vector<TradeoffFamily> result;
     unsigned long index = 0;
-    const auto add      = [&](const TradeoffSetting &setting, const std::vector<double> &tolerances)
-    {
+    const auto add      = [&](const TradeoffSetting &setting, const std::vector<double> &tolerances) {
       result.push_back({setting, tolerances, index, ""});
       index += tolerances.size();
     };
-    const auto add_meshes = [&](TradeoffSetting setting)
-    {
+    const auto add_meshes = [&](TradeoffSetting setting) {
       if (setting.mesh == "adaptive")
       {
         for (const double mesh_tolerance : lists.mesh_tolerances)
@@ -287,10 +285,7 @@ namespace crawler
     const TriedSetting &last = tried.back();
     if (n == family.tolerances.size() || last.status == "refused" || last.reason == "time_limit")
       return std::nullopt;
-    const auto error = [&](const std::size_t i)
-    {
-      return std::abs(tried[i].displacement - reference);
-    };
+    const auto error = [&](const std::size_t i) { return std::abs(tried[i].displacement - reference); };
     if (last.status == "finished" && error(n - 1) <= bar)
       return std::nullopt;
     std::size_t failures = 0;

@@ -19,12 +19,9 @@ namespace crawler
     if (size.empty())
       return;
     const bool good = size.size() == 2 && size[0] * size[1] <= most_samples &&
-                      std::all_of(size.begin(),
-                                  size.end(),
-                                  [](const double n)
-                                  {
-                                    return n >= least && n <= most && n == std::floor(n);
-                                  });
+                      std::all_of(size.begin(), size.end(), [](const double n) {
+                        return n >= least && n <= most && n == std::floor(n);
+                      });
     if (!good)
       throw InputError(
         fmt::format("Active stress table is \"{}\", but the numbers of samples over s and over t are expected, "

@@ -25,14 +25,7 @@ namespace crawler
     void
     require_finite(const std::vector<double> &m, const double t, const Discretization &discretization)
     {
-      int bad = std::all_of(m.begin(),
-                            m.end(),
-                            [](const double value)
-                            {
-                              return std::isfinite(value);
-                            })
-                  ? 0
-                  : 1;
+      int bad = std::all_of(m.begin(), m.end(), [](const double value) { return std::isfinite(value); }) ? 0 : 1;
       MPI_Allreduce(MPI_IN_PLACE, &bad, 1, MPI_INT, MPI_MAX, discretization.communicator());
       if (bad != 0)
         throw NonfiniteStress(fmt::format("the active stress at t = {:.9g} is not a finite number everywhere", t));

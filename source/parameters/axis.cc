@@ -164,12 +164,10 @@ namespace crawler
     if (open == std::string::npos || text.back() != ')')
       return std::nullopt;
     Call call{trimmed(text.substr(0, open)), {}};
-    const bool is_name       = !call.function.empty() && std::all_of(call.function.begin(),
-                                                               call.function.end(),
-                                                               [](const unsigned char c)
-                                                               {
-                                                                 return std::isalnum(c) || c == '_';
-                                                               });
+    const bool is_name =
+      !call.function.empty() && std::all_of(call.function.begin(), call.function.end(), [](const unsigned char c) {
+        return std::isalnum(c) || c == '_';
+      });
     const std::string inside = text.substr(open + 1, text.size() - open - 2);
     if (!is_name || !are_parentheses_balanced(inside))
       return std::nullopt;

@@ -53,12 +53,7 @@ namespace crawler
     to_count(const std::string &text)
     {
       if (text.empty() || text.size() > 9 ||
-          !std::all_of(text.begin(),
-                       text.end(),
-                       [](unsigned char c)
-                       {
-                         return std::isdigit(c);
-                       }))
+          !std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); }))
         return std::nullopt;
       return static_cast<unsigned int>(std::stoul(text));
     }
@@ -165,11 +160,7 @@ namespace crawler
     const std::string unit_text = unit.empty() ? "" : " Unit: " + unit + ".";
     handler_->declare_entry(
       name, default_value, WordyPattern(expected, match), documentation + " Expected: " + expected + "." + unit_text);
-    handler_->add_action(name,
-                         [assign](const std::string &text)
-                         {
-                           assign(trimmed(text));
-                         });
+    handler_->add_action(name, [assign](const std::string &text) { assign(trimmed(text)); });
     entries_.push_back({path_of(name), default_value, expected, unit, documentation});
   }
 
@@ -184,15 +175,11 @@ namespace crawler
       name,
       to_text(value),
       range.in_words(),
-      [range](const std::string &text)
-      {
+      [range](const std::string &text) {
         const auto number = to_number(text);
         return number && range.contains(*number);
       },
-      [&value](const std::string &text)
-      {
-        value = *to_number(text);
-      },
+      [&value](const std::string &text) { value = *to_number(text); },
       documentation,
       unit);
   }
@@ -208,15 +195,11 @@ namespace crawler
       name,
       value ? to_text(*value) : automatic,
       range.in_words() + " or the word \"automatic\"",
-      [range](const std::string &text)
-      {
+      [range](const std::string &text) {
         const auto number = to_number(text);
         return text == automatic || (number && range.contains(*number));
       },
-      [&value](const std::string &text)
-      {
-        value = to_number(text);
-      },
+      [&value](const std::string &text) { value = to_number(text); },
       documentation,
       unit);
   }
@@ -232,15 +215,11 @@ namespace crawler
       name,
       std::to_string(value),
       count_range(lower, upper),
-      [lower, upper](const std::string &text)
-      {
+      [lower, upper](const std::string &text) {
         const auto count = to_count(text);
         return count && *count >= lower && *count <= upper;
       },
-      [&value](const std::string &text)
-      {
-        value = *to_count(text);
-      },
+      [&value](const std::string &text) { value = *to_count(text); },
       documentation,
       "");
   }
@@ -256,15 +235,11 @@ namespace crawler
       name,
       value ? std::to_string(*value) : automatic,
       count_range(lower, upper) + " or the word \"automatic\"",
-      [lower, upper](const std::string &text)
-      {
+      [lower, upper](const std::string &text) {
         const auto count = to_count(text);
         return text == automatic || (count && *count >= lower && *count <= upper);
       },
-      [&value](const std::string &text)
-      {
-        value = to_count(text);
-      },
+      [&value](const std::string &text) { value = to_count(text); },
       documentation,
       "");
   }
@@ -283,18 +258,12 @@ namespace crawler
       name,
       fmt::format("{}", fmt::join(items, ", ")),
       may_be_empty ? "a list of numbers separated by commas, or nothing" : "a list of numbers separated by commas",
-      [may_be_empty](const std::string &text)
-      {
+      [may_be_empty](const std::string &text) {
         const auto all = to_numbers(text);
-        return (may_be_empty && text.empty()) || std::all_of(all.begin(),
-                                                             all.end(),
-                                                             [](const auto &number)
-                                                             {
-                                                               return number;
-                                                             });
+        return (may_be_empty && text.empty()) ||
+               std::all_of(all.begin(), all.end(), [](const auto &number) { return number; });
       },
-      [&value](const std::string &text)
-      {
+      [&value](const std::string &text) {
         value.clear();
         if (!text.empty())
           for (const auto &number : to_numbers(text))
@@ -314,14 +283,8 @@ namespace crawler
       name,
       value,
       words.size() == 1 ? "the word " + quoted_list(words) : quoted_list(words),
-      [words](const std::string &text)
-      {
-        return std::find(words.begin(), words.end(), text) != words.end();
-      },
-      [&value](const std::string &text)
-      {
-        value = text;
-      },
+      [words](const std::string &text) { return std::find(words.begin(), words.end(), text) != words.end(); },
+      [&value](const std::string &text) { value = text; },
       documentation,
       "");
   }
@@ -333,14 +296,8 @@ namespace crawler
       name,
       value ? "true" : "false",
       "\"true\" or \"false\"",
-      [](const std::string &text)
-      {
-        return text == "true" || text == "false";
-      },
-      [&value](const std::string &text)
-      {
-        value = (text == "true");
-      },
+      [](const std::string &text) { return text == "true" || text == "false"; },
+      [&value](const std::string &text) { value = (text == "true"); },
       documentation,
       "");
   }
@@ -356,14 +313,8 @@ namespace crawler
       name,
       value,
       expected,
-      [](const std::string &)
-      {
-        return true;
-      },
-      [&value](const std::string &text)
-      {
-        value = text;
-      },
+      [](const std::string &) { return true; },
+      [&value](const std::string &text) { value = text; },
       documentation,
       unit);
   }
@@ -384,12 +335,8 @@ namespace crawler
   {
     const std::vector<std::string> words = split_path(path);
     const std::string full               = fmt::format("{}", fmt::join(words, "/"));
-    const auto entry                     = std::find_if(entries_.begin(),
-                                    entries_.end(),
-                                    [&](const EntryInfo &e)
-                                    {
-                                      return e.path == full;
-                                    });
+    const auto entry =
+      std::find_if(entries_.begin(), entries_.end(), [&](const EntryInfo &e) { return e.path == full; });
     if (entry == entries_.end())
     {
       const std::string section = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
@@ -515,8 +462,7 @@ namespace crawler
         out << "\n## " << (section.empty() ? "Top level" : section)
             << "\n\n| entry | default | expected | unit | meaning |\n|---|---|---|---|---|\n";
       }
-      const auto cell = [](std::string text)
-      {
+      const auto cell = [](std::string text) {
         for (std::size_t i = text.find('|'); i != std::string::npos; i = text.find('|', i + 2))
           text.replace(i, 1, "\\|");
         return text;

@@ -73,17 +73,11 @@ namespace crawler
   void
   ParameterFile::parse(const std::string &text, const std::string &name, const unsigned int depth)
   {
-    if (std::any_of(text.begin(),
-                    text.end(),
-                    [](const char c)
-                    {
-                      return static_cast<unsigned char>(c) < 9;
-                    }))
+    if (std::any_of(text.begin(), text.end(), [](const char c) { return static_cast<unsigned char>(c) < 9; }))
       throw InputError(fmt::format("{}: this is a binary file; a text file of parameters is expected", name));
 
     std::vector<std::pair<std::string, unsigned int>> open; // sections, and the lines that opened them
-    const auto path = [&open](const std::string &last)
-    {
+    const auto path = [&open](const std::string &last) {
       std::string result;
       for (const auto &[section, line] : open)
         result += section + "/";
@@ -210,8 +204,7 @@ namespace crawler
   ParameterFile::subsections(const std::string &path) const
   {
     std::set<std::string> names;
-    const auto add = [&](const std::string &inner, const bool is_entry)
-    {
+    const auto add = [&](const std::string &inner, const bool is_entry) {
       if (!inner.starts_with(path + "/"))
         return;
       const std::string rest = inner.substr(path.size() + 1);
@@ -229,12 +222,9 @@ namespace crawler
   const Assignment *
   ParameterFile::assignment_of(const std::string &path) const
   {
-    const auto found = std::find_if(assignments_.rbegin(),
-                                    assignments_.rend(),
-                                    [&](const Assignment &assignment)
-                                    {
-                                      return assignment.path == path;
-                                    });
+    const auto found = std::find_if(assignments_.rbegin(), assignments_.rend(), [&](const Assignment &assignment) {
+      return assignment.path == path;
+    });
     return found == assignments_.rend() ? nullptr : &*found;
   }
 

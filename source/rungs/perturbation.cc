@@ -80,8 +80,7 @@ namespace crawler
   {
     constexpr unsigned int per_wave = 16, most = 2001;
     const double waves = wave_.n_waves(), strides = std::abs(wave_.speed);
-    const auto n_of = [](const double n)
-    {
+    const auto n_of = [](const double n) {
       return static_cast<unsigned int>(std::min<double>(most, per_wave * std::ceil(n) + 1));
     };
     return find_extremes(LeadingOrderStrain(wave_), 1., 1., n_of(waves), n_of(waves * std::max(1., strides)));

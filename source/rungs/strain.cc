@@ -28,25 +28,21 @@ namespace crawler
       void
       strain(const double t, const std::span<double> e) override
       {
-        combine(e,
-                [&](const NaturalWave::Harmonic &h)
-                {
-                  const double theta = h.q * wave_.speed * t, half = std::sin(0.5 * theta);
-                  const double st = std::sin(theta), ct_minus_1 = -2. * half * half;
-                  return std::pair(h.a * ct_minus_1 - h.b * st, h.a * st + h.b * ct_minus_1);
-                });
+        combine(e, [&](const NaturalWave::Harmonic &h) {
+          const double theta = h.q * wave_.speed * t, half = std::sin(0.5 * theta);
+          const double st = std::sin(theta), ct_minus_1 = -2. * half * half;
+          return std::pair(h.a * ct_minus_1 - h.b * st, h.a * st + h.b * ct_minus_1);
+        });
       }
 
       void
       rate(const double t, const std::span<double> e_t) override
       {
-        combine(e_t,
-                [&](const NaturalWave::Harmonic &h)
-                {
-                  const double theta = h.q * wave_.speed * t, rate = h.q * wave_.speed;
-                  const double st = std::sin(theta), ct = std::cos(theta);
-                  return std::pair(-rate * (h.a * st + h.b * ct), rate * (h.a * ct - h.b * st));
-                });
+        combine(e_t, [&](const NaturalWave::Harmonic &h) {
+          const double theta = h.q * wave_.speed * t, rate = h.q * wave_.speed;
+          const double st = std::sin(theta), ct = std::cos(theta);
+          return std::pair(-rate * (h.a * st + h.b * ct), rate * (h.a * ct - h.b * st));
+        });
       }
 
     private:

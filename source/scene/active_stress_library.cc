@@ -79,74 +79,60 @@ namespace crawler
       static const std::vector<Generator> list = {
         {"none",
          NoActiveStress::description,
-         [](const auto &, const Body &, double)
-         {
-           return std::make_unique<NoActiveStress>();
-         }},
+         [](const auto &, const Body &, double) { return std::make_unique<NoActiveStress>(); }},
         {"optimal wave",
          OptimalWave::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return create_optimal_wave(parameters.optimal_wave, body, end_time);
          }},
         {"travelling wave",
          TravellingWave::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return std::make_unique<TravellingWave>(parameters.travelling_wave, body.length, end_time);
          }},
         {"standing wave",
          StandingWave::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return std::make_unique<StandingWave>(parameters.standing_wave, body.length, end_time);
          }},
         {"pulse",
          Pulse::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return std::make_unique<Pulse>(parameters.pulse, body.length, end_time);
          }},
         {"expression",
          Expression::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return std::make_unique<Expression>(parameters.expression, body.length, end_time);
          }},
         {"prescribed strain",
          PrescribedStrain::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return create_prescribed_strain(parameters, body, end_time);
          }},
         {"library",
          Library::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return std::make_unique<Library>(parameters.library, body, end_time);
          }},
         {"segments",
          Segments::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return std::make_unique<Segments>(parameters.segments, body.length, end_time);
          }},
         {"strain feedback",
          StrainFeedback::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return std::make_unique<StrainFeedback>(parameters.strain_feedback, body.length, end_time);
          }},
         {"table",
          ActiveStressTable::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return std::make_unique<ActiveStressTable>(parameters.table, body.length, end_time);
          }},
         {name_of_sum,
          Sum::description,
-         [](const auto &parameters, const Body &body, const double end_time)
-         {
+         [](const auto &parameters, const Body &body, const double end_time) {
            return create_sum(parameters.sum, body, end_time);
          }},
       };

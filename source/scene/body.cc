@@ -52,8 +52,7 @@ namespace crawler
   BodyProfiles
   read_profiles(const Body &body, const double end_time)
   {
-    const auto read = [&](const std::string &name, const std::string &quantity, const std::string &text)
-    {
+    const auto read = [&](const std::string &name, const std::string &quantity, const std::string &text) {
       const ProfileInput input{quantity, "s", text, body.profile_interpolation, "hold", "Body/" + name};
       auto profile = read_profile(input, body.length, end_time);
       if (profile)

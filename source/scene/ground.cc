@@ -46,20 +46,17 @@ namespace crawler
       static const std::vector<Law> list = {
         {"power",
          "gamma times stretch^(1-p), p the Anchoring exponent",
-         [](const auto &, const Body &body, double) -> std::unique_ptr<const FrictionLaw>
-         {
+         [](const auto &, const Body &body, double) -> std::unique_ptr<const FrictionLaw> {
            return std::make_unique<PowerFriction>(body.friction_coefficient, body.friction_exponent());
          }},
         {"Newtonian",
          NewtonianFriction::description,
-         [](const auto &, const Body &body, double) -> std::unique_ptr<const FrictionLaw>
-         {
+         [](const auto &, const Body &body, double) -> std::unique_ptr<const FrictionLaw> {
            return std::make_unique<NewtonianFriction>(body.friction_coefficient);
          }},
         {"expression",
          ExpressionFriction::description,
-         [](const auto &p, const Body &body, const double end_time) -> std::unique_ptr<const FrictionLaw>
-         {
+         [](const auto &p, const Body &body, const double end_time) -> std::unique_ptr<const FrictionLaw> {
            auto law = std::make_unique<ExpressionFriction>(
              body.friction_coefficient,
              read_formula({"friction law", p.expression, p.constants, "Ground/Expression", "Ground/Constants", {"w"}},

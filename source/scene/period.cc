@@ -181,10 +181,7 @@ namespace crawler
       is_period(const double P)
       {
         std::mt19937 generator(20220610);
-        const auto is_same_after = [&](const double t)
-        {
-          return difference(at(t), at(t + P)) <= same * largest_;
-        };
+        const auto is_same_after = [&](const double t) { return difference(at(t), at(t + P)) <= same * largest_; };
         for (unsigned int i = 0; i < n_random; ++i)
           if (!is_same_after(static_cast<double>(generator()) / 4294967296. * (T_ - P)))
             return false;
@@ -195,15 +192,7 @@ namespace crawler
         const double known = step_ * n_times_ / T_;
         double largest     = largest_;
         for (const FastChange &change : find_fast_changes(
-                                          owner_,
-                                          length_,
-                                          0.,
-                                          T_,
-                                          [known](double, double)
-                                          {
-                                            return known;
-                                          },
-                                          largest)
+                                          owner_, length_, 0., T_, [known](double, double) { return known; }, largest)
                                           .list)
           for (const double part : {0.27, 0.5, 0.81})
           {
@@ -271,8 +260,7 @@ namespace crawler
     const auto at                    = stress.at(points);
     std::vector<double> now(points.size()), later(points.size());
     double largest           = 0.;
-    const auto repeats_after = [&](const double P)
-    {
+    const auto repeats_after = [&](const double P) {
       for (unsigned int i = 0; i < n; ++i)
       {
         const double t = (i + 0.381966) / n * period;

@@ -326,8 +326,7 @@ namespace crawler
   Scene::general_features() const
   {
     std::string names;
-    const auto add = [&names](const bool present, const char *name)
-    {
+    const auto add = [&names](const bool present, const char *name) {
       if (present)
         names += (names.empty() ? "" : ", ") + std::string(name);
     };

@@ -13,8 +13,7 @@ namespace crawler
   {
     TimeOutcome outcome;
     outcome.status           = "failed";
-    const auto out_of_memory = [&]()
-    {
+    const auto out_of_memory = [&]() {
       outcome.reason  = "out_of_memory";
       outcome.message = "out of memory";
     };

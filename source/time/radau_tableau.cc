@@ -21,8 +21,7 @@ namespace crawler
     std::vector<double>
     radau_points(const unsigned int n)
     {
-      const auto function = [n](const double x)
-      {
+      const auto function = [n](const double x) {
         return boost::math::legendre_p(static_cast<int>(n), 2. * x - 1.) -
                boost::math::legendre_p(static_cast<int>(n) - 1, 2. * x - 1.);
       };

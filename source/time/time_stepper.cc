@@ -228,8 +228,7 @@ namespace crawler
       throw InputError("PETSc refuses an option behind \"--\": " + words);
 
     // solve() sets these anew each time.
-    const auto option = [&](const char *option_name)
-    {
+    const auto option = [&](const char *option_name) {
       PetscReal value = 0.;
       PetscBool found = PETSC_FALSE;
       petsc(PetscOptionsGetReal(nullptr, parameters.petsc_prefix.c_str(), option_name, &value, &found));
@@ -303,49 +302,26 @@ namespace crawler
                                  const ConstVector y_dot,
                                  const double real_sigma,
                                  const std::span<const Complex> sigma,
-                                 bool &ok)
-    {
-      return guarded(
-        [&]()
-        {
-          ok = owner.setup_jacobian(t, y, y_dot, real_sigma) && owner.setup_complex_jacobians(t, y, y_dot, sigma);
-        });
+                                 bool &ok) {
+      return guarded([&]() {
+        ok = owner.setup_jacobian(t, y, y_dot, real_sigma) && owner.setup_complex_jacobians(t, y, y_dot, sigma);
+      });
     };
-    radau_systems.solve_real = [this](const ConstVector b, const Vector x)
-    {
-      return guarded(
-        [&]()
-        {
-          owner.solve_with_jacobian(b, x);
-        });
+    radau_systems.solve_real = [this](const ConstVector b, const Vector x) {
+      return guarded([&]() { owner.solve_with_jacobian(b, x); });
     };
     radau_systems.solve_complex =
-      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x)
-    {
-      return guarded(
-        [&]()
-        {
-          owner.solve_with_complex_jacobian(i, b, x);
-        });
-    };
+      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x) {
+        return guarded([&]() { owner.solve_with_complex_jacobian(i, b, x); });
+      };
     radau_systems.setup_stage =
-      [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot)
-    {
-      return guarded(
-        [&]()
-        {
-          owner.setup_stage(stage, t, y, y_dot);
-        });
-    };
+      [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot) {
+        return guarded([&]() { owner.setup_stage(stage, t, y, y_dot); });
+      };
     radau_systems.multiply_stage =
-      [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector result)
-    {
-      return guarded(
-        [&]()
-        {
-          owner.stage_vmult(stage, x, x_dot, result);
-        });
-    };
+      [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector result) {
+        return guarded([&]() { owner.stage_vmult(stage, x, x_dot, result); });
+      };
     petsc(radau_set_systems(ts.get(), &radau_systems));
   }
 
@@ -354,18 +330,16 @@ namespace crawler
   {
     auto &self                = *static_cast<Implementation *>(context);
     bool accepted             = true;
-    const PetscErrorCode code = self.guarded(
-      [&]()
-      {
-        const ReadAccess y_access(y), y_dot_access(y_dot);
-        const WriteAccess F_access(F);
-        accepted   = self.owner.implicit_function(t, y_access.span, y_dot_access.span, F_access.span);
-        double sum = 0.;
-        for (const double value : F_access.span)
-          sum += value;
-        if (accepted && !std::isfinite(sum))
-          self.nonfinite_at = t;
-      });
+    const PetscErrorCode code = self.guarded([&]() {
+      const ReadAccess y_access(y), y_dot_access(y_dot);
+      const WriteAccess F_access(F);
+      accepted   = self.owner.implicit_function(t, y_access.span, y_dot_access.span, F_access.span);
+      double sum = 0.;
+      for (const double value : F_access.span)
+        sum += value;
+      if (accepted && !std::isfinite(sum))
+        self.nonfinite_at = t;
+    });
     if (code == 0 && !accepted)
     {
       self.refused_at = t;
@@ -381,12 +355,10 @@ namespace crawler
     TS, const PetscReal t, Vec y, Vec y_dot, const PetscReal shift, Mat A, Mat, void *context)
   {
     auto &self                = *static_cast<Implementation *>(context);
-    const PetscErrorCode code = self.guarded(
-      [&]()
-      {
-        const ReadAccess y_access(y), y_dot_access(y_dot);
-        self.jacobian_ok = self.owner.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
-      });
+    const PetscErrorCode code = self.guarded([&]() {
+      const ReadAccess y_access(y), y_dot_access(y_dot);
+      self.jacobian_ok = self.owner.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
+    });
     if (code != 0)
       return code;
     MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY); // tells PETSc that the matrix has changed
@@ -399,13 +371,11 @@ namespace crawler
     void *context = nullptr;
     MatShellGetContext(A, &context);
     auto &self = *static_cast<Implementation *>(context);
-    return self.guarded(
-      [&]()
-      {
-        const ReadAccess x_access(x);
-        const WriteAccess y_access(y);
-        self.owner.jacobian_vmult(x_access.span, y_access.span);
-      });
+    return self.guarded([&]() {
+      const ReadAccess x_access(x);
+      const WriteAccess y_access(y);
+      self.owner.jacobian_vmult(x_access.span, y_access.span);
+    });
   }
 
   PetscErrorCode
@@ -423,13 +393,11 @@ namespace crawler
     void *context = nullptr;
     PCShellGetContext(pc, &context);
     auto &self = *static_cast<Implementation *>(context);
-    return self.guarded(
-      [&]()
-      {
-        const ReadAccess x_access(x);
-        const WriteAccess y_access(y);
-        self.owner.solve_with_jacobian(x_access.span, y_access.span);
-      });
+    return self.guarded([&]() {
+      const ReadAccess x_access(x);
+      const WriteAccess y_access(y);
+      self.owner.solve_with_jacobian(x_access.span, y_access.span);
+    });
   }
 
   /**
@@ -520,11 +488,7 @@ namespace crawler
       return TSSetConvergedReason(ts, TS_DIVERGED_STEP_REJECTED);
     }
     bool go_on                = true;
-    const PetscErrorCode code = self.guarded(
-      [&]()
-      {
-        go_on = self.report(time, size);
-      });
+    const PetscErrorCode code = self.guarded([&]() { go_on = self.report(time, size); });
     if (code != 0)
       return code;
     if (time == frame)

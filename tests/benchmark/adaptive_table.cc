@@ -72,13 +72,7 @@ namespace
     time.integrator     = integrator;
     Simulation simulation(MPI_COMM_WORLD, scene, time, numerics);
     const double start = cpu_seconds();
-    return simulation.run({},
-                          {},
-                          {},
-                          [&]()
-                          {
-                            return cpu_seconds() - start < limit;
-                          });
+    return simulation.run({}, {}, {}, [&]() { return cpu_seconds() - start < limit; });
   }
 
   /// A Gaussian that travels along the body; the reference is a run with far finer uniform meshes.
@@ -91,8 +85,7 @@ namespace
                                        fmt::format("0.5*(1-exp(-(t/0.1)^2))*exp(-((s-0.2-0.6*t)/{})^2)", width)}}),
                0.,
                0.};
-    const auto reference = [&](const unsigned int degree, const double cells, const double tolerance)
-    {
+    const auto reference = [&](const unsigned int degree, const double cells, const double tolerance) {
       return run(pulse.parameters,
                  {degree, static_cast<unsigned int>(cells / width), tolerance, 1e-5, {{0., width}}},
                  1e3)
@@ -201,12 +194,10 @@ main(int argc, char **argv)
       numbers.push_back(std::round(n * between));
   for (double tolerance = 1e-1; tolerance > 1e-13; tolerance *= 0.1)
     tolerances.push_back(tolerance);
-  const auto uniform = [](Numerics &numerics, const double level)
-  {
+  const auto uniform = [](Numerics &numerics, const double level) {
     numerics.n_cells = static_cast<unsigned int>(level);
   };
-  const auto adaptive = [](Numerics &numerics, const double level)
-  {
+  const auto adaptive = [](Numerics &numerics, const double level) {
     numerics.n_cells         = 8;
     numerics.mesh.tolerance  = level;
     numerics.mesh.most_cells = 4096;

@@ -20,8 +20,7 @@ namespace crawler::test
   BatchScenes
   BatchScenes::grid(const std::size_t n_exponents, const std::size_t n_chi)
   {
-    const auto part = [](const std::size_t i, const std::size_t n)
-    {
+    const auto part = [](const std::size_t i, const std::size_t n) {
       return static_cast<double>(i) / static_cast<double>(n - 1);
     };
     BatchScenes result;

@@ -225,35 +225,14 @@ namespace crawler::test
   void
   add_kernel_benchmarks()
   {
-    const auto add_kernel = [](const char *name, const std::function<void(Bench &)> &action)
-    {
+    const auto add_kernel = [](const char *name, const std::function<void(Bench &)> &action) {
       benchmark::RegisterBenchmark(name, kernel, action)->Arg(12)->Arg(1200)->Unit(benchmark::kMicrosecond);
     };
-    add_kernel("kernel/residual",
-               [](Bench &b)
-               {
-                 b.assembler.residual(0.3, b.u, b.v, b.F);
-               });
-    add_kernel("kernel/jacobian",
-               [](Bench &b)
-               {
-                 b.assembler.jacobian(0.3, b.u, b.v, 100., b.matrix);
-               });
-    add_kernel("kernel/elimination",
-               [](Bench &b)
-               {
-                 b.matrix.factorize();
-               });
-    add_kernel("kernel/solution",
-               [](Bench &b)
-               {
-                 b.matrix.solve(b.F, b.F);
-               });
-    add_kernel("kernel/velocity",
-               [](Bench &b)
-               {
-                 b.assembler.velocity(0.3, b.u, b.v);
-               });
+    add_kernel("kernel/residual", [](Bench &b) { b.assembler.residual(0.3, b.u, b.v, b.F); });
+    add_kernel("kernel/jacobian", [](Bench &b) { b.assembler.jacobian(0.3, b.u, b.v, 100., b.matrix); });
+    add_kernel("kernel/elimination", [](Bench &b) { b.matrix.factorize(); });
+    add_kernel("kernel/solution", [](Bench &b) { b.matrix.solve(b.F, b.F); });
+    add_kernel("kernel/velocity", [](Bench &b) { b.assembler.velocity(0.3, b.u, b.v); });
     benchmark::RegisterBenchmark("kernel/expression/bulk", expression_bulk)->Arg(12)->Arg(1200);
     benchmark::RegisterBenchmark("kernel/expression/construction", expression_construction)->Arg(12)->Arg(1200);
     add_generators();

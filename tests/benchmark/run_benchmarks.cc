@@ -97,10 +97,8 @@ namespace crawler::test
     Prepare
     one_body(const Case &body)
     {
-      return [&body](const Setting &setting)
-      {
-        return [&body, own = std::make_shared<OneBody>(body, setting)]()
-        {
+      return [&body](const Setting &setting) {
+        return [&body, own = std::make_shared<OneBody>(body, setting)]() {
           return error_of(own->simulation.run({}, {}), body.displacement);
         };
       };
@@ -112,12 +110,8 @@ namespace crawler::test
       static constexpr std::size_t size = 64;
       const auto scenes =
         std::make_shared<const BatchScenes>(BatchScenes::similar(parameters_with(body.settings), size));
-      return [&body, scenes](const Setting &setting)
-      {
-        return [&body, scenes, setting]()
-        {
-          return error_of(scenes->run(setting)[0], body.displacement);
-        };
+      return [&body, scenes](const Setting &setting) {
+        return [&body, scenes, setting]() { return error_of(scenes->run(setting)[0], body.displacement); };
       };
     }
 
@@ -126,8 +120,7 @@ namespace crawler::test
     search(const Case &body, const Way &way, const double wanted)
     {
       const Prepare prepare = way == "batch" ? small_batch(body) : one_body(body);
-      const auto confirm    = [&](Setting setting)
-      {
+      const auto confirm    = [&](Setting setting) {
         for (int i = 0; i < 3; ++i)
         {
           setting.numerics.tolerance *= 0.6;
@@ -236,11 +229,11 @@ namespace crawler::test
       const std::string end = fmt::format("/{:.0e}", accuracy).replace(4, 1, ""); // /1e-4
       add("run/petsc" + end, run_one, fig_s1(), "petsc", accuracy);
       add("run/fused" + end, run_one, fig_s1(), "fused", accuracy);
-      const auto add_batch = [&](const std::string &name, const LaneEngine *engine, const Simulation::Options &options)
-      {
-        if (engine != nullptr)
-          add(name + end, run_many, fig_s1(), accuracy, options, *engine);
-      };
+      const auto add_batch =
+        [&](const std::string &name, const LaneEngine *engine, const Simulation::Options &options) {
+          if (engine != nullptr)
+            add(name + end, run_many, fig_s1(), accuracy, options, *engine);
+        };
       add_batch("run/batch", &batch_engine(), {});
       add_batch("run/batch_avx2", batch_engine("avx2"), {});
       add_batch("run/batch_baseline", batch_engine("baseline"), {});

@@ -32,13 +32,7 @@ namespace
   run_to(Simulation &simulation, const unsigned int last_step)
   {
     unsigned int number = 0;
-    simulation.run({},
-                   {},
-                   {},
-                   [&]()
-                   {
-                     return number++ < last_step;
-                   });
+    simulation.run({}, {}, {}, [&]() { return number++ < last_step; });
   }
 
   void
@@ -75,8 +69,7 @@ main(int argc, char **argv)
   const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
   for (const std::string integrator : {"bdf", "radau 5"})
   {
-    const auto add = [&](const std::string &name, const auto &function, const auto &...arguments)
-    {
+    const auto add = [&](const std::string &name, const auto &function, const auto &...arguments) {
       benchmark::RegisterBenchmark((name + integrator).c_str(), function, integrator, arguments...)
         ->Unit(benchmark::kMicrosecond);
     };

@@ -63,12 +63,7 @@ namespace
       task              = Task();
       task.parameters   = test::parameters_with(settings);
       const double from = cpu_seconds();
-      compute_all({&task, 1},
-                  600.,
-                  []()
-                  {
-                    return false;
-                  });
+      compute_all({&task, 1}, 600., []() { return false; });
       seconds = std::min(seconds, cpu_seconds() - from);
     }
     const SimulationResult &result = task.computed.result;
@@ -107,12 +102,7 @@ namespace
       Task task;
       task.parameters   = test::parameters_with(settings);
       const double from = cpu_seconds();
-      compute_all({&task, 1},
-                  20.,
-                  []()
-                  {
-                    return false;
-                  });
+      compute_all({&task, 1}, 20., []() { return false; });
       seconds = std::min(seconds, cpu_seconds() - from);
       least   = task.computed.result.min_stretch.value;
       if (task.computed.result.time.status != "finished")

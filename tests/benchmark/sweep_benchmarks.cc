@@ -116,12 +116,8 @@ namespace crawler::test
       for (std::size_t i = 0; i < members.size(); i += 7)
         some.push_back(members[i]);
       some.push_back(members.back());
-      const auto prepare = [&](const Setting &setting)
-      {
-        return [&some, setting]()
-        {
-          return largest_error(setting, some);
-        };
+      const auto prepare = [&](const Setting &setting) {
+        return [&some, setting]() { return largest_error(setting, some); };
       };
       const SearchSpace space{.engine      = "automatic",
                               .integrators = {"radau 9", "radau 5"},
@@ -130,13 +126,8 @@ namespace crawler::test
                               .loosest     = wanted,
                               .tightest    = 1e-4 * wanted,
                               .end_time    = 1.};
-      return cheapest_setting(space,
-                              wanted,
-                              prepare,
-                              [&](const Setting &setting)
-                              {
-                                return largest_error(setting, members) <= wanted;
-                              });
+      return cheapest_setting(
+        space, wanted, prepare, [&](const Setting &setting) { return largest_error(setting, members) <= wanted; });
     }
 
     const std::array<Half, 2> &

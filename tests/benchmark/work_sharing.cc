@@ -53,12 +53,7 @@ namespace
     const bool first         = rank_of(MPI_COMM_WORLD) == 0;
     {
       WorkQueue queue(MPI_COMM_WORLD, ~0ul / 2);
-      const double each = seconds_each(n,
-                                       true,
-                                       [&](unsigned int)
-                                       {
-                                         queue.next();
-                                       });
+      const double each = seconds_each(n, true, [&](unsigned int) { queue.next(); });
       print("next block, all ranks ask", each, n_ranks);
     }
     if (n_ranks == 1)
@@ -77,14 +72,11 @@ namespace
       print("next block, rank 0 computes", sums[0] / sums[1], n_ranks - 1);
     }
     else
-      seconds_each(few,
-                   true,
-                   [&](const unsigned int i)
-                   {
-                     queue.next();
-                     if (i + 1 == few)
-                       queue.done();
-                   });
+      seconds_each(few, true, [&](const unsigned int i) {
+        queue.next();
+        if (i + 1 == few)
+          queue.done();
+      });
   }
 
   void
@@ -99,32 +91,24 @@ namespace
       columns.push_back({fmt::format("column {}", i), "", "", is_number ? 0 : text_width});
       row.push_back(is_number ? RowFile::Value(1. / (1. + i)) : RowFile::Value("finished"));
     }
-    on_first_rank(MPI_COMM_WORLD,
-                  [&]()
-                  {
-                    const double start = MPI_Wtime();
-                    RowFile::create(path, "results", columns, n_blocks * block * n_ranks, {});
-                    print("making the file, each row", (MPI_Wtime() - start) / (n_blocks * block * n_ranks), 1);
-                    return "";
-                  });
+    on_first_rank(MPI_COMM_WORLD, [&]() {
+      const double start = MPI_Wtime();
+      RowFile::create(path, "results", columns, n_blocks * block * n_ranks, {});
+      print("making the file, each row", (MPI_Wtime() - start) / (n_blocks * block * n_ranks), 1);
+      return "";
+    });
     const std::vector<RowFile::Row> rows(block, row);
     {
       RowFile file(MPI_COMM_WORLD, path, "results", columns);
       const unsigned int rank = rank_of(MPI_COMM_WORLD);
-      const double each       = seconds_each(n_blocks,
-                                       true,
-                                       [&](const unsigned int i)
-                                       {
-                                         file.write((i * n_ranks + rank) * block, rows);
-                                       });
+      const double each =
+        seconds_each(n_blocks, true, [&](const unsigned int i) { file.write((i * n_ranks + rank) * block, rows); });
       print(fmt::format("writing {} rows of {} columns", block, columns.size()), each, n_ranks);
     }
-    on_first_rank(MPI_COMM_WORLD,
-                  [&]()
-                  {
-                    std::filesystem::remove(path);
-                    return "";
-                  });
+    on_first_rank(MPI_COMM_WORLD, [&]() {
+      std::filesystem::remove(path);
+      return "";
+    });
   }
 } // namespace
 

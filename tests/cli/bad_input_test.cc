@@ -55,8 +55,7 @@ namespace
   stretch_form()
   {
     const std::string chosen = in_section("Discretization", "set Formulation = stretch");
-    const auto with          = [&](const std::string &section, const std::string &line)
-    {
+    const auto with          = [&](const std::string &section, const std::string &line) {
       return chosen + in_section(section, line);
     };
     const std::string feedback = in_section("Active stress", "set Generator = strain feedback");
@@ -509,12 +508,10 @@ namespace
   std::vector<BadInput>
   command_lines()
   {
-    const auto set = [](const std::string &name, const std::string &assignment, const Words &message)
-    {
+    const auto set = [](const std::string &name, const std::string &assignment, const Words &message) {
       return bad_arguments(name, {"run", "good.prm", "--output", "results", "--set", assignment}, message);
     };
-    const auto petsc = [](const std::string &name, const Words &options, const Words &message)
-    {
+    const auto petsc = [](const std::string &name, const Words &options, const Words &message) {
       Words arguments = {"run", "good.prm", "--output", "results", "--"};
       arguments.insert(arguments.end(), options.begin(), options.end());
       return bad_arguments(name, arguments, message);
@@ -619,10 +616,7 @@ TEST_P(BadInputTest, IsRefusedInOneSentence)
   EXPECT_EQ(folder.content(), before);
 }
 
-const auto name_of = [](const testing::TestParamInfo<BadInput> &info)
-{
-  return info.param.name;
-};
+const auto name_of = [](const testing::TestParamInfo<BadInput> &info) { return info.param.name; };
 INSTANTIATE_TEST_SUITE_P(Names, BadInputTest, testing::ValuesIn(names()), name_of);
 INSTANTIATE_TEST_SUITE_P(Values, BadInputTest, testing::ValuesIn(values()), name_of);
 INSTANTIATE_TEST_SUITE_P(Formulas, BadInputTest, testing::ValuesIn(formulas()), name_of);
@@ -640,8 +634,7 @@ TEST(BadInput, UnreadableFile)
 {
   const TemporaryFolder folder;
   fill(folder.path, good);
-  const auto expect_refusal = [&](const std::string &words)
-  {
+  const auto expect_refusal = [&](const std::string &words) {
     const ProgramResult result = run_program(folder.path, {"run", "bad.prm", "--output", "results"});
     EXPECT_EQ(result.exit_code, 6);
     expect_one_sentence(result.err);

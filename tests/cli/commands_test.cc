@@ -378,8 +378,7 @@ TEST_F(Commands, ExplicitNumericsAreUsed)
 /// The same crawler, a micrometre and a thousand kilometres long: the same displacement in lengths.
 TEST_F(Commands, SizeDoesNotMatter)
 {
-  const auto displacement = [&](const std::string &length, const std::string &length_squared)
-  {
+  const auto displacement = [&](const std::string &length, const std::string &length_squared) {
     std::vector<std::string> settings = {"--overwrite"};
     for (const std::string &setting : std::vector<std::string>{"Body/Length=" + length,
                                                                "Body/Elastic modulus=" + length_squared,
@@ -403,8 +402,7 @@ TEST_F(Commands, SizeDoesNotMatter)
 /// Two long steps on a mesh as fine as anybody asks for give what a coarse one of high degree gives.
 TEST_F(Commands, AMillionCells)
 {
-  const auto displacement = [&](const std::string &cells, const std::string &degree)
-  {
+  const auto displacement = [&](const std::string &cells, const std::string &degree) {
     const ProgramResult result = run({"--overwrite",
                                       "--set",
                                       "Discretization/Number of cells=" + cells,
@@ -564,11 +562,8 @@ TEST_F(Commands, SignalsStopARunInOrder)
   {
     fs::remove_all(results);
     Program program(folder.path, {"run", "scene.prm", "--output", "results"});
-    ASSERT_TRUE(Program::wait_until(
-      [&]()
-      {
-        return fs::exists(results / "solution" / "000005.vtu") || !program.running();
-      }));
+    ASSERT_TRUE(
+      Program::wait_until([&]() { return fs::exists(results / "solution" / "000005.vtu") || !program.running(); }));
     program.signal(number);
     EXPECT_EQ(program.exit_code(), 5) << program.err();
     EXPECT_TRUE(program.err().starts_with("crawler: signal: stopped by a signal at t = ")) << program.err();
@@ -595,11 +590,7 @@ TEST_F(Commands, ASignalDuringThePilotRunsLeavesNoFiles)
   for (const int number : {SIGTERM, SIGINT})
   {
     Program program(folder.path, {"run", "scene.prm", "--output", "results"});
-    ASSERT_TRUE(Program::wait_until(
-      [&]()
-      {
-        return program.handles(number);
-      }));
+    ASSERT_TRUE(Program::wait_until([&]() { return program.handles(number); }));
     std::this_thread::sleep_for(std::chrono::milliseconds(100)); // the pilots take longer
     program.signal(number);
     EXPECT_EQ(program.exit_code(), 5) << program.err();

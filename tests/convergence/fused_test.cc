@@ -14,8 +14,7 @@ using test::FusedRun;
 /// the equation is linear. A stress that starts smoothly and a body that is not stiff: else the order is reduced.
 TEST(Fused, ReachesItsOrderWithEqualSteps)
 {
-  const auto energy = [](const std::string &integrator, const unsigned int n)
-  {
+  const auto energy = [](const std::string &integrator, const unsigned int n) {
     const FusedRun run(
       test::expression(0., "0.02*sin(pi*t/2)^8*cos(3*(s-2*t))", 1., 0.05),
       integrator,
@@ -47,8 +46,7 @@ TEST(Fused, ReachesItsOrderWithEqualSteps)
 /// tolerance. That the equations are solved for the right method is compared with PETSc (unit/fused).
 TEST(Fused, ErrorsFallWithTheToleranceOnTheWholeEquation)
 {
-  const auto run = [](const std::string &integrator, const double tolerance)
-  {
+  const auto run = [](const std::string &integrator, const double tolerance) {
     const FusedRun now(test::expression(-1., "0.4*sin(pi*t)^8*cos(2*pi*(s-t))"),
                        integrator,
                        {.degree = 4, .n_cells = 8, .tolerance = tolerance, .initial_step = 1e-2});

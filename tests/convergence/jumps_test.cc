@@ -63,8 +63,8 @@ namespace
 /// The stress jumps at s = 0.37 L and grows from 0 so smoothly that nothing else is rough.
 TEST(Jumps, InSpaceKeepTheOrder)
 {
-  const auto displacement = [](const Formulation form, const unsigned int q, const unsigned int n, const bool declared)
-  {
+  const auto displacement = [](
+                              const Formulation form, const unsigned int q, const unsigned int n, const bool declared) {
     const auto run    = jumping(test::expression(-1., "sin(pi*t/2)^8*(s<0.37 ? 0.5*cos(2*s) : -0.4*sin(3*s))", 0.9),
                              "radau 9",
                              {.degree = q, .n_cells = n, .tolerance = 1e-13, .initial_step = 1e-3, .formulation = form},
@@ -109,18 +109,17 @@ TEST(Jumps, InTimeKeepTheOrder)
   {
     const bool of_value = after == "0.02*cos(2*t)";
     const auto energy =
-      [&](const std::string &integrator, const std::string &engine, const unsigned int n, const bool declared)
-    {
-      const auto run =
-        jumping(test::expression(0., "cos(3*(s-2*t))*(t<0.375 ? 0.02*sin(pi*t/2)^8 : " + after + ")", 1., 0.05),
-                integrator,
-                {.degree = 4, .n_cells = 1, .tolerance = 1e3, .initial_step = 1. / n, .step_limits = {{0., 1. / n}}},
-                {},
-                declared ? std::vector<double>{0.375} : std::vector<double>());
-      const auto result = engine == "batch" ? *test::run_alone(*run) : run->simulate(engine);
-      EXPECT_LE(result.time.steps, n + 1) << integrator << " " << engine;
-      return result.ledger->elastic_energy;
-    };
+      [&](const std::string &integrator, const std::string &engine, const unsigned int n, const bool declared) {
+        const auto run =
+          jumping(test::expression(0., "cos(3*(s-2*t))*(t<0.375 ? 0.02*sin(pi*t/2)^8 : " + after + ")", 1., 0.05),
+                  integrator,
+                  {.degree = 4, .n_cells = 1, .tolerance = 1e3, .initial_step = 1. / n, .step_limits = {{0., 1. / n}}},
+                  {},
+                  declared ? std::vector<double>{0.375} : std::vector<double>());
+        const auto result = engine == "batch" ? *test::run_alone(*run) : run->simulate(engine);
+        EXPECT_LE(result.time.steps, n + 1) << integrator << " " << engine;
+        return result.ledger->elastic_energy;
+      };
     const double exact = energy("radau 9", "batch", 400, true);
     for (const auto &[integrator, order, steps] : {std::tuple("radau 5", 5., std::vector<double>{24, 48, 96}),
                                                    std::tuple("radau 9", 9., std::vector<double>{8, 16})})
@@ -166,8 +165,7 @@ TEST(Jumps, AreTheSameForAllMethods)
   const Numerics fine  = {.degree = 6, .n_cells = 5, .tolerance = 1e-10, .initial_step = 1e-9, .grading = {6, 0.25}};
   const auto reference = test::run_alone(*jumping(test::expression(-1., robot), "radau 9", fine, {0.4}, robot_times));
   ASSERT_TRUE(reference);
-  const auto compare = [&](const std::string &name, const SimulationResult &result, const double within)
-  {
+  const auto compare = [&](const std::string &name, const SimulationResult &result, const double within) {
     ASSERT_EQ(result.time.status, "finished") << name << ": " << result.time.message;
     fmt::print("{:30} {:7} steps, displacement {:.10g}, off by {:.1e}, ledger {:.1e}\n",
                name,
@@ -191,8 +189,7 @@ TEST(Jumps, AreTheSameForAllMethods)
     const auto run          = jumping(test::expression(-1., robot), method.name, numerics, {0.4}, robot_times);
     compare(method.name, run->simulate("petsc"), first_orders ? 1e-4 : 1e-5);
   }
-  const auto with = [&](const auto &change)
-  {
+  const auto with = [&](const auto &change) {
     Numerics numerics = fine;
     change(numerics);
     return jumping(test::expression(-1., robot), "radau 5", numerics, {0.4}, robot_times);
@@ -207,15 +204,12 @@ TEST(Jumps, AreTheSameForAllMethods)
   const auto by_meshes = test::run_with(stretch->parameters, stretch->scene).result;
   compare("stretch", by_meshes, by_meshes.error.value().total / std::abs(by_meshes.displacement));
   compare("adaptive mesh",
-          with(
-            [](Numerics &n)
-            {
-              n.grading   = {};
-              n.n_cells   = 10;
-              n.mesh      = {1e-7, 1e-6};
-              n.tolerance = 1e-8;
-            })
-            ->simulate("petsc"),
+          with([](Numerics &n) {
+            n.grading   = {};
+            n.n_cells   = 10;
+            n.mesh      = {1e-7, 1e-6};
+            n.tolerance = 1e-8;
+          })->simulate("petsc"),
           1e-4);
 }
 
@@ -283,8 +277,7 @@ TEST(Jumps, InvertAnEndWhenTheyHappen)
 /// A sudden start: each level of the grading divides the error by the square of the ratio, until the mesh is good.
 TEST(Jumps, GradedMeshesConvergeExponentially)
 {
-  const auto displacement = [](const unsigned int levels)
-  {
+  const auto displacement = [](const unsigned int levels) {
     const auto run =
       jumping(test::expression(-1., "0.3*cos(2*pi*(s+t))"),
               "radau 9",

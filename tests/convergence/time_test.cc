@@ -97,8 +97,7 @@ TEST(Time, ArkimexReachesItsOrder)
 /// On a stress that starts smoothly; from a sudden start, as that of the wave, no method of high order has its order.
 TEST(Time, RadauReachesItsOrder)
 {
-  const auto displacement = [](const std::string &name, const unsigned int n, const std::string &krylov)
-  {
+  const auto displacement = [](const std::string &name, const unsigned int n, const std::string &krylov) {
     auto parameters =
       test::parameters_with({{"Body/Anchoring exponent", "2"},
                              {"Active stress/Generator", "expression"},

@@ -101,8 +101,7 @@ namespace crawler::test
       posix_spawn_file_actions_t actions;
       posix_spawn_file_actions_init(&actions);
       posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-      const auto redirect = [&](const int descriptor, const char *name, const int flags)
-      {
+      const auto redirect = [&](const int descriptor, const char *name, const int flags) {
         posix_spawn_file_actions_addopen(&actions, descriptor, (streams_.path / name).c_str(), flags, 0600);
       };
       redirect(STDIN_FILENO, "in", O_RDONLY);
@@ -172,11 +171,7 @@ namespace crawler::test
     int
     exit_code()
     {
-      if (!wait_until(
-            [this]()
-            {
-              return !running();
-            }))
+      if (!wait_until([this]() { return !running(); }))
         throw std::runtime_error("the program does not come to an end");
       return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
     }

@@ -23,12 +23,10 @@ namespace crawler::test
     Wave
     next()
     {
-      const auto between = [this](const double low, const double high)
-      {
+      const auto between = [this](const double low, const double high) {
         return std::uniform_real_distribution<double>(low, high)(generator_);
       };
-      const auto log_between = [&](const double low, const double high)
-      {
+      const auto log_between = [&](const double low, const double high) {
         return std::exp(between(std::log(low), std::log(high)));
       };
       Wave wave{};

@@ -65,10 +65,7 @@ namespace crawler::test
     const auto points = places(length);
     for (const double t : times)
     {
-      const auto m = [&](const double at)
-      {
-        return values(stress, points, at);
-      };
+      const auto m = [&](const double at) { return values(stress, points, at); };
       const auto a = m(t - 2. * h), b = m(t - h), c = m(t + h), d = m(t + 2. * h), rate = rates(stress, points, t);
       for (std::size_t i = 0; i < points.size(); ++i)
         EXPECT_NEAR(rate[i], (8. * (c[i] - b[i]) - (d[i] - a[i])) / (12. * h), tolerance)

@@ -120,8 +120,7 @@ namespace
                          const std::string &engine,
                          const double tolerance,
                          const Grading &grading,
-                         const unsigned int n_cells = 14)
-    {
+                         const unsigned int n_cells = 14) {
       Numerics n                    = {.degree    = 8,
                                        .n_cells   = n_cells,
                                        .tolerance = std::max(tolerance * rough, 3e-14 * scene.body.length),
@@ -159,8 +158,7 @@ namespace
     rough.accuracy                   = 1e-6;
     rough.discretization.formulation = "position";
     const Numerics by_rule           = choose_numerics(MPI_COMM_SELF, rough, scene)->numerics;
-    const auto run = [&](const std::string &integrator, const double tolerance, const unsigned int more)
-    {
+    const auto run = [&](const std::string &integrator, const double tolerance, const unsigned int more) {
       Numerics n   = by_rule;
       n.degree     = 8;
       n.mesh       = {};
@@ -229,8 +227,7 @@ namespace
         parameters,
         scene,
         *choice,
-        [&](const NumericsChoice &c)
-        {
+        [&](const NumericsChoice &c) {
           Simulation run(MPI_COMM_SELF, scene, parameters.time, c.numerics);
           return run.run({}, options);
         },
@@ -382,10 +379,7 @@ main(int argc, char **argv)
       std::istringstream cells(row);
       for (std::string cell; std::getline(cells, cell, ',');)
         c.push_back(cell);
-      const auto number = [&](const unsigned int i)
-      {
-        return std::stod(c.at(i));
-      };
+      const auto number = [&](const unsigned int i) { return std::stod(c.at(i)); };
       const Row r{0,
                   c[1],
                   c[3],

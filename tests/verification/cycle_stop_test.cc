@@ -67,8 +67,7 @@ namespace
 
 TEST(CycleStop, Fig2NeedsThreeOfItsTwentyCycles)
 {
-  const auto computed = [](const double accuracy)
-  {
+  const auto computed = [](const double accuracy) {
     auto settings = test::wave(-1., 0.4, 1., 20.);
     settings.emplace_back("Accuracy", test::text(accuracy));
     return compute(test::parameters_with(settings));
@@ -174,8 +173,7 @@ TEST(CycleStop, BodyThatInvertsLaterInverts)
 /// not decay is not extrapolated, however well the displacement repeats.
 TEST(CycleStop, DriftOfTheStretchIsSeen)
 {
-  const auto watch = [](const double ratio)
-  {
+  const auto watch = [](const double ratio) {
     CycleStop stop({0.05, 1e-2}, 1e-12);
     unsigned int n = 0;
     double drift   = 0.;
@@ -203,8 +201,7 @@ TEST(CycleStop, DriftOfTheStretchIsSeen)
 
 TEST(CycleStop, WhenItIsWished)
 {
-  const auto wish = [](const test::Settings &settings, const unsigned int n_frames)
-  {
+  const auto wish = [](const test::Settings &settings, const unsigned int n_frames) {
     const auto parameters = test::parameters_with(settings);
     const Scene scene     = parameters.create_scene();
     return cycle_wish(parameters, scene, n_frames).has_value();
@@ -231,12 +228,7 @@ TEST(CycleStop, AmongManyRuns)
   std::vector<Task> tasks(2);
   tasks[0].parameters = test::parameters_with(test::wave(-1., 0.2, 1., 40.));
   tasks[1].parameters = test::parameters_with(test::wave(-1., 0.2, 1., 4.));
-  compute_all(tasks,
-              1e3,
-              []()
-              {
-                return false;
-              });
+  compute_all(tasks, 1e3, []() { return false; });
   ASSERT_TRUE(tasks[0].computed.result.cycles);
   EXPECT_FALSE(tasks[1].computed.result.cycles);
   EXPECT_EQ(tasks[0].computed.result.displacement, compute(tasks[0].parameters).displacement);

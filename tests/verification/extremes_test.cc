@@ -66,8 +66,7 @@ TEST(Extremes, OneCell)
 /// that of a thousand cells divided by 1000^2 (degree 1), and to rounding.
 TEST(Extremes, AMillionCells)
 {
-  const auto displacement = [](const char *degree, const char *cells)
-  {
+  const auto displacement = [](const char *degree, const char *cells) {
     const auto result = test::run_with(with(test::wave(-1., 0.4, 1., 0.05),
                                             {{"Discretization/Degree", degree},
                                              {"Discretization/Number of cells", cells},
@@ -121,8 +120,7 @@ TEST(Extremes, StepsAndTolerances)
 /// A crawler of any size, from a micrometre to a thousand kilometres, in metres, seconds and newtons.
 TEST(Extremes, Lengths)
 {
-  const auto displacement = [](const double L, const double T)
-  {
+  const auto displacement = [](const double L, const double T) {
     const double c = L / T, gamma = 7.3, k = gamma * c * L;
     const auto result = test::run_with(with(test::wave(-1., 0.4, c, T, k),
                                             {{"Body/Length", test::text(L)},
@@ -178,8 +176,7 @@ TEST(Extremes, TinyAndHugeInput)
 /// The stretch of an end is 1 - m/k: that tells when it is 0.
 TEST(Extremes, InversionAtAnEnd)
 {
-  const auto expect_inversion = [](const test::Settings &settings, const double t, const double s)
-  {
+  const auto expect_inversion = [](const test::Settings &settings, const double t, const double s) {
     const auto result = test::run_with(settings).result;
     EXPECT_EQ(result.time.status, "inverted");
     EXPECT_EQ(result.time.reason, "inverted_at_end");

@@ -130,8 +130,7 @@ TEST(GaitNumbers, SegmentsHaveTheWaveThatTheyDeclare)
 /// A pulse that crosses the body between two samples is not taken for what is left of it.
 TEST(GaitNumbers, AWaveThatIsTooFastForTheSamplesIsAbsent)
 {
-  const auto pulse = [](const double speed, const double end_time)
-  {
+  const auto pulse = [](const double speed, const double end_time) {
     return declared_gait({{"Active stress/Generator", "pulse"},
                           {"Active stress/Pulse/Shape", "compact"},
                           {"Active stress/Pulse/Width", "0.3"},
@@ -171,8 +170,7 @@ TEST(GaitNumbers, SideBySideTheyAreTheSame)
                                      {"Active stress/Pulse/Repetition period", "2"}};
   const Numerics numerics         = {.degree = 6, .n_cells = 8, .tolerance = 1e-8, .initial_step = 1e-4};
   test::FusedRuns runs;
-  const auto add = [&](const test::Settings &settings)
-  {
+  const auto add = [&](const test::Settings &settings) {
     runs.push_back(std::make_unique<test::FusedRun>(settings, "radau 9", numerics));
   };
   add(test::wave(-1., 0.3));

@@ -162,12 +162,8 @@ TEST(GeneralScenes, DelayedModesDecay)
 {
   constexpr double k = 0.05, kappa = 0.1, delay = 0.5;
   const double A = k * pi * pi, B = kappa * pi * pi;
-  const auto first = [&](const double t)
-  {
-    return (1. + B / A) * std::exp(-A * t) - B / A;
-  };
-  const auto second = [&](const double t)
-  {
+  const auto first  = [&](const double t) { return (1. + B / A) * std::exp(-A * t) - B / A; };
+  const auto second = [&](const double t) {
     return first(delay) * std::exp(-A * t) -
            B * ((1. + B / A) * t * std::exp(-A * t) - B / A * (1. - std::exp(-A * t)) / A);
   };
@@ -227,8 +223,7 @@ TEST(GeneralScenes, ModesOfASensorAsLongAsTheBody)
 TEST(GeneralScenes, AModeGrowsByItself)
 {
   constexpr double rate = 4.8993, half_period = 0.43825, start = 1.6;
-  const auto energy = [&](const double T)
-  {
+  const auto energy = [&](const double T) {
     return energy_left(feedback("0.05*tanh(10*(w_near-1))", -0.25, 0., 0.2) +
                        Settings{{"Body/Elastic modulus", "0.1"},
                                 {"Body/Initial stretch", "1+1e-7*exp(-((s-0.425)/0.05)^2)"},
@@ -272,8 +267,7 @@ TEST(GeneralScenes, SensorsSeeTheMean)
 TEST(GeneralScenes, GroundThatBecomesSticky)
 {
   constexpr double beta = 1.2, E = 0.3;
-  const auto h = [&](const double w)
-  {
+  const auto h = [&](const double w) {
     return -std::log((std::exp(beta * w) - 1.) / (beta * w) * beta / (std::exp(beta) - 1.)) / beta;
   };
   const std::string w = "(1+E*sin(t)^2)", w_t = "(E*sin(2*t))", p = "(b*" + w + ")", power = "(exp(b*" + w + "*s)-1)",
@@ -295,8 +289,7 @@ TEST(GeneralScenes, DirectionOfTheGround)
 {
   const Settings standing = expression("0.4*sin(2*pi*t)^2*s*(1-s)*4") + Settings{{"Body/Anchoring exponent", "1"}};
   EXPECT_NEAR(displacement(standing + petsc), 0., 1e-12);
-  const auto with_ratio = [&](const double ratio, const double gamma)
-  {
+  const auto with_ratio = [&](const double ratio, const double gamma) {
     return displacement(standing + Settings{{"Ground/Backward ratio", text(ratio)},
                                             {"Ground/Switching velocity", "0.2"},
                                             {"Body/Friction coefficient", text(gamma)}});
@@ -329,8 +322,7 @@ TEST(GeneralScenes, IntegratorsAgree)
 
 TEST(GeneralScenes, LawsThatAreNotPositiveEndTheRunWithTheirName)
 {
-  const auto message = [](const Settings &settings)
-  {
+  const auto message = [](const Settings &settings) {
     const auto result = test::run_with(settings).result;
     EXPECT_EQ(result.time.status, "failed");
     EXPECT_EQ(result.time.reason, "law_not_positive");

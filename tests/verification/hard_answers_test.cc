@@ -191,8 +191,7 @@ TEST(HardAnswers, VerySoftBodiesInThePositionForm)
 /// a > 0, three cells: the body does not invert.
 TEST(HardAnswers, ACoarseMeshDoesNotInvertABody)
 {
-  const auto answer = [](const unsigned int n_cells, const double chi, const double end_time)
-  {
+  const auto answer = [](const unsigned int n_cells, const double chi, const double end_time) {
     auto settings = test::wave(3.38, chi, -1., end_time, 0.0134);
     settings.insert(settings.end(),
                     {{"Discretization/Number of cells", std::to_string(n_cells)},

@@ -95,8 +95,7 @@ TEST(Identities, LedgerOfStiffBodies)
 /// m(L-s,t) gives the opposite displacement.
 TEST(Identities, MirroredStressMirrorsTheDisplacement)
 {
-  const auto run = [](const std::string &m)
-  {
+  const auto run = [](const std::string &m) {
     return test::run_with(
              with({{"Active stress/Generator", "expression"}, {"Active stress/Expression/Active stress", m}}, numerics))
       .result.displacement;
@@ -131,8 +130,7 @@ TEST(Identities, Scaling)
 TEST(Identities, StrainModesDecay)
 {
   // Forced up to about t = 0.1 by m = A sin(pi s) f(t), f = exp(-((t-0.05)/0.012)^2), then free.
-  const auto strain = [](const double end_time)
-  {
+  const auto strain = [](const double end_time) {
     const auto parameters = test::parameters_with(
       with({{"Body/Length", "2"},
             {"Body/Elastic modulus", "0.8"},

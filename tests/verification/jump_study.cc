@@ -86,8 +86,7 @@ main(int argc, char **argv)
                exact.cells,
                exact.steps,
                exact.milliseconds);
-    const auto row = [&](const std::string &text, const Measured &m)
-    {
+    const auto row = [&](const std::string &text, const Measured &m) {
       fmt::print("  {} {:4} cells {:5} steps {:8.2f} ms  error {:.2e}\n",
                  text,
                  m.cells,

@@ -102,8 +102,7 @@ TEST(Ladder, EachRungAgainstTheOneAbove)
 
 TEST(Ladder, AutomaticChoice)
 {
-  const auto model = [](const test::Settings &settings, const double accuracy)
-  {
+  const auto model = [](const test::Settings &settings, const double accuracy) {
     return choice(with(settings, {{"Model", "auto"}, {"Accuracy", test::text(accuracy)}})).model;
   };
   EXPECT_EQ(model(test::wave(-1., 0.05), 1e-2), "perturbation");
@@ -153,12 +152,7 @@ TEST(Ladder, ManyRunsAtOnce)
   for (unsigned int i = 0; i < 3; ++i)
     tasks[i].parameters = test::parameters_with(
       with(test::wave(-1., chi[i]), {{"Model", i < 2 ? "auto" : "nonlinear"}, {"Accuracy", "1e-2"}}));
-  compute_all(tasks,
-              100.,
-              []()
-              {
-                return false;
-              });
+  compute_all(tasks, 100., []() { return false; });
   for (const Task &task : tasks)
     EXPECT_EQ(task.computed.result.time.status, "finished") << task.computed.result.time.message;
   EXPECT_EQ(tasks[0].parameters.model, "perturbation");

@@ -29,14 +29,8 @@ TEST(Perturbation, EvenAndOddPartsOfFigS1)
 {
   // even(chi) = d2 chi^2 + d4 chi^4 + ..., odd(chi) = d3 chi^3 + d5 chi^5 + ...; two values of chi eliminate the next
   // term.
-  const auto even = [](const double chi)
-  {
-    return 0.5 * (displacement(-1., chi, 1.) + displacement(-1., -chi, 1.));
-  };
-  const auto odd = [](const double chi)
-  {
-    return 0.5 * (displacement(-1., chi, 1.) - displacement(-1., -chi, 1.));
-  };
+  const auto even = [](const double chi) { return 0.5 * (displacement(-1., chi, 1.) + displacement(-1., -chi, 1.)); };
+  const auto odd  = [](const double chi) { return 0.5 * (displacement(-1., chi, 1.) - displacement(-1., -chi, 1.)); };
   const double x = 0.05, y = 0.1;
   const double e_x = even(x) / (x * x), e_y = even(y) / (y * y), o_x = odd(x) / (x * x * x), o_y = odd(y) / (y * y * y);
   const double d4 = (e_y - e_x) / (y * y - x * x), d2 = e_x - d4 * x * x;

@@ -83,8 +83,7 @@ namespace crawler::test
                       {"Body/Elastic modulus", text(k)},
                       {"Body/Anchoring exponent", text(1. - a)},
                       {"Time/End time", text(T)}};
-    const auto set = [&scene](const std::string &entry, const std::string &value)
-    {
+    const auto set = [&scene](const std::string &entry, const std::string &value) {
       scene.settings.emplace_back("Active stress/" + entry, value);
     };
     const double kind = r.uniform(0., 1.);
@@ -245,12 +244,10 @@ namespace crawler::test
     RandomScene scene;
     double k = r.log_uniform(0.3, 30.), T = 1.;
     const double p = r.uniform(-2., 4.);
-    const auto set = [&scene](const std::string &entry, const double value)
-    {
+    const auto set = [&scene](const std::string &entry, const double value) {
       scene.settings.emplace_back(entry, text(value));
     };
-    const auto wave = [&](const double chi, const double c)
-    {
+    const auto wave = [&](const double chi, const double c) {
       set("Active stress/Optimal wave/Perturbation parameter", chi * std::abs(c));
       scene.settings.emplace_back("Active stress/Optimal wave/Choose wave by", "wave speed");
       set("Active stress/Optimal wave/Wave speed", c);

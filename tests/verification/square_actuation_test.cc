@@ -65,8 +65,7 @@ namespace
       parameters,
       scene,
       *choose_numerics(MPI_COMM_SELF, parameters, scene),
-      [&](const NumericsChoice &choice)
-      {
+      [&](const NumericsChoice &choice) {
         return Simulation(MPI_COMM_SELF, scene, parameters.time, choice.numerics).run({}, options);
       },
       options,
@@ -113,15 +112,14 @@ TEST(SquareActuation, MovingJumpsAreSeen)
 TEST(SquareActuation, MovingJumpsHaveAnHonestBar)
 {
   const Settings settings = travelling_wave("square", 0.5);
-  const auto on_mesh      = [&](const unsigned int n_cells)
-  {
+  const auto on_mesh      = [&](const unsigned int n_cells) {
     return with_numerics(settings,
                          {.degree       = 2,
-                          .n_cells      = n_cells,
-                          .tolerance    = 1e-2 / n_cells,
-                          .initial_step = 1e-5,
-                          .step_limits  = {{0., 0.25 / n_cells}},
-                          .integrator   = "radau 5"})
+                               .n_cells      = n_cells,
+                               .tolerance    = 1e-2 / n_cells,
+                               .initial_step = 1e-5,
+                               .step_limits  = {{0., 0.25 / n_cells}},
+                               .integrator   = "radau 5"})
       .displacement;
   };
   const double fine = on_mesh(512), limit = 2. * fine - on_mesh(256);

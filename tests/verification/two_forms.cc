@@ -41,8 +41,7 @@ namespace
                       {"Body/Elastic modulus", test::text(k)},
                       {"Body/Anchoring exponent", test::text(p)},
                       {"Time/End time", test::text(T)}};
-    const auto set = [&scene](const std::string &entry, const std::string &value)
-    {
+    const auto set = [&scene](const std::string &entry, const std::string &value) {
       scene.settings.emplace_back("Active stress/" + entry, value);
     };
     const double strength = 1. + 0.2 * std::abs(1. - p); // steep friction makes much of a little strain
@@ -103,12 +102,7 @@ namespace
     settings.emplace_back("Discretization/Formulation", formulation);
     Task task;
     task.parameters = test::parameters_with(settings);
-    compute_all({&task, 1},
-                limit,
-                []()
-                {
-                  return false;
-                });
+    compute_all({&task, 1}, limit, []() { return false; });
     FormAnswer answer{task.computed.result, task.is_out_of_time, task.seconds, ""};
     if (task.error)
       try
@@ -176,8 +170,7 @@ main(int argc, char **argv)
   for (unsigned int number = first; number <= last; ++number, ++n)
   {
     const test::RandomScene scene = scene_of(number);
-    const double T                = [&]()
-    {
+    const double T                = [&]() {
       for (const auto &[entry, value] : scene.settings)
         if (entry == "Time/End time")
           return std::stod(value);
@@ -195,8 +188,7 @@ main(int argc, char **argv)
       ++n_failed;
       ++failures[own.result.time.reason.empty() ? own.result.time.status + own.refused : own.result.time.reason];
     }
-    const auto numbers = [&](const FormAnswer &a)
-    {
+    const auto numbers = [&](const FormAnswer &a) {
       return fmt::format("{},{},{:.3g},{:.12g},{:.3g},{:.8g}",
                          a.result.time.status,
                          a.is_out_of_time ? "time_limit" : a.result.time.reason,

@@ -111,8 +111,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       shift_                 = setup_.real_eigenvalue * inverse_h;
       const bool sees_rate   = setup_.sees_rate;
       const double *h        = setup_.sizes;
-      const auto derivatives = [&](const int i, Node &node)
-      {
+      const auto derivatives = [&](const int i, Node &node) {
         const NodeForce<Pack> f = node_force(rule_, n_, h, mobility_, force_, i);
         Pack turn               = broadcast<Pack>(1.);
         node.v                  = direct(f.slope * f.mobility.value, turn);

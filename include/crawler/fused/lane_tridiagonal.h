@@ -55,13 +55,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         for (int p = 0; p < pairs; ++p)
           complex_[p][j] = shifted(rows_[j], shifts[p], has_M);
       }
-      to_the_middle(
-        [this](const int from, const int to)
-        {
-          eliminate(real_[from], real_[to], to > from);
-          for (int p = 0; p < pairs; ++p)
-            eliminate(complex_[p][from], complex_[p][to], to > from);
-        });
+      to_the_middle([this](const int from, const int to) {
+        eliminate(real_[from], real_[to], to > from);
+        for (int p = 0; p < pairs; ++p)
+          eliminate(complex_[p][from], complex_[p][to], to > from);
+      });
       real_[middle_].pivot = 1. / real_[middle_].pivot;
       for (int p = 0; p < pairs; ++p)
         complex_[p][middle_].pivot = 1. / complex_[p][middle_].pivot;
@@ -72,21 +70,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     solve(Pack *x, Number *y, const int stride) const
     {
       const int n_pairs = y != nullptr ? pairs : 0;
-      to_the_middle(
-        [&](const int from, const int to)
+      to_the_middle([&](const int from, const int to) {
+        x[to] -= (to > from ? real_[to].before : real_[to].after) * x[from];
+        for (int p = 0; p < n_pairs; ++p)
         {
-          x[to] -= (to > from ? real_[to].before : real_[to].after) * x[from];
-          for (int p = 0; p < n_pairs; ++p)
-          {
-            const Factors<Number> &row = complex_[p][to];
-            y[p * stride + to] -= (to > from ? row.before : row.after) * y[p * stride + from];
-          }
-        });
+          const Factors<Number> &row = complex_[p][to];
+          y[p * stride + to] -= (to > from ? row.before : row.after) * y[p * stride + from];
+        }
+      });
       x[middle_] *= real_[middle_].pivot;
       for (int p = 0; p < n_pairs; ++p)
         y[p * stride + middle_] *= complex_[p][middle_].pivot;
-      const auto substitute = [&](const int at, const int next)
-      {
+      const auto substitute = [&](const int at, const int next) {
         x[at] = x[at] * real_[at].pivot - (next > at ? real_[at].after : real_[at].before) * x[next];
         for (int p = 0; p < n_pairs; ++p)
         {

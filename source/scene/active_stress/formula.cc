@@ -134,36 +134,12 @@ namespace crawler
     void
     define_functions(mu::Parser &parser)
     {
-      parser.DefineFun("pow",
-                       [](const double x, const double y)
-                       {
-                         return std::pow(x, y);
-                       });
-      parser.DefineFun("floor",
-                       [](const double x)
-                       {
-                         return std::floor(x);
-                       });
-      parser.DefineFun("ceil",
-                       [](const double x)
-                       {
-                         return std::ceil(x);
-                       });
-      parser.DefineFun("mod",
-                       [](const double x, const double y)
-                       {
-                         return x - y * std::floor(x / y);
-                       });
-      parser.DefineFun("erf",
-                       [](const double x)
-                       {
-                         return std::erf(x);
-                       });
-      parser.DefineFun("erfc",
-                       [](const double x)
-                       {
-                         return std::erfc(x);
-                       });
+      parser.DefineFun("pow", [](const double x, const double y) { return std::pow(x, y); });
+      parser.DefineFun("floor", [](const double x) { return std::floor(x); });
+      parser.DefineFun("ceil", [](const double x) { return std::ceil(x); });
+      parser.DefineFun("mod", [](const double x, const double y) { return x - y * std::floor(x / y); });
+      parser.DefineFun("erf", [](const double x) { return std::erf(x); });
+      parser.DefineFun("erfc", [](const double x) { return std::erfc(x); });
     }
   } // namespace
 
@@ -206,8 +182,7 @@ namespace crawler
     void
     read_token(const mu::SToken &token)
     {
-      const auto variable = [&]()
-      {
+      const auto variable = [&]() {
         const auto number      = static_cast<unsigned int>(token.Val.ptr - variables_.data());
         formula_.used_[number] = true;
         return number;

@@ -41,9 +41,7 @@ namespace crawler
     operator*(const Interval a, const Interval b)
     {
       const auto product = [](const double x, const double y) // 0 times anything is 0
-      {
-        return x == 0. || y == 0. ? 0. : x * y;
-      };
+      { return x == 0. || y == 0. ? 0. : x * y; };
       const double p[] = {
         product(a.lower, b.lower), product(a.lower, b.upper), product(a.upper, b.lower), product(a.upper, b.upper)};
       return {*std::min_element(p, p + 4), *std::max_element(p, p + 4)};
@@ -97,9 +95,7 @@ namespace crawler
       if (!(x.upper - x.lower < 2. * pi))
         return {-1., 1.};
       const auto contains = [x](const double phase) // one of phase + 2 pi n
-      {
-        return std::floor((x.upper - phase) / (2. * pi)) >= std::ceil((x.lower - phase) / (2. * pi));
-      };
+      { return std::floor((x.upper - phase) / (2. * pi)) >= std::ceil((x.lower - phase) / (2. * pi)); };
       const double a = std::sin(x.lower), b = std::sin(x.upper);
       return {contains(-0.5 * pi) ? -1. : std::min(a, b), contains(0.5 * pi) ? 1. : std::max(a, b)};
     }
@@ -266,8 +262,7 @@ namespace crawler
       }
       if (is_constant(x[1]) && base.lower >= 0.)
       {
-        const auto power = [base](const double exponent) -> Interval
-        {
+        const auto power = [base](const double exponent) -> Interval {
           const double a = std::pow(base.lower, exponent), b = std::pow(base.upper, exponent);
           return {std::min(a, b), std::max(a, b)};
         };
@@ -284,12 +279,7 @@ namespace crawler
     Enclosure
     jumping(const Interval value, const Arguments x)
     {
-      const bool at_a_time = std::all_of(x.begin(),
-                                         x.end(),
-                                         [](const Enclosure &e)
-                                         {
-                                           return !e.on_s;
-                                         });
+      const bool at_a_time = std::all_of(x.begin(), x.end(), [](const Enclosure &e) { return !e.on_s; });
       return {value, value.lower == value.upper || !at_a_time ? Interval{0., 0.} : all};
     }
 
@@ -555,10 +545,7 @@ namespace crawler
         }
         Enclosure &result = values_[operation.result];
         result            = operation.bound(arguments_);
-        const auto is_bad = [](const Interval &x)
-        {
-          return std::isnan(x.lower) || std::isnan(x.upper);
-        };
+        const auto is_bad = [](const Interval &x) { return std::isnan(x.lower) || std::isnan(x.upper); };
         if (is_bad(result.value))
           result.value = all;
         if (is_bad(result.rate))

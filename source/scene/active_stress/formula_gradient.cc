@@ -41,14 +41,12 @@ namespace crawler
         else if (!arguments[i].empty())
           std::copy_n(arguments[i].data() + first, n, block);
       }
-      for_operations(n,
-                     [&](const Formula::Operation &operation, double *result, const std::size_t size)
-                     {
-                       arguments_.clear();
-                       for (const unsigned int argument : operation.arguments)
-                         arguments_.push_back({values_.data() + argument * block_size, false});
-                       operation.loop(operation.function, arguments_, result, size);
-                     });
+      for_operations(n, [&](const Formula::Operation &operation, double *result, const std::size_t size) {
+        arguments_.clear();
+        for (const unsigned int argument : operation.arguments)
+          arguments_.push_back({values_.data() + argument * block_size, false});
+        operation.loop(operation.function, arguments_, result, size);
+      });
       std::copy_n(values_.data() + formula_->result_ * block_size, n, f.data() + first);
 
       for (std::size_t i = 0; i < derivatives.size(); ++i)
@@ -56,22 +54,19 @@ namespace crawler
         if (derivatives[i].empty())
           continue;
         std::fill_n(rates_.data() + i * block_size, block_size, 1.);
-        for_operations(
-          n,
-          [&](const Formula::Operation &operation, const double *result, const std::size_t size)
+        for_operations(n, [&](const Formula::Operation &operation, const double *result, const std::size_t size) {
+          if (operation.tangent == nullptr)
+            return;
+          argument_values_.clear();
+          argument_rates_.clear();
+          for (const unsigned int argument : operation.arguments)
           {
-            if (operation.tangent == nullptr)
-              return;
-            argument_values_.clear();
-            argument_rates_.clear();
-            for (const unsigned int argument : operation.arguments)
-            {
-              argument_values_.push_back(values_.data() + argument * block_size);
-              argument_rates_.push_back(rates_.data() + argument * block_size);
-            }
-            operation.tangent(
-              argument_values_, argument_rates_, result, rates_.data() + operation.result * block_size, size);
-          });
+            argument_values_.push_back(values_.data() + argument * block_size);
+            argument_rates_.push_back(rates_.data() + argument * block_size);
+          }
+          operation.tangent(
+            argument_values_, argument_rates_, result, rates_.data() + operation.result * block_size, size);
+        });
         std::copy_n(rates_.data() + formula_->result_ * block_size, n, derivatives[i].data() + first);
         std::fill_n(rates_.data() + i * block_size, block_size, 0.);
       }

@@ -114,11 +114,8 @@ namespace crawler
 
     const double gauss = 2. * std::numbers::inv_sqrtpi; // erf'(x) = gauss exp(-x^2)
 
-#define CRAWLER_DERIVATIVE(expression)                                       \
-  chain<[]([[maybe_unused]] const double x, [[maybe_unused]] const double f) \
-        {                                                                    \
-          return expression;                                                 \
-        }>
+#define CRAWLER_DERIVATIVE(expression) \
+  chain<[]([[maybe_unused]] const double x, [[maybe_unused]] const double f) { return expression; }>
     const std::map<std::string, Tangent> &
     tangents()
     {

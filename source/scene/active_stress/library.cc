@@ -64,11 +64,7 @@ namespace crawler
     made(LibraryFailures &failures, const Make<AtPoints> &make, const char *name, const std::vector<double> &points)
     {
       std::unique_ptr<AtPoints> result;
-      const auto thrown = thrown_by(
-        [&]()
-        {
-          result = make(points);
-        });
+      const auto thrown = thrown_by([&]() { result = make(points); });
       if (thrown)
         fail(failures, fmt::format("threw an exception in {}: {}", name, *thrown));
       else if (!result)
@@ -95,26 +91,14 @@ namespace crawler
         std::fill(result.begin(), result.end(), no_number);
         return;
       }
-      const auto thrown = thrown_by(
-        [&]()
-        {
-          call(*at_points, result);
-        });
+      const auto thrown = thrown_by([&]() { call(*at_points, result); });
       if (thrown)
       {
         // Where? The first point that throws on its own.
-        const auto place = std::find_if(points.begin(),
-                                        points.end(),
-                                        [&](const double s)
-                                        {
-                                          double value = 0.;
-                                          return thrown_by(
-                                                   [&]()
-                                                   {
-                                                     call(*make({s}), {&value, 1});
-                                                   })
-                                            .has_value();
-                                        });
+        const auto place = std::find_if(points.begin(), points.end(), [&](const double s) {
+          double value = 0.;
+          return thrown_by([&]() { call(*make({s}), {&value, 1}); }).has_value();
+        });
         fail(failures,
              fmt::format("threw an exception in {} at {}t = {:.9g}: {}",
                          name,
@@ -124,12 +108,8 @@ namespace crawler
         std::fill(result.begin(), result.end(), no_number);
         return;
       }
-      const auto bad = std::find_if_not(result.begin(),
-                                        result.end(),
-                                        [](const double value)
-                                        {
-                                          return std::isfinite(value);
-                                        });
+      const auto bad =
+        std::find_if_not(result.begin(), result.end(), [](const double value) { return std::isfinite(value); });
       if (bad == result.end())
         return;
       fail(failures,
@@ -167,10 +147,7 @@ namespace crawler
           points_,
           name_,
           t,
-          [t](ActiveStressAtPoints &at_points, const std::span<double> result)
-          {
-            at_points.values(t, result);
-          },
+          [t](ActiveStressAtPoints &at_points, const std::span<double> result) { at_points.values(t, result); },
           m);
       }
 
@@ -205,11 +182,7 @@ namespace crawler
                  const StrainHistory &history,
                  const std::vector<double> &points)
           : failures_(failures)
-          , make_(
-              [&history](const std::vector<double> &places)
-              {
-                return history.at(places);
-              })
+          , make_([&history](const std::vector<double> &places) { return history.at(places); })
           , points_(points)
           , at_points_(made(*failures_, make_, "at() of its strain", points))
         {
@@ -225,10 +198,7 @@ namespace crawler
             points_,
             "strain()",
             t,
-            [t](StrainAtPoints &at_points, const std::span<double> result)
-            {
-              at_points.strain(t, result);
-            },
+            [t](StrainAtPoints &at_points, const std::span<double> result) { at_points.strain(t, result); },
             e);
         }
         void
@@ -241,10 +211,7 @@ namespace crawler
             points_,
             "rate()",
             t,
-            [t](StrainAtPoints &at_points, const std::span<double> result)
-            {
-              at_points.rate(t, result);
-            },
+            [t](StrainAtPoints &at_points, const std::span<double> result) { at_points.rate(t, result); },
             e_t);
         }
 
@@ -269,10 +236,7 @@ namespace crawler
         , points_(points)
         , at_points_(made<FeedbackAtPoints>(
             *failures_,
-            [&feedback](const std::vector<double> &places)
-            {
-              return feedback.at(places);
-            },
+            [&feedback](const std::vector<double> &places) { return feedback.at(places); },
             "at() of its feedback",
             points))
       {
@@ -284,11 +248,7 @@ namespace crawler
         const unsigned long n_before = failures_->count;
         if (!at_points_)
           ++failures_->count;
-        else if (const auto thrown = thrown_by(
-                   [&]()
-                   {
-                     at_points_->values(t, seen, m);
-                   }))
+        else if (const auto thrown = thrown_by([&]() { at_points_->values(t, seen, m); }))
           fail(*failures_, fmt::format("threw an exception in values() of its feedback at t = {:.9g}: {}", t, *thrown));
         else
         {
@@ -510,11 +470,7 @@ namespace crawler
                             body.anchoring_exponent,
                             end_time,
                             PluginParameters(parse_parameters(parameters.parameters))};
-    if (const auto thrown = thrown_by(
-          [&]()
-          {
-            stress_ = plugin.create(input);
-          }))
+    if (const auto thrown = thrown_by([&]() { stress_ = plugin.create(input); }))
       throw InputError(fmt::format("the plug-in \"{}\" refuses the scene: {}", plugin.name, *thrown), parameters_entry);
     if (!stress_)
       throw InputError(fmt::format("the plug-in \"{}\" has made nothing; an active stress is expected", plugin.name),
@@ -528,38 +484,34 @@ namespace crawler
   Library::ask(const double length, const double end_time)
   {
     const char *asked = "";
-    const auto thrown = thrown_by(
-      [&]()
-      {
-        asked            = "period()";
-        period_          = stress_->period();
-        asked            = "breaks_in_space()";
-        breaks_in_space_ = stress_->breaks_in_space();
-        asked            = "breaks_in_time()";
-        breaks_in_time_  = stress_->breaks_in_time();
-        asked            = "rate_at()";
-        has_rate_        = stress_->rate_at({0.}) != nullptr;
-        asked            = "feedback()";
-        if (const StretchFeedback *feedback = stress_->feedback())
-          feedback_ = std::make_unique<LibraryFeedback>(failures_, *feedback);
-        asked = "prescribed_strain()";
-        if (const StrainHistory *strain = stress_->prescribed_strain())
-          strain_ = std::make_unique<LibraryStrain>(failures_, *strain);
-        asked = "report()";
-        std::ostringstream out;
-        stress_->report(out);
-        report_ = out.str();
-      });
-    const auto refuse = [&](const std::string &what)
-    {
+    const auto thrown = thrown_by([&]() {
+      asked            = "period()";
+      period_          = stress_->period();
+      asked            = "breaks_in_space()";
+      breaks_in_space_ = stress_->breaks_in_space();
+      asked            = "breaks_in_time()";
+      breaks_in_time_  = stress_->breaks_in_time();
+      asked            = "rate_at()";
+      has_rate_        = stress_->rate_at({0.}) != nullptr;
+      asked            = "feedback()";
+      if (const StretchFeedback *feedback = stress_->feedback())
+        feedback_ = std::make_unique<LibraryFeedback>(failures_, *feedback);
+      asked = "prescribed_strain()";
+      if (const StrainHistory *strain = stress_->prescribed_strain())
+        strain_ = std::make_unique<LibraryStrain>(failures_, *strain);
+      asked = "report()";
+      std::ostringstream out;
+      stress_->report(out);
+      report_ = out.str();
+    });
+    const auto refuse = [&](const std::string &what) {
       throw InputError(fmt::format("the plug-in \"{}\" {}", failures_->plugin, what), file_entry);
     };
     if (thrown)
       refuse(fmt::format("threw an exception in {}: {}", asked, *thrown));
     if (period_ && !(*period_ > 0. && std::isfinite(*period_)))
       refuse(fmt::format("says that its period is {}; a positive number is expected", *period_));
-    const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end)
-    {
+    const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end) {
       for (const double value : breaks)
         if (!(value > 0. && value < end))
           refuse(fmt::format("gave {} in {}; a number above 0 and below {:g} is expected", value, name, end));
@@ -573,10 +525,7 @@ namespace crawler
   {
     return std::make_unique<LibraryAtPoints>(
       failures_,
-      [stress = stress_.get()](const std::vector<double> &places)
-      {
-        return stress->at(places);
-      },
+      [stress = stress_.get()](const std::vector<double> &places) { return stress->at(places); },
       "values()",
       "at()",
       points);
@@ -589,10 +538,7 @@ namespace crawler
       return nullptr;
     return std::make_unique<LibraryAtPoints>(
       failures_,
-      [stress = stress_.get()](const std::vector<double> &places)
-      {
-        return stress->rate_at(places);
-      },
+      [stress = stress_.get()](const std::vector<double> &places) { return stress->rate_at(places); },
       "values() of the rate",
       "rate_at()",
       points);

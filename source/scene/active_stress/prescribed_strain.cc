@@ -345,8 +345,7 @@ namespace crawler
       for (const double value : e)
         size = std::max(size, std::abs(value));
     }
-    const auto refuse = [&](const char *variable, const double place)
-    {
+    const auto refuse = [&](const char *variable, const double place) {
       throw InputError(
         fmt::format("Given by is {}, whose values jump at {} = {:g}; a strain without jumps is expected (give "
                     "fronts and edges a width)",

@@ -204,8 +204,7 @@ namespace crawler
     const double A    = std::abs(settings_.amplitude);
     const double grow = settings_.envelope.largest_ramp_rate(box.t_from, box.t_to);
     Bounds sum{0., 0.};
-    const auto add_pulse = [&](const double start)
-    {
+    const auto add_pulse = [&](const double start) {
       const double a = start + v * box.t_from, b = start + v * box.t_to;
       const double from = box.s_from - std::max(a, b), to = box.s_to - std::min(a, b);
       if (from >= reach || to <= -reach)

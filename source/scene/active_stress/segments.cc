@@ -29,13 +29,9 @@ namespace crawler
     distinct(std::vector<double> values)
     {
       std::sort(values.begin(), values.end());
-      values.erase(std::unique(values.begin(),
-                               values.end(),
-                               [](const double a, const double b)
-                               {
-                                 return b - a <= round_off;
-                               }),
-                   values.end());
+      values.erase(
+        std::unique(values.begin(), values.end(), [](const double a, const double b) { return b - a <= round_off; }),
+        values.end());
       return values;
     }
   } // namespace
@@ -262,14 +258,11 @@ namespace crawler
       for (const double s : points)
       {
         const auto &list = owner.segments_;
-        const auto above = std::upper_bound(list.begin() + 1,
-                                            list.end(),
-                                            s,
-                                            [](const double place, const Segment &segment)
-                                            {
-                                              return place < segment.first;
-                                            });
-        const auto i     = static_cast<std::size_t>(above - list.begin()) - 1;
+        const auto above =
+          std::upper_bound(list.begin() + 1, list.end(), s, [](const double place, const Segment &segment) {
+            return place < segment.first;
+          });
+        const auto i = static_cast<std::size_t>(above - list.begin()) - 1;
         segment_.push_back(s <= list[i].last + round_off * owner.length_ ? i : list.size());
       }
     }
@@ -377,12 +370,8 @@ namespace crawler
                        parameters_.switching);
     if (parameters_.rate_limit && !smooth_)
     {
-      const Segment &slowest = *std::max_element(segments_.begin(),
-                                                 segments_.end(),
-                                                 [](const Segment &a, const Segment &b)
-                                                 {
-                                                   return a.front < b.front;
-                                                 });
+      const Segment &slowest = *std::max_element(
+        segments_.begin(), segments_.end(), [](const Segment &a, const Segment &b) { return a.front < b.front; });
       out << fmt::format("; the rate limit makes fronts of up to {:.4g} of a period", slowest.front);
     }
     out << fmt::format("; {} switching times\n", breaks_in_time_.size());

@@ -80,8 +80,7 @@ namespace crawler
     const auto n_panels = static_cast<std::size_t>(std::ceil((to - from) / size * (1. - 1e-12)));
     if (n_panels > most_panels)
       throw std::logic_error("too many panels from the beginning");
-    const auto end_of = [&](const std::size_t i)
-    {
+    const auto end_of = [&](const std::size_t i) {
       return i == n_panels ? to : from + (to - from) * static_cast<double>(i) / static_cast<double>(n_panels);
     };
     // The largest |V|, and whether it is a number.
@@ -154,8 +153,7 @@ namespace crawler
   {
     const CubicSpline spline(x);
     const auto M            = spline.curvatures(f);
-    const Function function = [&](const std::span<const double> places, const std::span<double> values)
-    {
+    const Function function = [&](const std::span<const double> places, const std::span<double> values) {
       for (std::size_t j = 0; j < places.size(); ++j)
       {
         const auto p = spline.place(places[j]);

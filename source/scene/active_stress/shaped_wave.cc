@@ -117,8 +117,7 @@ namespace crawler
                                      parameters.shape_formula),
                          entry);
       return ShapeFunction(
-        [&](const std::span<const double> x, const std::span<double> values)
-        {
+        [&](const std::span<const double> x, const std::span<double> values) {
           FormulaAtPoints(formula, {x.begin(), x.end()}).values(0., values);
         },
         from,
@@ -262,8 +261,7 @@ namespace crawler
       start.push_back(settings_.shape.value(s, panel));
     LeadingOrder result{0., 0., 1., 1.};
     double e_e         = 0.; // int e'^2 ds
-    const auto at_time = [&](const double t, double &e_v, double &v_v)
-    {
+    const auto at_time = [&](const double t, double &e_v, double &v_v) {
       const double mean = (settings_.shape.integral(L + c * t, panel) - settings_.shape.integral(c * t, panel)) / L;
       e_v = v_v = e_e = 0.;
       for (std::size_t i = 0; i < start.size(); ++i)

@@ -359,8 +359,7 @@ namespace crawler
                         {"add", "multiply"},
                         "m is the sum of all terms that add, times the product of all terms that multiply.");
     declarations.number("Factor", factor, any_number(), "What the term's generator is multiplied with.", "1");
-    const auto window = [&](WindowEntries &entries, const std::string &x, const std::string &whole, const char *unit)
-    {
+    const auto window = [&](WindowEntries &entries, const std::string &x, const std::string &whole, const char *unit) {
       declarations.numbers("Window in " + x,
                            entries.interval,
                            "From where to where in " + x +
@@ -384,19 +383,10 @@ namespace crawler
     if (terms_.empty())
       throw InputError("the sum has no terms; a subsection \"Term 1\" in the subsection Sum is expected",
                        "Active stress/Generator");
-    if (std::all_of(terms_.begin(),
-                    terms_.end(),
-                    [](const SumTerm &term)
-                    {
-                      return term.multiplies;
-                    }))
+    if (std::all_of(terms_.begin(), terms_.end(), [](const SumTerm &term) { return term.multiplies; }))
       throw InputError("all terms of the sum multiply; at least one that adds is expected", section + "Term 1/Combine");
-    if (std::any_of(terms_.begin(),
-                    terms_.end(),
-                    [](const SumTerm &term)
-                    {
-                      return term.stress->feedback() != nullptr;
-                    }))
+    if (std::any_of(
+          terms_.begin(), terms_.end(), [](const SumTerm &term) { return term.stress->feedback() != nullptr; }))
       feedback_ = std::make_unique<Feedback>(terms_);
   }
 
@@ -497,10 +487,7 @@ namespace crawler
         own = sampled_bounds(*term.stress, box);
       const auto [window, change] = term.in_t.largest(box.t_from, box.t_to);
       const double factor         = std::abs(term.factor) * term.in_s.largest(box.s_from, box.s_to).first;
-      const auto times            = [](const double a, const double b)
-      {
-        return a == 0. || b == 0. ? 0. : a * b;
-      };
+      const auto times            = [](const double a, const double b) { return a == 0. || b == 0. ? 0. : a * b; };
       const Bounds f = {factor * window * own->value, times(factor * window, own->rate) + factor * change * own->value};
       if (term.multiplies)
         product = {product.value * f.value, times(product.rate, f.value) + times(product.value, f.rate)};

@@ -222,8 +222,7 @@ namespace crawler
     const std::vector<double> &t = table_.grid().t;
     const double whole           = t.back() - t.front();
     const auto n                 = static_cast<std::ptrdiff_t>(changes_.size());
-    const auto largest_change    = [&](const double from, const double to)
-    {
+    const auto largest_change    = [&](const double from, const double to) {
       if (to <= t.front() || from >= t.back())
         return 0.;
       const std::ptrdiff_t beside = is_cubic ? 2 : 0;
@@ -258,8 +257,7 @@ namespace crawler
       if (std::abs(grid.t[j + 1] - grid.t[j] - whole / static_cast<double>(n)) > same_step * whole)
         return whole;
     const double most        = same_value * largest(grid.values);
-    const auto repeats_after = [&](const std::size_t steps)
-    {
+    const auto repeats_after = [&](const std::size_t steps) {
       for (std::size_t i = 0; i + steps * n_s < grid.values.size(); ++i)
         if (std::abs(grid.values[i + steps * n_s] - grid.values[i]) > most)
           return false;

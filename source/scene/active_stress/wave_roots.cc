@@ -149,12 +149,10 @@ namespace crawler
       return result;
 
     unsigned int admissible = 0;
-    const auto enough       = [&]()
-    {
+    const auto enough       = [&]() {
       return result.roots.size() >= most_roots || (result.roots.size() >= at_least && admissible >= 10);
     };
-    const auto add = [&](const double x)
-    {
+    const auto add = [&](const double x) {
       result.roots.push_back(describe_wave(body, shape, chi, end_time, sign * x * L / end_time));
       admissible += result.roots.back().admissible();
     };
@@ -168,21 +166,14 @@ namespace crawler
     }
 
     // Between the critical points of f(x) = h x^2 - S(x) there is at most one root.
-    const auto f = [&](const double x)
-    {
-      return h * x * x - sine_sum(shape, x);
-    };
-    const auto derivative = [&](const double x)
-    {
-      return 2. * h * x - sine_sum_derivative(shape, x);
-    };
+    const auto f          = [&](const double x) { return h * x * x - sine_sum(shape, x); };
+    const auto derivative = [&](const double x) { return 2. * h * x - sine_sum_derivative(shape, x); };
     const double total    = 4. * shape.delta_2();
     const double last     = std::sqrt(total / h) * (1. + 1e-12); // S <= total
     const double step     = 1. / (32. * n_harmonics);
     const bool list_all   = 2. * n_harmonics * last <= few_roots;
     double previous       = 1e-6 / n_harmonics; // leaves the trivial root x = 0 out
-    const auto look_until = [&](const double next)
-    {
+    const auto look_until = [&](const double next) {
       if (f(previous) == 0.)
         add(previous);
       else if (f(previous) * f(next) < 0.)

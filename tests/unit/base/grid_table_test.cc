@@ -189,8 +189,7 @@ TEST(GridTable, SaysWhatIsWrongInHdf5)
 {
   const test::TemporaryFolder folder;
   const auto file      = folder.path / "m.h5";
-  const auto complaint = [&](const std::vector<test::Dataset> &datasets)
-  {
+  const auto complaint = [&](const std::vector<test::Dataset> &datasets) {
     std::filesystem::remove(file);
     test::write_hdf5_file(file, datasets);
     return complaint_about(file);
@@ -220,8 +219,7 @@ TEST(CubicSpline, Periodic)
   const CubicSpline spline(knots, CubicSpline::Ends::periodic);
   const auto M = spline.curvatures(y);
   EXPECT_EQ(M.front(), M.back());
-  const auto slope = [&](const double x)
-  {
+  const auto slope = [&](const double x) {
     const auto p = spline.place(x);
     return p.da * y[p.i] + p.db * y[p.i + 1] + p.dc * M[p.i] + p.dd * M[p.i + 1];
   };
@@ -242,8 +240,7 @@ TEST(GridInterpolation, Orders)
   std::vector<double> points;
   for (unsigned int i = 0; i <= 100; ++i)
     points.push_back(i / 100.);
-  const auto errors = [&](const std::size_t n, const Method method, const GridInterpolation::Outside outside)
-  {
+  const auto errors = [&](const std::size_t n, const Method method, const GridInterpolation::Outside outside) {
     const GridInterpolation table(samples(equally_spaced(n + 1), equally_spaced(n + 1), wave_of), method, outside);
     const auto at = table.at(points);
     std::vector<double> m(points.size()), m_t(points.size());

@@ -36,12 +36,10 @@ namespace
     const auto path            = a_file();
     const unsigned int n_ranks = size_of(MPI_COMM_WORLD), rank = rank_of(MPI_COMM_WORLD);
     const unsigned long n = 4ul * n_ranks;
-    on_first_rank(MPI_COMM_WORLD,
-                  [&]()
-                  {
-                    RowFile::create(path, "results", columns, n, {{"made by", "a test"}});
-                    return "";
-                  });
+    on_first_rank(MPI_COMM_WORLD, [&]() {
+      RowFile::create(path, "results", columns, n, {{"made by", "a test"}});
+      return "";
+    });
     {
       RowFile file(MPI_COMM_WORLD, path, "results", columns);
       const std::vector<RowFile::Row> rows = {{4. * rank, 0.5 * rank, "first"},
@@ -95,9 +93,7 @@ namespace
                     {columns[0], columns[2], columns[1]},
                     n,
                     {{"large", large}},
-                    {2,
-                     [](const std::size_t column, const unsigned long row) -> RowFile::Value
-                     {
+                    {2, [](const std::size_t column, const unsigned long row) -> RowFile::Value {
                        if (column == 0)
                          return static_cast<double>(row);
                        return std::to_string(row);
@@ -131,8 +127,7 @@ namespace
       return;
     RowFile::create(path, "results", columns, 1000, {{"made by", "a test"}});
     const std::string whole     = read_whole_file(path);
-    const auto expect_bad_input = [&](const std::string &group, const std::string &attribute, const std::string &part)
-    {
+    const auto expect_bad_input = [&](const std::string &group, const std::string &attribute, const std::string &part) {
       for (const bool reads_attribute : {true, false})
         try
         {

@@ -59,10 +59,7 @@ TEST(WorkQueue, CountsWhatAllRanksHaveDone)
 
 TEST(WorkQueue, WaitsAsleep)
 {
-  const auto processor_seconds = []()
-  {
-    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-  };
+  const auto processor_seconds = []() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
   std::optional<WorkQueue> queue(std::in_place, MPI_COMM_WORLD, 1);
   if (rank_of(MPI_COMM_WORLD) == 1)
     std::this_thread::sleep_for(std::chrono::milliseconds(500));

@@ -55,8 +55,7 @@ TEST(PositionForm, JacobianMatchesDifferences)
           x[i] = std::sin(roughness * static_cast<double>(i) + 0.3);
         J.multiply(x, Jx);
         const double e     = 1e-5;
-        const auto shifted = [&](const double sign, std::vector<double> &F)
-        {
+        const auto shifted = [&](const double sign, std::vector<double> &F) {
           std::vector<double> u = state.u, v = state.v;
           for (std::size_t i = 0; i < x.size(); ++i)
           {
@@ -144,23 +143,14 @@ TEST(PositionForm, ResolutionSeesTheHighestMode)
   const Discretization d(MPI_COMM_SELF, 1., 2, 3);
   PositionForm assembler(scene, d);
   std::vector<double> u(d.n_unknowns());
-  const auto set = [&](auto function)
-  {
+  const auto set = [&](auto function) {
     for (unsigned int c = 0; c < 2; ++c)
       for (unsigned int i = 0; i < 4; ++i)
         u[c * 3 + i] = function(d.cell_left()[c] + d.cell_size()[c] * d.element().nodes[i]);
   };
-  set(
-    [](const double s)
-    {
-      return 0.1 * s * s;
-    }); // linear strain, no second mode
+  set([](const double s) { return 0.1 * s * s; }); // linear strain, no second mode
   EXPECT_LT(assembler.resolution(u).highest_mode, 1e-25);
   EXPECT_NEAR(assembler.resolution(u).strain, 0.04 / 3., 1e-12);
-  set(
-    [](const double s)
-    {
-      return 0.1 * s * s * s;
-    });
+  set([](const double s) { return 0.1 * s * s * s; });
   EXPECT_GT(assembler.resolution(u).highest_mode, 1e-8);
 }

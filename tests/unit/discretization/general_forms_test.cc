@@ -100,11 +100,7 @@ namespace
     std::vector<double>
     slope(const std::vector<double> &by, const std::vector<double> &by_dot)
     {
-      return test::derivative(
-        [&](const double step)
-        {
-          return residual(by, by_dot, step);
-        });
+      return test::derivative([&](const double step) { return residual(by, by_dot, step); });
     }
 
     Scene scene;

@@ -142,16 +142,14 @@ TEST(LayeredMesh, HalfOfTheCellsAreInTheLayers)
     EXPECT_NEAR(in_the_middle * 0.5 * n, 1., 4. / std::log(1. / layer));
     EXPECT_LT(in_the_middle * 0.5 * n, 1.);
     // Near an end the size is proportional to layer + s.
-    const auto size_at = [&](const double s)
-    {
+    const auto size_at = [&](const double s) {
       const auto i = std::upper_bound(ends.begin(), ends.end(), s) - ends.begin();
       return ends[i] - ends[i - 1];
     };
     EXPECT_NEAR(size_at(layer) / size_at(0.), 2., 0.03);
     EXPECT_NEAR(size_at(9. * layer) / size_at(0.), 10., 0.3);
     // As many for each factor of the distance.
-    const auto cells_between = [&](const double from, const double to)
-    {
+    const auto cells_between = [&](const double from, const double to) {
       return std::upper_bound(ends.begin(), ends.end(), to) - std::upper_bound(ends.begin(), ends.end(), from);
     };
     EXPECT_NEAR(1. * cells_between(0., 9. * layer) / n, 0.25 * std::log(10.) / std::log(1. / layer), 0.01);

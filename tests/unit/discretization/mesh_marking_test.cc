@@ -170,13 +170,9 @@ TEST(MeshMarking, NeighboursDifferByOneLevel)
     for (unsigned int round = 0; round < 6; ++round)
     {
       Changes changes(mesh->n_cells(), keep);
-      const auto &cells                                        = mesh->cells();
-      const auto worst                                         = std::max_element(cells.begin(),
-                                          cells.end(),
-                                          [](const Cell &a, const Cell &b)
-                                          {
-                                            return a.level < b.level;
-                                          });
+      const auto &cells = mesh->cells();
+      const auto worst =
+        std::max_element(cells.begin(), cells.end(), [](const Cell &a, const Cell &b) { return a.level < b.level; });
       changes[static_cast<std::size_t>(worst - cells.begin())] = divide;
       mesh                                                     = mesh->adapted(changes);
       expect_sound(*mesh, length, n_cells);

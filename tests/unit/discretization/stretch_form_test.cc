@@ -135,11 +135,7 @@ namespace
 TEST(StretchForm, AllRulesForTheNodesAreTested)
 {
   std::array<unsigned int, 3> n{};
-  for_all(
-    [&](Case &test, const std::string &)
-    {
-      ++n[stretch_method(test.scene).node_rule];
-    });
+  for_all([&](Case &test, const std::string &) { ++n[stretch_method(test.scene).node_rule]; });
   for (const unsigned int found : n)
     EXPECT_GT(found, 2u);
 }
@@ -147,30 +143,24 @@ TEST(StretchForm, AllRulesForTheNodesAreTested)
 /// The velocity balances the friction, and the stress power is dissipated or stored, both to round-off.
 TEST(StretchForm, IdentitiesOfAState)
 {
-  for_all(
-    [](Case &test, const std::string &name)
-    {
-      const CellIntegrals sum = test.form.integrals(t, test.y, test.v);
-      EXPECT_LE(std::abs(sum.net_friction), 1e-14 * sum.abs_friction) << name;
-      const std::vector<double> rates = test.motion();
-      const auto energy               = [&](const double step)
-      {
-        std::vector<double> y = test.y;
-        for (std::size_t i = 0; i < y.size(); ++i)
-          y[i] += step * rates[i];
-        return test.form.integrals(t, y, test.v).elastic_energy;
-      };
-      const double e    = 1e-3 / std::abs(*std::max_element(rates.begin(),
-                                                         rates.end(),
-                                                         [](const double a, const double b)
-                                                         {
-                                                           return std::abs(a) < std::abs(b);
-                                                         }));
-      const double rate = (8. * (energy(e) - energy(-e)) - (energy(2. * e) - energy(-2. * e))) / (12. * e);
-      EXPECT_NEAR(sum.stress_power, sum.dissipation + rate, 1e-10 * (sum.absolute_power + sum.dissipation)) << name;
-      EXPECT_GT(sum.dissipation, 0.) << name;
-      EXPECT_GE(sum.positive_power, sum.stress_power) << name;
-    });
+  for_all([](Case &test, const std::string &name) {
+    const CellIntegrals sum = test.form.integrals(t, test.y, test.v);
+    EXPECT_LE(std::abs(sum.net_friction), 1e-14 * sum.abs_friction) << name;
+    const std::vector<double> rates = test.motion();
+    const auto energy               = [&](const double step) {
+      std::vector<double> y = test.y;
+      for (std::size_t i = 0; i < y.size(); ++i)
+        y[i] += step * rates[i];
+      return test.form.integrals(t, y, test.v).elastic_energy;
+    };
+    const double e = 1e-3 / std::abs(*std::max_element(rates.begin(), rates.end(), [](const double a, const double b) {
+                       return std::abs(a) < std::abs(b);
+                     }));
+    const double rate = (8. * (energy(e) - energy(-e)) - (energy(2. * e) - energy(-2. * e))) / (12. * e);
+    EXPECT_NEAR(sum.stress_power, sum.dissipation + rate, 1e-10 * (sum.absolute_power + sum.dissipation)) << name;
+    EXPECT_GT(sum.dissipation, 0.) << name;
+    EXPECT_GE(sum.positive_power, sum.stress_power) << name;
+  });
 }
 
 /// What telescopes is the friction of the equation: where nodes have the mean friction of their cells it is that of the
@@ -212,18 +202,16 @@ TEST(StretchForm, FrictionIsThatOfTheLaws)
 /// Length, stretches and centre of mass of a state are what they were made of.
 TEST(StretchForm, StatesAreShapes)
 {
-  for_all(
-    [](Case &test, const std::string &name)
+  for_all([](Case &test, const std::string &name) {
+    const std::vector<double> u(test.form.displacement(test.y).begin(), test.form.displacement(test.y).end());
+    EXPECT_EQ(u[0], 0.1);
+    const auto w = test.form.stretch(test.y);
+    for (std::size_t j = 0; j < test.w.size(); ++j)
     {
-      const std::vector<double> u(test.form.displacement(test.y).begin(), test.form.displacement(test.y).end());
-      EXPECT_EQ(u[0], 0.1);
-      const auto w = test.form.stretch(test.y);
-      for (std::size_t j = 0; j < test.w.size(); ++j)
-      {
-        EXPECT_NEAR(w[j], test.w[j], 1e-14) << name;
-        EXPECT_NEAR((u[j + 1] - u[j]) / test.d.cell_size()[j], test.w[j] - 1., 1e-13) << name;
-      }
-    });
+      EXPECT_NEAR(w[j], test.w[j], 1e-14) << name;
+      EXPECT_NEAR((u[j + 1] - u[j]) / test.d.cell_size()[j], test.w[j] - 1., 1e-13) << name;
+    }
+  });
 }
 
 /// The stretch of each cell is the mean of the initial one over it, and the centre of mass does not move.
@@ -236,10 +224,7 @@ TEST(StretchForm, InitialStretch)
     Case test(feature);
     test.form.set_initial_state(test.y);
     const auto w        = test.form.stretch(test.y);
-    const auto integral = [](const double s)
-    {
-      return s + 0.4 * (std::sin(3. * s) / 9. - s * std::cos(3. * s) / 3.);
-    };
+    const auto integral = [](const double s) { return s + 0.4 * (std::sin(3. * s) / 9. - s * std::cos(3. * s) / 3.); };
     for (std::size_t j = 0; j < w.size(); ++j)
       EXPECT_NEAR(w[j], (integral(ends[j + 1]) - integral(ends[j])) / (ends[j + 1] - ends[j]), 1e-13);
     EXPECT_NEAR(test.form.integrals(0., test.y, test.v).displacement, 0., 1e-15);
@@ -290,8 +275,7 @@ TEST(NodeMobility, OfEqualCellsIsTheirs)
 TEST(NodeMobility, FillsEmptyCellsAndKeepsThemEmpty)
 {
   const std::vector<double> h(4, 0.25), mobility = {0., 0., 1., 1.};
-  const auto of = [&](const NodeRule rule, const double difference)
-  {
+  const auto of = [&](const NodeRule rule, const double difference) {
     return node_mobility(rule, 4, h.data(), mobility.data(), 2, difference).value;
   };
   // Length goes to the left if the velocity is positive.
@@ -318,16 +302,12 @@ TEST(NodeMobility, DerivativesMatchDifferences)
       for (const double difference : {-0.3, 0.3})
         for (int i = 1; i < n; ++i)
         {
-          const auto value = [&](const int cell, const double step)
-          {
+          const auto value = [&](const int cell, const double step) {
             std::vector<double> changed = mobility;
             changed[cell] += step;
             return node_mobility(rule, n, h.data(), changed.data(), i, difference).value;
           };
-          const auto slope = [&](const int cell)
-          {
-            return (value(cell, e) - value(cell, -e)) / (2. * e);
-          };
+          const auto slope = [&](const int cell) { return (value(cell, e) - value(cell, -e)) / (2. * e); };
           const NodeMobility<double> result = node_mobility(rule, n, h.data(), mobility.data(), i, difference);
           EXPECT_NEAR(result.by_left, slope(i - 1), 1e-8) << "rule " << static_cast<int>(rule) << ", node " << i;
           EXPECT_NEAR(result.by_right, slope(i), 1e-8) << "rule " << static_cast<int>(rule) << ", node " << i;

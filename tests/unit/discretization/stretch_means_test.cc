@@ -35,13 +35,7 @@ TEST(StretchMeans, AreExactForPolynomials)
   for (const unsigned int q : {1u, 2u, 4u, 8u})
     for (const double length : {0.01, 0.3, 1.2, L})
     {
-      const auto found = means(q,
-                               middles,
-                               length,
-                               [&](const double s)
-                               {
-                                 return std::pow(s, q - 1);
-                               });
+      const auto found = means(q, middles, length, [&](const double s) { return std::pow(s, q - 1); });
       for (std::size_t i = 0; i < middles.size(); ++i)
       {
         const double left = std::min(std::max(middles[i] - 0.5 * length, 0.), L - length), right = left + length;
@@ -56,12 +50,6 @@ TEST(StretchMeans, AreExactForPolynomials)
 TEST(StretchMeans, DampFineWaves)
 {
   constexpr double k = 3., b = 0.8, middle = 0.93;
-  const auto found = means(8,
-                           {middle},
-                           b,
-                           [&](const double s)
-                           {
-                             return std::sin(k * s);
-                           });
+  const auto found = means(8, {middle}, b, [&](const double s) { return std::sin(k * s); });
   EXPECT_NEAR(found[0], std::sin(k * middle) * std::sin(0.5 * k * b) / (0.5 * k * b), 1e-8);
 }

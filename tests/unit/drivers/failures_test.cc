@@ -81,10 +81,7 @@ namespace
 
 TEST(Failures, HaveNames)
 {
-  const auto name_of = [](const auto &error)
-  {
-    return failure_of(std::make_exception_ptr(error)).reason;
-  };
+  const auto name_of = [](const auto &error) { return failure_of(std::make_exception_ptr(error)).reason; };
   EXPECT_EQ(name_of(std::bad_alloc()), "out_of_memory");
   EXPECT_EQ(name_of(PetscFailure(PETSC_ERR_MEM, "no memory")), "out_of_memory");
   EXPECT_EQ(name_of(PetscFailure(PETSC_ERR_ARG_OUTOFRANGE, "out of range")), "petsc_error");
@@ -105,8 +102,7 @@ TEST(Failures, EndARunInOrder)
       const Parameters parameters = test::parameters_with({{"Time/Engine", engine}});
       const Scene scene           = scene_with(parameters,
                                      std::make_unique<Throwing>(
-                                       [memory]()
-                                       {
+                                       [memory]() {
                                          if (memory)
                                            throw std::bad_alloc();
                                          throw std::runtime_error("the valve is shut");
@@ -133,19 +129,14 @@ TEST(Failures, OfTheSecondRunLeaveTheAnswer)
 {
   const Parameters parameters = test::parameters_with({{"Accuracy", "1e-6"}});
   const Scene scene           = scene_with(parameters,
-                                 std::make_unique<Throwing>(
-                                   []()
-                                   {
-                                     throw std::bad_alloc();
-                                   },
-                                   HUGE_VAL,
-                                   /*most_points=*/44));
+                                 std::make_unique<Throwing>([]() { throw std::bad_alloc(); },
+                                                            HUGE_VAL,
+                                                            /*most_points=*/44));
   NumericsChoice choice;
   choice.numerics       = mesh;
   choice.wanted_error   = 1e-9;
   choice.promised_error = 1e-9;
-  const auto simulate   = [&](const NumericsChoice &chosen)
-  {
+  const auto simulate   = [&](const NumericsChoice &chosen) {
     return Simulation(MPI_COMM_SELF, scene, parameters.time, chosen.numerics).run({}, {.ledger = true});
   };
   const SimulationResult first = simulate(choice);

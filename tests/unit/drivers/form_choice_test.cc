@@ -40,8 +40,7 @@ TEST(FormChoice, NothingIsEmptiedWhereFrictionVanishes)
 /// What the user has chosen is not changed, and what the stretch form cannot compute stays with the position form.
 TEST(FormChoice, IsMadeByTheProgramOnly)
 {
-  const auto form_of = [](const test::Settings &more)
-  {
+  const auto form_of = [](const test::Settings &more) {
     test::Settings settings = test::wave(-1., 0.6);
     settings.emplace_back("Accuracy", "1e-3");
     settings.insert(settings.end(), more.begin(), more.end());

@@ -22,8 +22,7 @@ namespace
        const std::function<double(double)> &work,
        const unsigned int n_steps)
   {
-    const auto sample = [&](const double t)
-    {
+    const auto sample = [&](const double t) {
       std::vector<double> ends(n_s + 1);
       for (unsigned int i = 0; i <= n_s; ++i)
         ends[i] = u(static_cast<double>(i) / n_s, t) + D(t);
@@ -48,18 +47,9 @@ namespace
     // A wave towards s = 0, a body that moves to +s by 0.02 a stride: 0.03 in the first one.
     show(
       meter,
-      [](const double s, const double t)
-      {
-        return 0.1 * std::cos(2. * pi * (s + 4. * t)) / (2. * pi);
-      },
-      [](const double t)
-      {
-        return t < 0.25 ? 0.12 * t : 0.03 + 0.08 * (t - 0.25);
-      },
-      [](const double t)
-      {
-        return 3. * t * t;
-      },
+      [](const double s, const double t) { return 0.1 * std::cos(2. * pi * (s + 4. * t)) / (2. * pi); },
+      [](const double t) { return t < 0.25 ? 0.12 * t : 0.03 + 0.08 * (t - 0.25); },
+      [](const double t) { return 3. * t * t; },
       16);
     const auto gait = meter.gait();
     ASSERT_TRUE(gait);
@@ -104,18 +94,11 @@ namespace
     GaitMeter meter(std::nullopt, false);
     show(
       meter,
-      [&](const double s, const double t)
-      {
+      [&](const double s, const double t) {
         return (1. - std::exp(-20. * t)) * 0.1 * std::cos(2. * pi * (s - t / period)) / (2. * pi);
       },
-      [&](const double t)
-      {
-        return 0.01 * t / period + 1e-3 * std::sin(2. * pi * t / period);
-      },
-      [&](const double t)
-      {
-        return 0.2 * t / period;
-      },
+      [&](const double t) { return 0.01 * t / period + 1e-3 * std::sin(2. * pi * t / period); },
+      [&](const double t) { return 0.2 * t / period; },
       200);
     const auto gait = meter.gait();
     ASSERT_TRUE(gait);
@@ -129,30 +112,13 @@ namespace
 
   TEST(GaitMeter, FindsNoPeriodWhereThereIsNone)
   {
-    const auto none = [](double)
-    {
-      return 0.;
-    };
+    const auto none = [](double) { return 0.; };
     GaitMeter decay(std::nullopt, false), rest(std::nullopt, false), long_period(1.5, false);
     show(
-      decay,
-      [](const double s, const double t)
-      {
-        return 0.1 * std::exp(-t) * std::cos(pi * s);
-      },
-      none,
-      none,
-      50);
+      decay, [](const double s, const double t) { return 0.1 * std::exp(-t) * std::cos(pi * s); }, none, none, 50);
     EXPECT_FALSE(decay.gait());
     show(
-      rest,
-      [](double, double)
-      {
-        return 0.;
-      },
-      none,
-      none,
-      50);
+      rest, [](double, double) { return 0.; }, none, none, 50);
     EXPECT_FALSE(rest.gait());
     EXPECT_EQ(long_period.next_time(), HUGE_VAL);
     EXPECT_FALSE(long_period.gait());

@@ -59,8 +59,7 @@ TEST(MeshFamily, IsOfSecondOrder)
   fmt::print("errors {:.2e}, {:.2e}, {:.2e}, order {:.3f}\n", errors[0], errors[1], errors[2], order);
   EXPECT_NEAR(order, 2., 0.1);
   EXPECT_GT(errors[2], 1e-4 * exact); // what extrapolation gains
-  const auto extrapolated = [&](const int i)
-  {
+  const auto extrapolated = [&](const int i) {
     return std::abs((4. * displacements[i] - displacements[i - 1]) / 3. - exact);
   };
   EXPECT_LT(extrapolated(2), 1e-5 * exact);
@@ -131,8 +130,7 @@ TEST(MeshFamily, SymmetricBodiesStay)
 TEST(MeshFamily, WorksEnergiesAndTheirErrors)
 {
   const Settings settings = test::wave(-1., 0.4);
-  const auto json_of      = [](const Settings &own)
-  {
+  const auto json_of      = [](const Settings &own) {
     return summary_of(test::run_with(own).result, test::parameters_with(own));
   };
   const auto exact = json_of(test::with(settings, {{"Accuracy", "1e-9"}})),
@@ -145,8 +143,7 @@ TEST(MeshFamily, WorksEnergiesAndTheirErrors)
                           "min_stretch",
                           "max_stretch"})
   {
-    const auto value = [&](const auto &summary)
-    {
+    const auto value = [&](const auto &summary) {
       return summary.at(key).is_object() ? summary.at(key).at("value").template get<double>()
                                          : summary.at(key).template get<double>();
     };
@@ -158,10 +155,7 @@ TEST(MeshFamily, WorksEnergiesAndTheirErrors)
 
 TEST(MeshFamily, IsChosenWhereTheStretchIsSmallOrTheBodySoft)
 {
-  const auto form = [](const Settings &settings)
-  {
-    return test::run_with(settings).choice.numerics.formulation;
-  };
+  const auto form = [](const Settings &settings) { return test::run_with(settings).choice.numerics.formulation; };
   EXPECT_EQ(form(test::wave(-1., 0.2)), Formulation::position);
   EXPECT_EQ(form(test::wave(1., 0.2, -1.)), Formulation::position);
   EXPECT_EQ(form(test::wave(-1., 0.6)), Formulation::stretch);
@@ -179,11 +173,8 @@ TEST(MeshFamily, CanBeStopped)
   const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene);
   ASSERT_TRUE(choice && choice->is_family);
   unsigned int n_steps  = 0;
-  const auto keep_going = [&]()
-  {
-    return ++n_steps < 100;
-  };
-  const Answer answer = answer_of_family(parameters, scene, *choice, {}, {}, keep_going);
+  const auto keep_going = [&]() { return ++n_steps < 100; };
+  const Answer answer   = answer_of_family(parameters, scene, *choice, {}, {}, keep_going);
   EXPECT_EQ(answer.result.time.status, "stopped");
   EXPECT_EQ(n_steps, 100u);
 }

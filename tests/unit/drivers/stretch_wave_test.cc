@@ -37,8 +37,7 @@ namespace
   std::function<double(double, double)>
   segments(const unsigned int n, const double lag, const double duty, const double gap = 0.)
   {
-    return [=](const double s, const double t)
-    {
+    return [=](const double s, const double t) {
       const double length = 1. / (n + (n - 1) * gap), pitch = length * (1. + gap), i = std::floor(s / pitch);
       return s - i * pitch < length && fraction(t + 1e-9 - i * lag) < duty ? 0.3 : 0.;
     };
@@ -49,12 +48,9 @@ namespace
     for (const double waves : {-3., -1., -0.5, 0.5, 1., 2., 7., 20.})
     {
       const double period = 0.7;
-      const auto wave     = wave_of(
-        [&](const double s, const double t) // with something that rests
-        {
-          return 0.2 * std::sin(5. * s) + 0.3 * std::sin(2. * pi * (waves * s - t / period));
-        },
-        period);
+      const auto wave     = wave_of([&](const double s, const double t) // with something that rests
+                                { return 0.2 * std::sin(5. * s) + 0.3 * std::sin(2. * pi * (waves * s - t / period)); },
+                                period);
       ASSERT_TRUE(wave);
       EXPECT_NEAR(wave->speed, 1. / (waves * period), 1e-9 / std::abs(waves * period));
       EXPECT_NEAR(wave->coherence, 1., 1e-9);
@@ -66,12 +62,10 @@ namespace
   {
     for (const double speed : {-2.2, 0.8})
     {
-      const auto wave = wave_of(
-        [&](const double s, const double t)
-        {
-          const double x = 2. * pi * (s / speed - t);
-          return 0.01 * std::sin(x) + 0.2 * std::cos(2. * x) + 0.3 * std::sin(3. * x + 1.) - 0.2 * std::cos(5. * x);
-        });
+      const auto wave = wave_of([&](const double s, const double t) {
+        const double x = 2. * pi * (s / speed - t);
+        return 0.01 * std::sin(x) + 0.2 * std::cos(2. * x) + 0.3 * std::sin(3. * x + 1.) - 0.2 * std::cos(5. * x);
+      });
       ASSERT_TRUE(wave);
       EXPECT_NEAR(wave->speed, speed, 1e-9);
       EXPECT_GT(wave->coherence, 0.95);
@@ -85,11 +79,8 @@ namespace
     double before = 1. + 1e-9;
     for (const double waves : {0.5, 0.4, 0.25, 0.15, 0.05, 0.01})
     {
-      const auto wave = wave_of(
-        [&](const double s, const double t)
-        {
-          return 0.3 * std::sin(2. * pi * (waves * s - t));
-        });
+      const auto wave =
+        wave_of([&](const double s, const double t) { return 0.3 * std::sin(2. * pi * (waves * s - t)); });
       ASSERT_TRUE(wave);
       EXPECT_NEAR(wave->speed, 1. / waves, 1e-6 / waves);
       const double x = 2. * pi * waves;
@@ -106,11 +97,9 @@ namespace
     const double A = 0.2;
     for (const double B : {0.05, 0.1, 0.18})
     {
-      const auto wave = wave_of(
-        [&](const double s, const double t)
-        {
-          return A * std::sin(4. * pi * s + 2. * pi * t) + B * std::sin(4. * pi * s - 2. * pi * t + 0.7);
-        });
+      const auto wave = wave_of([&](const double s, const double t) {
+        return A * std::sin(4. * pi * s + 2. * pi * t) + B * std::sin(4. * pi * s - 2. * pi * t + 0.7);
+      });
       ASSERT_TRUE(wave);
       EXPECT_NEAR(wave->coherence, (A * A - B * B) / (A * A + B * B), 0.01);
       EXPECT_NEAR(wave->speed, -0.5, 0.04); // the ends of the body show one to the other
@@ -121,11 +110,9 @@ namespace
   {
     for (const double half_waves : {0., 0.7, 1., 2., 3.5})
     {
-      const auto wave = wave_of(
-        [&](const double s, const double t)
-        {
-          return 0.2 * std::cos(pi * half_waves * s + 0.4) * (std::sin(2. * pi * t) + 0.3 * std::cos(4. * pi * t));
-        });
+      const auto wave = wave_of([&](const double s, const double t) {
+        return 0.2 * std::cos(pi * half_waves * s + 0.4) * (std::sin(2. * pi * t) + 0.3 * std::cos(4. * pi * t));
+      });
       ASSERT_TRUE(wave);
       EXPECT_LT(wave->coherence, 1e-9);
       const Gait gait{1., true, 1., 0.1, wave};
@@ -133,11 +120,7 @@ namespace
       EXPECT_FALSE(gait.wave_speed());
       EXPECT_FALSE(gait.slip());
     }
-    EXPECT_FALSE(wave_of(
-      [](double, double)
-      {
-        return 0.1;
-      }));
+    EXPECT_FALSE(wave_of([](double, double) { return 0.1; }));
   }
 
   /// Steps along the body and in time have no derivatives. The speed of N segments is that of a line through their
@@ -180,8 +163,7 @@ namespace
         for (const double start : {0., 0.011, 0.02})
         {
           const auto wave = wave_of(
-            [&](const double s, const double t)
-            {
+            [&](const double s, const double t) {
               double e = 0.;
               for (int i = -2; i < 3; ++i)
                 e += std::exp(-std::pow((s - speed * (t - 0.1 - i)) / width, 2));
@@ -202,14 +184,9 @@ namespace
   /// The smallest change of the motion changes the speed by as little, so that two runs tell the error.
   TEST(StretchWave, IsASmoothFunctionOfTheMotion)
   {
-    const auto speed = [](const double more)
-    {
+    const auto speed = [](const double more) {
       const auto on = segments(8, 0.125, 0.5, 0.3);
-      return wave_of(
-               [&](const double s, const double t)
-               {
-                 return on(s, t) + more * std::sin(3. * s + 2. * pi * t);
-               })
+      return wave_of([&](const double s, const double t) { return on(s, t) + more * std::sin(3. * s + 2. * pi * t); })
         ->speed;
     };
     const double rate = (speed(1e-4) - speed(-1e-4)) / 2e-4;

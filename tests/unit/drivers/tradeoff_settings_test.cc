@@ -146,8 +146,7 @@ TEST(NextTolerance, EndsWhereTighterOnesCannotHelp)
 {
   TradeoffFamily family;
   family.tolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
-  const auto next   = [&](const std::vector<TriedSetting> &tried)
-  {
+  const auto next   = [&](const std::vector<TriedSetting> &tried) {
     return next_tolerance(family, tried, /*reference=*/1., /*bar=*/1e-9);
   };
   EXPECT_EQ(next({}), 0);

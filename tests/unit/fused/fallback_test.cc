@@ -103,19 +103,14 @@ TEST_P(FallbackTest, EndsAsWithPetsc)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All,
-                         FallbackTest,
-                         ::testing::ValuesIn(cases()),
-                         [](const auto &test)
-                         {
-                           return test.param.name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, FallbackTest, ::testing::ValuesIn(cases()), [](const auto &test) {
+  return test.param.name;
+});
 
 /// The stretch of an end is 1 - m/k, so these times are known.
 TEST(Fallback, AnEndInvertsWhenItsStressReachesTheModulus)
 {
-  const auto inversion = [](const std::string &formula)
-  {
+  const auto inversion = [](const std::string &formula) {
     return FusedRun(expression(-1., formula), "radau 5", short_steps).simulate("automatic").inversion.value();
   };
   EXPECT_NEAR(inversion("1.5*t*s^8").t, 1. / 1.5, 1e-9);

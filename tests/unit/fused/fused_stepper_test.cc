@@ -196,13 +196,7 @@ TEST(FusedStepper, ARunStopsAtOnce)
       time.engine         = engine;
       Simulation simulation(MPI_COMM_WORLD, run.scene, time, run.numerics);
       unsigned int asked = 0;
-      const auto stopped = simulation.run({},
-                                          {.ledger = true},
-                                          {},
-                                          [&]
-                                          {
-                                            return ++asked < most;
-                                          });
+      const auto stopped = simulation.run({}, {.ledger = true}, {}, [&] { return ++asked < most; });
       EXPECT_EQ(stopped.time.status, "stopped") << engine;
       EXPECT_EQ(asked, most) << engine; // the initial state asks, too
       EXPECT_EQ(stopped.time.steps, most - 1) << engine;

@@ -221,13 +221,7 @@ TEST(LaneEngine, ABatchStopsAtOnce)
     {
       unsigned int asked = 0;
       const auto results = run_batch(
-        test::entries(runs),
-        {.ledger = true},
-        [&]
-        {
-          return ++asked < most;
-        },
-        *engine);
+        test::entries(runs), {.ledger = true}, [&] { return ++asked < most; }, *engine);
       EXPECT_EQ(asked, most) << "asked again after a no";
       unsigned int answers = 0;
       for (std::size_t i = 0; i < runs.size(); ++i)

@@ -195,11 +195,7 @@ namespace
     std::vector<double>
     slope(const std::vector<double> &by, const std::vector<double> &by_dot)
     {
-      return test::derivative(
-        [&](const double step)
-        {
-          return residual(by, by_dot, step);
-        });
+      return test::derivative([&](const double step) { return residual(by, by_dot, step); });
     }
   };
 
@@ -266,8 +262,7 @@ TEST(LaneStretch, SolutionsInvertTheDerivative)
         std::vector<double> alone = b;
         test.system.solve(alone.data());
         EXPECT_EQ(alone, x) << which;
-        const auto expect = [&](const std::vector<double> &found, const std::vector<double> &expected)
-        {
+        const auto expect = [&](const std::vector<double> &found, const std::vector<double> &expected) {
           for (std::size_t i = 0; i < size; ++i)
             EXPECT_NEAR(found[i], expected[i], 1e-8) << which << ", row " << i;
         };

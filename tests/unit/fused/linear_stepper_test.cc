@@ -108,8 +108,7 @@ TEST(LinearStepper, AdaptiveStepsHaveFewSizes)
   const Discretization mesh(MPI_COMM_WORLD, 1., 6, 6);
   LinearStepper stepper(scene, mesh, 5, /*adaptive=*/true);
   std::vector<double> u(mesh.n_owned(), 0.), times;
-  stepper.monitor = [&](const Step &step, const auto)
-  {
+  stepper.monitor = [&](const Step &step, const auto) {
     if (step.is_frame)
       times.push_back(step.time);
     return true;

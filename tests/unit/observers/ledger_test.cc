@@ -14,10 +14,7 @@ namespace
   double
   quadrature_error(const unsigned int n)
   {
-    const auto f = [](const double t)
-    {
-      return std::exp(t) * std::sin(5. * t);
-    };
+    const auto f = [](const double t) { return std::exp(t) * std::sin(5. * t); };
     RateQuadrature quadrature;
     double sum = 0.;
     // As a time integrator does: from tiny steps, each half as long again as the one before, to those of size 1/n.

@@ -104,8 +104,7 @@ TEST(Kinematic, IsTheSeriesForAEqualToOne)
 /// Halving a strain shows the order to which the series is the rung: D/eps^2 = const + O(eps^2).
 TEST(Kinematic, TendsToTheSeries)
 {
-  const auto gap = [](const double chi)
-  {
+  const auto gap = [](const double chi) {
     const auto settings = test::wave(-2.5, chi, 1.3, 0.8);
     return std::abs(compute(settings).displacement / compute(settings, "perturbation").displacement - 1.);
   };
@@ -115,8 +114,7 @@ TEST(Kinematic, TendsToTheSeries)
 /// Of a stiff body: m = -k e makes the strain e, up to O(1/k).
 TEST(Kinematic, StiffBody)
 {
-  const auto gap = [](const std::string &k)
-  {
+  const auto gap = [](const std::string &k) {
     test::Settings settings  = {{"Active stress/Generator", "expression"},
                                 {"Active stress/Expression/Active stress", k + "*0.2*(sin(2*pi*(s+t)) - sin(2*pi*s))"},
                                 {"Body/Elastic modulus", k}};

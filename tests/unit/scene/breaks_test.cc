@@ -57,8 +57,7 @@ TEST(Breaks, PiecesAreEvaluatedInside)
   const Scene scaled = in_units(scene, units, &pieces);
   const auto stress  = scaled.active_stress->at({0.5});
   double m           = 0.;
-  const auto at      = [&](const double t)
-  {
+  const auto at      = [&](const double t) {
     stress->values(t, {&m, 1});
     return m;
   };

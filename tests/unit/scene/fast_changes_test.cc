@@ -27,15 +27,7 @@ namespace
   {
     double largest = 0.1;
     return find_fast_changes(
-      *scene.active_stress,
-      scene.body.length,
-      0.,
-      scene.end_time,
-      [known](double, double)
-      {
-        return known;
-      },
-      largest);
+      *scene.active_stress, scene.body.length, 0., scene.end_time, [known](double, double) { return known; }, largest);
   }
 
   /// The shortest limit that a step meets which starts at this time.
@@ -90,8 +82,7 @@ TEST(FastChanges, OfJumpsAreAsShortAsTheyCanBe)
 /// A single pulse that runs over the body in a ten thousandth of the time.
 TEST(FastChanges, GeneratorsSayWhenTheyAct)
 {
-  const auto scene_with = [](test::Settings settings)
-  {
+  const auto scene_with = [](test::Settings settings) {
     settings.emplace_back("Time/End time", "1000");
     return test::parameters_with(settings).create_scene();
   };

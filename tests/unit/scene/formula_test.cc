@@ -25,11 +25,7 @@ namespace
       parser_.DefineFun("ceil", static_cast<double (*)(double)>(&std::ceil));
       parser_.DefineFun("erf", static_cast<double (*)(double)>(&std::erf));
       parser_.DefineFun("erfc", static_cast<double (*)(double)>(&std::erfc));
-      parser_.DefineFun("mod",
-                        [](const double x, const double y)
-                        {
-                          return x - y * std::floor(x / y);
-                        });
+      parser_.DefineFun("mod", [](const double x, const double y) { return x - y * std::floor(x / y); });
       for (const auto &[name, value] : constants)
         parser_.DefineConst(name, value);
       parser_.DefineVar("s", &s_);

@@ -76,8 +76,7 @@ TEST(FormulaGradient, MatchesDifferences)
   for (std::size_t v = 0; v < 5; ++v)
   {
     std::vector<double> f(n), slope(n), plus(n), minus(n);
-    const auto evaluate = [&](const double step, std::vector<double> &result, const bool with_slope)
-    {
+    const auto evaluate = [&](const double step, std::vector<double> &result, const bool with_slope) {
       auto shifted = x;
       for (double &value : shifted[v])
         value += step;
@@ -99,11 +98,8 @@ TEST(FormulaGradient, MatchesDifferences)
 TEST_F(ProfileFile, InterpolatesAndHolds)
 {
   // A cubic polynomial is reproduced by the spline, with its slope.
-  const auto cubic_of = [](const double x)
-  {
-    return 2. + x - 0.5 * x * x + 0.3 * x * x * x;
-  };
-  std::string rows = "x,value\n";
+  const auto cubic_of = [](const double x) { return 2. + x - 0.5 * x * x + 0.3 * x * x * x; };
+  std::string rows    = "x,value\n";
   for (const double x : {0., 0.3, 0.5, 1.1, 2.})
     rows += to_text(x) + "," + to_text(cubic_of(x)) + "\r\n";
   const auto cubic = table(rows, "cubic");
@@ -130,8 +126,7 @@ TEST_F(ProfileFile, InterpolatesAndHolds)
 
 TEST_F(ProfileFile, BadFilesAreNamedWithTheirRow)
 {
-  const auto expect = [&](const std::string &content, const std::string &part)
-  {
+  const auto expect = [&](const std::string &content, const std::string &part) {
     expect_message(
       {{"Ground/Profile", file(content)}, {"Ground/Profile interpolation", "linear"}}, "Ground/Profile", part);
   };
@@ -160,8 +155,7 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   expect_message({{"Ground/Profile", "1+x"}, {"Time/Cycle stop", "on"}, {"Output/Number of snapshots", "0"}},
                  "Time/Cycle stop",
                  "Ground/Profile");
-  const auto feedback = [](const std::string &formula)
-  {
+  const auto feedback = [](const std::string &formula) {
     return test::Settings{{"Active stress/Generator", "strain feedback"},
                           {"Active stress/Strain feedback/Active stress", formula}};
   };
@@ -171,8 +165,7 @@ TEST(GeneralInput, IsCheckedInOneSentence)
   expect_message(feedback("w_delayed"), section + "Delay", "at least");
   expect_message(feedback("log(w-1)"), section + "Active stress", "finite number is expected");
   EXPECT_EQ(message(feedback("w_t*(w-1)")), "");
-  const auto sensor = [&](const std::string &length)
-  {
+  const auto sensor = [&](const std::string &length) {
     auto settings = feedback("w_near");
     settings.push_back({section + "Sensor length", length});
     return settings;

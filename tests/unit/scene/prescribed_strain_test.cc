@@ -111,10 +111,7 @@ TEST(GaussPanels, AreExactForPolynomials)
 TEST(CubicSpline, ReproducesCubicsOnAnyKnots)
 {
   const std::vector<double> knots = {0., 0.3, 0.4, 1.1, 1.5, 2.};
-  const auto cubic                = [](const double x)
-  {
-    return 1. + x * (2. + x * (-3. + 0.7 * x));
-  };
+  const auto cubic                = [](const double x) { return 1. + x * (2. + x * (-3. + 0.7 * x)); };
   std::vector<double> y;
   for (const double x : knots)
     y.push_back(cubic(x));
@@ -223,8 +220,7 @@ TEST(PrescribedStrain, WaveAndTable)
 TEST(StrainTable, Orders)
 {
   const test::TemporaryFolder folder;
-  const auto errors = [&](const unsigned int n)
-  {
+  const auto errors = [&](const unsigned int n) {
     const std::string name = (folder.path / (std::to_string(n) + ".csv")).string();
     test::write_text(name, grid(n, wave_of));
     const StrainTable table(name, 1., 1., "");

@@ -79,16 +79,7 @@ TEST(Switching, HasFrontsOfTheWidthGiven)
     for (double x = -0.97; x < 1.; x += 0.0637)
     {
       EXPECT_NEAR(s.value(x + 1.), s.value(x), 1e-13);
-      EXPECT_NEAR(s.rate(x),
-                  difference(
-                    [&](const double y)
-                    {
-                      return s.value(y);
-                    },
-                    x,
-                    1e-4 * front),
-                  1e-6)
-        << x;
+      EXPECT_NEAR(s.rate(x), difference([&](const double y) { return s.value(y); }, x, 1e-4 * front), 1e-6) << x;
     }
   }
 }
@@ -135,8 +126,7 @@ TEST(Envelope, WindowAndRamp)
 
 TEST(Envelope, RefusesWindowsThatAreNone)
 {
-  const auto entry = [](const EnvelopeParameters &parameters) -> std::string
-  {
+  const auto entry = [](const EnvelopeParameters &parameters) -> std::string {
     try
     {
       Envelope(parameters, "X/", 2.);

@@ -106,8 +106,7 @@ TEST(Scene, TheSameMotionInAllUnits)
 
 TEST(Scene, RefusesExtremeUnits)
 {
-  const auto refused = [](const auto &change)
-  {
+  const auto refused = [](const auto &change) {
     Scene scene = test::parameters_with(in_user_units(1., 1., 1.)).create_scene();
     EXPECT_NO_THROW(natural_units(scene));
     change(scene);
@@ -115,31 +114,11 @@ TEST(Scene, RefusesExtremeUnits)
   };
   for (const double extreme : {1e-120, 1e120, 0., -1., std::numeric_limits<double>::quiet_NaN()})
   {
-    refused(
-      [&](Scene &scene)
-      {
-        scene.body.length = extreme;
-      });
-    refused(
-      [&](Scene &scene)
-      {
-        scene.end_time = extreme;
-      });
-    refused(
-      [&](Scene &scene)
-      {
-        scene.body.friction_coefficient = extreme;
-      });
-    refused(
-      [&](Scene &scene)
-      {
-        scene.body.elastic_modulus = extreme;
-      });
+    refused([&](Scene &scene) { scene.body.length = extreme; });
+    refused([&](Scene &scene) { scene.end_time = extreme; });
+    refused([&](Scene &scene) { scene.body.friction_coefficient = extreme; });
+    refused([&](Scene &scene) { scene.body.elastic_modulus = extreme; });
   }
   for (const double extreme : {1e-21, 1e21})
-    refused(
-      [&](Scene &scene)
-      {
-        scene.body.elastic_modulus = extreme / scene.end_time;
-      });
+    refused([&](Scene &scene) { scene.body.elastic_modulus = extreme / scene.end_time; });
 }

@@ -133,8 +133,7 @@ TEST(Segments, MeanIsDutyCycleTimesAmplitude)
 {
   for (const double D : {0.2, 0.5, 0.7})
   {
-    const auto mean_of = [&](const std::string &switching, const std::optional<double> limit)
-    {
+    const auto mean_of = [&](const std::string &switching, const std::optional<double> limit) {
       const Segments stress({.number      = 1,
                              .amplitude   = {0.3},
                              .frequency   = 0.25,
@@ -240,12 +239,7 @@ TEST(Segments, RatesAreDerivatives)
     unsigned int n_times = 0;
     for (double t = 0.0137; t < 2.; t += 0.0237)
     {
-      if (std::any_of(kinks.begin(),
-                      kinks.end(),
-                      [&](const double kink)
-                      {
-                        return std::abs(kink - t) < 2. * h;
-                      }))
+      if (std::any_of(kinks.begin(), kinks.end(), [&](const double kink) { return std::abs(kink - t) < 2. * h; }))
         continue;
       ++n_times;
       for (const double s : {0.1, 0.5, 0.9})
@@ -301,8 +295,7 @@ TEST(Segments, ManyAreATravellingWave)
 /// The mirrored gait moves the body the other way.
 TEST(Segments, MirroredGaitMovesTheOtherWay)
 {
-  const auto displacement = [](const std::string &direction)
-  {
+  const auto displacement = [](const std::string &direction) {
     return test::run_with(test::Settings{{"Active stress/Generator", "segments"},
                                          {"Active stress/Segments/Switching", "smooth"},
                                          {"Active stress/Segments/Number of segments", "4"},

@@ -98,14 +98,9 @@ TEST(ShapedWave, SineIsTheFourierSeries)
 TEST(ShapedWave, GaussianHasItsIntegral)
 {
   const double L = 2., gamma = 0.7, k = 3., chi = 0.3, c = -0.8, w = 0.15, x_0 = -0.4;
-  const auto V = [&](const double x)
-  {
-    return std::exp(-(x - x_0) * (x - x_0) / (w * w));
-  };
+  const auto V        = [&](const double x) { return std::exp(-(x - x_0) * (x - x_0) / (w * w)); };
   const auto integral = [&](const double from, const double to) // of V
-  {
-    return 0.5 * w * std::sqrt(pi) * (std::erf((to - x_0) / w) - std::erf((from - x_0) / w));
-  };
+  { return 0.5 * w * std::sqrt(pi) * (std::erf((to - x_0) / w) - std::erf((from - x_0) / w)); };
   auto settings = by_formula("exp(-((x + shift)/width)^2)", c, 3.);
   settings.emplace_back("Active stress/Optimal wave/Shape constants", "shift=0.4, width=0.15");
   const auto stress = stress_with(settings);
@@ -129,10 +124,7 @@ TEST(ShapedWave, GaussianHasItsIntegral)
 TEST(ShapedWave, FitsTheStressFreeEnds)
 {
   const auto stress = stress_with(by_formula("x^2/10 - 0.3*x + exp(sin(2*x))"));
-  const auto V      = [](const double x)
-  {
-    return x * x / 10. - 0.3 * x + std::exp(std::sin(2. * x));
-  };
+  const auto V      = [](const double x) { return x * x / 10. - 0.3 * x + std::exp(std::sin(2. * x)); };
   for (const double t : {0.5, 2., 4.9})
     for (const double s : {0., 2.})
       EXPECT_NEAR(values(*stress, {s}, t)[0], -3. * 0.3 / 1.3 * (V(s + 1.3 * t) - V(s)), 1e-12);
@@ -143,11 +135,8 @@ TEST(ShapedWave, TableIsASpline)
 {
   const test::TemporaryFolder folder;
   const std::string name = (folder.path / "shape.csv").string();
-  const auto cubic       = [](const double x)
-  {
-    return 0.1 * x * x * x - 0.5 * x * x + 0.2;
-  };
-  std::string text = "x,f\r\n";
+  const auto cubic       = [](const double x) { return 0.1 * x * x * x - 0.5 * x * x + 0.2; };
+  std::string text       = "x,f\r\n";
   for (const double x : {-0.1, 0.3, 1., 1.1, 2.5, 4., 4.6})
     text += test::text(x) + ", " + test::text(cubic(x)) + "\r\n";
   test::write_text(name, text);
@@ -161,17 +150,8 @@ TEST(ShapedWave, TableIsASpline)
     test::expect_rate(*by_table, 2., {0.3, 1.2}, 1e-8);
   }
   // Fourth order for others.
-  const auto error = [&](const unsigned int n)
-  {
-    test::write_text(name,
-                     table(
-                       [](const double x)
-                       {
-                         return std::sin(3. * x);
-                       },
-                       0.,
-                       4.6,
-                       n));
+  const auto error = [&](const unsigned int n) {
+    test::write_text(name, table([](const double x) { return std::sin(3. * x); }, 0., 4.6, n));
     const auto by_table = stress_with(shaped(from_table, 1.3, 2.)),
                formula  = stress_with(by_formula("sin(3*x)", 1.3, 2.));
     return test::largest_difference(values(*by_table, points, 1.1), values(*formula, points, 1.1));
@@ -190,10 +170,7 @@ TEST(ShapedWave, KinksAreFound)
   EXPECT_NEAR(places[0], 0.734, 1e-9);
   EXPECT_NEAR(places[1], 1.234, 1e-9);
   EXPECT_NEAR(places[2], 1.734, 1e-9);
-  const auto V = [](const double x)
-  {
-    return std::max(0., 1. - std::abs(x - 1.234) / 0.5);
-  };
+  const auto V = [](const double x) { return std::max(0., 1. - std::abs(x - 1.234) / 0.5); };
   // At t = 2 the triangle has left the body, so that only -(k/c) ( 0 - V(s) ) is left of the elastic part.
   const auto points = test::places(2.);
   const auto m      = values(*stress, points, 2.);
@@ -204,18 +181,13 @@ TEST(ShapedWave, KinksAreFound)
 /// A narrow peak between two coarse ones, and a shape that is needed over many lengths.
 TEST(ShapedWave, PanelsAreRefinedWhereItIsNeeded)
 {
-  const auto function = [](const std::span<const double> x, const std::span<double> f)
-  {
+  const auto function = [](const std::span<const double> x, const std::span<double> f) {
     for (std::size_t i = 0; i < x.size(); ++i)
       f[i] = std::cos(x[i]) + std::exp(-std::pow((x[i] - 0.31) / 0.01, 2));
   };
   const ShapeFunction shape(function, 0., 50., 1. / 16., "entry");
-  const auto peak = [](const double x)
-  {
-    return std::exp(-std::pow((x - 0.31) / 0.01, 2));
-  };
-  const auto integral = [](const double x)
-  {
+  const auto peak     = [](const double x) { return std::exp(-std::pow((x - 0.31) / 0.01, 2)); };
+  const auto integral = [](const double x) {
     return std::sin(x) + 0.005 * std::sqrt(pi) * (std::erf((x - 0.31) / 0.01) - std::erf(-0.31 / 0.01));
   };
   std::vector<double> x;

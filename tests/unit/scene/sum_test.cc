@@ -159,8 +159,7 @@ TEST(Sum, HasThePeriodThatItsTermsHaveInCommon)
   EXPECT_FALSE(common_period({1., std::numbers::sqrt2}));
   EXPECT_FALSE(common_period({1., 1. + 1e-7}));
 
-  const auto period = [](const std::string &a, const std::string &b, const bool multiplies = false)
-  {
+  const auto period = [](const std::string &a, const std::string &b, const bool multiplies = false) {
     std::vector<SumTerm> terms;
     for (const auto &[formula, is_factor] : {std::pair(a, false), std::pair(b, multiplies)})
     {
@@ -282,8 +281,7 @@ TEST(Sum, CombinesFeedback)
     delayed[i] = 0.9 + 0.05 * static_cast<double>(i);
   }
   const auto at       = all.feedback()->at(points);
-  const auto evaluate = [&]()
-  {
+  const auto evaluate = [&]() {
     std::vector<double> m(n);
     at->values(t, {w, rate, near, delayed}, {m, {}, {}, {}});
     return m;

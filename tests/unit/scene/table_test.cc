@@ -97,14 +97,8 @@ TEST(Table, OfTheOptimalWaveMovesTheBodyAsTheWaveDoes)
   Body body;
   body.anchoring_exponent = 2.;
   const OptimalWave wave({.perturbation_parameter = 0.4, .choose_wave_by = "wave speed"}, body, 1.);
-  const Samples samples(65,
-                        129,
-                        [&](const double s, const double t)
-                        {
-                          return values(wave, {s}, t)[0];
-                        });
-  const auto displacement = [&](const std::string &file)
-  {
+  const Samples samples(65, 129, [&](const double s, const double t) { return values(wave, {s}, t)[0]; });
+  const auto displacement = [&](const std::string &file) {
     return test::run_with({{"Body/Anchoring exponent", "2"},
                            {"Active stress/Generator", "table"},
                            {"Active stress/Table/File", file},
@@ -136,21 +130,10 @@ TEST(Table, GoesThroughItsSamples)
 TEST(Table, Units)
 {
   const Samples samples(
-    9,
-    9,
-    [](const double s, const double t)
-    {
-      return s * s / 10. + t / 100.;
-    },
-    10.,
-    0.,
-    2000.);
+    9, 9, [](const double s, const double t) { return s * s / 10. + t / 100.; }, 10., 0., 2000.);
   const ActiveStressTable table(
     {.file = samples.csv, .unit_of_s = 0.1, .unit_of_t = 1e-3, .unit_of_m = -2.}, /*length=*/1., /*end_time=*/2.);
-  const auto expected = [](const double s, const double t)
-  {
-    return -2. * (100. * s * s / 10. + 1000. * t / 100.);
-  };
+  const auto expected = [](const double s, const double t) { return -2. * (100. * s * s / 10. + 1000. * t / 100.); };
   const std::vector<double> points = {0., 0.33, 1.};
   std::vector<double> rate(3);
   for (const double t : {0.1, 1.3})
@@ -166,32 +149,18 @@ TEST(Table, Units)
 
 TEST(Table, PeriodIsFound)
 {
-  const auto period_of = [](const Samples &samples, const std::string &outside)
-  {
+  const auto period_of = [](const Samples &samples, const std::string &outside) {
     return ActiveStressTable({.file = samples.csv, .outside = outside}, 1., 1.).period();
   };
   const Samples one(5, 13, wave_of);
   EXPECT_EQ(period_of(one, "error"), std::nullopt);
   EXPECT_EQ(period_of(one, "periodic"), 1.);
   // Three strides in the table.
-  const Samples three(5,
-                      13,
-                      [](const double s, const double t)
-                      {
-                        return wave_of(s, 3. * t);
-                      });
+  const Samples three(5, 13, [](const double s, const double t) { return wave_of(s, 3. * t); });
   EXPECT_NEAR(period_of(three, "periodic").value(), 1. / 3., 1e-15);
   // A stride of 0.5 that begins at t = -0.2, in a run of T = 1.
   const Samples later(
-    5,
-    9,
-    [](const double s, const double t)
-    {
-      return wave_of(s, 2. * t);
-    },
-    1.,
-    -0.2,
-    0.3);
+    5, 9, [](const double s, const double t) { return wave_of(s, 2. * t); }, 1., -0.2, 0.3);
   const ActiveStressTable table({.file = later.csv, .outside = "periodic"}, 1., 1.);
   EXPECT_NEAR(table.period().value(), 0.5, 1e-15);
   for (const double t : {0.01, 0.3, 0.77})

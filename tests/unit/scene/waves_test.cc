@@ -72,8 +72,7 @@ namespace
   std::string
   smoothed(const std::string &x, const std::string &duty, const std::string &w)
   {
-    const auto front = [&](const std::string &middle)
-    {
+    const auto front = [&](const std::string &middle) {
       return step("(mod(" + x + " - (" + middle + ") + 0.5, 1) - 0.5)/" + w + " + 0.5");
     };
     // Up near 0 and down near duty, each as a step within half a period of its middle.
@@ -223,8 +222,7 @@ TEST(TravellingWave, PeriodAndBreaks)
 
 TEST(TravellingWave, SaysThatJumpsMove)
 {
-  const auto said = [](const Settings &entries)
-  {
+  const auto said = [](const Settings &entries) {
     std::ostringstream out;
     stress_with(travelling(entries))->report(out);
     return out.str();

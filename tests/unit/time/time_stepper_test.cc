@@ -23,27 +23,18 @@ namespace
     explicit ScalarEquation(const TimeParameters &parameters)
       : stepper(MPI_COMM_SELF, 1, parameters)
     {
-      stepper.implicit_function = [this](double t, auto y, auto y_dot, auto F)
-      {
+      stepper.implicit_function = [this](double t, auto y, auto y_dot, auto F) {
         ++evaluations;
         F[0] = (1. + y[0] * y[0]) * y_dot[0] - (1. + std::sin(t) * std::sin(t)) * std::cos(t);
         return y[0] < largest_admissible;
       };
-      stepper.setup_jacobian = [this](double, auto y, auto y_dot, double alpha)
-      {
+      stepper.setup_jacobian = [this](double, auto y, auto y_dot, double alpha) {
         jacobian = alpha * (1. + y[0] * y[0]) + 2. * y[0] * y_dot[0];
         return !singular;
       };
-      stepper.solve_with_jacobian = [this](auto b, auto x)
-      {
-        x[0] = b[0] / jacobian;
-      };
-      stepper.jacobian_vmult = [this](auto x, auto y)
-      {
-        y[0] = jacobian * x[0];
-      };
-      stepper.monitor = [this](const Step &step, auto y)
-      {
+      stepper.solve_with_jacobian = [this](auto b, auto x) { x[0] = b[0] / jacobian; };
+      stepper.jacobian_vmult      = [this](auto x, auto y) { y[0] = jacobian * x[0]; };
+      stepper.monitor             = [this](const Step &step, auto y) {
         steps.push_back(step);
         states.push_back(y[0]);
         if (throw_at > 0. && step.time >= throw_at)
@@ -127,8 +118,7 @@ TEST(TimeStepper, KnowsStatesFromStartToEndOfEachStep)
     ScalarEquation equation(parameters_for("bdf"));
     std::vector<double> y(1);
     double before = 0., start = 0.;
-    equation.stepper.monitor = [&](const Step &step, auto state)
-    {
+    equation.stepper.monitor = [&](const Step &step, auto state) {
       if (step.size > 0.)
       {
         n_below += step.time - step.size < start;
@@ -197,8 +187,7 @@ TEST(TimeStepper, FailuresHaveNames)
   }
   {
     ScalarEquation equation(parameters_for("bdf"));
-    equation.stepper.implicit_function = [](double, auto, auto, auto F)
-    {
+    equation.stepper.implicit_function = [](double, auto, auto, auto F) {
       F[0] = std::numeric_limits<double>::quiet_NaN();
       return true;
     };
@@ -206,11 +195,8 @@ TEST(TimeStepper, FailuresHaveNames)
   }
   {
     ScalarEquation equation(parameters_for("bdf"));
-    equation.stepper.solve_with_jacobian = [](auto b, auto x)
-    {
-      x[0] = -b[0];
-    }; // a wrong direction
-    const auto outcome = equation.solve(1e-8, 1e-4);
+    equation.stepper.solve_with_jacobian = [](auto b, auto x) { x[0] = -b[0]; }; // a wrong direction
+    const auto outcome                   = equation.solve(1e-8, 1e-4);
     EXPECT_EQ(outcome.status, "failed");
     EXPECT_NE(outcome.reason, "");
   }
