@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/drivers/command_line.h>
+#include <crawler/app/command_line.h>
 
 int
 main(int argc, char **argv)

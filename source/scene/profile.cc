@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/scene/active_stress/formula_gradient.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/profile.h>
 

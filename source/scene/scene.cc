@@ -373,7 +373,7 @@ namespace crawler
   natural_units(const Scene &scene)
   {
     // Squares of these, and of what is made of them, must not leave the range of doubles. Stiffer bodies lose the
-    // digits of the ledger, softer ones have layers that no mesh reaches.
+    // digits of the energy balance, softer ones have layers that no mesh reaches.
     constexpr double smallest = 1e-100, largest = 1e100;
     constexpr double softest = 1e-12, stiffest = 1e11;
 

@@ -572,7 +572,7 @@ namespace crawler
       PetscCall(KSPGetPC(ksp, &pc));
       PetscCall(PCSetType(pc, PCSHELL));
       PetscCall(PCShellSetContext(pc, ts));
-      PetscCall(PCShellSetName(pc, "chain eliminations of the stages"));
+      PetscCall(PCShellSetName(pc, "block-tridiagonal eliminations of the stages"));
       PetscCall(PCShellSetSetUp(pc, set_up_preconditioner));
       PetscCall(PCShellSetApply(pc, precondition));
       PetscBool is_preonly = PETSC_FALSE;

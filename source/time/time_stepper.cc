@@ -213,7 +213,7 @@ namespace crawler
     petsc(KSPGetPC(ksp, &pc));
     petsc(PCSetType(pc, PCSHELL));
     petsc(PCShellSetContext(pc, this));
-    petsc(PCShellSetName(pc, "chain elimination"));
+    petsc(PCShellSetName(pc, "block-tridiagonal elimination"));
     petsc(PCShellSetSetUp(pc, set_up_preconditioner));
     petsc(PCShellSetApply(pc, precondition));
 

@@ -4,7 +4,7 @@
 #include "../support/run_text.h"
 #include "setting_search.h"
 
-#include <crawler/drivers/batch.h>
+#include <crawler/run/batch.h>
 
 namespace crawler::test
 {

@@ -11,5 +11,5 @@ namespace crawler::test
   void
   add_kernel_benchmarks();
   void
-  add_rung_benchmarks();
+  add_reduced_benchmarks();
 } // namespace crawler::test

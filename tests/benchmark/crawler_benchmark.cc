@@ -10,18 +10,20 @@
 //                        true error that they reach.
 //   run/fused/1e-4 ...   The same by the fused engine, one body at a time.
 //   run/batch/1e-4 ...   The same, 4096 bodies side by side by run_batch(), from scenes to results. run/batch_avx2 and
-//                        run/batch_baseline are without the newer instructions, run/batch_ledger is with the ledger.
-//   run/rule/1e-4 ...    With the settings that Accuracy chooses, and with the ledger.
+//                        run/batch_baseline are without the newer instructions, run/batch_energy_balance is with the
+//                        energy balance.
+//   run/rule/1e-4 ...    With the settings that Accuracy chooses, and with the energy balance.
 //   run/pilot/1e-4 ...   What choosing them costs (set-up of all objects included).
 //   case/fig2/1e-6/...   20 strides (T = 20), by petsc, fused and batch.
 //   case/stiff/1e-6/...  The stiff body (a = -1, chi = 0.3, k = 100).
-//   rung/linear/1e-4 ... A body at a = 0 by the linear rung, and rung/nonlinear/... the same by the fused engine, both
+//   level/linear/1e-4 ... A body at a = 0 by the linear level, and level/nonlinear/... the same by the fused engine,
+//   both
 //                        with that tolerance on the same mesh; "error" is that of the work of its actuators.
 //   sweep/1e-4, 1e-6     40 exponents a in [-3, -0.5] times 25 chi in [0.05, 0.45] by run_batch() with one setting for
 //                        each half of the chi: the cheapest with which the largest true error of all its scenes is
 //                        below that. Runs that the batch gives back are computed by a Simulation; the time includes
 //                        them.
-//   rung/...             The rungs without a mesh, from a scene to its result with the error (small optimal wave to
+//   level/...             The levels without a mesh, from a scene to its result with the error (small optimal wave to
 //   1e-2,
 //                        prescribed strain to 1e-6), and the estimate of the models' errors alone.
 //   memory/sweep/1000... Peak memory of larger sweeps, in chunks.
@@ -46,7 +48,7 @@ main(int argc, char **argv)
   crawler::test::add_run_benchmarks();
   crawler::test::add_sweep_benchmarks();
   crawler::test::add_kernel_benchmarks();
-  crawler::test::add_rung_benchmarks();
+  crawler::test::add_reduced_benchmarks();
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;

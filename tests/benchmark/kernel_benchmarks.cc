@@ -4,7 +4,7 @@
 #include "../support/run_text.h"
 #include "benchmarks.h"
 
-#include <crawler/discretization/position_form.h>
+#include <crawler/equation/position_form.h>
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/table.h>
 
@@ -39,7 +39,7 @@ namespace crawler::test
       Scene scene;
       Discretization discretization;
       PositionForm assembler;
-      ChainMatrix<double> matrix;
+      BlockTridiagonalMatrix<double> matrix;
       std::vector<double> u, v, F;
     };
 

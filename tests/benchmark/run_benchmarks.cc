@@ -203,7 +203,7 @@ namespace crawler::test
       Setting setting{parameters.time, choose_numerics(MPI_COMM_WORLD, parameters, scene)->numerics};
       if (!setting.numerics.integrator.empty())
         setting.time.integrator = setting.numerics.integrator;
-      repeat_run(state, fig_s1(), setting, {.ledger = true});
+      repeat_run(state, fig_s1(), setting, {.energy_balance = true});
     }
 
     void
@@ -237,7 +237,7 @@ namespace crawler::test
       add_batch("run/batch", &batch_engine(), {});
       add_batch("run/batch_avx2", batch_engine("avx2"), {});
       add_batch("run/batch_baseline", batch_engine("baseline"), {});
-      add_batch("run/batch_ledger", &batch_engine(), {.ledger = true});
+      add_batch("run/batch_energy_balance", &batch_engine(), {.energy_balance = true});
       add("run/rule" + end, run_rule, accuracy);
       add("run/pilot" + end, run_pilot, accuracy);
     }

@@ -12,6 +12,8 @@
 // has. Prints a table in Markdown.
 #include "../support/run_text.h"
 
+#include <crawler/equation/general_position_form.h>
+
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/drivers/simulation.h>
+#include <crawler/run/simulation.h>
 
 #include <functional>
 #include <string>

@@ -10,7 +10,7 @@
 // one at which Accuracy (choose_form() follows that).
 #include "../support/run_text.h"
 
-#include <crawler/drivers/compute.h>
+#include <crawler/studies/core/compute.h>
 
 #include <deal.II/base/mpi.h>
 

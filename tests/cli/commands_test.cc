@@ -101,7 +101,7 @@ namespace
 
   /// The keys are a contract, and what is known must be a number.
   void
-  expect_complete_summary(const json &summary, const bool with_ledger = true)
+  expect_complete_summary(const json &summary, const bool with_energy_balance = true)
   {
     for (const char *key : {"status", "reason", "displacement_error", "model", "seconds", "versions", "command_line"})
       EXPECT_TRUE(summary.contains(key)) << key;
@@ -121,7 +121,7 @@ namespace
                             "paper_energy",
                             "positive_power",
                             "net_friction"})
-      EXPECT_TRUE(with_ledger ? summary.at(key).is_number() : summary.at(key).is_null()) << key;
+      EXPECT_TRUE(with_energy_balance ? summary.at(key).is_number() : summary.at(key).is_null()) << key;
     for (const char *key : {"min_stretch", "max_stretch"})
       for (const char *part : {"value", "s", "t"})
         EXPECT_TRUE(summary.at(key).at(part).is_number()) << key << ' ' << part;
@@ -359,7 +359,7 @@ TEST_F(Commands, OverwriteReplacesOwnFilesOnly)
 TEST_F(Commands, WithoutLedgerTheWorksAreUnknown)
 {
   ASSERT_EQ(run({"--set", "Output/Ledger=false"}).exit_code, 0);
-  expect_complete_summary(summary_of(results), /*with_ledger=*/false);
+  expect_complete_summary(summary_of(results), /*with_energy_balance=*/false);
   EXPECT_FALSE(contains(read_text(results / "statistics.csv"), "dissipation"));
 }
 

@@ -2,26 +2,26 @@
 //
 // Required orders of the fused engine: 5 and 9 in time, 2q in space.
 #include "../support/exact_solution.h"
-#include "../support/fused_runs.h"
+#include "../support/lane_runs.h"
 #include "../support/observed_order.h"
 
 #include <gtest/gtest.h>
 
 using namespace crawler;
-using test::FusedRun;
+using test::LaneRun;
 
 /// With a tolerance that any step meets all steps have the largest length. Newton's method is exact for a = 0, where
 /// the equation is linear. A stress that starts smoothly and a body that is not stiff: else the order is reduced.
 TEST(Fused, ReachesItsOrderWithEqualSteps)
 {
   const auto energy = [](const std::string &integrator, const unsigned int n) {
-    const FusedRun run(
+    const LaneRun run(
       test::expression(0., "0.02*sin(pi*t/2)^8*cos(3*(s-2*t))", 1., 0.05),
       integrator,
       {.degree = 4, .n_cells = 1, .tolerance = 1e3, .initial_step = 1. / n, .step_limits = {{0., 1. / n}}});
     const auto result = test::run_alone(run);
     EXPECT_EQ(result->time.steps, n) << integrator;
-    return result->ledger->elastic_energy;
+    return result->energy_balance->elastic_energy;
   };
   const double exact = energy("radau 9", 200);
   for (const auto &[integrator, order, steps] : {std::tuple("radau 5", 5., std::vector<double>{20, 40, 80}),
@@ -47,9 +47,9 @@ TEST(Fused, ReachesItsOrderWithEqualSteps)
 TEST(Fused, ErrorsFallWithTheToleranceOnTheWholeEquation)
 {
   const auto run = [](const std::string &integrator, const double tolerance) {
-    const FusedRun now(test::expression(-1., "0.4*sin(pi*t)^8*cos(2*pi*(s-t))"),
-                       integrator,
-                       {.degree = 4, .n_cells = 8, .tolerance = tolerance, .initial_step = 1e-2});
+    const LaneRun now(test::expression(-1., "0.4*sin(pi*t)^8*cos(2*pi*(s-t))"),
+                      integrator,
+                      {.degree = 4, .n_cells = 8, .tolerance = tolerance, .initial_step = 1e-2});
     return *test::run_alone(now);
   };
   const double exact = run("radau 9", 1e-14).displacement;
@@ -89,9 +89,9 @@ TEST(Fused, ReachesItsOrderInSpace)
     std::vector<double> cells, errors;
     for (const unsigned int n : meshes[q])
     {
-      const FusedRun run(
+      const LaneRun run(
         exact.settings(end_time), "radau 9", {.degree = q, .n_cells = n, .tolerance = 1e-12, .initial_step = 1e-3});
-      const auto result = test::run_alone(run, {.ledger = false});
+      const auto result = test::run_alone(run, {.energy_balance = false});
       ASSERT_TRUE(result);
       cells.push_back(n);
       errors.push_back(std::abs(result->displacement - exact.displacement(end_time)));

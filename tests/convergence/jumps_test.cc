@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Active stresses that jump: full orders where the jumps are declared, and lost orders where they are not.
-#include "../support/fused_runs.h"
+#include "../support/lane_runs.h"
 #include "../support/observed_order.h"
 #include "../support/with_breaks.h"
 
@@ -12,18 +12,18 @@
 #include <algorithm>
 
 using namespace crawler;
-using test::FusedRun;
+using test::LaneRun;
 
 namespace
 {
-  std::unique_ptr<FusedRun>
+  std::unique_ptr<LaneRun>
   jumping(const test::Settings &settings,
           const std::string &integrator,
           const Numerics &numerics,
           const std::vector<double> &in_space,
           const std::vector<double> &in_time)
   {
-    auto run = std::make_unique<FusedRun>(settings, integrator, numerics);
+    auto run = std::make_unique<LaneRun>(settings, integrator, numerics);
     run->scene.active_stress =
       std::make_unique<test::WithBreaks>(std::move(run->scene.active_stress), in_space, in_time);
     return run;
@@ -118,7 +118,7 @@ TEST(Jumps, InTimeKeepTheOrder)
                   declared ? std::vector<double>{0.375} : std::vector<double>());
         const auto result = engine == "batch" ? *test::run_alone(*run) : run->simulate(engine);
         EXPECT_LE(result.time.steps, n + 1) << integrator << " " << engine;
-        return result.ledger->elastic_energy;
+        return result.energy_balance->elastic_energy;
       };
     const double exact = energy("radau 9", "batch", 400, true);
     for (const auto &[integrator, order, steps] : {std::tuple("radau 5", 5., std::vector<double>{24, 48, 96}),
@@ -159,7 +159,7 @@ namespace
 } // namespace
 
 /// Every integrator, both forms, uniform, graded and adaptive meshes, and the engines, come to the same displacement,
-/// and their ledgers close.
+/// and their energy balances close.
 TEST(Jumps, AreTheSameForAllMethods)
 {
   const Numerics fine  = {.degree = 6, .n_cells = 5, .tolerance = 1e-10, .initial_step = 1e-9, .grading = {6, 0.25}};
@@ -167,17 +167,17 @@ TEST(Jumps, AreTheSameForAllMethods)
   ASSERT_TRUE(reference);
   const auto compare = [&](const std::string &name, const SimulationResult &result, const double within) {
     ASSERT_EQ(result.time.status, "finished") << name << ": " << result.time.message;
-    fmt::print("{:30} {:7} steps, displacement {:.10g}, off by {:.1e}, ledger {:.1e}\n",
+    fmt::print("{:30} {:7} steps, displacement {:.10g}, off by {:.1e}, energy balance {:.1e}\n",
                name,
                result.time.steps,
                result.displacement,
                std::abs(result.displacement / reference->displacement - 1.),
-               result.ledger->residual());
+               result.energy_balance->residual());
     EXPECT_NEAR(result.displacement / reference->displacement, 1., within) << name;
     // Where the velocity jumps the others have no formula of their own for integrals over a step.
     if (name.starts_with("arkimex") || name == "midpoint")
       return;
-    EXPECT_LT(result.ledger->residual(), 10. * within) << name;
+    EXPECT_LT(result.energy_balance->residual(), 10. * within) << name;
   };
   for (const Integrator &method : integrators())
   {
@@ -235,7 +235,7 @@ TEST(Jumps, ManyInTime)
     std::vector<double> steps, frames;
     std::vector<std::unique_ptr<Observer>> observers;
     observers.push_back(std::make_unique<Times>(steps, frames));
-    const SimulationResult result = simulation.run(wanted, {.ledger = true}, observers);
+    const SimulationResult result = simulation.run(wanted, {.energy_balance = true}, observers);
     ASSERT_EQ(result.time.status, "finished") << result.time.message;
     EXPECT_EQ(result.time.steps + 1, steps.size());
     EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end()));
@@ -244,7 +244,7 @@ TEST(Jumps, ManyInTime)
     ASSERT_EQ(frames.size(), wanted.size() + 1);
     for (std::size_t i = 0; i < wanted.size(); ++i)
       EXPECT_EQ(frames[i + 1], wanted[i]);
-    EXPECT_LT(result.ledger->residual(), 1e-5);
+    EXPECT_LT(result.energy_balance->residual(), 1e-5);
     displacements.push_back(result.displacement);
     fmt::print("{}: {} steps, {:.3f} s\n", engine, result.time.steps, result.solve_seconds);
   }
@@ -284,7 +284,7 @@ TEST(Jumps, GradedMeshesConvergeExponentially)
               {.degree = 8, .n_cells = 8, .tolerance = 1e-11, .initial_step = 1e-11, .grading = {levels, 0.25}},
               {},
               {});
-    const auto result = test::run_alone(*run, {.ledger = false});
+    const auto result = test::run_alone(*run, {.energy_balance = false});
     EXPECT_TRUE(result) << levels;
     return result->displacement;
   };
@@ -314,7 +314,7 @@ TEST(Jumps, GetGradedMeshes)
               {.degree = 8, .n_cells = 12, .tolerance = 1e-11, .initial_step = 1e-14, .grading = {8, 0.4}},
               in_space,
               in_time);
-    const auto exact = test::run_alone(*fine, {.ledger = false});
+    const auto exact = test::run_alone(*fine, {.energy_balance = false});
     ASSERT_TRUE(exact);
     for (const double accuracy : {1e-3, 1e-6, 1e-8})
     {
@@ -328,13 +328,13 @@ TEST(Jumps, GetGradedMeshes)
       EXPECT_EQ(result.engine, "fused");
       EXPECT_LT(result.most_cells, 60u);
       EXPECT_LT(std::abs(result.displacement / exact->displacement - 1.), accuracy);
-      EXPECT_LT(result.ledger->residual(), std::max(1e-8, 10. * accuracy));
-      fmt::print("Accuracy {:g}: {} cells, {} steps, error {:.1e}, ledger {:.1e}\n",
+      EXPECT_LT(result.energy_balance->residual(), std::max(1e-8, 10. * accuracy));
+      fmt::print("Accuracy {:g}: {} cells, {} steps, error {:.1e}, energy balance {:.1e}\n",
                  accuracy,
                  result.most_cells,
                  result.time.steps,
                  std::abs(result.displacement / exact->displacement - 1.),
-                 result.ledger->residual());
+                 result.energy_balance->residual());
     }
   }
   // A stress that starts and goes on smoothly does not need them.
@@ -354,11 +354,11 @@ TEST(Jumps, MayEndWhenCyclesRepeat)
                            {0.4},
                            times);
   const auto all   = run->simulate("automatic");
-  const auto early = run->simulate("automatic", {.ledger = true, .cycles = CycleWish{1., 1e-6}});
+  const auto early = run->simulate("automatic", {.energy_balance = true, .cycles = CycleWish{1., 1e-6}});
   ASSERT_EQ(early.time.status, "finished");
   ASSERT_TRUE(early.cycles);
   EXPECT_EQ(early.cycles->computed + early.cycles->extrapolated, 20u);
   EXPECT_GT(early.cycles->extrapolated, 10u);
   EXPECT_NEAR(early.displacement / all.displacement, 1., 1e-6);
-  EXPECT_NEAR(early.ledger->stress_power / all.ledger->stress_power, 1., 1e-5);
+  EXPECT_NEAR(early.energy_balance->stress_power / all.energy_balance->stress_power, 1., 1e-5);
 }

@@ -5,7 +5,8 @@
 // more.
 #include "../support/run_text.h"
 
-#include <crawler/discretization/mesh_transfer.h>
+#include <crawler/equation/general_position_form.h>
+#include <crawler/equation/mesh_transfer.h>
 #include <crawler/time/integrators.h>
 
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include "../support/exact_solution.h"
 #include "../support/observed_order.h"
 
-#include <crawler/observers/field_sampler.h>
+#include <crawler/output/field_sampler.h>
 
 #include <gtest/gtest.h>
 

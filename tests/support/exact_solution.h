@@ -12,7 +12,7 @@ namespace crawler::test
    * An exact solution of the whole equation for a = +1, gamma = k = L = 1: the strain
    *   e = E (sin 2 pi (s+t) - sin 2 pi s),
    * which belongs to the velocity v = E sin 2 pi (s+t) - d with d = (E^2/2)(1 - cos 2 pi t), since then <(1+e) v> = 0,
-   * and to the active stress m = int_0^s (1+e) v ds - k e (doc/theory.md, kinematic rung).
+   * and to the active stress m = int_0^s (1+e) v ds - k e (doc/theory.md, kinematic level).
    */
   struct ExactSolution
   {

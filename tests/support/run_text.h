@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/drivers/input.h>
-#include <crawler/drivers/mesh_family.h>
-#include <crawler/drivers/numerics_choice.h>
-#include <crawler/drivers/simulation.h>
+#include <crawler/accuracy/mesh_family.h>
+#include <crawler/accuracy/numerics_choice.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/run/simulation.h>
+#include <crawler/studies/core/input.h>
 
 #include <fmt/format.h>
 
@@ -47,7 +47,9 @@ namespace crawler::test
 
   /// What `crawler run` computes with these parameters and this scene, without files.
   inline Outcome
-  run_with(const Parameters &parameters, const Scene &scene, const Simulation::Options &options = {.ledger = true})
+  run_with(const Parameters &parameters,
+           const Scene &scene,
+           const Simulation::Options &options = {.energy_balance = true})
   {
     Outcome outcome;
     outcome.choice = *choose_numerics(MPI_COMM_WORLD, parameters, scene);
@@ -63,13 +65,13 @@ namespace crawler::test
   }
 
   inline Outcome
-  run_with(const Parameters &parameters, const Simulation::Options &options = {.ledger = true})
+  run_with(const Parameters &parameters, const Simulation::Options &options = {.energy_balance = true})
   {
     return run_with(parameters, parameters.create_scene(), options);
   }
 
   inline Outcome
-  run_with(const Settings &settings, const Simulation::Options &options = {.ledger = true})
+  run_with(const Settings &settings, const Simulation::Options &options = {.energy_balance = true})
   {
     return run_with(parameters_with(settings), options);
   }

@@ -11,13 +11,14 @@
 // large, or the median of reported over true is above 10.
 #include "random_scenes.h"
 
+#include <crawler/accuracy/error_estimate.h>
+#include <crawler/accuracy/graded_choice.h>
+#include <crawler/accuracy/mesh_family.h>
+#include <crawler/accuracy/run_as_promised.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/work_queue.h>
-#include <crawler/drivers/error_estimate.h>
-#include <crawler/drivers/graded_choice.h>
-#include <crawler/drivers/mesh_family.h>
-#include <crawler/drivers/self_check.h>
+#include <crawler/run/self_check.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -63,7 +64,7 @@ namespace
     p.discretization.formulation = "position";
     p.discretization.mesh        = "uniform";
     p.discretization.degree      = 8;
-    p.output.ledger              = false;
+    p.output.energy_balance      = false;
     const Scene scene            = p.create_scene();
     Numerics numerics            = choose_numerics(MPI_COMM_SELF, p, scene)->numerics;
     numerics.n_cells             = std::clamp(numerics.n_cells, 8u, 128u); // layers of a start ask for thousands
@@ -91,7 +92,7 @@ namespace
     p.accuracy                   = accuracy;
     p.time.cycle_stop            = "off";
     p.discretization.formulation = "stretch";
-    p.output.ledger              = false;
+    p.output.energy_balance      = false;
     const Scene scene            = random.create(p);
     if (!reason_against_stretch_form(scene).empty())
       return {unknown, unknown, "the stretch form cannot compute it"};
@@ -221,7 +222,7 @@ namespace
       parameters.accuracy = accuracy;
       const Scene scene   = random.create(parameters);
       const auto choice   = choose_numerics(MPI_COMM_SELF, parameters, scene);
-      const Simulation::Options options{.ledger = true, .cycles = cycle_wish(parameters, scene, 0)};
+      const Simulation::Options options{.energy_balance = true, .cycles = cycle_wish(parameters, scene, 0)};
       const Answer answer = run_as_promised(
         MPI_COMM_SELF,
         parameters,

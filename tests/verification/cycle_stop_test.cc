@@ -4,7 +4,7 @@
 #include "../support/run_text.h"
 
 #include <crawler/base/exceptions.h>
-#include <crawler/drivers/compute.h>
+#include <crawler/studies/core/compute.h>
 
 #include <gtest/gtest.h>
 
@@ -30,8 +30,8 @@ namespace
     parameters.accuracy    = accuracy;
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, choice.numerics);
     Pair pair;
-    pair.cycles = simulation.run({}, {.ledger = true, .cycles = cycle_wish(parameters, scene, 0)});
-    pair.full   = simulation.run({}, {.ledger = true});
+    pair.cycles = simulation.run({}, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, 0)});
+    pair.full   = simulation.run({}, {.energy_balance = true});
     EXPECT_EQ(pair.full.time.status, "finished");
     EXPECT_EQ(pair.cycles.time.status, "finished");
     EXPECT_FALSE(pair.full.cycles);
@@ -43,7 +43,7 @@ namespace
   compute(const Parameters &parameters)
   {
     const Scene scene = parameters.create_scene();
-    return test::run_with(parameters, {.ledger = true, .cycles = cycle_wish(parameters, scene, 0)}).result;
+    return test::run_with(parameters, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, 0)}).result;
   }
 
   /// The settings with Accuracy 1e-9.
@@ -81,7 +81,8 @@ TEST(CycleStop, Fig2NeedsThreeOfItsTwentyCycles)
     EXPECT_EQ(result.cycles->computed + result.cycles->extrapolated, 20u);
     EXPECT_EQ(result.time.time, 20.);
     EXPECT_NEAR(result.displacement, 1.801968240, accuracy * 1.8 + 0.6e-9);
-    EXPECT_NEAR(result.ledger->stress_power, 1.674733, 5. * accuracy * 1.7 + 0.6e-6); // Accuracy is of the displacement
+    EXPECT_NEAR(
+      result.energy_balance->stress_power, 1.674733, 5. * accuracy * 1.7 + 0.6e-6); // Accuracy is of the displacement
   }
 }
 
@@ -89,7 +90,7 @@ TEST(CycleStop, LedgerIsThatOfTheWholeRun)
 {
   const Pair pair = run_both(accurate(test::wave(-1., 0.4, 1., 20.)), 1e-9);
   expect_honest(pair, 1e-9);
-  const Ledger &cycles = *pair.cycles.ledger, &full = *pair.full.ledger;
+  const EnergyBalance &cycles = *pair.cycles.energy_balance, &full = *pair.full.energy_balance;
   EXPECT_NEAR(cycles.stress_power / full.stress_power, 1., 1e-8);
   EXPECT_NEAR(cycles.dissipation / full.dissipation, 1., 1e-8);
   EXPECT_NEAR(cycles.positive_power / full.positive_power, 1., 1e-4); // its integrand has kinks

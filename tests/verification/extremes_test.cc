@@ -53,7 +53,7 @@ TEST(Extremes, OneCell)
                             .result;
       ASSERT_EQ(result.time.status, "finished") << formulation << degree;
       EXPECT_LT(result.net_friction, 1e-11) << formulation << degree;
-      EXPECT_LT(result.ledger->residual(), 1e-6) << formulation << degree;
+      EXPECT_LT(result.energy_balance->residual(), 1e-6) << formulation << degree;
       const double expected = degree == 1 ? 0. : 5.020242991e-3, error = degree == 1 ? 1e-15 : 5e-7;
       if (degree == 1 || degree == 8)
       {
@@ -72,7 +72,7 @@ TEST(Extremes, AMillionCells)
                                              {"Discretization/Number of cells", cells},
                                              {"Time/Step control", "fixed"},
                                              {"Time/Initial step", "0.025"}}),
-                                       {.ledger = false})
+                                       {.energy_balance = false})
                           .result;
     EXPECT_EQ(result.time.status, "finished");
     EXPECT_EQ(result.time.steps, 2u);
@@ -82,7 +82,7 @@ TEST(Extremes, AMillionCells)
   EXPECT_NEAR(displacement("1", "1000000") / exact, 1., 1e-9);
 }
 
-/// Time steps and tolerances of the user's own. What finishes has the right number, or its ledger would tell.
+/// Time steps and tolerances of the user's own. What finishes has the right number, or its energy balance would tell.
 TEST(Extremes, StepsAndTolerances)
 {
   struct Case

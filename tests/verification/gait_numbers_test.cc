@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Gait numbers of runs against theory.md: sections 4, 5 and 10.
-#include "../support/fused_runs.h"
+#include "../support/lane_runs.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace
   stride(test::Settings settings, const bool with_cycle_stop = false)
   {
     settings.emplace_back("Accuracy", "1e-8");
-    const Simulation::Options options{.ledger = true,
+    const Simulation::Options options{.energy_balance = true,
                                       .cycles = with_cycle_stop ? std::optional(CycleWish{1., 1e-8}) : std::nullopt,
                                       .gait   = Simulation::GaitWish::any};
     return test::run_with(settings, options).result;
@@ -46,16 +46,16 @@ TEST(GaitNumbers, ThoseOfFigure2)
   EXPECT_STREQ(gait.direction(), "retrograde");
   EXPECT_NEAR(gait.wave->speed, -1., 0.02); // to leading order in chi
   // From stride to stride nothing is stored: the work is dissipated.
-  EXPECT_NEAR(gait.ledger->elastic_energy, 0., 1e-9);
-  EXPECT_NEAR(gait.ledger->stress_power, gait.ledger->dissipation, 1e-8);
-  EXPECT_NEAR(gait.ledger->stress_power, (1.674733 - 0.083860120) / 19., 1e-6);
+  EXPECT_NEAR(gait.energy_balance->elastic_energy, 0., 1e-9);
+  EXPECT_NEAR(gait.energy_balance->stress_power, gait.energy_balance->dissipation, 1e-8);
+  EXPECT_NEAR(gait.energy_balance->stress_power, (1.674733 - 0.083860120) / 19., 1e-6);
   EXPECT_LT(*result.gait_efficiency, 1.);
   EXPECT_NEAR(*gait.slip(), 1. - 0.0901, 2e-3);
 
   const auto early = stride(test::wave(-1., 0.4, 1., 20.), /*with_cycle_stop=*/true);
   ASSERT_TRUE(early.cycles && early.gait);
   EXPECT_NEAR(early.gait->displacement, gait.displacement, 1e-8);
-  EXPECT_NEAR(early.gait->ledger->positive_power, gait.ledger->positive_power, 1e-5); // kinks
+  EXPECT_NEAR(early.gait->energy_balance->positive_power, gait.energy_balance->positive_power, 1e-5); // kinks
 }
 
 /// A run that ends early does so at the end of a stride, whatever rounding makes of that time.
@@ -81,7 +81,7 @@ TEST(GaitNumbers, TheDirectionSwitchesWithA)
     EXPECT_NEAR(result.gait->wave->speed, a, 2e-3);
     EXPECT_NEAR(result.gait->wave->coherence, 1., 1e-3);
     // -L gamma c/a to leading order in chi.
-    EXPECT_NEAR(*result.gait->cost_of_transport(result.gait->ledger->stress_power), 1., 0.02);
+    EXPECT_NEAR(*result.gait->cost_of_transport(result.gait->energy_balance->stress_power), 1., 0.02);
   }
   // The centre of mass stays where it is, so nothing is prograde or retrograde.
   const auto still = stride(test::wave(0., 0.1, 1., 2.));
@@ -95,8 +95,12 @@ TEST(GaitNumbers, TheEnergiesOfAStrideAddUpWithThoseBefore)
   const double T   = 2.3; // the last stride starts where no cycle ends
   const auto whole = stride(test::wave(-1., 0.3, 1., T)), before = stride(test::wave(-1., 0.3, 1., T - 1.));
   EXPECT_NEAR(whole.gait->displacement, whole.displacement - before.displacement, 1e-9);
-  EXPECT_NEAR(whole.gait->ledger->stress_power, whole.ledger->stress_power - before.ledger->stress_power, 1e-8);
-  EXPECT_NEAR(whole.gait->ledger->positive_power, whole.ledger->positive_power - before.ledger->positive_power, 1e-4);
+  EXPECT_NEAR(whole.gait->energy_balance->stress_power,
+              whole.energy_balance->stress_power - before.energy_balance->stress_power,
+              1e-8);
+  EXPECT_NEAR(whole.gait->energy_balance->positive_power,
+              whole.energy_balance->positive_power - before.energy_balance->positive_power,
+              1e-4);
 }
 
 /// The generator says which wave runs; what is measured knows nothing of it. Actuators switch from segment to segment,
@@ -169,9 +173,9 @@ TEST(GaitNumbers, SideBySideTheyAreTheSame)
                                      {"Active stress/Pulse/Speed", "40"},
                                      {"Active stress/Pulse/Repetition period", "2"}};
   const Numerics numerics         = {.degree = 6, .n_cells = 8, .tolerance = 1e-8, .initial_step = 1e-4};
-  test::FusedRuns runs;
+  test::LaneRuns runs;
   const auto add = [&](const test::Settings &settings) {
-    runs.push_back(std::make_unique<test::FusedRun>(settings, "radau 9", numerics));
+    runs.push_back(std::make_unique<test::LaneRun>(settings, "radau 9", numerics));
   };
   add(test::wave(-1., 0.3));
   add(test::wave(-1., 0.3, 1., 2.5));
@@ -180,7 +184,7 @@ TEST(GaitNumbers, SideBySideTheyAreTheSame)
   add(test::with(test::wave(-1., 0.3, 1., 4.), segments));
   add(test::with(test::wave(-1., 0.3, 1., 4.03), pulses)); // too fast for the samples
   add(test::wave(-1., 0.3, 1., 0.7));                      // no whole stride
-  const Simulation::Options options{.ledger = true, .gait = Simulation::GaitWish::declared};
+  const Simulation::Options options{.energy_balance = true, .gait = Simulation::GaitWish::declared};
   const auto together = run_batch(test::entries(runs), options);
   for (std::size_t i = 0; i < runs.size(); ++i)
   {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Whole runs of general bodies and grounds (doc/theory.md) against plain scenes, closed forms and symmetries. Every run
-// must close its ledger and balance its friction.
+// must close its energy balance and balance its friction.
 #include "../support/run_text.h"
 
 #include <crawler/base/exceptions.h>
@@ -47,7 +47,7 @@ namespace
   {
     const SimulationResult result = test::run_with(settings).result;
     EXPECT_EQ(result.time.status, "finished") << result.time.message;
-    EXPECT_LT(result.ledger->residual(), most_residual);
+    EXPECT_LT(result.energy_balance->residual(), most_residual);
     EXPECT_LT(result.net_friction, 1e-9);
     return result;
   }
@@ -68,8 +68,8 @@ namespace
   double
   energy_left(const Settings &settings)
   {
-    const Ledger ledger = *run(settings).ledger;
-    return ledger.elastic_energy / ledger.initial_energy;
+    const EnergyBalance energy_balance = *run(settings).energy_balance;
+    return energy_balance.elastic_energy / energy_balance.initial_energy;
   }
 
   const std::string wave_formula = "0.3*sin(2*pi*(s+t))*s*(1-s)*4";
@@ -257,7 +257,7 @@ TEST(GeneralScenes, SensorsSeeTheMean)
                        {"Body/Anchoring exponent", "1"},
                        {"Time/Tolerance", "1e-8"},
                        {"Time/End time", text(T)}});
-        expect_near(result.ledger->elastic_energy, 0.25 * E * E * std::sin(T) * std::sin(T), 1e-5);
+        expect_near(result.energy_balance->elastic_energy, 0.25 * E * E * std::sin(T) * std::sin(T), 1e-5);
         expect_near(result.max_stretch.value, 1. + E * std::sin(T), 1e-4);
       }
 }

@@ -4,9 +4,9 @@
 // strides, soft bodies, meshes of the user's own.
 #include "../support/run_text.h"
 
-#include <crawler/drivers/compute.h>
-#include <crawler/drivers/compute_similar.h>
-#include <crawler/drivers/error_estimate.h>
+#include <crawler/accuracy/error_estimate.h>
+#include <crawler/studies/core/compute.h>
+#include <crawler/studies/core/compute_similar.h>
 
 #include <gtest/gtest.h>
 

@@ -32,9 +32,9 @@ TEST(Identities, NetFrictionAndLedger)
     const auto result = test::run_with(with(test::wave(1. - p, 0.1, 0.7), numerics)).result;
     ASSERT_EQ(result.time.status, "finished") << p;
     EXPECT_LT(result.net_friction, 1e-11) << p;
-    EXPECT_LT(result.ledger->residual(), 1e-6) << p;
-    EXPECT_GT(result.ledger->dissipation, 0.) << p;
-    EXPECT_GE(result.ledger->positive_power, result.ledger->stress_power) << p;
+    EXPECT_LT(result.energy_balance->residual(), 1e-6) << p;
+    EXPECT_GT(result.energy_balance->dissipation, 0.) << p;
+    EXPECT_GE(result.energy_balance->positive_power, result.energy_balance->stress_power) << p;
   }
 }
 
@@ -64,8 +64,8 @@ TEST(Identities, LedgerWhereFrictionVanishes)
     const auto &result  = outcome.result;
     ASSERT_EQ(result.time.status, "finished") << mesh;
     EXPECT_LT(result.net_friction, 1e-10) << mesh;
-    EXPECT_LT(result.ledger->residual(), 1e-2) << mesh;
-    EXPECT_NEAR(result.ledger->stress_power, 0.129086, 1e-3) << mesh;
+    EXPECT_LT(result.energy_balance->residual(), 1e-2) << mesh;
+    EXPECT_NEAR(result.energy_balance->stress_power, 0.129086, 1e-3) << mesh;
     EXPECT_NEAR(result.displacement, -0.185838, outcome.choice.promised_error) << mesh;
   }
 }
@@ -87,7 +87,7 @@ TEST(Identities, LedgerOfStiffBodies)
         const std::string what =
           fmt::format("k = {:g}, a = {:g}, {}", k, a, more.empty() ? "automatic" : more.front().first);
         ASSERT_EQ(result.time.status, "finished") << what;
-        EXPECT_LT(result.ledger->residual(), 1e-7) << what;
+        EXPECT_LT(result.energy_balance->residual(), 1e-7) << what;
         EXPECT_LT(result.net_friction, 1e-7) << what;
       }
 }
@@ -141,9 +141,9 @@ TEST(Identities, StrainModesDecay)
            {}));
     const Scene scene = parameters.create_scene();
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, {5, 6, 1e-14, 1e-7});
-    const auto result = simulation.run({}, {.ledger = true});
+    const auto result = simulation.run({}, {.energy_balance = true});
     EXPECT_EQ(result.time.status, "finished");
-    return std::sqrt(result.ledger->elastic_energy);
+    return std::sqrt(result.energy_balance->elastic_energy);
   };
   const double rate = 0.8 * std::pow(std::numbers::pi / 2., 2) / 1.7;
   EXPECT_NEAR(std::log(strain(0.3) / strain(1.3)), rate, 1e-5 * rate);

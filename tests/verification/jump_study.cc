@@ -5,7 +5,7 @@
 //   jump_study mesh|time [a k]
 // "mesh" prints the relative error of the displacement over degree, cells, levels and ratio of the grading with very
 // small steps; "time" prints it over integrator, tolerance and first step on a very fine mesh.
-#include "../support/fused_runs.h"
+#include "../support/lane_runs.h"
 #include "../support/with_breaks.h"
 
 #include <deal.II/base/mpi.h>
@@ -44,7 +44,7 @@ namespace
   Measured
   measure(const Case &c, const double a, const double k, const std::string &integrator, const Numerics &numerics)
   {
-    test::FusedRun run(test::expression(a, c.formula, 1., k), integrator, numerics);
+    test::LaneRun run(test::expression(a, c.formula, 1., k), integrator, numerics);
     run.scene.active_stress =
       std::make_unique<test::WithBreaks>(std::move(run.scene.active_stress), c.in_space, c.in_time);
     if (numerics.initial_step == 0.) // what the smallest cell needs to come to rest
@@ -54,7 +54,7 @@ namespace
       run.numerics.initial_step = std::min(1e-2, h * h / k / std::pow(numerics.degree, 4));
     }
     const auto start     = std::chrono::steady_clock::now();
-    const auto result    = test::run_alone(run, {.ledger = false}, single_engine());
+    const auto result    = test::run_alone(run, {.energy_balance = false}, single_engine());
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (!result)
       return {std::nan(""), 1e3 * seconds, 0, 0};

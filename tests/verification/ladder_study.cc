@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The errors that the rungs perturbation and kinematic estimate, against those that they have: random optimal waves,
+// The errors that the levels perturbation and kinematic estimate, against those that they have: random optimal waves,
 // computed with the nonlinear model to 1e-6 of the displacement. Prints a table (CSV) and, at its end, how many of the
 // true errors are within the estimates and the median of estimate/true.
 //
 //     build/tests/ladder_study [number of scenes]
 #include "../support/random_waves.h"
 
-#include <crawler/drivers/rung.h>
-#include <crawler/rungs/perturbation.h>
+#include <crawler/reduced_models/perturbation.h>
+#include <crawler/run/reduced_model.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -40,8 +40,8 @@ main(int argc, char **argv)
     }
     const Parameters parameters = test::parameters_with(wave.settings);
     const Scene scene           = parameters.create_scene();
-    const RungScene rungs(scene);
-    const ModelErrors errors = rungs.model_errors();
+    const ReducedScene levels(scene);
+    const ModelErrors errors = levels.model_errors();
     std::cout << wave.a << ',' << wave.chi << ',' << wave.c << ',' << wave.k << ',' << wave.T << ',' << *truth << ',';
     if (!errors.known)
     {
@@ -50,8 +50,8 @@ main(int argc, char **argv)
       continue;
     }
     ++total;
-    const double series       = Perturbation(*rungs.wave()).displacement(1.);
-    const double motion       = kinematic(rungs.scene(), *rungs.strain(), 1e-8).displacement;
+    const double series       = Perturbation(*levels.wave()).displacement(1.);
+    const double motion       = kinematic(levels.scene(), *levels.strain(), 1e-8).displacement;
     const double is[2]        = {std::abs(series - *truth), std::abs(motion - *truth)};
     const double estimated[2] = {errors.perturbation, errors.kinematic};
     for (unsigned int i = 0; i < 2; ++i)

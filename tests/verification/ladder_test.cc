@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The rungs of the ladder (doc/theory.md, "The ladder") against each other, and the choice among them.
+// The levels of the ladder (doc/theory.md, "The ladder") against each other, and the choice among them.
 #include "../support/run_text.h"
 
+#include <crawler/accuracy/model_choice.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/drivers/compute.h>
-#include <crawler/drivers/model_choice.h>
-#include <crawler/drivers/rung.h>
+#include <crawler/run/reduced_model.h>
+#include <crawler/studies/core/compute.h>
 
 #include <gtest/gtest.h>
 
@@ -17,11 +17,11 @@ using namespace crawler;
 namespace
 {
   SimulationResult
-  on_rung(const test::Settings &settings, const std::string &model, const double accuracy)
+  on_level(const test::Settings &settings, const std::string &model, const double accuracy)
   {
     const Parameters parameters = test::parameters_with(settings);
     const Scene scene           = parameters.create_scene();
-    return Rung(scene, model).compute(accuracy, true);
+    return ReducedModel(scene, model).compute(accuracy, true);
   }
 
   test::Settings
@@ -55,7 +55,7 @@ namespace
 } // namespace
 
 /// The stress of a prescribed strain, given to the nonlinear model, brings the strain about: displacement, works and
-/// extremes are those of the kinematic rung.
+/// extremes are those of the kinematic level.
 TEST(Ladder, NonlinearFollowsAPrescribedStrain)
 {
   for (const double a : {-2.5, -1., 1.5})
@@ -67,27 +67,28 @@ TEST(Ladder, NonlinearFollowsAPrescribedStrain)
       {"Active stress/Generator", "prescribed strain"},
       {"Active stress/Prescribed strain/Strain", "0.25*(sin(2*pi*(s+t)) - sin(2*pi*s)) + 0.1*s*t^2"}};
     const auto full   = test::run_with(settings).result;
-    const auto motion = on_rung(settings, "kinematic", 1e-10);
+    const auto motion = on_level(settings, "kinematic", 1e-10);
     ASSERT_EQ(full.time.status, "finished");
     ASSERT_EQ(motion.time.status, "finished");
     EXPECT_NEAR(full.displacement / motion.displacement, 1., 1e-8) << "a = " << a;
-    EXPECT_NEAR(full.ledger->stress_power / motion.ledger->stress_power, 1., 1e-7);
-    EXPECT_NEAR(full.ledger->dissipation / motion.ledger->dissipation, 1., 1e-7);
-    EXPECT_NEAR(full.ledger->paper_energy() / motion.ledger->paper_energy(), 1., 1e-7);
-    EXPECT_NEAR(full.ledger->positive_power / motion.ledger->positive_power, 1., 2e-3); // an integrand with kinks
-    EXPECT_NEAR(full.ledger->elastic_energy / motion.ledger->elastic_energy, 1., 1e-7);
+    EXPECT_NEAR(full.energy_balance->stress_power / motion.energy_balance->stress_power, 1., 1e-7);
+    EXPECT_NEAR(full.energy_balance->dissipation / motion.energy_balance->dissipation, 1., 1e-7);
+    EXPECT_NEAR(full.energy_balance->paper_energy() / motion.energy_balance->paper_energy(), 1., 1e-7);
+    EXPECT_NEAR(
+      full.energy_balance->positive_power / motion.energy_balance->positive_power, 1., 2e-3); // an integrand with kinks
+    EXPECT_NEAR(full.energy_balance->elastic_energy / motion.energy_balance->elastic_energy, 1., 1e-7);
     EXPECT_NEAR(full.min_stretch.value, motion.min_stretch.value, 1e-4);
     EXPECT_NEAR(full.max_stretch.value, motion.max_stretch.value, 1e-4);
   }
 }
 
 /// The wave's series against the body with the same strain, against the full equation: each error within its estimate.
-TEST(Ladder, EachRungAgainstTheOneAbove)
+TEST(Ladder, EachLevelAgainstTheOneAbove)
 {
   for (const double a : {-1., 1., -3., 2.})
   {
     auto settings     = test::wave(a, 0.15, a > 0. ? -1. : 1.);
-    const auto series = on_rung(settings, "perturbation", 1e-1), motion = on_rung(settings, "kinematic", 1e-1);
+    const auto series = on_level(settings, "perturbation", 1e-1), motion = on_level(settings, "kinematic", 1e-1);
     settings.emplace_back("Accuracy", "1e-8");
     const double full = test::run_with(settings).result.displacement;
     EXPECT_LE(std::abs(series.displacement - motion.displacement),
@@ -95,8 +96,8 @@ TEST(Ladder, EachRungAgainstTheOneAbove)
     EXPECT_LE(std::abs(series.displacement - full), series.error->total);
     EXPECT_LE(std::abs(motion.displacement - full), motion.error->total);
     EXPECT_GT(series.error->total, 0.);
-    EXPECT_NEAR(series.ledger->stress_power / motion.ledger->stress_power, 1., 0.05);
-    EXPECT_NEAR(series.ledger->paper_energy() / motion.ledger->paper_energy(), 1., 0.05);
+    EXPECT_NEAR(series.energy_balance->stress_power / motion.energy_balance->stress_power, 1., 0.05);
+    EXPECT_NEAR(series.energy_balance->paper_energy() / motion.energy_balance->paper_energy(), 1., 0.05);
   }
 }
 
@@ -131,20 +132,20 @@ TEST(Ladder, ScenesThatDoNotFitAreRefused)
   EXPECT_EQ(complaint(with(expression, {{"Model", "kinematic"}})), "nothing");
 }
 
-/// A rung that was asked for gives its answer and its error, also if that is too large.
+/// A level that was asked for gives its answer and its error, also if that is too large.
 TEST(Ladder, AccuracyThatIsNotMet)
 {
-  const auto result = on_rung(test::wave(-1., 0.2), "perturbation", 1e-4);
+  const auto result = on_level(test::wave(-1., 0.2), "perturbation", 1e-4);
   EXPECT_EQ(result.time.status, "failed");
   EXPECT_EQ(result.time.reason, "accuracy_not_met");
   EXPECT_NEAR(result.displacement, 0.02, 1e-15);
   EXPECT_GE(result.error->model, 2.04422750e-2 - 2e-2);
-  const auto unknown = on_rung(test::wave(-1., 0.6), "perturbation", 1e-4);
+  const auto unknown = on_level(test::wave(-1., 0.6), "perturbation", 1e-4);
   EXPECT_EQ(unknown.time.reason, "accuracy_not_met");
   EXPECT_TRUE(std::isnan(unknown.error->total));
 }
 
-/// Many runs in one call may be on different rungs.
+/// Many runs in one call may be on different levels.
 TEST(Ladder, ManyRunsAtOnce)
 {
   std::vector<Task> tasks(3);

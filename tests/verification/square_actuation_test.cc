@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Robots switch: square actuation by automatic numerics, with its error bars.
-#include "../support/fused_runs.h"
+#include "../support/lane_runs.h"
 
-#include <crawler/drivers/error_estimate.h>
-#include <crawler/drivers/graded_choice.h>
-#include <crawler/drivers/stress_scales.h>
+#include <crawler/accuracy/error_estimate.h>
+#include <crawler/accuracy/graded_choice.h>
+#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/stress_scales.h>
 
 #include <gtest/gtest.h>
 
@@ -59,7 +60,7 @@ namespace
   {
     const Parameters parameters = test::parameters_with(settings);
     const Scene scene           = parameters.create_scene();
-    const Simulation::Options options{.ledger = true};
+    const Simulation::Options options{.energy_balance = true};
     return run_as_promised(
       MPI_COMM_SELF,
       parameters,
@@ -151,11 +152,11 @@ TEST(SquareActuation, SegmentsGetGradedMeshes)
   }
 }
 
-/// Cells of 1e-6 of the length turn round-off into velocities: the ledger takes those of the integrator.
+/// Cells of 1e-6 of the length turn round-off into velocities: the energy balance takes those of the integrator.
 TEST(SquareActuation, LedgerClosesOnTinyCells)
 {
   const auto outcome = answer(test::with(standing_wave(1.5), {{"Accuracy", "1e-8"}}));
   EXPECT_EQ(outcome.result.time.status, "finished") << outcome.result.time.message;
-  EXPECT_LT(outcome.result.ledger->residual(), 1e-7);
+  EXPECT_LT(outcome.result.energy_balance->residual(), 1e-7);
   EXPECT_LT(outcome.result.error->total, 1e-8 * std::abs(outcome.result.displacement));
 }

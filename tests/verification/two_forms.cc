@@ -8,7 +8,8 @@
 //     two_forms FIRST-LAST OUT.csv [Accuracy] [seconds that a run of the other form may take]
 #include "random_scenes.h"
 
-#include <crawler/drivers/compute.h>
+#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/studies/core/compute.h>
 
 #include <deal.II/base/mpi.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Whole runs with the wave generators: against the paper's case, against formulas, by all numerics, and with jumps.
-#include "../support/fused_runs.h"
+#include "../support/lane_runs.h"
 
 #include <gtest/gtest.h>
 
@@ -85,7 +85,7 @@ TEST(WaveRuns, AllNumericsAgree)
                                    Settings{{engine, "petsc"}}})
   {
     const auto result =
-      run_with(test::with(test::with(two_pulses, {{"Accuracy", "1e-5"}}), numerics), {.ledger = true}).result;
+      run_with(test::with(test::with(two_pulses, {{"Accuracy", "1e-5"}}), numerics), {.energy_balance = true}).result;
     EXPECT_EQ(result.time.status, "finished") << numerics.front().second;
     EXPECT_NEAR(result.displacement, reference, 5e-5 * std::abs(reference)) << numerics.front().second;
   }
@@ -95,7 +95,7 @@ TEST(WaveRuns, AllNumericsAgree)
 TEST(WaveRuns, Batch)
 {
   const Numerics numerics{.degree = 6, .n_cells = 24, .tolerance = 1e-7, .initial_step = 1e-4};
-  const test::FusedRun run(two_pulses, "radau 9", numerics);
+  const test::LaneRun run(two_pulses, "radau 9", numerics);
   const auto alone = run.simulate("petsc");
   const auto batch = test::run_alone(run);
   ASSERT_TRUE(batch.has_value());

@@ -35,7 +35,7 @@ namespace crawler
     unsigned long newton_iterations = 0, linear_iterations = 0;
   };
 
-  /// Integrates a state over time: by PETSc (time_stepper.h) or by the fused engine (fused/fused_stepper.h).
+  /// Integrates a state over time: by PETSc (time_stepper.h) or by the fused engine (lanes/lane_stepper.h).
   class TimeIntegration
   {
   public:

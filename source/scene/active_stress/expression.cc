@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/formula/formula_rate.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/formula_input.h>
-#include <crawler/scene/active_stress/formula_rate.h>
 #include <crawler/scene/period.h>
 
 #include <fmt/format.h>
@@ -17,6 +17,26 @@ namespace crawler
   {
     const std::string formula_entry   = "Active stress/Expression/Active stress";
     const std::string constants_entry = "Active stress/Expression/Constants";
+
+    /// The values of a formula at the points of a mesh, or their rates, as an active stress.
+    template <typename Values>
+    class StressFrom : public ActiveStressAtPoints
+    {
+    public:
+      StressFrom(const std::shared_ptr<const Formula> &formula, const std::vector<double> &points)
+        : values_(formula, points)
+      {
+      }
+
+      void
+      values(const double t, const std::span<double> m) override
+      {
+        values_.values(t, m);
+      }
+
+    private:
+      Values values_;
+    };
   } // namespace
 
 
@@ -72,7 +92,7 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   Expression::at(const std::vector<double> &points) const
   {
-    return std::make_unique<FormulaAtPoints>(compiled_, points);
+    return std::make_unique<StressFrom<FormulaAtPoints>>(compiled_, points);
   }
 
   std::optional<double>
@@ -86,13 +106,13 @@ namespace crawler
   std::optional<ActiveStress::Bounds>
   Expression::bounds(const Box &box) const
   {
-    const Enclosure m = bound_(box);
+    const Enclosure m = bound_({box.s_from, box.s_to}, {box.t_from, box.t_to});
     return Bounds{m.value.largest(), m.rate.largest()};
   }
 
   std::unique_ptr<ActiveStressAtPoints>
   Expression::rate_at(const std::vector<double> &points) const
   {
-    return std::make_unique<FormulaRateAtPoints>(compiled_, points);
+    return std::make_unique<StressFrom<FormulaRateAtPoints>>(compiled_, points);
   }
 } // namespace crawler

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/formula/formula_rate.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
-#include <crawler/scene/active_stress/formula_rate.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
 #include <crawler/scene/active_stress/strain_table.h>
 #include <crawler/scene/friction_law.h>

@@ -6,7 +6,7 @@
 
 #include <crawler/base/exceptions.h>
 #include <crawler/base/grid_interpolation.h>
-#include <crawler/parameters/declarations.h>
+#include <fmt/format.h>
 
 #include <gtest/gtest.h>
 
@@ -19,6 +19,12 @@ using namespace crawler;
 
 namespace
 {
+  std::string
+  to_text(const double value)
+  {
+    return fmt::format("{}", value);
+  }
+
   constexpr double pi = std::numbers::pi;
 
   double

@@ -3,7 +3,7 @@
 #include "../../support/run_text.h"
 
 #include <crawler/base/exceptions.h>
-#include <crawler/scene/active_stress/formula_gradient.h>
+#include <crawler/formula/formula_gradient.h>
 #include <crawler/scene/active_stress/formula_input.h>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress/formula_bound.h>
+#include <crawler/formula/formula_bound.h>
+#include <crawler/scene/active_stress.h>
 
 #include <optional>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress/formula.h>
+#include <crawler/formula/formula.h>
 
 #include <memory>
 #include <string>

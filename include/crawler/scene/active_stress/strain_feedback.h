@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/formula/formula.h>
 #include <crawler/scene/active_stress.h>
-#include <crawler/scene/active_stress/formula.h>
 
 #include <string>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress/formula_gradient.h>
+#include <crawler/formula/formula_gradient.h>
 #include <crawler/scene/friction_law.h>
 
 namespace crawler

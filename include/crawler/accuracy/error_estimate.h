@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/run/displacement_error.h>
+
+#include <functional>
+
+namespace crawler
+{
+  /**
+   * Sets the errors of @p result, which a Simulation with @p choice gave and which finished (collective). A second,
+   * finer run tells that of the displacement (doc/numerics.md, "Error bars"): with x the difference of both
+   * displacements and w the error that the choice promises,
+   *
+   *   total = 1.5 x + w/5   (w/2 on adaptive meshes, 0.15 w on graded ones), and at least 1e-15 L, the error of
+   * round-off. Without a promise a third run with more cells only tells the parts in space and time, and total is twice
+   * their sum.
+   *
+   * It is split into space and time as the rule that chose the numerics expects it. Where the stretch collapses the
+   * choice has measured the error, and no second run is made. The error is unknown if the finer run did not finish or
+   * was stopped by @p keep_going. Other numbers have errors by number_errors(), with the same factors and Accuracy as
+   * what is promised, if there was a second run.
+   */
+  void
+  estimate_errors(MPI_Comm communicator,
+                  const RunParameters &parameters,
+                  const Scene &scene,
+                  const NumericsChoice &choice,
+                  SimulationResult &result,
+                  const std::function<bool()> &keep_going = {});
+
+  /// The numerics of the next try where the error of @p choice is too large.
+  NumericsChoice
+  refined(const NumericsChoice &choice, const Scene &scene);
+
+  /// The finer run that measures the errors of a run with @p choice: what it does with entries of section Time, its
+  /// numerics, and what it computes.
+  TimeParameters
+  time_of_finer_run(const TimeParameters &time);
+  Numerics
+  numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, const Scene &scene);
+
+  Simulation::Options
+  options_of_finer_run(const SimulationResult &result, const std::optional<CycleWish> &cycles);
+
+  /// Sets the errors of a finished @p result from the finer run; null if there was none since the choice knows.
+  void
+  set_errors(const NumericsChoice &choice,
+             SimulationResult &result,
+             const SimulationResult *finer,
+             const RunParameters &parameters,
+             const Scene &scene,
+             const SimulationResult *finer_mesh = nullptr);
+} // namespace crawler

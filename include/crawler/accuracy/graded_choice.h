@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/run/simulation.h>
+
+#include <functional>
+#include <optional>
+
+namespace crawler
+{
+  /// A first step of a run or piece on a graded mesh [time]: the smallest cells come to rest in it, whatever the active
+  /// stress did, and Newton's method converges.
+  double
+  first_step_on_graded_mesh(const Scene &scene, const Numerics &numerics);
+
+  /// The settings of @p numerics, whose mesh is graded, with a mesh that is certainly finer.
+  Numerics
+  with_finer_grading(const Scene &scene, const Numerics &numerics);
+
+  /// What is asked of a graded mesh.
+  struct GradedTask
+  {
+    const Scene &scene;
+    Numerics start;          ///< all but mesh and tolerance; its n_cells is where the search starts
+    double accuracy;         ///< wanted error of the displacement, relative to its size
+    double scale;            ///< of the displacement, before anything is known [length]
+    bool choose_tolerance;   ///< else that of start is used
+    bool choose_first_step;  ///< else that of start is used
+    double tolerance_factor; ///< the first tolerance, relative to the wanted error
+    std::function<SimulationResult(const Numerics &)> run;
+    std::function<double(const SimulationResult &)> size; ///< of the displacement, of which accuracy is a part
+  };
+
+  struct GradedChoice
+  {
+    Numerics numerics;
+    SimulationResult result;
+    double space_over_time; ///< of the errors, as seen
+  };
+
+  /**
+   * Finds the cells, levels and tolerance for an active stress that starts or jumps suddenly (doc/numerics.md, "Jumps
+   * and sudden starts"): each of them is made finer until that changes the displacement by less than a quarter of the
+   * wanted error. Nothing if a run breaks off or nearly loses a stretch, or if the mesh would become too fine.
+   */
+  std::optional<GradedChoice>
+  find_graded_mesh(const GradedTask &task);
+} // namespace crawler

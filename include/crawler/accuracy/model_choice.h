@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/run/run_parameters.h>
+
+#include <string>
+
+namespace crawler
+{
+  /// The level of the ladder on which a scene is computed (doc/theory.md, "The ladder"), and why.
+  struct ModelChoice
+  {
+    std::string model; ///< perturbation, kinematic, linear or nonlinear
+    std::string explanation;
+
+    /// Perturbation and kinematic need neither mesh nor time stepper (run/reduced_model.h).
+    bool
+    needs_mesh() const
+    {
+      return model == "linear" || model == "nonlinear";
+    }
+  };
+
+  /**
+   * The level that Model names; if it is auto the lowest one whose estimated error is at most Accuracy times the
+   * displacement, or 1e-12 of the length (perturbation, kinematic, nonlinear; linear if a = 0, where the displacement,
+   * being 0, cannot tell the levels apart). Throws InputError if the scene does not fit the level that Model names.
+   */
+  ModelChoice
+  choose_model(const RunParameters &parameters, const Scene &scene);
+} // namespace crawler

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/run/run_parameters.h>
+#include <crawler/run/simulation.h>
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace crawler
+{
+  /// Settings, and in a sentence why.
+  struct NumericsChoice
+  {
+    Numerics numerics;
+    std::string explanation;
+    /// The error of the displacement that Accuracy stands for [length]; not a number if the user chose the numerics.
+    double promised_error = std::numeric_limits<double>::quiet_NaN();
+    /// Accuracy times the size of the displacement [length]; not a number if the user chose the numerics.
+    double wanted_error = std::numeric_limits<double>::quiet_NaN();
+    /// The part of the error that is of the mesh, as far as the rule can tell; not a number if it cannot [1].
+    double space_share = std::numeric_limits<double>::quiet_NaN();
+    /// The reported error is at least this: what the indicators cannot see [length].
+    double least_error = 0.;
+    /// The user set cells or tolerances.
+    bool is_users = false;
+    /// Its promised error was measured with one mesh after the other: jumps of the active stress move.
+    bool is_measured = false;
+    /// The stretch form: its runs on a family of meshes measure the error (mesh_family.h). They begin with `numerics`,
+    /// whose time tolerance is meant for this strain [1].
+    bool is_family = false;
+    double strain  = 0.;
+    /// What helps if Accuracy is not met; empty if nothing special does.
+    std::string advice;
+  };
+
+  /**
+   * Turns Accuracy into degree, number of cells and time tolerance; entries that the user has set are taken as they are
+   * (collective). The rule, with its constants, is explained in doc/numerics.md ("Accuracy"): pilot runs on a coarse
+   * mesh with a loose tolerance measure the size of the displacement and how fast the Legendre modes of the stretch
+   * decay; the mesh is refined until the predicted error of the displacement in space, and the tolerance chosen such
+   * that the one in time, are below Accuracy. Nothing is returned if @p keep_going, which is asked after every step of
+   * a pilot run, said no.
+   */
+  std::optional<NumericsChoice>
+  choose_numerics(MPI_Comm communicator,
+                  const RunParameters &parameters,
+                  const Scene &scene,
+                  const std::function<bool()> &keep_going = {});
+} // namespace crawler

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/accuracy/answer.h>
+
+#include <functional>
+
+namespace crawler
+{
+  /**
+   * A family of meshes has its own way (mesh_family.h), with @p options, in which only the last run is by @p simulate
+   * if that @p writes. Otherwise runs @p simulate with @p choice, estimates the error of the displacement if `Error
+   * estimate` is set, and as long as that is more than wanted, tries again with more cells and a smaller tolerance, at
+   * most most_refinements times (collective). What then has too large an error, or an unknown one, is named a failure,
+   * `accuracy_not_met`: with all results and the error that was reached. If the user chose the numerics, their error is
+   * reported and that is all.
+   */
+  Answer
+  run_as_promised(MPI_Comm communicator,
+                  const RunParameters &parameters,
+                  const Scene &scene,
+                  const NumericsChoice &choice,
+                  const std::function<SimulationResult(const NumericsChoice &)> &simulate,
+                  const Simulation::Options &options,
+                  bool writes,
+                  const std::function<bool()> &keep_going = {});
+} // namespace crawler

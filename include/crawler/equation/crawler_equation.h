@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/instruction_set.h>
+
+/**
+ * The equation of the limbless crawler at a material point (doc/theory.md, Eq. 1),
+ *
+ *   g(w) zeta_t = d/ds ( m + k (w - 1) ),   w = zeta_s,   m + k (w - 1) = 0 at both ends,
+ *
+ * and the densities of its energies. The unknown of the program is the displacement u = zeta - s, so w = 1 + u_s.
+ * The functions are templates because packs of bodies use them, too (lanes/pack.h).
+ * Weak form, for every test function phi:  int g v phi ds + int N phi_s ds = 0,  v = u_t,  N = m + k (w - 1).
+ */
+namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET
+{
+  /// N, the force in the body [force]; it vanishes at the ends.
+  /// Takes the strain e = w - 1 = u_s itself: for small motions 1 + e has lost its digits.
+  template <typename Number>
+  inline Number
+  body_force(const Number e, const Number m, const Number k)
+  {
+    return m + k * e;
+  }
+
+  /// Elastic energy per reference length [force], for the strain e.
+  template <typename Number>
+  inline Number
+  elastic_energy(const Number e, const Number k)
+  {
+    return 0.5 * k * e * e;
+  }
+
+  /// Friction force per reference length [force/length], for g = g(w).
+  template <typename Number>
+  inline Number
+  friction_force(const Number g, const Number v)
+  {
+    return g * v;
+  }
+
+  /// Power lost to friction per reference length [force/time].
+  template <typename Number>
+  inline Number
+  dissipation(const Number g, const Number v)
+  {
+    return g * v * v;
+  }
+
+  /// Power of the active stress per reference length [force/time], for the stretch rate v_s.
+  template <typename Number>
+  inline Number
+  stress_power(const Number m, const Number v_s)
+  {
+    return -m * v_s;
+  }
+} // namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/general_sampler.h>
+
+#include <memory>
+
+namespace crawler
+{
+  /// The power that leaves through the ends in the paper's energy: [m v] from s = 0 to L (theory.md section 6).
+  class EndPower
+  {
+  public:
+    explicit EndPower(const Assembler &assembler);
+
+    /// @p v at the nodes, of the state @p y (collective).
+    double
+    operator()(double t, std::span<const double> y, std::span<const double> v);
+
+  private:
+    const Assembler &assembler_;
+    const std::unique_ptr<ActiveStressAtPoints> stress_; ///< of a body without feedback, at both ends
+    std::unique_ptr<GeneralSampler> sampler_;            ///< of the others
+  };
+} // namespace crawler

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/stretch_history.h>
+#include <crawler/equation/stretch_means.h>
+#include <crawler/scene/scene.h>
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+/**
+ * The equation of a general scene (doc/theory.md, "General bodies and grounds") at points that do not change:
+ *
+ *   f = g(w) b(s) c(x) d(v) v,   x = s + u,   and   N = m(s, t, w, w_t, ...) + k(s) (w - 1).
+ */
+namespace crawler
+{
+  /// What was not positive, where a law must be: for the user, with the entry that gives it.
+  struct BadLaw
+  {
+    std::string message, entry;
+  };
+
+  /// b(s) c(x) d(v) v at fixed points, and its derivatives.
+  class SlidingAtPoints
+  {
+  public:
+    /// @p scene must outlive it.
+    SlidingAtPoints(const Scene &scene, std::vector<double> points);
+
+    /// For displacements @p u and velocities @p v at the points. Returns the number of the first point where the
+    /// profile of the ground is not positive, or -1.
+    long
+    evaluate(std::span<const double> u, std::span<const double> v);
+
+    std::vector<double> force; ///< b c d v [velocity]; times g(w) it is the friction per reference length
+    std::vector<double> by_v;  ///< its derivative by v
+    std::vector<double> by_u;  ///< its derivative by u
+
+    BadLaw
+    describe(long point, const Units &units) const;
+
+  private:
+    const Scene &scene_;
+    const std::vector<double> points_;
+    std::vector<double> b_, x_, c_, slope_;
+  };
+
+  /// N at fixed points, its parts and its derivatives. What the feedback does not use has derivatives of size 0.
+  class BodyForceAtPoints
+  {
+  public:
+    BodyForceAtPoints(const Scene &scene, const std::vector<double> &points);
+
+    /// @p e is the strain; @p seen what the feedback sees (without effect if there is none); @p known_m is m where it
+    /// depends on time and place only and somebody knows it.
+    void
+    evaluate(double t, std::span<const double> e, const StretchSeen &seen, const double *known_m = nullptr);
+
+    std::vector<double> k;       ///< [force]
+    std::vector<double> N;       ///< [force]
+    std::vector<double> m;       ///< [force]
+    std::vector<double> by_w;    ///< k + dm/dw [force]
+    std::vector<double> by_rate; ///< dm/dw_t [force time]
+    std::vector<double> by_near; ///< dm/d(w near) [force]
+
+  private:
+    std::unique_ptr<ActiveStressAtPoints> stress_;
+    std::unique_ptr<FeedbackAtPoints> feedback_;
+  };
+
+  /// The stretch at another place or time, at fixed points of this rank (collective).
+  class StretchElsewhere
+  {
+  public:
+    StretchElsewhere(const Scene &scene, const Discretization &discretization, const std::vector<double> &points);
+
+    /// @p own: the coefficients of this rank's cells, as in StretchPlaces.
+    void
+    evaluate(double t, std::span<const double> own, const StretchHistory *history);
+
+    /// The change of the near stretch [points] with that of the coefficients.
+    void
+    change_of_near(std::span<const double> own_change, std::span<double> change) const;
+
+    std::vector<double> near, delayed; ///< stretches; of size 0 if they are not used
+
+  private:
+    const Discretization &discretization_;
+    const std::vector<double> points_;
+    std::optional<StretchPlaces> near_places_;
+    std::optional<StretchMeans> sensors_;
+    double delay_ = 0.;
+    std::vector<double> at_start_; ///< w(s, 0)
+    std::vector<double> coefficients_;
+    /// The points on the meshes of the history that were used last.
+    std::vector<std::pair<std::shared_ptr<const std::vector<Cell>>, StretchPlaces>> places_;
+  };
+} // namespace crawler

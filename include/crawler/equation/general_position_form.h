@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/position_form.h>
+
+namespace crawler
+{
+  /**
+   * The position form of a general scene (doc/theory.md, "General bodies and grounds"): for every test function phi
+   *
+   *   int f(s, s + u, w, v) phi ds + int N phi_s ds = 0,   N = m(s, t, w, w_t, ...) + k(s) (w - 1).
+   *
+   * Laws and their derivatives are computed at all quadrature points first, and then integrated. A stretch at another
+   * place couples cells that are no neighbours: the products with the Jacobian have it, the elimination has not.
+   */
+  class GeneralPositionForm : public PositionForm
+  {
+  public:
+    GeneralPositionForm(const Scene &scene, const Discretization &discretization);
+
+    bool
+    setup_jacobian(double t, ConstVector u, ConstVector v, double sigma) override;
+    void
+    jacobian_vmult(ConstVector x, Vector y) override;
+    void
+    setup_stage(unsigned int stage, double t, ConstVector u, ConstVector v) override;
+    void
+    stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result) override;
+
+    /// By Newton's method: the friction may depend on the velocity, and the active stress on its derivative.
+    bool
+    velocity(double t, ConstVector u, Vector v) override;
+    CellIntegrals
+    integrals(double t, ConstVector u, ConstVector v) override;
+
+  protected:
+    long
+    add_residual(double t, ConstVector u, const CellInput &in, double *F) override;
+    void
+    jacobian_blocks(double t, ConstVector u, const CellInput &in, double sigma, double *blocks) override;
+    void
+    mass_blocks(double t, ConstVector u, const CellInput &in, double *blocks) override;
+    void
+    friction(double t, ConstVector u, ConstVector v, std::vector<double> &g_v) override;
+
+  private:
+    /// Laws at all quadrature points [cell][point]. Returns the number of the first point where a law or the stretch is
+    /// not positive, or -1.
+    long
+    evaluate(double t, ConstVector u, const CellInput &in);
+
+    /// What the stretch at another place adds to a product with the Jacobian.
+    struct Far
+    {
+      std::vector<double> by_near;
+    };
+    Far
+    far() const;
+    void
+    add_far(const Far &far, ConstVector x, Vector result) const;
+
+    void
+    blocks_of(const CellInput &in, double by_state, double by_velocity, double *blocks) const;
+
+    SlidingAtPoints sliding_;
+    BodyForceAtPoints force_;
+    StretchElsewhere elsewhere_;
+    std::vector<double> e_, w_, u_, v_, rate_, g_, w_dg_;
+    Far jacobian_far_;
+    std::vector<Far> stage_far_;
+  };
+
+  /// For a plain or a general scene.
+  std::unique_ptr<PositionForm>
+  create_position_form(const Scene &scene, const Discretization &discretization);
+} // namespace crawler

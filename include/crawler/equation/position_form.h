@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/assembler.h>
+#include <crawler/mesh/block_tridiagonal_matrix.h>
+
+#include <complex>
+#include <limits>
+
+namespace crawler
+{
+  class GeneralSampler;
+
+  /// How well the mesh resolves a stretch: squared norms over the whole body (see doc/numerics.md, "Accuracy").
+  struct Resolution
+  {
+    double highest_mode; ///< int of (highest Legendre mode of w in each cell, relative to the cell's smallest w)^2 ds
+    double strain;       ///< int (w - 1)^2 ds
+  };
+
+  /// The position form F(t, u, u') = M(u) u' + K u + m = 0 of a plain body (crawler_equation.h; doc/numerics.md, "The
+  /// semi-discrete system"). The unknowns of a rank are the displacements of its nodes [length].
+  class PositionForm : public Assembler
+  {
+  public:
+    using Complex = std::complex<double>;
+
+    PositionForm(const Scene &scene, const Discretization &discretization);
+    ~PositionForm() override;
+
+    std::size_t
+    n_owned() const override
+    {
+      return discretization_.n_owned();
+    }
+    std::size_t
+    n_unknowns() const override
+    {
+      return discretization_.n_unknowns();
+    }
+    ConstVector
+    displacement(const ConstVector y) const override
+    {
+      return y;
+    }
+    StretchRange
+    stretch_range(ConstVector y) override;
+    void
+    set_initial_state(Vector y) override;
+
+    /// Keeps the active stress of so many times, for methods that come back to the stages of a step (default: 1).
+    void
+    keep_stresses(unsigned int n_times);
+    void
+    forget_stresses() override;
+
+    /// F(t, u, u'). Returns false (on all ranks) if the stretch is not positive at a quadrature point; bad_stretch()
+    /// then tells where.
+    bool
+    residual(double t, ConstVector u, ConstVector v, Vector F);
+
+    /// Prepares dF/du + sigma dF/du' for the two functions below. Returns false if it is singular.
+    virtual bool
+    setup_jacobian(double t, ConstVector u, ConstVector v, double sigma);
+    void
+    solve_with_jacobian(ConstVector b, Vector x);
+    virtual void
+    jacobian_vmult(ConstVector x, Vector y);
+
+    /// The same for complex sigma_0, sigma_1, ..., as implicit Runge-Kutta methods need.
+    bool
+    setup_complex_jacobians(double t, ConstVector y, ConstVector y_dot, std::span<const Complex> sigma);
+    void
+    solve_with_complex_jacobian(unsigned int i, std::span<const Complex> b, std::span<Complex> x);
+
+    /// Keeps dF/du and dF/du' at the state of a stage, for stage_vmult: result = dF/du x + dF/du' x_dot.
+    virtual void
+    setup_stage(unsigned int stage, double t, ConstVector y, ConstVector y_dot);
+    virtual void
+    stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result);
+    bool
+    velocity(double t, ConstVector u, Vector v) override;
+    CellIntegrals
+    integrals(double t, ConstVector u, ConstVector v) override;
+
+    /// A = dF/du + sigma dF/dv.
+    void
+    jacobian(double t, ConstVector u, ConstVector v, double sigma, BlockTridiagonalMatrix<double> &A);
+
+    /// The first stretch that was not positive, of the last residual() that returned false.
+    const std::optional<StretchAt> &
+    bad_stretch() const
+    {
+      return bad_stretch_;
+    }
+
+    Resolution
+    resolution(ConstVector y);
+
+    /**
+     * The error indicator of each own cell: int_cell (max(1, |w g'/g|) d/(k max(w, floor)))^2 ds with d = N* - N, the
+     * difference between the force in the body N = m + k (w - 1) and the one that balances the friction, N* = int_0^s g
+     * v ds. N* is zero at both ends, as the stress-free ends ask, and d is orthogonal to all that the mesh can
+     * represent (doc/numerics.md, "Error indicator"). @p v is the velocity of the state @p y.
+     */
+    std::vector<double>
+    error_indicators(double t, ConstVector y, ConstVector v);
+
+    /// Root mean square of the displacement over the nodes of all ranks [length].
+    double
+    root_mean_square(ConstVector y) const;
+
+  protected:
+    /// The friction g v at the quadrature points [cell][point].
+    virtual void
+    friction(double t, ConstVector u, ConstVector v, std::vector<double> &g_v);
+
+    /// Local arrays of the displacement @p u and the velocity @p v (may be empty), with m of the time @p t.
+    CellInput
+    input(double t, ConstVector u, ConstVector v);
+
+    /// The same without unknowns and stress.
+    CellInput
+    geometry() const;
+
+    // The loops over cells, which general scenes replace. The arrays of @p in are local, the unknowns @p u are owned.
+
+    /// Adds F to the local array @p F; the number of the first quadrature point [cell][point] where F is not defined,
+    /// or -1.
+    virtual long
+    add_residual(double t, ConstVector u, const CellInput &in, double *F);
+    /// dF/du + sigma dF/dv.
+    virtual void
+    jacobian_blocks(double t, ConstVector u, const CellInput &in, double sigma, double *blocks);
+    /// dF/dv.
+    virtual void
+    mass_blocks(double t, ConstVector u, const CellInput &in, double *blocks);
+
+    std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< built when a velocity is first asked for
+
+  private:
+    StretchAt
+    smallest_of_ranks(StretchAt own) const;
+    const std::vector<double> &
+    stress_at(double t);
+
+    const CellKernels &kernels_;
+    BlockTridiagonalMatrix<double> jacobian_;
+    const std::unique_ptr<ActiveStressAtPoints> stress_;
+    std::unique_ptr<GeneralSampler> quadrature_sampler_; ///< of a general scene, once it is needed
+    /// m at the stress points.
+    struct StressAtTime
+    {
+      double time = std::numeric_limits<double>::quiet_NaN();
+      std::vector<double> m;
+    };
+    const std::size_t n_stress_points_;
+    std::vector<StressAtTime> stresses_; ///< the latest
+    std::size_t oldest_stress_ = 0;
+    std::vector<double> u_local_, v_local_, F_local_;
+    const StretchSampler &sampler_; ///< at the left end, the quadrature points and the right end
+    std::vector<double> friction_at_;
+    std::optional<StretchAt> bad_stretch_;
+    std::vector<BlockTridiagonalMatrix<Complex>> complex_jacobians_;
+    struct Stage
+    {
+      BlockTridiagonalMatrix<double> by_u, by_v; ///< dF/du, dF/dv
+    };
+    std::vector<Stage> stages_;
+    std::vector<double> product_;
+  };
+} // namespace crawler

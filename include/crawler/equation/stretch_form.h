@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/assembler.h>
+
+namespace crawler
+{
+  /// What the stretch form needs of a scene (equation/stretch_loops.h, lanes/lane_stretch.h).
+  struct StretchMethod
+  {
+    unsigned char node_rule; ///< a NodeRule
+    /// Is the unknown of a cell w^(1+a)/(1+a), which passes 0 at a finite rate where a body inverts (-1 < a < 0)?
+    bool is_power;
+  };
+
+  /// @p scene is in natural units. @p other: with another rule than the best one, as a check.
+  StretchMethod
+  stretch_method(const Scene &scene, bool other = false);
+
+  /// Why the stretch form cannot compute a scene, in words; empty if it can.
+  std::string
+  reason_against_stretch_form(const Scene &scene);
+
+  /// The laws at the middles of the cells, which are all that the stretch form needs of a general scene.
+  class StretchLaws
+  {
+  public:
+    /// @p scene must outlive it.
+    StretchLaws(const Scene &scene, const std::vector<double> &middles);
+
+    /// For the stretch @p w and its rate at each cell; @p known_m is m where it depends on time and place only and is
+    /// known. Returns the number of the first cell where the friction is not a positive number, or -1.
+    long
+    evaluate(double t, std::span<const double> w, std::span<const double> rate, const double *known_m = nullptr);
+
+    std::vector<double> friction;                ///< g(w), without the body's profile
+    std::vector<double> mobility, mobility_by_w; ///< 1/(g b); 0 where the cell is empty and sticks
+    const BodyForceAtPoints &
+    force() const
+    {
+      return force_;
+    }
+
+  private:
+    const Scene &scene_;
+    std::vector<double> profile_, w_, w_dg_, strain_;
+    BodyForceAtPoints force_;
+  };
+
+  /**
+   * The stretch form (doc/numerics.md, "Stretch form"): one stretch in each cell of a mesh of degree 1, on one rank.
+   * The unknowns y are those of the cells, w or q = w^(1+a)/(1+a) (StretchMethod), and last the displacement of the
+   * left end; the fused engine integrates them.
+   */
+  class StretchForm : public Assembler
+  {
+  public:
+    /// @p other: see stretch_method().
+    StretchForm(const Scene &scene, const Discretization &discretization, bool other = false);
+
+    std::size_t
+    n_owned() const override
+    {
+      return discretization_.n_unknowns();
+    }
+    std::size_t
+    n_unknowns() const override
+    {
+      return discretization_.n_unknowns();
+    }
+    ConstVector
+    displacement(ConstVector y) const override;
+    /// An empty cell has the stretch 0.
+    ConstVector
+    stretch(ConstVector y) const override;
+    /// They do not make new extremes, and fronts stay sharp.
+    std::vector<double>
+    stretch_slopes(ConstVector y) const override;
+    std::vector<double>
+    node_friction(double t, ConstVector y, ConstVector v) const override;
+    StretchRange
+    stretch_range(ConstVector y) override;
+    void
+    set_initial_state(Vector y) override;
+    bool
+    velocity(double t, ConstVector y, Vector v) override;
+    CellIntegrals
+    integrals(double t, ConstVector y, ConstVector v) override;
+
+    /// From the middle of the first to that of the last cell whose stretch, at its present rate, is lost within @p
+    /// reach [time] after the time @p t.
+    std::pair<double, double>
+    lost_places(double t, ConstVector y, double reach);
+
+  private:
+    /// The laws for the state @p y with the velocity @p v at the nodes.
+    void
+    evaluate(double t, ConstVector y, ConstVector v) const;
+
+    const StretchMethod method_;
+    const double power_;      ///< 1 + a
+    const bool may_be_empty_; ///< a < 0
+    // What was looked at last.
+    mutable StretchLaws laws_;
+    mutable std::vector<double> w_, u_, rate_;
+  };
+} // namespace crawler

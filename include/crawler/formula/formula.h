@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/formula/formula_operation.h>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crawler
+{
+  /**
+   * A formula of some variables, s and t unless others are named, read by muParser and then evaluated for many points
+   * at a time: each operation is one loop over a block of points instead of one step of muParser's interpreter per
+   * point. What depends on t only is computed once per time, what depends on s only once per mesh. Every operation is
+   * muParser's, so the values are the same to the last bit. (muParser's own bulk mode reads the text again at every
+   * call, and Debian's starts threads.)
+   */
+  class Formula
+  {
+  public:
+    using Constants = std::vector<std::pair<std::string, double>>;
+
+    /// Throws mu::ParserError if @p text is not a formula of the @p variables and the @p constants. FormulaAtPoints and
+    /// FormulaRateAtPoints are for the variables s and t; FormulaGradient is for any.
+    Formula(const std::string &text,
+            const Constants &constants,
+            const std::vector<std::string> &variables = {"s", "t"});
+
+    /// Does the value depend on the variable with this number?
+    bool
+    uses(unsigned int variable) const;
+
+    using Operand   = FormulaOperand;
+    using Operation = FormulaOperation;
+
+  private:
+    friend class FormulaAtPoints;
+    friend class FormulaRateAtPoints;
+    friend class FormulaGradient;
+    friend class FormulaBound;
+    friend class FormulaReader;
+
+    /// What a value depends on.
+    struct Dependence
+    {
+      bool on_s, on_t;
+    };
+
+    static constexpr unsigned int s_ = 0, t_ = 1; ///< The values that are the variables, if these are s and t.
+
+    std::vector<bool> used_;
+    std::vector<Dependence> dependence_;
+    std::vector<double> scalars_; ///< At the constants among the values what they are.
+    std::vector<Operation> of_time_, of_place_, of_both_;
+    std::vector<bool> kept_; ///< Values of s alone that operations of both, or the result, use.
+    unsigned int result_ = 0;
+  };
+
+  /// A formula at the points of one mesh.
+  class FormulaAtPoints
+  {
+  public:
+    FormulaAtPoints(std::shared_ptr<const Formula> formula, const std::vector<double> &points);
+
+    /// Writes the value at all points into @p m.
+    void
+    values(double t, std::span<double> m);
+
+  private:
+    static constexpr std::size_t block_size = 64; ///< The blocks of all values stay in the cache.
+
+    void
+    compute(const std::vector<Formula::Operation> &operations, std::size_t first, std::size_t n);
+
+    /// Where @p value is for the points from @p first on.
+    double *
+    place(unsigned int value, std::size_t first);
+
+    Formula::Operand
+    operand(unsigned int value, std::size_t first);
+
+    const std::shared_ptr<const Formula> formula_;
+    const std::size_t n_points_;
+    std::vector<double> scalars_;               ///< Values that do not depend on s.
+    std::vector<std::vector<double>> of_place_; ///< Kept values that depend on s only, at all points; others are empty.
+    std::vector<double> blocks_;                ///< All other values, for one block of points.
+    std::vector<Formula::Operand> arguments_;   ///< Of one operation.
+  };
+} // namespace crawler

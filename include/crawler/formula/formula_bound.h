@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/formula/formula.h>
+
+namespace crawler
+{
+  /**
+   * Encloses a formula of s and t and its derivative by t in boxes: intervals of both are handed on from operation to
+   * operation (interval arithmetic with forward-mode automatic differentiation; R. E. Moore, Interval Analysis, 1966),
+   * without directed rounding. Nothing in the box can be missed, however short it is, but the enclosure may be too
+   * wide: the less so the smaller the box.
+   */
+  class FormulaBound
+  {
+  public:
+    explicit FormulaBound(std::shared_ptr<const Formula> formula);
+
+    /// For s and t in these intervals. Infinite where the formula may jump at a time, or where nothing can be said.
+    Enclosure
+    operator()(const Interval &s, const Interval &t);
+
+  private:
+    const std::shared_ptr<const Formula> formula_;
+    std::vector<Enclosure> values_, arguments_;
+  };
+} // namespace crawler

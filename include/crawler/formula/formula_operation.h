@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace crawler
+{
+  struct Interval
+  {
+    double lower, upper;
+
+    /// Of the absolute values.
+    double
+    largest() const
+    {
+      return -lower > upper ? -lower : upper;
+    }
+  };
+
+  /// What a value of a formula is within in a box of places and times, and its derivative by t.
+  struct Enclosure
+  {
+    static constexpr unsigned int no_number = std::numeric_limits<unsigned int>::max();
+
+    Interval value, rate;
+    unsigned int number = no_number; ///< of the value in its formula
+    bool on_s           = false;     ///< it depends on s
+  };
+
+  /// An argument of an operation: one number for all points, or one for each.
+  struct FormulaOperand
+  {
+    const double *values;
+    bool is_scalar;
+
+    double
+    operator[](const std::size_t i) const
+    {
+      return is_scalar ? *values : values[i];
+    }
+  };
+
+  /// One operation. A skip (without a loop) goes on at `target` if no point of the block needs what stands between.
+  struct FormulaOperation
+  {
+    using Function = void (*)();
+    using Loop     = void (*)(Function, std::span<const FormulaOperand> arguments, double *result, std::size_t n);
+    /// The derivative of the result, from the arguments, their derivatives and the result (one number a point each).
+    using Tangent = void (*)(std::span<const double *const> arguments,
+                             std::span<const double *const> rates,
+                             const double *result,
+                             double *rate,
+                             std::size_t n);
+
+    /// Encloses the result (enclosure_rules.h).
+    using Bound = Enclosure (*)(std::span<const Enclosure> arguments);
+
+    Loop loop                           = nullptr;
+    Tangent tangent                     = nullptr; ///< null: the result does not change, except by jumps
+    Bound bound                         = nullptr;
+    Function function                   = nullptr; ///< For loops that call a function, of any type.
+    std::vector<unsigned int> arguments = {};      ///< Values; for a skip the condition.
+    unsigned int result                 = 0;       ///< Value.
+    bool branch                         = false;   ///< Of a skip: the points where the condition is this need it.
+    std::size_t target                  = 0;       ///< Of a skip.
+  };
+} // namespace crawler

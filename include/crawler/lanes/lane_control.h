@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/instruction_set.h>
+#include <crawler/lanes/lane_engine.h>
+
+#include <cmath>
+
+/// What is decided for each body alone: convergence of Newton's method and sizes of steps (included by radau_lanes.h).
+namespace crawler::CRAWLER_INSTRUCTION_SET
+{
+  constexpr int most_newton = 14;
+  /// But the equations are solved at least as if the tolerance were this.
+  constexpr double largest_tolerance = 1e-3;
+  /// Newton's method must converge faster than this per iteration, or the step is made shorter by failure_factor.
+  constexpr double slowest_rate = 0.5, failure_factor = 0.25;
+  /// No step is so long that it is likely to converge more slowly than this.
+  constexpr double wanted_rate         = 0.35;
+  constexpr unsigned int most_failures = 12;
+  /// A body for which it has failed so often, and in so large a part of the steps, is left to who can do more.
+  constexpr unsigned int many_failures = 1000;
+  constexpr double large_part          = 0.5;
+  /// Step control: the next step is safety * (1/error)^(1/(stages+1)) of this one, within these factors.
+  constexpr double safety = 0.9, after_rejection = 0.5, least_change = 0.1, most_change = 5.;
+  constexpr double least_step = 1e-18; // a sudden start needs short ones
+  /// A start disturbs stiff components; traces are left after so many steps.
+  constexpr unsigned int settling_steps = 3;
+
+  /// A body and its step.
+  struct Lane
+  {
+    LaneJob job;
+    bool busy = false, has_old = false, just_rejected = false;
+    bool iterating = false, failed = false, accepted = false;
+    double t = 0., h = 1., next = 1., old_h = 1.;
+    double error = 0.; ///< of the step, relative to the tolerance
+    double rate = 0., known_rate = 1., last_correction = 0.;
+    unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, frame = 0, limit = 0;
+    unsigned int first_step = 0; ///< steps before the last start
+    unsigned long newton    = 0;
+
+    /// The size wanted, but steps end at frames.
+    void
+    choose_step()
+    {
+      const double left = job.frames[frame] - t;
+      h                 = admitted_step(job.limits, job.n_limits, limit, t, next);
+      if (h >= left * (1. - 1e-9))
+        h = left;
+      else if (h > 0.5 * left)
+        h = 0.5 * left;
+    }
+
+    double
+    end_of_step() const
+    {
+      return h == job.frames[frame] - t ? job.frames[frame] : t + h;
+    }
+
+    void
+    start_newton()
+    {
+      iterating = busy;
+      failed    = false;
+      rate      = 0.;
+    }
+
+    void
+    fail()
+    {
+      failed    = true;
+      iterating = false;
+    }
+
+    /// Newton's method converges linearly; with the rate so far the error that remains is rate/(1-rate) corrections.
+    /// @p correction and what may be left of it, @p newton_fraction, are relative to the tolerance.
+    void
+    look_at_correction(const int it,
+                       const double least_stretch_of_stages,
+                       const double correction,
+                       const double newton_fraction)
+    {
+      ++newton;
+      if (!(least_stretch_of_stages > 0.) || !(correction < HUGE_VAL))
+      {
+        fail();
+        return;
+      }
+      if (it == 1)
+        known_rate = ::pow(known_rate, 0.8);
+      else
+      {
+        rate       = last_correction > 0. ? correction / last_correction : 0.;
+        known_rate = rate < 1e-6 ? 1e-6 : rate > 0.9 ? 0.9 : rate;
+      }
+      last_correction     = correction;
+      const double excess = job.tolerance > largest_tolerance ? job.tolerance / largest_tolerance : 1.;
+      const double likely = known_rate < 0.9 ? known_rate : 0.9;
+      const double left   = likely / (1. - likely) * correction * excess;
+      const double floor  = 1e-15 / job.tolerance; // of displacements up to 1: they are sums of such numbers
+      if (left <= newton_fraction || correction <= floor)
+        iterating = false;
+      else if (it >= 2 && rate > slowest_rate && correction > 10. * floor)
+        fail();
+    }
+
+    /// Must the error of the step be filtered once more?
+    bool
+    is_settling() const
+    {
+      return error >= 1. && steps - first_step < settling_steps;
+    }
+
+    /// An error that had to be filtered twice: the step must not grow.
+    void
+    settle(const double filtered, const int n_stages)
+    {
+      double least = safety;
+      for (int i = 0; i < n_stages; ++i)
+        least *= safety;
+      error = filtered < least ? least : filtered;
+    }
+
+    /// Accepts or rejects the step, and finds the size of the next one.
+    void
+    control_step(const int n_stages)
+    {
+      accepted = !failed && error <= 1.;
+      if (failed)
+      {
+        next    = failure_factor * h;
+        has_old = false; // it was no good guess
+        ++failures;
+        ++all_failures;
+        ++rejected;
+        return;
+      }
+      double factor = accepted || !just_rejected ? safety : safety * after_rejection;
+      factor *= error > 0. ? ::pow(error, -1. / (n_stages + 1)) : HUGE_VAL;
+      factor = factor < least_change ? least_change : factor > most_change ? most_change : factor;
+      // Newton's method converges the more slowly the longer the step is, about in proportion.
+      if (rate > 0. && factor * rate > wanted_rate)
+        factor = rate > wanted_rate ? 1. : wanted_rate / rate;
+      next          = factor * h;
+      just_rejected = !accepted;
+      if (accepted)
+        failures = 0;
+      else
+        ++rejected;
+    }
+
+    bool
+    is_hopeless() const
+    {
+      return failures > most_failures || next < least_step ||
+             (!job.is_last_resort && all_failures > many_failures && all_failures > large_part * steps);
+    }
+
+    /// From here on the past is no guide.
+    void
+    start_anew()
+    {
+      next          = job.initial_step;
+      has_old       = false;
+      just_rejected = false;
+      known_rate    = 1.;
+      first_step    = steps;
+    }
+
+    /// Goes to the end of the step; is it a frame?
+    bool
+    arrive()
+    {
+      t                   = end_of_step();
+      old_h               = h;
+      has_old             = true;
+      const bool is_frame = t == job.frames[frame];
+      ++steps;
+      if (is_frame)
+        ++frame;
+      return is_frame;
+    }
+  };
+} // namespace crawler::CRAWLER_INSTRUCTION_SET

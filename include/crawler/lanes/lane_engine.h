@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/step_limits.h>
+
+#include <cstddef>
+
+/**
+ * Kernels and time integration of a form in one piece, for meshes that do not change: the position form with the
+ * p-model of friction, and the stretch form. Radau IIA with the simplified Newton method, as in time/radau.h, without
+ * an object of PETSc. Several bodies are computed side by side in the lanes of vector registers, each with its own
+ * parameters and its own steps; a lane that is done takes the next body. No operation mixes lanes, so an answer does
+ * not depend on which bodies share a batch.
+ *
+ * Only plain data here: this header is included by code for instruction sets that the processor may not have.
+ * Everything is in natural units (scene/scene.h).
+ */
+namespace crawler
+{
+  /// What all lanes share: the mesh, the element (mesh/reference_element.h) and the method
+  /// (time/radau_tableau.h). All arrays belong to the caller.
+  struct LaneSetup
+  {
+    unsigned int degree, n_cells, n_stages;
+    const double *sizes;                                      ///< [n_cells] of the cells
+    const double *values, *derivatives, *weights, *stiffness; ///< of the element
+    unsigned int n_samples;                                   ///< per cell, where the stretch is looked at
+    const double *sample_derivatives;                         ///< [n_samples][degree+1]
+    const double *c, *inverse, *error_weights;                ///< of the method
+    double newton_fraction; ///< of the method: error of Newton's method that is left, relative to the tolerance
+    double real_eigenvalue;
+    const double *eigenvalues; ///< [pairs][real, imaginary]
+    const double *vectors;     ///< [stages][1 + pairs][real, imaginary]
+    const double *rows;        ///< [1 + pairs][stages][real, imaginary]
+
+    // The stretch form (lane_stretch.h), whose points are the middles of its cells.
+    bool is_stretch = false, is_power = false, sees_rate = false; ///< see StretchSystem; does m depend on w_t?
+    unsigned char node_rule = 0;                                  ///< NodeRule of equation/stretch_loops.h
+    double backward_ratio = 1., switching_velocity = 1.;          ///< of the ground (scene/ground.h)
+  };
+
+  /// One body to compute.
+  struct LaneJob
+  {
+    double k, a;          ///< elastic modulus, friction exponent
+    double tolerance;     ///< root mean square of the error of a step; in the stretch form the largest one of a stretch
+    double newton_factor; ///< on LaneSetup::newton_fraction
+    double initial_step;
+    const StepLimit *limits; ///< of its steps
+    unsigned int n_limits;
+    unsigned int most_steps;
+    double least_stretch; ///< a state with a smaller one is given up; the full path must tell what it means
+    bool is_last_resort;  ///< is there nobody else who would go on where Newton's method often fails?
+    double start_time;
+    const double *start;  ///< [unknowns] displacement at start_time; null: rest
+    const double *frames; ///< ascending times after start_time where steps must end; the run ends with the last
+    unsigned int n_frames;
+    /// [n_frames] is the frame a time when the active stress jumps, so the body starts anew there? Null: none is.
+    const unsigned char *restarts;
+  };
+
+  /// Of a stage of an accepted step (the last one is its end).
+  struct LaneStage
+  {
+    double min_stretch, max_stretch;     ///< among the samples
+    unsigned int min_sample, max_sample; ///< cell*n_samples + sample
+    // If rates are asked for (CellIntegrals).
+    double stress_power, positive_power, absolute_power, dissipation, net_friction, abs_friction;
+    double left_velocity, right_velocity; ///< of the ends of the body
+  };
+
+  /// An accepted step of a lane. The pointers are good until the host returns; element i is at [i*stride].
+  struct LaneStep
+  {
+    double time, size;
+    double next_size;
+    unsigned int number, rejected;
+    unsigned long newton_iterations;
+    bool is_frame;
+    std::size_t stride;
+    const double *y;         ///< [unknowns] displacement
+    const double *z;         ///< [stages][unknowns] displacements in the stages relative to the start of the step
+    const LaneStage *stages; ///< [n_stages]; the last one alone is filled unless `look_inside` is set
+    double elastic_energy;   ///< at the end, if rates are asked for
+  };
+
+  struct LaneOutcome
+  {
+    enum Status
+    {
+      finished,
+      stopped, ///< by the host, or at most_steps
+      gave_up  ///< something that only the full path can tell apart
+    } status;
+    double time, step_size; ///< of the last accepted state; step that would come next
+    unsigned int steps, rejected;
+    unsigned long newton_iterations;
+    double displacement; ///< int u ds at that time
+  };
+
+  /// The laws of a general body in the stretch form, at all cells: the mobility 1/(g b), the force N, and their
+  /// derivatives by w and w_t. The arrays belong to the host and are good until it is asked again.
+  struct LaneLaws
+  {
+    const double *mobility, *mobility_by_w, *force, *force_by_w, *force_by_rate;
+    double least; ///< not positive if one of them has no meaning
+  };
+
+  /// Who gives the bodies and takes the answers. Lanes are numbered 0 to lanes - 1.
+  struct LaneHost
+  {
+    void *context;
+    /// The next body for a lane; false if there is none.
+    bool (*next)(void *context, unsigned int lane, LaneJob &job);
+    /// m at all quadrature points [cell][point]. Asked for at the start, in all stages of each step that is tried, and
+    /// after a step to a time when it jumps there once more, for what comes then.
+    void (*stress)(void *context, unsigned int lane, double t, double *m);
+    /// Sees each accepted step; false stops the lane. May be null.
+    bool (*accepted)(void *context, unsigned int lane, const LaneStep &step);
+    void (*done)(void *context, unsigned int lane, const LaneOutcome &outcome);
+    bool look_inside; ///< stretch and rates in all stages, of the position form
+    /// For the stretch @p w and its rate at each cell, for an engine with one lane. Null: the laws of a plain body.
+    LaneLaws (*laws)(void *context, double t, const double *m, const double *w, const double *rate) = nullptr;
+  };
+
+  /// The engine as compiled for one instruction set and one number of lanes.
+  struct LaneEngine
+  {
+    const char *instruction_set;
+    unsigned int lanes;
+    /// Doubles of scratch memory that run() needs, aligned to 64 bytes.
+    std::size_t (*memory)(const LaneSetup &setup);
+    void (*run)(const LaneSetup &setup, const LaneHost &host, double *memory);
+  };
+
+  /// The best engine for this processor: for many bodies, or with one lane for one body.
+  const LaneEngine &
+  batch_engine();
+  const LaneEngine &
+  single_engine();
+
+  /// The engines for an instruction set ("baseline", "avx2", "avx512") if the processor has it, else null: for
+  /// comparisons.
+  const LaneEngine *
+  batch_engine(const char *instruction_set);
+} // namespace crawler

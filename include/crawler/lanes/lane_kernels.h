@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/cell_loops.h>
+#include <crawler/lanes/pack.h>
+#include <crawler/mesh/block_tridiagonal_loops.h>
+
+/// The loops over all cells, for a pack of bodies and one degree q (included by radau_lanes.h).
+namespace crawler::CRAWLER_INSTRUCTION_SET
+{
+  /// The p-model of friction with gamma = 1, g = w^a: by products where a is a small whole number. Each lane is
+  /// computed the same way whatever the others are.
+  template <typename Pack>
+  struct LaneFriction
+  {
+    using Mask = typename PackTraits<Pack>::Mask;
+
+    Pack a;
+    static constexpr int most_bits = 4;
+    Mask whole, negative, bits[most_bits]; ///< is |a| a whole number, is a < 0; binary digits of |a|
+    bool any_whole, any_other;
+    int n_bits;
+
+    /// To be called when an exponent has changed.
+    void
+    sort()
+    {
+      any_whole           = false;
+      any_other           = false;
+      n_bits              = 0;
+      constexpr int bound = (1 << most_bits) - 1;
+      Pack is_whole{}, is_negative{}, has_bit[most_bits] = {};
+      for (int l = 0; l < PackTraits<Pack>::size; ++l)
+      {
+        const double exponent = get_lane(a, l), size = exponent < 0. ? -exponent : exponent;
+        const bool is = size <= bound && size == static_cast<int>(size);
+        set_lane(is_whole, l, is);
+        set_lane(is_negative, l, exponent < 0.);
+        any_whole = any_whole || is;
+        any_other = any_other || !is;
+        for (int b = 0; b < most_bits; ++b)
+          if (is && (static_cast<int>(size) >> b & 1) != 0)
+          {
+            set_lane(has_bit[b], l, 1.);
+            n_bits = b + 1 > n_bits ? b + 1 : n_bits;
+          }
+      }
+      whole    = is_whole > 0.;
+      negative = is_negative > 0.;
+      for (int b = 0; b < most_bits; ++b)
+        bits[b] = has_bit[b] > 0.;
+    }
+
+    void
+    operator()(const Pack *w, Pack *g, const int n) const
+    {
+      if (any_other)
+        power_at_points(w, a, g, n);
+      if (any_whole)
+        for (int p = 0; p < n; ++p)
+        {
+          Pack by_products = broadcast<Pack>(1.), x = negative ? 1. / w[p] : w[p];
+          for (int b = 0; b < n_bits; ++b, x *= x)
+            by_products *= bits[b] ? x : broadcast<Pack>(1.);
+          g[p] = any_other ? (whole ? by_products : g[p]) : by_products;
+        }
+    }
+  };
+
+  template <typename Pack>
+  struct LaneMesh
+  {
+    int n_cells;
+    const double *sizes; ///< [n_cells]
+    ElementTables tables;
+    Pack k;
+    LaneFriction<Pack> friction;
+  };
+
+  /// CellIntegrals of a pack of bodies.
+  template <typename Pack>
+  struct LaneIntegrals
+  {
+    Pack displacement{}, elastic_energy{}, stress_power{}, positive_power{}, absolute_power{}, dissipation{},
+      net_friction{}, abs_friction{}, velocity{};
+  };
+
+  /// What is looked at in a state: the extreme stretches, the numbers of their samples, and the integrals.
+  template <typename Pack>
+  struct LaneLook
+  {
+    Pack least = broadcast<Pack>(HUGE_VAL), most = broadcast<Pack>(-HUGE_VAL), least_at{}, most_at{};
+    LaneIntegrals<Pack> sums;
+  };
+
+  template <typename Pack, int q>
+  struct LaneKernels
+  {
+    static constexpr int n = q + 1;
+
+    /// At the points of a cell.
+    struct CellFriction
+    {
+      const LaneFriction<Pack> &law;
+
+      void
+      operator()(const Pack *w, Pack *g) const
+      {
+        law(w, g, n);
+      }
+
+      void
+      operator()(const Pack *w, Pack *g, Pack *w_dg) const
+      {
+        law(w, g, n);
+        for (int p = 0; p < n; ++p)
+          w_dg[p] = law.a * g[p];
+      }
+    };
+
+    /// Of the nodes of cell @p c those that no cell before it has.
+    static void
+    set_to_zero(const int c, Pack *F)
+    {
+      if (c == 0)
+        F[0] = Pack{};
+      for (int i = 1; i < n; ++i)
+        F[c * q + i] = Pack{};
+    }
+
+    /// Overwrites @p F; returns the smallest stretch at a quadrature point.
+    static Pack
+    residual(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, Pack *F)
+    {
+      Pack least = broadcast<Pack>(HUGE_VAL);
+      const CellFriction friction{mesh.friction};
+      for (int c = 0; c < mesh.n_cells; ++c)
+      {
+        Pack w[n];
+        set_to_zero(c, F);
+        cell_residual<n>(mesh.tables, mesh.sizes[c], mesh.k, u + c * q, v + c * q, m + c * n, friction, w, F + c * q);
+        for (int p = 0; p < n; ++p)
+          least = smaller(w[p], least); // a stretch that is not a number makes F one, too
+      }
+      return least;
+    }
+
+    /// The right-hand side of M v = F for the velocity v in which all forces balance, and the factors of M.
+    static void
+    balance(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *m, Pack *F, Pack *blocks, Pack *schur)
+    {
+      const CellFriction friction{mesh.friction};
+      for (int c = 0; c < mesh.n_cells; ++c)
+      {
+        Pack w[n];
+        set_to_zero(c, F);
+        cell_residual<n>(mesh.tables,
+                         mesh.sizes[c],
+                         mesh.k,
+                         u + c * q,
+                         static_cast<const Pack *>(nullptr),
+                         m + c * n,
+                         friction,
+                         w,
+                         F + c * q);
+        cell_mass<n>(mesh.tables, mesh.sizes[c], u + c * q, friction, blocks + c * n * n);
+        condense_cell<q>(blocks + c * n * n, schur + 4 * c, [](const auto &) {});
+      }
+      for (int i = 0; i <= mesh.n_cells * q; ++i)
+        F[i] = -F[i];
+    }
+
+    /// The factors of K + real M, and of K + (re + i im) M for each pair.
+    static void
+    factorize(const LaneMesh<Pack> &mesh,
+              const Pack *u,
+              const Pack *v,
+              const Pack &real,
+              const int n_pairs,
+              const Complex<Pack> *shifts,
+              Pack *blocks,
+              Pack *schur,
+              Complex<Pack> *complex_blocks,
+              Complex<Pack> *complex_schur)
+    {
+      const CellFriction friction{mesh.friction};
+      const auto any_pivot = [](const auto &) {}; // what is not finite is seen in the solution
+      for (int c = 0; c < mesh.n_cells; ++c)
+      {
+        Pack K[n * n], M[n * n];
+        cell_jacobians<n>(mesh.tables, mesh.sizes[c], mesh.k, u + c * q, v + c * q, friction, K, M);
+        Pack *A = blocks + c * n * n;
+        for (int i = 0; i < n * n; ++i)
+          A[i] = K[i] + real * M[i];
+        condense_cell<q>(A, schur + 4 * c, any_pivot);
+        for (int j = 0; j < n_pairs; ++j)
+        {
+          Complex<Pack> *B = complex_blocks + (j * mesh.n_cells + c) * n * n;
+          for (int i = 0; i < n * n; ++i)
+            B[i] = {K[i] + shifts[j].re * M[i], shifts[j].im * M[i]};
+          condense_cell<q>(B, complex_schur + 4 * (j * mesh.n_cells + c), any_pivot);
+        }
+      }
+    }
+
+    template <typename Number>
+    static void
+    forward(const int n_cells, const Number *blocks, Number *x)
+    {
+      for (int c = 0; c < n_cells; ++c)
+        forward_cell<q>(blocks + c * n * n, x + c * q);
+    }
+
+    template <typename Number>
+    static void
+    backward(const int n_cells, const Number *blocks, Number *x)
+    {
+      for (int c = 0; c < n_cells; ++c)
+        backward_cell<q>(blocks + c * n * n, x + c * q);
+    }
+
+    static void
+    integrals(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, LaneIntegrals<Pack> &sum)
+    {
+      const CellFriction friction{mesh.friction};
+      for (int c = 0; c < mesh.n_cells; ++c)
+        cell_integrals<n>(mesh.tables, mesh.sizes[c], mesh.k, u + c * q, v + c * q, m + c * n, friction, sum);
+    }
+
+    /// int u ds.
+    static Pack
+    integral(const LaneMesh<Pack> &mesh, const Pack *u)
+    {
+      Pack sum = Pack{};
+      for (int c = 0; c < mesh.n_cells; ++c)
+      {
+        Pack at[n];
+        evaluate<n>(mesh.tables.values, u + c * q, 1., 0., at);
+        for (int p = 0; p < n; ++p)
+          sum += mesh.sizes[c] * mesh.tables.weights[p] * at[p];
+      }
+      return sum;
+    }
+
+    /// Smallest and largest stretch among the samples of all cells.
+    static void
+    extremes(const LaneMesh<Pack> &mesh,
+             const int n_samples,
+             const double *sample_derivatives,
+             const Pack *u,
+             Pack *least,
+             Pack *least_at,
+             Pack *most,
+             Pack *most_at)
+    {
+      *least    = broadcast<Pack>(HUGE_VAL);
+      *most     = broadcast<Pack>(-HUGE_VAL);
+      *least_at = *most_at = Pack{};
+      for (int c = 0; c < mesh.n_cells; ++c)
+      {
+        const double inverse_size = 1. / mesh.sizes[c];
+        for (int i = 0; i < n_samples; ++i)
+        {
+          Pack w;
+          const Pack place = broadcast<Pack>(c * n_samples + i);
+          w                = Pack{};
+          for (int j = 0; j < n; ++j)
+            w += sample_derivatives[i * n + j] * u[c * q + j];
+          w         = 1. + inverse_size * w;
+          *least_at = w < *least ? place : *least_at;
+          *least    = smaller(w, *least);
+          *most_at  = w > *most ? place : *most_at;
+          *most     = w > *most ? w : *most;
+        }
+      }
+    }
+  };
+
+  /// The kernels for one degree, as functions.
+  template <typename Pack>
+  struct LaneKernelTable
+  {
+    Pack (*residual)(const LaneMesh<Pack> &, const Pack *, const Pack *, const Pack *, Pack *);
+    void (*balance)(const LaneMesh<Pack> &, const Pack *, const Pack *, Pack *, Pack *, Pack *);
+    void (*integrals)(const LaneMesh<Pack> &, const Pack *, const Pack *, const Pack *, LaneIntegrals<Pack> &);
+    void (*factorize)(const LaneMesh<Pack> &,
+                      const Pack *,
+                      const Pack *,
+                      const Pack &,
+                      int,
+                      const Complex<Pack> *,
+                      Pack *,
+                      Pack *,
+                      Complex<Pack> *,
+                      Complex<Pack> *);
+    void (*forward)(int, const Pack *, Pack *);
+    void (*backward)(int, const Pack *, Pack *);
+    void (*complex_forward)(int, const Complex<Pack> *, Complex<Pack> *);
+    void (*complex_backward)(int, const Complex<Pack> *, Complex<Pack> *);
+    Pack (*integral)(const LaneMesh<Pack> &, const Pack *);
+    void (*extremes)(const LaneMesh<Pack> &, int, const double *, const Pack *, Pack *, Pack *, Pack *, Pack *);
+  };
+
+  template <typename Pack, int q>
+  constexpr LaneKernelTable<Pack> lane_kernel_table = {LaneKernels<Pack, q>::residual,
+                                                       LaneKernels<Pack, q>::balance,
+                                                       LaneKernels<Pack, q>::integrals,
+                                                       LaneKernels<Pack, q>::factorize,
+                                                       LaneKernels<Pack, q>::template forward<Pack>,
+                                                       LaneKernels<Pack, q>::template backward<Pack>,
+                                                       LaneKernels<Pack, q>::template forward<Complex<Pack>>,
+                                                       LaneKernels<Pack, q>::template backward<Complex<Pack>>,
+                                                       LaneKernels<Pack, q>::integral,
+                                                       LaneKernels<Pack, q>::extremes};
+
+  template <typename Pack>
+  inline const LaneKernelTable<Pack> &
+  lane_kernels(const unsigned int degree)
+  {
+    switch (degree)
+    {
+      case 1:
+        return lane_kernel_table<Pack, 1>;
+      case 2:
+        return lane_kernel_table<Pack, 2>;
+      case 3:
+        return lane_kernel_table<Pack, 3>;
+      case 4:
+        return lane_kernel_table<Pack, 4>;
+      case 5:
+        return lane_kernel_table<Pack, 5>;
+      case 6:
+        return lane_kernel_table<Pack, 6>;
+      case 7:
+        return lane_kernel_table<Pack, 7>;
+      default:
+        return lane_kernel_table<Pack, 8>;
+    }
+  }
+} // namespace crawler::CRAWLER_INSTRUCTION_SET

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/stretch_form.h>
+#include <crawler/lanes/lane_tables.h>
+#include <crawler/time/time_integration.h>
+
+namespace crawler
+{
+  /**
+   * One body by the fused engine (lane_engine.h): the same method as the PETSc type "radau", without its objects. What
+   * it cannot solve it gives up, with the reason `gave_up` and the last accepted state: then the time stepper of PETSc
+   * goes on from there, or finds out what is wrong.
+   */
+  class LaneStepper : public TimeIntegration
+  {
+  public:
+    static constexpr const char *gave_up = "gave_up";
+
+    /// @p scene is in natural units; it must fit (fits_lanes, reason_against_stretch_form) and outlive the stepper.
+    LaneStepper(const Scene &scene, const LaneMethod &method);
+
+    TimeOutcome
+    solve(std::vector<double> &y,
+          const std::vector<double> &frames,
+          double tolerance,
+          double initial_step,
+          std::span<const StepLimit> limits,
+          double start_time) override;
+    void
+    interpolate(double time, Vector y) override;
+    const std::vector<QuadraturePoint> &
+    quadrature() const override
+    {
+      return quadrature_;
+    }
+
+    /// If set: sees the velocities in the stages of each accepted step, before the monitor sees the step.
+    std::function<void(double time, ConstVector v)> stage_rates;
+
+    /// Stretch and friction where a friction law was not positive, of the last solve(), if one was not.
+    const std::optional<std::pair<double, double>> &
+    bad_friction() const
+    {
+      return bad_friction_;
+    }
+
+  private:
+    static bool
+    next(void *context, unsigned int lane, LaneJob &job);
+    static void
+    stress(void *context, unsigned int lane, double t, double *m);
+    static bool
+    accepted(void *context, unsigned int lane, const LaneStep &step);
+    static void
+    done(void *context, unsigned int lane, const LaneOutcome &outcome);
+    static LaneLaws
+    laws(void *context, double t, const double *m, const double *w, const double *rate);
+    void
+    show_rates();
+
+    const Scene &scene_;
+    const std::shared_ptr<const LaneTables> tables_owner_;
+    const LaneTables &tables_;
+    LaneSetup setup_;
+    std::optional<StretchLaws> laws_; ///< of a general body in the stretch form
+    const RadauTableau &tableau_;
+    const std::unique_ptr<ActiveStressAtPoints> stress_;
+    std::vector<QuadraturePoint> quadrature_;
+    LaneStorage memory_;
+
+    // The state of one solve().
+    std::optional<std::pair<double, double>> bad_friction_;
+    LaneJob job_;
+    bool started_           = false;
+    std::vector<double> *y_ = nullptr;
+    LaneStep step_;
+    TimeOutcome outcome_;
+    std::vector<double> frames_, weights_, rate_;
+  };
+} // namespace crawler

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/stretch_loops.h>
+#include <crawler/lanes/lane_engine.h>
+#include <crawler/lanes/lane_kernels.h>
+#include <crawler/lanes/lane_memory.h>
+#include <crawler/lanes/lane_tridiagonal.h>
+
+#include <cstddef>
+
+/// The equations and linear systems of the stretch form for a pack of bodies (included by radau_lanes.h).
+namespace crawler::CRAWLER_INSTRUCTION_SET
+{
+  /// The smallest w^(1+a) that is looked at, where that is what the unknown is made of.
+  constexpr double least_power = 1e-8;
+
+  /**
+   * The unknowns are those of the cells, and last the displacement of the left end, u_0' = v_0. That of a cell is its
+   * stretch w; or q = w^(1+a)/(1+a), -1 < a < 0, which passes 0 at a finite rate where a body inverts (LaneSetup).
+   *
+   *   F_j = q_j' - c_j (v_{j+1} - v_j)/h_j,   c = dq/dw,        F_n = u_0' - v_0
+   */
+  template <typename Pack, int pairs>
+  class StretchSystem
+  {
+  public:
+    using Number                  = Complex<Pack>;
+    static constexpr int lanes    = PackTraits<Pack>::size;
+    static constexpr bool largest = true; ///< is the size of a vector that of its largest element, else the mean square
+    static constexpr bool gives_rates = false; ///< for LaneHost::look_inside
+
+    StretchSystem(const LaneSetup &setup, const LaneHost &host)
+      : setup_(setup)
+      , host_(host)
+      , n_(static_cast<int>(setup.n_cells))
+      , rule_(static_cast<NodeRule>(setup.node_rule))
+      , cells_(static_cast<int>(setup.n_cells))
+    {
+    }
+
+    int
+    n_unknowns() const
+    {
+      return n_ + 1;
+    }
+    /// Of these the error is controlled.
+    int
+    n_controlled() const
+    {
+      return n_;
+    }
+    int
+    n_points() const
+    {
+      return n_;
+    }
+
+    void
+    lay_out(LaneMemory &memory)
+    {
+      const std::size_t n = n_;
+      memory.piece(w_, n);
+      memory.piece(slope_, n);
+      memory.piece(own_mobility_, n);
+      memory.piece(own_mobility_slope_, n);
+      memory.piece(own_force_, n);
+      memory.piece(own_force_by_w_, n);
+      memory.piece(rate_, n);
+      cells_.lay_out(memory);
+    }
+
+    void
+    set_body(const int l, const LaneJob &job)
+    {
+      set_lane(k_, l, job.k);
+      set_lane(a_, l, job.a);
+      set_lane(friction_.a, l, -job.a);
+    }
+
+    void
+    sort_bodies()
+    {
+      friction_.sort();
+    }
+
+    /// Of the state @p q with the rates @p q_dot and the active stress @p m, at a time for each lane. Returns a number
+    /// that is not positive where the equation has no meaning.
+    Pack
+    residual(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, Pack *F)
+    {
+      const Pack least = evaluate(t, q, q_dot, m, /*slopes=*/false);
+      Pack left        = velocity_of_node(0);
+      F[n_]            = q_dot[n_] - left;
+      for (int j = 0; j < n_; ++j)
+      {
+        const Pack right = velocity_of_node(j + 1), change = (right - left) * (1. / setup_.sizes[j]);
+        F[j] = setup_.is_power ? q_dot[j] - change / slope_[j] : q_dot[j] - change;
+        left = right;
+      }
+      return least;
+    }
+
+    /// For the state (@p q, @p q_dot): the matrices with the eigenvalues of the method.
+    void
+    factorize(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, const Pack &inverse_h)
+    {
+      evaluate(t, q, q_dot, m, /*slopes=*/true);
+      for (int p = 0; p < pairs; ++p)
+        shifts_[p] = {setup_.eigenvalues[2 * p] * inverse_h, setup_.eigenvalues[2 * p + 1] * inverse_h};
+      shift_                 = setup_.real_eigenvalue * inverse_h;
+      const bool sees_rate   = setup_.sees_rate;
+      const double *h        = setup_.sizes;
+      const auto derivatives = [&](const int i, Node &node) {
+        const NodeForce<Pack> f = node_force(rule_, n_, h, mobility_, force_, i);
+        Pack turn               = broadcast<Pack>(1.);
+        node.v                  = direct(f.slope * f.mobility.value, turn);
+        const Pack conductance = turn * f.mobility.value * (1. / f.spacing), force = turn * f.slope;
+        node.by_left = node.by_right = node.by_left_rate = node.by_right_rate = Pack{};
+        if (i > 0)
+        {
+          node.by_left =
+            (force * f.mobility.by_left * mobility_slope_[i - 1] - conductance * force_by_w_[i - 1]) * slope_[i - 1];
+          if (sees_rate)
+            node.by_left_rate = -conductance * force_by_rate_[i - 1];
+        }
+        if (i < n_)
+        {
+          node.by_right = (force * f.mobility.by_right * mobility_slope_[i] + conductance * force_by_w_[i]) * slope_[i];
+          if (sees_rate)
+            node.by_right_rate = conductance * force_by_rate_[i];
+        }
+      };
+      Node left, right;
+      derivatives(0, left);
+      end_by_w_    = -left.by_right;
+      end_by_rate_ = -left.by_right_rate;
+      for (int j = 0; j < n_; ++j)
+      {
+        derivatives(j + 1, right);
+        const Pack c = -1. / (h[j] * slope_[j]);
+        auto &row    = cells_.row(j);
+        row.K[0]     = -c * left.by_left;
+        row.K[1]     = c * (right.by_left - left.by_right);
+        row.K[2]     = c * right.by_right;
+        if (setup_.is_power) // dc/dq = a/w
+          row.K[1] += a_ * (right.v - left.v) * (-1. / h[j]) / w_[j];
+        if (sees_rate)
+        {
+          row.M[0] = -c * left.by_left_rate;
+          row.M[1] = 1. + c * (right.by_left_rate - left.by_right_rate);
+          row.M[2] = c * right.by_right_rate;
+        }
+        left = right;
+      }
+      cells_.factorize(shift_, shifts_, sees_rate);
+    }
+
+    void
+    solve(Pack *x) const
+    {
+      solve_all(x, nullptr);
+    }
+
+    /// The real system and those of all pairs, @p y [pair][unknown]; null: the real one alone.
+    void
+    solve_all(Pack *x, Number *y) const
+    {
+      cells_.solve(x, y, n_unknowns());
+      x[n_] = (x[n_] - (end_by_w_ + shift_ * end_by_rate_) * x[0]) / shift_;
+      for (int p = 0; p < pairs && y != nullptr; ++p)
+      {
+        Number *own    = y + p * n_unknowns();
+        const Number c = {end_by_w_ + shifts_[p].re * end_by_rate_, shifts_[p].im * end_by_rate_};
+        own[n_] -= c * own[0];
+        own[n_] *= 1. / shifts_[p];
+      }
+    }
+
+    /// The smallest and the largest stretch.
+    void
+    look(const Pack *q, const Pack *, const Pack *, const bool, LaneLook<Pack> &result)
+    {
+      find_stretch(q);
+      for (int j = 0; j < n_; ++j)
+      {
+        const Pack place = broadcast<Pack>(j);
+        result.least_at  = w_[j] < result.least ? place : result.least_at;
+        result.least     = smaller(w_[j], result.least);
+        result.most_at   = w_[j] > result.most ? place : result.most_at;
+        result.most      = w_[j] > result.most ? w_[j] : result.most;
+      }
+    }
+
+    /// int u ds.
+    Pack
+    integral(const Pack *q)
+    {
+      find_stretch(q);
+      Pack u = q[n_], sum = Pack{};
+      for (int j = 0; j < n_; ++j)
+      {
+        const Pack change = setup_.sizes[j] * (w_[j] - 1.);
+        sum += setup_.sizes[j] * (u + 0.5 * change);
+        u += change;
+      }
+      return sum;
+    }
+
+  private:
+    struct Node
+    {
+      Pack v, by_left, by_right, by_left_rate, by_right_rate;
+    };
+
+    /// v for the velocity that the ground would give without its direction, and the derivative.
+    Pack
+    direct(const Pack &v, Pack &slope) const
+    {
+      if constexpr (lanes == 1)
+        if (setup_.backward_ratio != 1.)
+          return NodeDirection{setup_.backward_ratio, setup_.switching_velocity}.velocity(v, slope);
+      return v;
+    }
+
+    Pack
+    velocity_of_node(const int i) const
+    {
+      const NodeForce<Pack> f = node_force(rule_, n_, setup_.sizes, mobility_, force_, i);
+      Pack slope{};
+      return direct(f.slope * f.mobility.value, slope);
+    }
+
+    /// w and dw/dq.
+    void
+    find_stretch(const Pack *q)
+    {
+      if (!setup_.is_power)
+      {
+        for (int j = 0; j < n_; ++j)
+        {
+          w_[j]     = q[j];
+          slope_[j] = broadcast<Pack>(1.);
+        }
+        return;
+      }
+      const Pack b = 1. + a_, inverse = 1. / b, least = least_power * inverse;
+      for (int j = 0; j < n_; ++j)
+        rate_[j] = b * (q[j] > least ? q[j] : least);
+      power_at_points(rate_, inverse, w_, n_);
+      for (int j = 0; j < n_; ++j)
+        slope_[j] = w_[j] / rate_[j];
+    }
+
+    Pack
+    evaluate(const double *t, const Pack *q, const Pack *q_dot, const Pack *m, const bool slopes)
+    {
+      constexpr double nothing = 1e-300;
+      find_stretch(q);
+      Pack least = broadcast<Pack>(1.);
+      if constexpr (lanes == 1)
+        if (host_.laws != nullptr)
+        {
+          for (int j = 0; j < n_; ++j)
+            rate_[j] = q_dot[j] * slope_[j];
+          const LaneLaws laws = host_.laws(host_.context, *t, m, w_, rate_);
+          mobility_           = laws.mobility;
+          mobility_slope_     = laws.mobility_by_w;
+          force_              = laws.force;
+          force_by_w_         = laws.force_by_w;
+          force_by_rate_      = laws.force_by_rate;
+          return laws.least;
+        }
+      for (int j = 0; j < n_; ++j)
+      {
+        own_force_[j] = m[j] + k_ * (w_[j] - 1.);
+        rate_[j]      = w_[j] > nothing ? w_[j] : broadcast<Pack>(nothing);
+        least         = a_ < 0. ? least : smaller(w_[j], least);
+      }
+      friction_(rate_, own_mobility_, n_);
+      for (int j = 0; j < n_; ++j)
+        own_mobility_[j] = w_[j] > nothing ? own_mobility_[j] : Pack{};
+      if (slopes)
+        for (int j = 0; j < n_; ++j)
+        {
+          own_mobility_slope_[j] = -a_ * own_mobility_[j] / rate_[j];
+          own_force_by_w_[j]     = k_;
+        }
+      mobility_       = own_mobility_;
+      mobility_slope_ = own_mobility_slope_;
+      force_          = own_force_;
+      force_by_w_     = own_force_by_w_;
+      return least;
+    }
+
+    const LaneSetup &setup_;
+    const LaneHost &host_;
+    const int n_;
+    const NodeRule rule_;
+    LaneFriction<Pack> friction_; ///< of the mobility, w^-a
+    Pack k_, a_, shift_, end_by_w_, end_by_rate_;
+    Number shifts_[pairs];
+    LaneTridiagonal<Pack, pairs> cells_;
+    Pack *w_, *slope_;                                                               ///< [cell]
+    Pack *own_mobility_, *own_mobility_slope_, *own_force_, *own_force_by_w_;        ///< [cell] of plain bodies
+    Pack *rate_;                                                                     ///< [cell] scratch
+    const Pack *mobility_, *mobility_slope_, *force_, *force_by_w_, *force_by_rate_; ///< [cell] own or the host's
+  };
+} // namespace crawler::CRAWLER_INSTRUCTION_SET

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/lanes/lane_engine.h>
+#include <crawler/mesh/reference_element.h>
+#include <crawler/scene/scene.h>
+
+#include <memory>
+#include <vector>
+
+namespace crawler
+{
+  /// Element, mesh and method of a fused run.
+  struct LaneMethod
+  {
+    unsigned int degree, n_cells, n_stages;
+    std::vector<double> cell_ends = {};    ///< of a body of length 1 (mesh/graded_mesh.h)
+    bool is_stretch               = false; ///< the stretch form, of degree 1
+    bool other_rule               = false; ///< see stretch_method()
+
+    auto
+    operator<=>(const LaneMethod &) const = default;
+  };
+
+  struct RadauTableau;
+
+  /// The tables of a method, as the engine wants them.
+  class LaneTables
+  {
+  public:
+    explicit LaneTables(const LaneMethod &method);
+    LaneTables(const LaneTables &) = delete;
+
+    /// Quadrature points of all cells, for a body of length 1; in the stretch form their middles.
+    std::vector<double> points;
+    LaneSetup setup;
+
+    /// s/L of a sample (LaneStep).
+    double
+    place_of_sample(unsigned int number) const;
+
+  private:
+    const LaneMethod method_;
+    const ReferenceElement element_;
+    std::vector<double> sizes_, sample_places_, samples_, eigenvalues_, vectors_, rows_;
+  };
+
+  /// The latest are kept from call to call.
+  std::shared_ptr<const LaneTables>
+  lane_tables(const LaneMethod &method);
+
+  /// Scratch memory of the engine: so many doubles, aligned to its packs, all 0.
+  struct LaneStorageFree
+  {
+    void
+    operator()(double *memory) const;
+  };
+  using LaneStorage = std::unique_ptr<double, LaneStorageFree>;
+  LaneStorage
+  lane_storage(std::size_t n);
+
+  /// In a batch no stretch may fall below this.
+  constexpr double small_stretch = 0.1;
+
+  /// Can the engine compute this scene in the position form?
+  bool
+  fits_lanes(const Scene &scene);
+} // namespace crawler

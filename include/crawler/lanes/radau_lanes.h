@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/lanes/lane_control.h>
+#include <crawler/lanes/lane_engine.h>
+#include <crawler/lanes/lane_kernels.h>
+#include <crawler/lanes/lane_memory.h>
+#include <crawler/lanes/lane_states.h>
+#include <crawler/lanes/lane_stretch.h>
+#include <crawler/lanes/lane_systems.h>
+
+#include <cstddef>
+
+/**
+ * The Radau IIA methods on packs of bodies; formulas and their sources are in doc/numerics.md, "Fused engine". Included
+ * by lanes.cc alone, once for each instruction set. Nothing here may come from the C++ library: its inline functions
+ * would be compiled for this instruction set and might be used by all.
+ */
+namespace crawler::CRAWLER_INSTRUCTION_SET
+{
+  /// @p System: the equations of a form (lane_systems.h, lane_stretch.h).
+  template <typename Pack, int s, template <typename, int> class System>
+  class RadauLanes
+  {
+  public:
+    static constexpr int lanes = PackTraits<Pack>::size, pairs = (s - 1) / 2, middle = s / 2;
+    using Number = Complex<Pack>;
+
+    RadauLanes(const LaneSetup &setup, const LaneHost &host, double *memory)
+      : setup_(setup)
+      , host_(host)
+      , system_(setup, host)
+      , n_(system_.n_unknowns())
+      , n_points_(system_.n_points())
+      , memory_(memory)
+      , states_{setup, n_}
+    {
+      lay_out();
+    }
+
+    RadauLanes(const RadauLanes &) = delete;
+
+    static std::size_t
+    memory(const LaneSetup &setup)
+    {
+      const LaneHost nobody{};
+      return RadauLanes(setup, nobody, nullptr).memory_.size();
+    }
+
+    void
+    run()
+    {
+      for (int l = 0; l < lanes; ++l)
+        take_next(l);
+      while (any_busy())
+      {
+        if (friction_changed_)
+          system_.sort_bodies();
+        friction_changed_ = false;
+        begin_step();
+        guess();
+        states_.go_to_stage(middle, inverse_h_);
+        system_.factorize(times_[middle], states_.u, states_.v, m_ + middle * n_points_, inverse_h_);
+        newton();
+        estimate_error();
+        decide();
+      }
+    }
+
+  private:
+    void
+    lay_out()
+    {
+      const std::size_t n = n_;
+      states_.lay_out(memory_);
+      memory_.piece(F_, s * n);
+      memory_.piece(m_, std::size_t(s) * n_points_);
+      memory_.piece(m_start_, n_points_);
+      memory_.piece(real_, n);
+      memory_.piece(complex_, pairs * n);
+      system_.lay_out(memory_);
+      memory_.piece(scratch_, n_points_);
+    }
+
+    bool
+    any_busy() const
+    {
+      for (const Lane &lane : lanes_)
+        if (lane.busy)
+          return true;
+      return false;
+    }
+
+    /// The next body for a lane, or one at rest that asks nothing.
+    void
+    take_next(const int l)
+    {
+      Lane &lane = lanes_[l];
+      lane       = Lane();
+      lane.busy  = host_.next(host_.context, static_cast<unsigned int>(l), lane.job);
+      if (!lane.busy)
+        lane.job = {1., 0., 1., 1., 1., nullptr, 0, 0, 0., false, 0., nullptr, nullptr, 0, nullptr};
+      lane.t    = lane.job.start_time;
+      lane.next = lane.job.initial_step;
+      system_.set_body(l, lane.job);
+      set_lane(tolerance_, l, lane.job.tolerance);
+      friction_changed_ = true;
+      states_.start(l, lane.job.start);
+      for (int i = 0; i < s * n_points_; ++i)
+        set_lane(m_[i], l, 0.);
+      stress(l, lane.t, m_start_);
+    }
+
+    void
+    stress(const int l, const double t, Pack *m)
+    {
+      if (lanes_[l].busy)
+        host_.stress(host_.context, static_cast<unsigned int>(l), t, scratch_);
+      for (int i = 0; i < n_points_; ++i)
+        set_lane(m[i], l, lanes_[l].busy ? scratch_[i] : 0.);
+    }
+
+    /// Lengths of the steps, and the active stress in their stages.
+    void
+    begin_step()
+    {
+      for (int l = 0; l < lanes; ++l)
+      {
+        Lane &lane = lanes_[l];
+        if (lane.busy)
+        {
+          lane.choose_step();
+          start_[l] = lane.t;
+          for (int i = 0; i < s; ++i)
+          {
+            times_[i][l] = i + 1 < s ? lane.t + setup_.c[i] * lane.h : lane.end_of_step();
+            stress(l, times_[i][l], m_ + i * n_points_);
+          }
+        }
+        set_lane(inverse_h_, l, 1. / lane.h);
+      }
+    }
+
+    void
+    guess()
+    {
+      Pack ratio{}, use{};
+      for (int l = 0; l < lanes; ++l)
+      {
+        set_lane(ratio, l, lanes_[l].h / lanes_[l].old_h);
+        set_lane(use, l, lanes_[l].has_old);
+      }
+      states_.guess(ratio, use);
+    }
+
+    void
+    newton()
+    {
+      for (Lane &lane : lanes_)
+        lane.start_newton();
+      for (int it = 1; it <= most_newton && any_iterating(); ++it)
+      {
+        Pack least = broadcast<Pack>(HUGE_VAL);
+        for (int i = 0; i < s; ++i)
+        {
+          states_.go_to_stage(i, inverse_h_);
+          least = smaller(least, system_.residual(times_[i], states_.u, states_.v, m_ + i * n_points_, F_ + i * n_));
+        }
+        const Pack correction = correct();
+        for (int l = 0; l < lanes; ++l)
+          if (lanes_[l].iterating)
+            lanes_[l].look_at_correction(it,
+                                         get_lane(least, l),
+                                         ::sqrt(get_lane(correction, l)),
+                                         setup_.newton_fraction * lanes_[l].job.newton_factor);
+      }
+      for (Lane &lane : lanes_)
+        if (lane.iterating)
+          lane.fail();
+    }
+
+    bool
+    any_iterating() const
+    {
+      for (const Lane &lane : lanes_)
+        if (lane.iterating)
+          return true;
+      return false;
+    }
+
+    /// The square of the size of @p n elements in units of the tolerance.
+    Pack
+    relative(const Pack &square, const int n) const
+    {
+      const Pack in_units = square / (tolerance_ * tolerance_);
+      return System<Pack, pairs>::largest ? in_units : in_units * (1. / n);
+    }
+
+    /// One correction from the residuals F, in the basis of the eigenvectors of A^-1; returns its mean square in units
+    /// of the tolerance. Lanes that are done keep their state.
+    Pack
+    correct()
+    {
+      Pack mask{};
+      for (int l = 0; l < lanes; ++l)
+        set_lane(mask, l, lanes_[l].iterating);
+      for (int d = 0; d < n_; ++d)
+      {
+        Pack f[s], sum = Pack{};
+        for (int j = 0; j < s; ++j)
+        {
+          f[j] = F_[j * n_ + d];
+          sum += setup_.rows[2 * j] * f[j];
+        }
+        real_[d] = sum;
+        for (int p = 0; p < pairs; ++p)
+        {
+          const double *row = setup_.rows + 2 * (p + 1) * s;
+          Number r{Pack{}, Pack{}};
+          for (int j = 0; j < s; ++j)
+          {
+            r.re += row[2 * j] * f[j];
+            r.im += row[2 * j + 1] * f[j];
+          }
+          complex_[p * n_ + d] = r;
+        }
+      }
+      system_.solve_all(real_, complex_);
+      const Pack square = states_.template correct<System<Pack, pairs>::largest>(real_, complex_, mask > 0.);
+      return relative(square, s * n_);
+    }
+
+    /// The error of the embedded formula (time/radau.cc, estimate_error).
+    void
+    estimate_error()
+    {
+      states_.go_to_start(inverse_h_);
+      for (int round = 0; round < 2; ++round)
+      {
+        system_.residual(start_, states_.u, states_.v, m_start_, real_);
+        system_.solve(real_);
+        Pack square{};
+        for (int d = 0; d < system_.n_controlled(); ++d)
+          square = added<System<Pack, pairs>::largest>(square, real_[d] * real_[d]);
+        for (int d = 0; d < n_; ++d)
+          states_.u[d] = states_.y[d] - real_[d];
+        square     = relative(square, n_);
+        bool again = false;
+        for (int l = 0; l < lanes; ++l)
+        {
+          Lane &lane            = lanes_[l];
+          const double filtered = ::sqrt(get_lane(square, l));
+          if (round == 0)
+            lane.error = filtered;
+          else if (lane.is_settling())
+            lane.settle(filtered, s);
+          again = again || (lane.busy && !lane.failed && lane.is_settling());
+        }
+        if (!again)
+          break;
+      }
+    }
+
+    /// Accepts or rejects, and finds the next steps.
+    void
+    decide()
+    {
+      Pack accepted{};
+      bool any = false;
+      for (int l = 0; l < lanes; ++l)
+      {
+        Lane &lane = lanes_[l];
+        if (!lane.busy)
+          continue;
+        lane.control_step(s);
+        set_lane(accepted, l, lane.accepted);
+        any = any || lane.accepted;
+      }
+      if (any)
+        advance(accepted > 0.);
+      for (int l = 0; l < lanes; ++l)
+        if (lanes_[l].busy && !lanes_[l].accepted && lanes_[l].is_hopeless())
+          end(l, LaneOutcome::gave_up);
+    }
+
+    /// The accepted lanes go to the ends of their steps.
+    void
+    advance(const typename PackTraits<Pack>::Mask &accepted)
+    {
+      if (host_.look_inside)
+        for (int i = 0; i + 1 < s; ++i)
+        {
+          states_.go_to_stage(i, inverse_h_);
+          look_at_stage(i, states_.u);
+        }
+      states_.go_to_end(accepted);
+      for (int i = 0; i < n_points_; ++i)
+        m_start_[i] = accepted ? m_[(s - 1) * n_points_ + i] : m_start_[i];
+      if constexpr (System<Pack, pairs>::gives_rates)
+        if (host_.look_inside)
+          system_.velocity(
+            states_.y, m_ + (s - 1) * n_points_, states_.v); // that of the stage is Newton's, with its error
+      look_at_stage(s - 1, states_.y);
+      for (int l = 0; l < lanes; ++l)
+        if (lanes_[l].busy && lanes_[l].accepted)
+          arrive(l);
+    }
+
+    /// Keeps the stretch, and the rates if they are asked for, of a stage with the state (@p u, v).
+    void
+    look_at_stage(const int i, const Pack *u)
+    {
+      LaneLook<Pack> look;
+      system_.look(u, states_.v, m_ + i * n_points_, host_.look_inside, look);
+      const LaneIntegrals<Pack> &sums = look.sums;
+      for (int l = 0; l < lanes; ++l)
+        stages_[l][i] = {get_lane(look.least, l),
+                         get_lane(look.most, l),
+                         static_cast<unsigned int>(get_lane(look.least_at, l)),
+                         static_cast<unsigned int>(get_lane(look.most_at, l)),
+                         get_lane(sums.stress_power, l),
+                         get_lane(sums.positive_power, l),
+                         get_lane(sums.absolute_power, l),
+                         get_lane(sums.dissipation, l),
+                         get_lane(sums.net_friction, l),
+                         get_lane(sums.abs_friction, l),
+                         get_lane(states_.v[0], l),
+                         get_lane(states_.v[n_ - 1], l)};
+      elastic_energy_ = sums.elastic_energy;
+    }
+
+    /// A lane at the end of its step.
+    void
+    arrive(const int l)
+    {
+      Lane &lane          = lanes_[l];
+      const bool is_frame = lane.arrive();
+      if (!(stages_[l][s - 1].min_stretch > lane.job.least_stretch))
+      {
+        end(l, LaneOutcome::gave_up);
+        return;
+      }
+      bool go_on = true;
+      if (host_.accepted != nullptr)
+        go_on = host_.accepted(host_.context,
+                               static_cast<unsigned int>(l),
+                               {lane.t,
+                                lane.h,
+                                lane.next,
+                                lane.steps,
+                                lane.rejected,
+                                lane.newton,
+                                is_frame,
+                                lanes,
+                                reinterpret_cast<const double *>(states_.y) + l,
+                                reinterpret_cast<const double *>(states_.old_z) + l,
+                                stages_[l],
+                                get_lane(elastic_energy_, l)});
+      if (lane.frame == lane.job.n_frames)
+        end(l, LaneOutcome::finished);
+      else if (!go_on || lane.steps >= lane.job.most_steps)
+        end(l, LaneOutcome::stopped);
+      else if (is_frame && lane.job.restarts != nullptr && lane.job.restarts[lane.frame - 1] != 0)
+      {
+        lane.start_anew();
+        stress(l, lane.t, m_start_);
+      }
+    }
+
+    void
+    end(const int l, const LaneOutcome::Status status)
+    {
+      const Lane &lane = lanes_[l];
+      host_.done(
+        host_.context,
+        static_cast<unsigned int>(l),
+        {status, lane.t, lane.next, lane.steps, lane.rejected, lane.newton, get_lane(system_.integral(states_.y), l)});
+      take_next(l);
+    }
+
+    const LaneSetup &setup_;
+    const LaneHost &host_;
+    System<Pack, pairs> system_;
+    const int n_, n_points_; ///< unknowns, and points with an active stress
+    LaneMemory memory_;
+    LaneStates<Pack, s> states_;
+    Lane lanes_[lanes];
+    Pack tolerance_, inverse_h_;
+    double times_[s][lanes], start_[lanes]; ///< of the stages, and where the step starts
+    bool friction_changed_ = true;
+    LaneStage stages_[lanes][s]; ///< what the host gets to see
+    Pack elastic_energy_{};
+
+    Pack *F_;            ///< [stage][unknown] residuals
+    Pack *real_;         ///< [unknown] right-hand side of the real system, and its solution
+    Number *complex_;    ///< [pair][unknown] of the complex ones
+    Pack *m_, *m_start_; ///< active stress of the stages, and at the start
+    double *scratch_;    ///< active stress of one lane
+  };
+} // namespace crawler::CRAWLER_INSTRUCTION_SET

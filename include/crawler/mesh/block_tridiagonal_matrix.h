@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/mesh/discretization.h>
+
+#include <complex>
+#include <type_traits>
+
+namespace crawler
+{
+  /**
+   * A matrix that is a chain of dense blocks, one per cell, neighbours overlapping in one node; and its direct
+   * solution in O(N) operations without fill and without pivoting: inner nodes cell by cell, then the end nodes of the
+   * cells one after the other down to a 2x2 system per rank, then the small tridiagonal system of those on every rank.
+   * Number is double or std::complex<double>.
+   */
+  template <typename Number>
+  class BlockTridiagonalMatrix
+  {
+  public:
+    explicit BlockTridiagonalMatrix(const Discretization &discretization);
+
+    /// The blocks [local cell][degree+1][degree+1], row by row, to be filled. Filling them voids the factors.
+    std::vector<Number> &
+    blocks()
+    {
+      return blocks_;
+    }
+
+    /// y = A x for owned vectors (collective).
+    void
+    multiply(std::span<const Number> x, std::span<Number> y) const requires std::is_same_v<Number, double>;
+
+    /// Computes the factors (collective). Returns false on all ranks if a pivot vanishes or is not finite.
+    bool
+    factorize();
+
+    /// x = A^-1 b for owned vectors (collective) with the factors; @p b and @p x may be one vector.
+    void
+    solve(std::span<const Number> b, std::span<Number> x) const;
+
+  private:
+    const Discretization *discretization_;
+    std::vector<Number> blocks_, factors_, schur_;
+
+    // Elimination of the end nodes 1 ... n-1 of the own cells, node 0 and n kept. For node i: its inverse pivot and
+    // the couplings row/column 0, and to the next node.
+    std::vector<Number> inverse_, row_zero_, column_zero_, next_, below_;
+    std::vector<Number> reduced_; ///< [rank][4] the 2x2 systems of all ranks
+    mutable std::vector<Number> local_, reduced_rhs_;
+    mutable std::vector<Number> x_local_;
+  };
+} // namespace crawler

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/mesh/reference_element.h>
+
+#include <mpi.h>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace crawler
+{
+  /// A cell of the whole mesh.
+  struct Cell
+  {
+    double left, size;  ///< [length]
+    unsigned int level; ///< how often one of the cells of the first mesh was halved
+    bool is_left_half;  ///< of the cell of which it is a half
+  };
+
+  /// What is to become of a cell; two halves of a former cell are joined if both are marked.
+  enum class CellChange : signed char
+  {
+    join   = -1,
+    keep   = 0,
+    divide = 1
+  };
+
+  /**
+   * Mesh, element and numbering of the unknowns. Each rank owns a run of neighbouring cells (ranks beyond the number of
+   * cells own none). A mesh that is adapted is a deal.II parallel::shared::Triangulation<1>. Unknowns are numbered
+   * along the body: node i of cell c has the number c*degree + i, so each matrix is a chain of small dense blocks.
+   *
+   * A rank owns the unknowns of its cells except the first node of its first cell, which the rank to the left owns
+   * (rank 0 owns that too). "Local" arrays hold all nodes of the own cells, that first one included: local node
+   * number = (cell - first_cell)*degree + i. On the first rank, and in a serial run, owned and local are the same.
+   */
+  class Discretization
+  {
+  public:
+    /// Cells of one size.
+    Discretization(MPI_Comm communicator, double length, unsigned int n_cells, unsigned int degree);
+
+    /// Cells between neighbours of @p cell_ends [length], which start with 0 and end with the length.
+    Discretization(MPI_Comm communicator, std::vector<double> cell_ends, unsigned int degree);
+    ~Discretization();
+
+    /// This mesh with cells divided and joined as @p changes says for all cells (the same on all ranks); neighbours
+    /// differ by one level at most, so more cells may be divided and fewer joined (collective).
+    std::unique_ptr<Discretization>
+    adapted(std::vector<CellChange> changes) const;
+
+    MPI_Comm
+    communicator() const
+    {
+      return communicator_;
+    }
+    const ReferenceElement &
+    element() const
+    {
+      return element_;
+    }
+    double
+    length() const
+    {
+      return length_;
+    }
+    /// The whole mesh from left to right, the same on all ranks; this rank's cells start with number first_cell().
+    const std::vector<Cell> &
+    cells() const
+    {
+      return cells_;
+    }
+    unsigned int
+    n_cells() const
+    {
+      return static_cast<unsigned int>(cells_.size());
+    }
+    unsigned int
+    first_cell() const
+    {
+      return first_cell_;
+    }
+    std::size_t
+    n_unknowns() const
+    {
+      return cells_.size() * element_.degree + 1;
+    }
+
+    /// The cells of this rank: left ends [length] and sizes [length].
+    const std::vector<double> &
+    cell_left() const
+    {
+      return cell_left_;
+    }
+    const std::vector<double> &
+    cell_size() const
+    {
+      return cell_size_;
+    }
+    unsigned int
+    n_local_cells() const
+    {
+      return static_cast<unsigned int>(cell_left_.size());
+    }
+    /// Number of local nodes: 0 on a rank without cells.
+    std::size_t
+    n_local() const
+    {
+      return cell_left_.empty() ? 0 : cell_left_.size() * element_.degree + 1;
+    }
+    /// Number of unknowns that this rank owns.
+    std::size_t
+    n_owned() const
+    {
+      return n_local() - (has_left_neighbour() ? 1 : 0);
+    }
+    bool
+    has_left_neighbour() const
+    {
+      return rank_ > 0 && !cell_left_.empty();
+    }
+    bool
+    has_right_neighbour() const
+    {
+      return rank_ + 1 < n_active_ranks_;
+    }
+    unsigned int
+    rank() const
+    {
+      return rank_;
+    }
+    /// All ranks of the communicator.
+    unsigned int
+    n_ranks() const
+    {
+      return n_ranks_;
+    }
+    /// Ranks that own cells: 0 ... n_active_ranks() - 1.
+    unsigned int
+    n_active_ranks() const
+    {
+      return n_active_ranks_;
+    }
+
+    /// Material coordinates of @p places (0 to 1) in the own cells, cell by cell [length].
+    std::vector<double>
+    points(const std::vector<double> &places) const;
+
+    /// A local array from the owned values of all ranks (collective). Returns @p owned itself where nothing is
+    /// missing; else fills and returns @p buffer.
+    template <typename Number>
+    std::span<const Number>
+    to_local(std::span<const Number> owned, std::vector<Number> &buffer) const;
+
+    /// Owned sums from local contributions (collective): @p local is added up where two ranks share a node.
+    template <typename Number>
+    void
+    add_to_owned(std::span<const Number> local, std::span<Number> owned) const;
+
+    /// All ranks' parts of a distributed array, in the order of the ranks, on all ranks (collective).
+    std::vector<double>
+    gather(std::span<const double> own) const;
+
+  private:
+    struct Mesh; ///< holds deal.II's triangulation, kept out of this header
+
+    Discretization(MPI_Comm communicator, double length, unsigned int degree, std::shared_ptr<Mesh> mesh);
+
+    void
+    set_cells(std::vector<Cell> cells);
+
+    const MPI_Comm communicator_;
+    const double length_;
+    const ReferenceElement &element_;
+    const unsigned int rank_, n_ranks_;
+    unsigned int n_active_ranks_ = 0, first_cell_ = 0;
+    std::vector<Cell> cells_;
+    std::vector<double> cell_left_, cell_size_;
+    std::shared_ptr<Mesh> mesh_; ///< shared along a sequence of adapted meshes; in the state of the latest
+  };
+} // namespace crawler

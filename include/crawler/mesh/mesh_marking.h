@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/mesh/discretization.h>
+
+namespace crawler
+{
+  /// What an adaptive mesh may become.
+  struct MeshLimits
+  {
+    double tolerance        = 0.; ///< admissible sum of all error indicators [length]; 0: the mesh does not change
+    double smallest_cell    = 0.; ///< [length]
+    unsigned int most_cells = 100000;
+  };
+
+  /// The indicators of all ranks' cells from left to right (collective).
+  std::vector<double>
+  all_indicators(const std::vector<double> &own, const Discretization &discretization);
+
+  /**
+   * The cells to divide such that the sum of the indicators falls below the tolerance: those with the largest
+   * indicators, until the others together have less than a tenth of it; and their neighbours, since waves travel.
+   * Empty if no cell that should be divided may be.
+   */
+  std::vector<CellChange>
+  mark_for_division(const std::vector<double> &indicators, const Discretization &mesh, const MeshLimits &limits);
+
+  /// The cells to join: pairs whose indicators are so small that, joined, they would stay below their share of a
+  /// hundredth of the tolerance. Empty if there are too few to be worth a change.
+  std::vector<CellChange>
+  mark_for_joining(const std::vector<double> &indicators, const Discretization &mesh, const MeshLimits &limits);
+} // namespace crawler

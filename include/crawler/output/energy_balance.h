@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <array>
+#include <deque>
+
+namespace crawler
+{
+  /// Integrals over time of rates that are known at the accepted steps.
+  struct EnergyBalance
+  {
+    double stress_power   = 0.; ///< W = -int int m zeta_st ds dt, work of the active stress [energy]
+    double dissipation    = 0.; ///< Q = int int g v^2 ds dt [energy]
+    double positive_power = 0.; ///< int int max(-m zeta_st, 0) ds dt [energy]
+    double exchanged      = 0.; ///< int int |m zeta_st| ds dt [energy]
+    double end_work       = 0.; ///< int [m v] from s = 0 to L dt [energy]
+    double elastic_energy = 0.; ///< of the present state [energy]
+    double transfer_loss  = 0.; ///< elastic energy lost by changes of the mesh [energy]
+    double initial_energy = 0.; ///< elastic energy at t = 0, of a body that does not start unstretched [energy]
+
+    /// All of these, for what is done to each.
+    static constexpr std::array<double EnergyBalance::*, 7>
+    energies()
+    {
+      return {{&EnergyBalance::stress_power,
+               &EnergyBalance::dissipation,
+               &EnergyBalance::positive_power,
+               &EnergyBalance::exchanged,
+               &EnergyBalance::end_work,
+               &EnergyBalance::elastic_energy,
+               &EnergyBalance::transfer_loss}};
+    }
+
+    /// All energies times @p unit.
+    EnergyBalance
+    scaled(double unit) const;
+
+    /// @p own times these energies and @p part times the others.
+    EnergyBalance
+    combined(double own, const EnergyBalance &other, double part) const;
+
+    /// int int m_s zeta_t ds dt, the energy of the paper [energy].
+    double
+    paper_energy() const
+    {
+      return stress_power + end_work;
+    }
+    /// |W - Q - (elastic energy) + (initial energy) - (transfer loss)|/(exchanged work): 0 for the exact solution [1].
+    double
+    residual() const;
+  };
+
+  /**
+   * Integrates rates over time as accurately as the time integrator: over each step the polynomial through the last
+   * (up to six) accepted points, i.e. the Adams-Moulton quadrature for variable steps. Where steps have just grown a
+   * lot, fewer points are used.
+   */
+  class RateQuadrature
+  {
+  public:
+    static constexpr unsigned int n_rates = 5;
+    using Rates                           = std::array<double, n_rates>;
+
+    /// Adds the rates at the next point in time and returns the increments of their integrals.
+    Rates
+    advance(double time, const Rates &rates);
+
+  private:
+    struct Point
+    {
+      double time;
+      Rates rates;
+    };
+    std::deque<Point> points_; ///< newest first
+  };
+} // namespace crawler

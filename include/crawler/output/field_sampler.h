@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/assembler.h>
+#include <crawler/equation/general_sampler.h>
+
+namespace crawler
+{
+  /// The fields that are written, at a list of points, in the user's units.
+  struct Fields
+  {
+    std::vector<double> position, displacement, stretch, velocity, active_stress, elastic_stress, friction_force;
+  };
+
+  /// Evaluates the fields at points inside this rank's cells.
+  class FieldSampler
+  {
+  public:
+    struct Point
+    {
+      unsigned int cell; ///< number among this rank's cells
+      double x;          ///< from 0 to 1 in the cell
+    };
+
+    FieldSampler(const Assembler &assembler, const Units &units, std::vector<Point> points);
+
+    /// The fields of the state @p y with the velocity @p v (collective). Throws NonfiniteStress.
+    const Fields &
+    sample(double t, std::span<const double> y, std::span<const double> v);
+
+    /// Material coordinates of the points [length].
+    const std::vector<double> &
+    coordinates() const
+    {
+      return coordinates_;
+    }
+
+  private:
+    const Assembler &assembler_;
+    const Units units_;
+    const std::vector<Point> points_;
+    std::vector<double> coordinates_;
+    std::vector<double> values_;   ///< [point][node] shape functions
+    const StretchSampler stretch_; ///< at the x of the points
+    std::unique_ptr<ActiveStressAtPoints> stress_;
+    std::unique_ptr<GeneralSampler> general_; ///< of a general scene
+    std::vector<double> u_local_, v_local_;
+    Fields fields_;
+  };
+} // namespace crawler

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/assembler.h>
+#include <crawler/output/energy_balance.h>
+#include <crawler/time/time_stepper.h>
+
+namespace crawler
+{
+  /// An accepted state of a run, read-only, in the user's units except for what the equation is computed in: assembler,
+  /// y, v and computed_time, whose units are given.
+  struct Snapshot
+  {
+    const Step &step;
+    bool is_frame;              ///< one of the snapshots that were asked for, the initial state included
+    const Assembler &assembler; ///< mesh and formulation; may be another one in the next snapshot ...
+    unsigned int mesh_number;   ///< ... and then this number is another one
+    const Units &units;
+    double computed_time;
+    std::span<const double> y;      ///< the unknowns (assembler.h), owned values of this rank
+    std::span<const double> v;      ///< velocity at the nodes; without a energy balance of snapshots only
+    const CellIntegrals &integrals; ///< those with v are as old as v
+    const StretchRange &stretch;
+    const EnergyBalance &energy_balance;
+  };
+
+  /// Looks at the accepted states of a run. Called on all ranks together.
+  class Observer
+  {
+  public:
+    virtual ~Observer() = default;
+
+    virtual void
+    observe(const Snapshot &snapshot) = 0;
+
+    /// After the last state, however the run ended.
+    virtual void
+    end()
+    {
+    }
+  };
+} // namespace crawler

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// Section "Output": what is computed and written besides the displacement.
+  struct OutputParameters
+  {
+    unsigned int n_snapshots = 50;
+    bool kymograph           = true;
+    bool statistics          = true;
+    bool energy_balance      = true;
+    std::optional<double> energy_balance_tolerance;
+    std::vector<double> active_stress_table; ///< numbers of samples over s and t; empty: no table
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+} // namespace crawler

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/gauss_panels.h>
+#include <crawler/reduced_models/reduced_fields.h>
+#include <crawler/scene/scene.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+namespace crawler
+{
+  /**
+   * A body whose strain e(s,t) is given (the level "kinematic"; doc/theory.md, "Prescribed strain"), in natural units.
+   * With g = g(1+e) and <.> the mean over the body:
+   *
+   *   v = B_t - <g B_t>/<g>,   B = int_0^s e ds,   <v> = -<(g - <g>)(B_t - <B_t>)>/<g>,   m = int_0^s g v ds - k e.
+   *
+   * Integrals over s are Gauss quadrature on panels.
+   */
+  class KinematicBody
+  {
+  public:
+    /// @p points are those where fields() looks. Scene (in natural units) and strain must outlive it.
+    KinematicBody(const Scene &scene,
+                  const StrainHistory &strain,
+                  unsigned int n_panels,
+                  const std::vector<double> &points = {});
+
+    /// The state at one time, integrated over the body.
+    struct Integrals
+    {
+      double velocity       = 0.; ///< <v>
+      double dissipation    = 0.; ///< int g v^2
+      double stress_power   = 0.; ///< -int m e_t
+      double positive_power = 0.; ///< int max(-m e_t, 0)
+      double absolute_power = 0.; ///< int |m e_t|
+      double end_power      = 0.; ///< [m v] from s = 0 to L
+      double elastic_energy = 0.; ///< int (k/2) e^2
+      double net_friction   = 0.; ///< int g v, to round-off 0
+      double abs_friction   = 0.; ///< int |g v|
+      StrainExtreme smallest, largest;
+    };
+
+    /// Where a stretch is not positive only the extremes are known, and the rest is not a number.
+    const Integrals &
+    evaluate(double t);
+
+    /// At the time of evaluate(), the centre of mass being where it was at the start plus @p displacement.
+    ReducedFields
+    fields(double displacement);
+
+  private:
+    const Scene &scene_;
+    const GaussPanels panels_;
+    const std::vector<double> points_;
+    std::vector<double> inside_; ///< the Gauss points, then both ends
+    const std::unique_ptr<StrainAtPoints> strain_, strain_at_points_;
+    const GaussPanels::Places places_;
+    double time_ = 0., g_mean_ = 0., drift_ = 0.;
+    std::vector<double> e_, e_t_, w_, g_, B_, B_t_, gv_, m_;
+    Integrals integrals_;
+  };
+
+  struct KinematicResult
+  {
+    double displacement = 0., space_error = 0., time_error = 0.; ///< errors of the quadrature
+    bool stopped = false;                                        ///< keep_going said no
+    ReducedEnergies energies;
+    double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time
+    StrainExtremes extremes{};
+    std::optional<StrainExtreme> inversion; ///< where the stretch is not positive; then nothing else is known
+    unsigned int n_space_panels = 0, n_time_panels = 0;
+  };
+
+  /**
+   * The displacement and the works of a body with a given strain over 0 <= t <= 1. The panels in s and in t are doubled
+   * until the changes of the displacement that this makes are, each, below a quarter of @p tolerance times the
+   * displacement (or of 1e-12), and the works balance to @p tolerance, or until there are a million of them; the
+   * changes are the errors, and the values are those of the doubled panels.
+   */
+  KinematicResult
+  kinematic(const Scene &scene,
+            const StrainHistory &strain,
+            double tolerance,
+            const std::function<bool()> &keep_going = {});
+
+  /// Adds the time integrals from @p start to @p end (one panel of Gauss points) to @p energies; returns the change of
+  /// the displacement.
+  double
+  advance(KinematicBody &body, double start, double end, ReducedEnergies &energies);
+} // namespace crawler

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/lanes/lane_engine.h>
+
+#include <span>
+#include <vector>
+
+namespace crawler
+{
+  struct RadauTableau;
+
+  /// The displacement of a body in a lane of the fused engine at the ends of equal pieces of it, at any time within a
+  /// step (the collocation polynomial of the stages); natural units.
+  class LaneSampler
+  {
+  public:
+    /// @p setup and @p tableau are kept as references.
+    LaneSampler(const LaneSetup &setup, const RadauTableau &tableau, unsigned int n_pieces);
+
+    /// Looks at a time in [step.time - step.size, step.time].
+    void
+    sample(const LaneStep &step, double time);
+
+    /// [n_pieces + 1] of the last sample.
+    std::span<const double>
+    displacement() const
+    {
+      return at_ends_;
+    }
+    double
+    mean_displacement() const
+    {
+      return mean_;
+    }
+
+  private:
+    const LaneSetup &setup_;
+    const RadauTableau &tableau_;
+    std::vector<unsigned int> cells_; ///< [n_pieces + 1] in which the ends are
+    std::vector<double> shape_;       ///< [n_pieces + 1][degree + 1] shape functions there
+    std::vector<double> integral_;    ///< [unknowns] of each shape function
+    std::vector<double> weights_, u_, at_ends_;
+    double mean_ = 0.;
+  };
+} // namespace crawler

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/step_limits.h>
+#include <crawler/equation/stretch_form.h>
+#include <crawler/mesh/graded_mesh.h>
+#include <crawler/mesh/mesh_marking.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// The numerical settings of one simulation; numerics_choice.h chooses those that the user leaves open.
+  struct Numerics
+  {
+    unsigned int degree                = 0;
+    unsigned int n_cells               = 0;  ///< of the first mesh
+    double tolerance                   = 0.; ///< [length]
+    double initial_step                = 0.; ///< [time]
+    std::vector<StepLimit> step_limits = {}; ///< of adaptive steps [time]
+    double least_event = 0.; ///< an event of the active stress within a step, if it is this large, is stepped over
+                             ///< again [force]; 0: not looked for
+    Formulation formulation = Formulation::position;
+    MeshLimits mesh         = {};    ///< of an adaptive mesh
+    bool linear             = false; ///< the level for a = 0: radau, position form, uniform mesh
+    std::string integrator  = "";    ///< what an automatic integrator is (time/integrators.h); empty: bdf
+    Grading grading         = {};    ///< of the first mesh, which has n_cells cells without it
+    double layer            = 0.;    ///< of the stretch form: see layered_cell_ends() [length]; 0: none
+    unsigned int parts      = 1;     ///< of the stretch form, into which each of n_cells is divided
+    bool other_rule         = false; ///< of the stretch form, see stretch_method()
+    bool jumps_move         = false; ///< the active stress jumps at places that move through the cells
+  };
+
+  /// In natural units.
+  Numerics
+  in_units(Numerics numerics, const Units &units);
+
+  /// The ends of the cells of the first mesh, for a body of length 1: at the breaks in space, and graded as wished.
+  /// Empty if they are n_cells of one size.
+  std::vector<double>
+  first_cell_ends(const Scene &scene, const Numerics &numerics);
+} // namespace crawler

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/reduced_models/kinematic.h>
+#include <crawler/reduced_models/reduced_scene.h>
+#include <crawler/run/simulation.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// Computes a scene on a level that needs neither mesh nor time stepper: perturbation or kinematic.
+  class ReducedModel
+  {
+  public:
+    /// @p scene is in the user's units and must outlive it; it must fit the level @p model (model_choice.h).
+    ReducedModel(const Scene &scene, const std::string &model);
+
+    /**
+     * What the level gives, in the user's units. If the error is not known, or larger than @p accuracy times the
+     * displacement (and 1e-12 of the length), the status is "failed" with the reason accuracy_not_met; if the strain
+     * that the level assumes inverts the body it is "inverted". @p keep_going is asked now and then.
+     */
+    SimulationResult
+    compute(double accuracy, bool energy_balance, const std::function<bool()> &keep_going = {});
+
+    /// The state at one time, in natural units.
+    struct State
+    {
+      double displacement = 0., velocity = 0., net_friction = ReducedEnergies::unknown;
+      ReducedEnergies energies;
+      StrainExtreme smallest{}, largest{};
+      ReducedFields fields;
+    };
+
+    /**
+     * After compute(): calls @p see with the states at @p times (increasing, from 0 to 1), with fields at @p points.
+     * It ends early if @p see returns false.
+     */
+    void
+    replay(const std::vector<double> &times,
+           const std::vector<double> &points,
+           const std::function<bool(double time, const State &state)> &see) const;
+
+    /// After compute() for @p scene, whose @p result gets the last stride, if the active stress declares its period,
+    /// and the gait efficiency. Nothing is said of a run that did not finish.
+    void
+    describe_gait(const Scene &scene, SimulationResult &result) const;
+
+    const ReducedScene &
+    levels() const
+    {
+      return levels_;
+    }
+
+    /// What was computed, in a sentence.
+    std::string
+    description() const;
+
+  private:
+    void
+    compute_perturbation(SimulationResult &result) const;
+    void
+    compute_kinematic(SimulationResult &result, double accuracy, const std::function<bool()> &keep_going);
+    void
+    judge(SimulationResult &result, double accuracy) const;
+
+    const ReducedScene levels_;
+    const std::string model_;
+    unsigned int n_space_panels_ = 0, n_time_panels_ = 0; ///< of the kinematic level
+  };
+
+  /// Works and energies of a level as a energy balance; the initial elastic energy counts as lost before the start.
+  EnergyBalance
+  energy_balance_of(const ReducedEnergies &energies);
+} // namespace crawler

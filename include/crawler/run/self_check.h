@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/run/run_parameters.h>
+#include <crawler/run/simulation.h>
+
+namespace crawler
+{
+  /// The largest admissible EnergyBalance::residual() of a run.
+  double
+  energy_balance_tolerance(const SimulationResult &result, const RunParameters &parameters);
+
+  /// Names a finished run whose identities do not hold a failure: the energy balance must close, the friction forces
+  /// balance.
+  void
+  check_identities(SimulationResult &result, const RunParameters &parameters);
+} // namespace crawler

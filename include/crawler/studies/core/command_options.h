@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// What the command line says besides the name of the command.
+  struct CommandOptions
+  {
+    std::string file;
+    std::vector<std::string> overrides;
+    std::string output;
+    bool overwrite = false;
+    bool resume    = false;
+    bool strict    = false;
+    bool quiet     = false;
+    std::string command_line;
+  };
+} // namespace crawler

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/run/simulation.h>
+#include <crawler/studies/core/parameters.h>
+
+#include <exception>
+#include <functional>
+#include <optional>
+#include <span>
+
+namespace crawler
+{
+  /// One run without files.
+  struct Computed
+  {
+    SimulationResult result;
+    NumericsChoice choice;
+  };
+
+  /// One of many runs: a scene to compute, and what came of it.
+  struct Task
+  {
+    Parameters parameters;
+    /// Of interest is the last stride, too, if the active stress says how long it is; the same for all tasks of a call.
+    bool gait = false;
+    std::optional<Scene> scene;
+    Computed computed;
+    std::exception_ptr error;    ///< what was thrown instead
+    double seconds      = 0.;    ///< that it took; runs of a batch share its time
+    bool is_out_of_time = false; ///< stopped by the time limit
+  };
+
+  /// Is a task with many cycles computed sooner alone, where it can end when they repeat, than side by side with
+  /// others?
+  bool
+  is_faster_alone(const Task &task);
+
+  /**
+   * What `crawler run` computes for each of @p tasks, whose parameters alone are given, on this rank alone and without
+   * files: choice of the numerics, simulation, self-check. Runs that fit share the lanes of the fused engine
+   * (run/batch.h), where an answer does not depend on its neighbours and all cycles are computed; the others,
+   * those that the engine gives up, and long ones that may end when their cycles repeat, follow one by one. Nothing is
+   * thrown. No run takes longer than @p time_limit [s], and @p interrupted is asked after every step, those of pilot
+   * runs too; if a pilot is stopped, the status is "stopped" and nothing else is known.
+   */
+  void
+  compute_all(std::span<Task> tasks, double time_limit, const std::function<bool()> &interrupted);
+} // namespace crawler

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/accuracy/model_choice.h>
+#include <crawler/parameters/parameter_file.h>
+#include <crawler/studies/core/parameters.h>
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// A parameter file, read and understood.
+  struct Input
+  {
+    ParameterFile file;
+    Parameters parameters;
+    std::string effective; ///< all entries as they are used, as a .prm file
+    Scene scene;
+    std::vector<std::string> notes; ///< entries that were set to something but have no effect
+  };
+
+  /// Reads @p file_name on rank 0 and gives it to all (collective). Throws InputError or FileError, on all ranks.
+  ParameterFile
+  read_file(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides);
+
+  /// The same, understood: the scene is built too.
+  Input
+  read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides);
+  Input
+  read_input(ParameterFile file);
+
+  /// model_choice.h; messages say where in the file the entry at fault is.
+  ModelChoice
+  choose_model(const Input &input);
+} // namespace crawler

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/exceptions.h>
+#include <crawler/studies/core/input.h>
+#include <crawler/studies/core/log.h>
+
+#include <filesystem>
+
+namespace crawler
+{
+  struct TimeOutcome;
+
+  /// Logs body and active stress.
+  void
+  report_scene(Log &log, const Input &input);
+
+  /// Makes the output folder with the files that a run begins with: parameters, log, and active_stress.csv if the input
+  /// asks for it. Throws FileError.
+  void
+  begin_files(Log &log, const Input &input, const std::filesystem::path &folder);
+
+  /// What a run that ended like this returns to the shell.
+  ExitCode
+  exit_code(const TimeOutcome &outcome);
+} // namespace crawler

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/studies/core/log.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// What the commands have in common that compute many runs.
+
+  /// Wall time since some moment [s].
+  double
+  now();
+
+  /// "0.83 ms", "83 s", "12 min", "3.4 h", "2.1 days".
+  std::string
+  duration_in_words(double seconds);
+
+  /// A line every few seconds at most: parts done, speed, time left.
+  class StudyProgress
+  {
+  public:
+    /// @param parts names the @p n_parts parts, as "points".
+    StudyProgress(Log &log, unsigned long n_parts, std::string parts);
+
+    /// Whether report() would write.
+    bool
+    is_due() const;
+
+    /// @p remark stands at the end of the line.
+    void
+    report(unsigned long done, const std::string &remark = "");
+
+  private:
+    Log &log_;
+    const unsigned long n_parts_;
+    const std::string parts_;
+    const double start_ = now();
+    double last_        = now();
+  };
+
+  /// A number without common divisor with @p n, near the golden section of it: its multiples modulo n visit all of n
+  /// parts, spread out from the beginning. So the time left is known early, and a study that is stopped is a coarse
+  /// picture of everything.
+  unsigned long
+  golden_stride(unsigned long n);
+
+  /// The lines of a parameter file that set something.
+  std::string
+  without_comments(const std::string &parameters);
+
+  /// Where the effective parameters, versions and command come from: attributes of the HDF5 file.
+  std::map<std::string, std::string>
+  provenance(const std::string &effective, const std::string &command_line);
+
+  /// Entries that differ between two parameter files (their texts), as "Body/Length was 1, is 2"; but for @p others.
+  std::vector<std::string>
+  differences(const std::string &before, const std::string &after, const std::vector<std::string> &others);
+
+  /// The path of a script in contrib/plot, also of an installed program.
+  std::string
+  plot_script(const std::string &name);
+
+  /// Draws the picture of @p folder with the script of this name in contrib/plot, or says how to.
+  void
+  draw(const std::string &script, const std::filesystem::path &folder, Log &log);
+} // namespace crawler

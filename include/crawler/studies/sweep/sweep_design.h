@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/studies/core/sweep_parameters.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// Something that varies over a sweep: an entry, or the parameter file itself.
+  struct SweepAxis
+  {
+    static constexpr const char *file = "File";
+
+    std::string entry; ///< "Section/Entry", or "File"
+    /// Of a grid each value once, of a zip one for each point, of a random design those that it draws from, of a range
+    /// its two ends: in any case what has to be admissible.
+    std::vector<std::string> values;
+    bool is_range = false, is_logarithmic = false;
+
+    bool
+    is_file() const
+    {
+      return entry == file;
+    }
+  };
+
+  /// All points of a sweep, numbered from 0.
+  class SweepDesign
+  {
+  public:
+    /// Reads the axes, with the CSV files that they name. Throws InputError in the name of the entry Sweep/Axes if they
+    /// do not make sense, if the axes of a zip have different lengths or if there are more than
+    /// SweepParameters::most_points.
+    explicit SweepDesign(const SweepParameters &parameters);
+
+    unsigned long
+    n_points() const
+    {
+      return n_points_;
+    }
+    const std::vector<SweepAxis> &
+    axes() const
+    {
+      return axes_;
+    }
+
+    /// Of a grid the last axis varies fastest. Nothing is kept for random points: they are computed.
+    std::string
+    value(std::size_t axis, unsigned long point) const;
+
+    /// Does the entry vary from point to point?
+    bool
+    varies(const std::string &entry) const;
+
+    /// So many points in succession differ in the last axis only: its length for a grid, otherwise 1.
+    unsigned long
+    run_length() const
+    {
+      return kind_ == Kind::grid ? axes_.back().values.size() : 1;
+    }
+
+  private:
+    enum class Kind
+    {
+      grid,
+      zip,
+      random,
+      latin_hypercube
+    };
+
+    SweepAxis
+    read_axis(const std::string &entry, const std::string &text, const std::string &design) const;
+
+    std::vector<SweepAxis> axes_;
+    Kind kind_;
+    unsigned int seed_;
+    unsigned long n_points_ = 0;
+  };
+} // namespace crawler

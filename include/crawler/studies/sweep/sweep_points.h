@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/parameters/parameter_file.h>
+#include <crawler/studies/core/parameters.h>
+#include <crawler/studies/sweep/sweep_design.h>
+
+#include <mpi.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// The parameters of all points of a sweep: the parameter file as a form in which the values of the axes are filled
+  /// in.
+  class SweepPoints
+  {
+  public:
+    /// Reads the design and looks at all names and values (collective: rank 0 reads the files of a file axis). Throws
+    /// InputError, with the place in the file.
+    SweepPoints(MPI_Comm communicator, const ParameterFile &file);
+    ~SweepPoints();
+
+    const SweepDesign &
+    design() const
+    {
+      return *design_;
+    }
+    const SweepParameters &
+    sweep() const
+    {
+      return sweep_;
+    }
+
+    /// The entries of the file itself, without an axis.
+    const Declarations &
+    declarations() const;
+
+    /// Those of the files on the file axis, by their names.
+    std::map<std::string, const Declarations *>
+    scene_declarations() const;
+
+    /// All entries as they are used, but for the axes, as a .prm file.
+    const std::string &
+    effective() const
+    {
+      return effective_;
+    }
+
+    /// Of a point; good until the next call.
+    const Parameters &
+    parameters(unsigned long point);
+
+    /// The same as overrides "Section/Entry=value" of a command line: the file of the axis, the user, the axes.
+    std::vector<std::string>
+    overrides(const SweepDesign &design, unsigned long point) const;
+
+    /// The numbers in Sweep/Keep fields. Throws InputError if one is not that of a point.
+    std::vector<unsigned long>
+    kept_points() const;
+
+  private:
+    struct Form;
+
+    void
+    require_admissible_values();
+    void
+    require_words();
+    void
+    require_scene();
+
+    const ParameterFile &file_;
+    SweepParameters sweep_;
+    std::unique_ptr<SweepDesign> design_;
+    std::string effective_;
+    std::size_t file_axis_ = 0;                          ///< number of axes: none
+    std::map<std::string, ParameterFile> scenes_;        ///< of the files on the file axis
+    std::map<std::string, std::unique_ptr<Form>> forms_; ///< for each of them, or one for ""
+  };
+} // namespace crawler

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/row_file.h>
+#include <crawler/studies/core/compute.h>
+#include <crawler/studies/sweep/sweep_design.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// The columns of results.h5 (a contract, doc/user_guide.md, "Sweep"): index, the axes, the numbers of summary.json
+  /// with dots for nesting, seconds, reason, message, and status, which is written last.
+  std::vector<RowFile::Column>
+  sweep_columns(const SweepDesign &design, const Declarations &declarations);
+
+  /// Of these columns the index and the axes, which are known before anything is computed.
+  RowFile::Known
+  known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design);
+
+  /// The row of a point that has been computed, in @p columns, those after the known ones.
+  RowFile::Row
+  sweep_row(const std::vector<RowFile::Column> &columns, const Task &task);
+
+  /// The reason of a point that took longer than the time limit.
+  extern const std::string time_limit_reason;
+
+  /// What has become of a point, in a word, and why.
+  struct PointStatus
+  {
+    std::string status, reason, message;
+  };
+  PointStatus
+  status_of(const Task &task);
+} // namespace crawler

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/studies/run/run.h>
+
+namespace crawler
+{
+  /**
+   * crawler tradeoff: cost against true error of many settings on one scene, with a reference that is made and checked
+   * here. The ranks share the settings, each measuring runs of its own (collective). A study that was stopped or killed
+   * can be resumed.
+   */
+  ExitCode
+  tradeoff(MPI_Comm communicator, const CommandOptions &options);
+} // namespace crawler

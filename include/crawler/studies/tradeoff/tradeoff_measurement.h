@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/studies/tradeoff/tradeoff_rows.h>
+
+#include <functional>
+#include <optional>
+
+namespace crawler
+{
+  /// Processor time of this process [s].
+  double
+  processor_seconds();
+
+  /// Bytes of the heap that are in use; not a number where the C library does not say (it does with glibc).
+  double
+  heap_bytes();
+
+  /// Measures the settings of one family: what they share is chosen once.
+  class TradeoffMeasurement
+  {
+  public:
+    /// All references are kept. @p size is that to which tolerances are relative [length].
+    TradeoffMeasurement(const Parameters &parameters,
+                        const Scene &scene,
+                        const TradeoffFamily &family,
+                        double size,
+                        const std::function<bool()> &interrupted);
+
+    /**
+     * The row of a tolerance of the family: what `crawler run` computes without snapshots, on this rank alone. The
+     * first run gives displacement and memory, and must keep the time limit; the others are timed. The cost is the
+     * processor time to build the simulation and run it, without the choice of the numerics, in a process that has done
+     * so before. Nothing is returned if it was interrupted. What goes wrong is the status of the row.
+     */
+    std::optional<TradeoffRow>
+    measure(std::size_t tolerance);
+
+  private:
+    using KeepGoing = std::function<bool()>;
+
+    bool
+    choose(const Parameters &own, double end);
+    SimulationResult
+    run(const Parameters &own, const Numerics &numerics, const KeepGoing &keep_going) const;
+    bool
+    measure(TradeoffRow &row);
+    bool
+    time_runs(TradeoffRow &row, const Parameters &own, const Numerics &numerics, double first_seconds) const;
+
+    const Parameters &parameters_;
+    const Scene &scene_;
+    const TradeoffFamily &family_;
+    const double size_;
+    const std::function<bool()> &interrupted_;
+    std::optional<NumericsChoice> choice_;
+    double choice_seconds_ = TradeoffRow::unknown;
+  };
+} // namespace crawler

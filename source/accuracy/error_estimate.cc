@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/error_estimate.h>
+#include <crawler/accuracy/finer_run_errors.h>
+#include <crawler/accuracy/graded_choice.h>
+#include <crawler/base/communication.h>
+#include <crawler/run/batch.h>
+#include <crawler/run/self_check.h>
+#include <crawler/time/failure.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    // Calibrated by tests/verification/calibration.cc.
+    constexpr double measured_factor = 1.5, promised_part = 0.2, factor_without_promise = 2.;
+    /// The errors of two adaptive meshes have more in common.
+    constexpr double promised_part_if_adaptive = 0.5;
+    /// On graded meshes each part of the error was measured beforehand.
+    constexpr double promised_part_if_graded = 0.15;
+    /// The finer run: cells and tolerances relative to the run's.
+    constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;
+    /// The same if the run is not by radau 9, which is more accurate for the same tolerance than all others.
+    constexpr double finer_tolerance_than_others = 4.;
+    /// The same if the user chose the numerics: nobody knows whether mesh or steps are the problem.
+    constexpr double more_cells_without_promise = 2., finer_tolerance_without_promise = 0.1;
+    constexpr const char *best_integrator = "radau 9";
+    /// Its first step, relative to the duration, at least: others start with smaller ones.
+    constexpr double first_step = 1e-3;
+    /// Bodies softer than this in natural units have layers at their ends, of a thickness of about that; the finer run
+    /// has cells as small as this times that there, smaller and smaller by this ratio.
+    constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, most_layer_levels = 8.;
+    /// A cycle that stands for many others has an error that does not average out: the finer run is more accurate.
+    constexpr double finer_tolerance_of_cycles = 0.25;
+    /// For the next try.
+    constexpr double refined_cells = 1.2, refined_tolerance = 0.1;
+    /// No displacement is more accurate than this part of the body length.
+    constexpr double round_off = 1e-15;
+
+    /// Is the error known beforehand? The rule of the numerics does not know what a point value of the stretch, seen
+    /// from elsewhere, does.
+    bool
+    is_promised(const NumericsChoice &choice, const Scene &scene)
+    {
+      const StretchFeedback *feedback = scene.active_stress->feedback();
+      return std::isfinite(choice.promised_error) && (feedback == nullptr || !feedback->sees_near());
+    }
+
+    Numerics
+    finer(const NumericsChoice &choice, const std::string &integrator, const Scene &scene)
+    {
+      Numerics n          = choice.numerics;
+      const bool promised = is_promised(choice, scene);
+      if (n.mesh.tolerance > 0.)
+      {
+        n.mesh.tolerance *= finer_mesh_tolerance;
+        // Two tolerances may leave the same cells where they matter; halves of them do not.
+        if (!promised)
+          n.n_cells *= 2;
+      }
+      else if (n.formulation == Formulation::stretch)
+        n.parts *= 2; // one family of meshes
+      else
+      {
+        const double factor = promised ? more_cells : more_cells_without_promise;
+        // A piece between breaks may have one cell only, and must get another.
+        const auto n_breaks   = static_cast<unsigned int>(scene.breaks_in_space().size());
+        const unsigned int by = n_breaks > 0 ? n_breaks + 1 : 0;
+        n.n_cells             = std::max(static_cast<unsigned int>(std::ceil(factor * n.n_cells)), n.n_cells + by);
+      }
+      n.tolerance *= !promised                       ? finer_tolerance_without_promise
+                     : integrator == best_integrator ? finer_tolerance
+                                                     : finer_tolerance_than_others;
+      n.integrator = best_integrator;
+      // Layers that neither mesh sees would be missed by the difference.
+      const double k = scene.body.elastic_modulus / natural_units(scene).force;
+      if (promised && k < soft && n.mesh.tolerance == 0. && n.grading.levels == 0)
+      {
+        const double levels = std::log(layer_cells * k * n.n_cells) / std::log(layer_ratio);
+        n.grading      = {static_cast<unsigned int>(std::clamp(std::ceil(levels), 1., most_layer_levels)), layer_ratio};
+        n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
+        return n;
+      }
+      if (n.grading.levels > 0)
+        return with_finer_grading(scene, n);
+      n.initial_step = std::max(n.initial_step, first_step * scene.end_time);
+      return n;
+    }
+
+    /// The run with more cells and its own steps: where nothing is promised it tells both parts of the error apart,
+    /// since their sum may be small by chance.
+    SimulationResult
+    run_on_finer_mesh(MPI_Comm communicator,
+                      const RunParameters &parameters,
+                      const Scene &scene,
+                      const NumericsChoice &choice,
+                      const SimulationResult &result,
+                      const std::function<bool()> &keep_going)
+    {
+      Numerics numerics         = choice.numerics;
+      const Numerics finer_mesh = finer(choice, parameters.time.integrator, scene);
+      numerics.n_cells          = finer_mesh.n_cells;
+      numerics.parts            = finer_mesh.parts;
+      numerics.mesh.tolerance   = finer_mesh.mesh.tolerance;
+      numerics.grading          = finer_mesh.grading;
+      TimeParameters time       = parameters.time;
+      time.petsc_prefix         = time_of_finer_run(time).petsc_prefix;
+      time.max_steps            = time_of_finer_run(time).max_steps; // the limit is for the run itself
+      const auto cycles         = cycle_wish(parameters, scene, 0);
+      return Simulation(communicator, scene, time, numerics)
+        .run({}, options_of_finer_run(result, cycles), {}, keep_going);
+    }
+
+    /// What the finer run gives; it may not have finished.
+    SimulationResult
+    finer_run(MPI_Comm communicator,
+              const RunParameters &parameters,
+              const Scene &scene,
+              const NumericsChoice &choice,
+              const SimulationResult &result,
+              const std::function<bool()> &keep_going)
+    {
+      const TimeParameters time = time_of_finer_run(parameters.time);
+      Numerics numerics         = numerics_of_finer_run(choice, parameters.time, scene);
+      if (result.cycles)
+        numerics.tolerance *= finer_tolerance_of_cycles;
+      const auto cycles  = cycle_wish(parameters, scene, 0);
+      const auto options = options_of_finer_run(result, cycles);
+      // Most runs fit the fused engine; then nothing else has to be built.
+      if (!cycles && size_of(communicator) == 1 && batch_method(scene, time, numerics))
+      {
+        const BatchRun run = {&scene, &time, &numerics};
+        if (auto finer = run_batch({&run, 1}, options, keep_going, single_engine()).front())
+          return std::move(*finer);
+        if (keep_going && !keep_going())
+          return {};
+      }
+      return Simulation(communicator, scene, time, numerics).run({}, options, {}, keep_going);
+    }
+  } // namespace
+
+  NumericsChoice
+  refined(const NumericsChoice &choice, const Scene &scene)
+  {
+    NumericsChoice next = choice;
+    Numerics &n         = next.numerics;
+    if (n.mesh.tolerance > 0.)
+      n.mesh.tolerance *= refined_tolerance;
+    else
+      n.n_cells = static_cast<unsigned int>(std::ceil(refined_cells * n.n_cells));
+    n.tolerance *= refined_tolerance;
+    if (n.grading.levels > 0)
+      n = with_finer_grading(scene, n);
+    return next;
+  }
+
+  TimeParameters
+  time_of_finer_run(const TimeParameters &run)
+  {
+    TimeParameters time = run;
+    time.integrator     = "automatic";
+    time.engine         = "automatic";
+    time.step_control   = "adaptive";
+    time.max_steps      = TimeParameters().max_steps; // the limit is for the run itself
+    time.petsc_prefix   = "second_";                  // options after "--" are for the run itself
+    return time;
+  }
+
+  Numerics
+  numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, const Scene &scene)
+  {
+    return finer(choice, time.integrator == "automatic" ? choice.numerics.integrator : time.integrator, scene);
+  }
+
+  Simulation::Options
+  options_of_finer_run(const SimulationResult &result, const std::optional<CycleWish> &cycles)
+  {
+    using Wish = Simulation::GaitWish;
+    return {.energy_balance = result.energy_balance.has_value(),
+            .cycles         = cycles,
+            .gait           = !result.gait               ? Wish::none
+                              : result.gait->is_declared ? Wish::declared
+                                                         : Wish::any};
+  }
+
+  void
+  set_errors(const NumericsChoice &choice,
+             SimulationResult &result,
+             const SimulationResult *const finer,
+             const RunParameters &parameters,
+             const Scene &scene,
+             const SimulationResult *const finer_mesh)
+  {
+    DisplacementError &error = result.error.emplace();
+    double total             = choice.promised_error;
+    std::optional<double> space; // of the total, if it was measured
+    if (choice.numerics.linear)  // the centre of mass stays where it is, whatever the other errors are
+      total = 0.;
+    else if (finer != nullptr)
+    {
+      if (finer->time.status != "finished" || (finer_mesh != nullptr && finer_mesh->time.status != "finished"))
+        return;
+      const bool promised = is_promised(choice, scene);
+      const double part   = !promised                             ? 0.
+                            : choice.numerics.mesh.tolerance > 0. ? promised_part_if_adaptive
+                            : choice.numerics.grading.levels > 0  ? promised_part_if_graded
+                                                                  : promised_part;
+      const double factor = promised ? measured_factor : factor_without_promise;
+      if (finer_mesh != nullptr)
+      {
+        space = factor * std::abs(finer_mesh->displacement - result.displacement);
+        total = *space + factor * std::abs(finer->displacement - finer_mesh->displacement);
+      }
+      else
+      {
+        total = factor * std::abs(finer->displacement - result.displacement);
+        if (promised)
+          total += part * choice.promised_error;
+      }
+      total = std::max(total, choice.least_error);
+      // Works of cycles that were extrapolated are so far off as the displacement is.
+      const double cycles =
+        result.cycles && result.displacement != 0. ? result.cycles->bound / std::abs(result.displacement) : 0.;
+      result.errors =
+        number_errors(result, finer_mesh ? *finer_mesh : *finer, factor, part * parameters.accuracy + cycles);
+      if (finer_mesh != nullptr)
+      {
+        const NumberErrors in_time = number_errors(*finer_mesh, *finer, factor, 0.);
+        for (std::size_t i = 0; i < NumberErrors::n; ++i)
+          result.errors->values[i] += in_time.values[i];
+      }
+    }
+    if (!std::isfinite(total))
+      return;
+    const double cycles = result.cycles ? result.cycles->bound : 0.;
+    const double rest   = std::max(total, round_off * scene.body.length);
+    error.total         = rest + cycles;
+    error.space         = choice.numerics.linear ? 0. : space.value_or(choice.space_share * rest);
+    error.time          = error.total - error.space;
+    error.model         = 0.;
+  }
+
+  void
+  estimate_errors(MPI_Comm communicator,
+                  const RunParameters &parameters,
+                  const Scene &scene,
+                  const NumericsChoice &choice,
+                  SimulationResult &result,
+                  const std::function<bool()> &keep_going)
+  {
+    if (choice.numerics.linear || choice.is_measured)
+      set_errors(choice, result, nullptr, parameters, scene);
+    else
+    {
+      // Whatever becomes of the finer run, the answer is there.
+      SimulationResult finer, finer_mesh;
+      const bool promised = is_promised(choice, scene);
+      try
+      {
+        finer = finer_run(communicator, parameters, scene, choice, result, keep_going);
+        if (!promised && finer.time.status == "finished")
+          finer_mesh = run_on_finer_mesh(communicator, parameters, scene, choice, result, keep_going);
+      }
+      catch (...)
+      {
+        finer.time = failure_of(std::current_exception());
+        if (size_of(communicator) > 1) // the other ranks may be waiting
+          throw;
+      }
+      set_errors(choice, result, &finer, parameters, scene, promised ? nullptr : &finer_mesh);
+    }
+  }
+} // namespace crawler

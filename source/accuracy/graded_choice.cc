@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/graded_choice.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    // The constants of the rule; doc/numerics.md says how they were found.
+    constexpr unsigned int first_levels = 2;
+    constexpr double coarse_ratio = 0.25, fine_ratio = 0.4;
+    /// A refinement that changes the displacement by less than this part of the wanted error was not needed.
+    constexpr double part = 0.25;
+    /// The search is given up beyond these.
+    constexpr unsigned int most_runs = 40, most_cells = 96, most_cells_of_piece = 12;
+    constexpr double smallest_cell = 1e-7, emptied = 1e-3;
+    /// So often the search begins anew, with twice the cells, if its first mesh loses a stretch.
+    constexpr unsigned int most_beginnings = 3;
+    constexpr double more_cells = 1.5, finer_tolerance = 0.1;
+    constexpr double longest_first_step = 1e-2, shortest_first_step = 1e-16;
+
+    /// Relative to the length.
+    double
+    smallest_size(const Scene &scene, const Numerics &numerics)
+    {
+      const std::vector<double> ends = first_cell_ends(scene, numerics);
+      double smallest                = ends.empty() ? 1. / numerics.n_cells : 1.;
+      for (std::size_t i = 1; i < ends.size(); ++i)
+        smallest = std::min(smallest, ends[i] - ends[i - 1]);
+      return smallest;
+    }
+
+    Grading
+    finer(const Grading &grading)
+    {
+      // As far down as before, with fewer levels of the larger cells in between.
+      const double levels = grading.levels * std::log(grading.ratio) / std::log(fine_ratio);
+      return {static_cast<unsigned int>(std::ceil(levels)), fine_ratio};
+    }
+
+    class Search
+    {
+    public:
+      explicit Search(const GradedTask &task)
+        : task_(task)
+        , now_(task.start)
+        , n_pieces_(static_cast<unsigned int>(task.scene.breaks_in_space().size()) + 1)
+      {
+      }
+
+      std::optional<GradedChoice>
+      find()
+      {
+        now_.grading = {first_levels, coarse_ratio};
+        if (task_.choose_tolerance)
+          now_.tolerance = 1e-3 * task_.scale;
+        // Too coarse a mesh or step can lose a stretch that is not lost.
+        double largest = 1e-2 * task_.scale; // tolerance
+        for (unsigned int beginnings = 1; !run(now_, result_); ++beginnings)
+        {
+          if (beginnings == most_beginnings)
+            return std::nullopt;
+          possible_ = true;
+          now_.n_cells *= 2;
+          if (task_.choose_tolerance)
+            largest = now_.tolerance *= finer_tolerance;
+        }
+        // The tolerance is relative to a size that the runs tell.
+        for (unsigned int i = 0; i < 2; ++i)
+        {
+          const double size = task_.size(result_);
+          if (!(size > 0.))
+            return std::nullopt;
+          wanted_ = task_.accuracy * size;
+          if (task_.choose_tolerance)
+            now_.tolerance = std::min(largest, task_.tolerance_factor * wanted_);
+          if (!run(now_, result_))
+            return std::nullopt;
+        }
+        if (task_.choose_tolerance)
+          refine(time_change_, [](Numerics &n) { n.tolerance *= finer_tolerance; });
+        for (bool again = true; again && possible_;)
+        {
+          again                = false;
+          double levels_change = 0., cells_change = 0., ratio_change = 0.;
+          refine(levels_change, [](Numerics &n) { ++n.grading.levels; });
+          if (now_.grading.ratio > fine_ratio * 0.99 ||
+              try_one(ratio_change, [](Numerics &n) { n.grading = finer(n.grading); }))
+            ratio_change = 0.;
+          again         = refine(cells_change, [this](Numerics &n) {
+            // One more in each piece between breaks, at least: else the mesh may stay as it is.
+            n.n_cells = std::max(static_cast<unsigned int>(std::ceil(more_cells * n.n_cells)),
+                                 n.n_cells + (n_pieces_ > 1 ? n_pieces_ : 0));
+          });
+          space_change_ = levels_change + ratio_change + cells_change;
+        }
+        if (!possible_)
+          return std::nullopt;
+        return GradedChoice{
+          first_step(now_), result_, std::max(space_change_, 1e-3 * wanted_) / std::max(time_change_, 1e-3 * wanted_)};
+      }
+
+    private:
+      Numerics
+      first_step(Numerics numerics) const
+      {
+        if (task_.choose_first_step)
+          numerics.initial_step = first_step_on_graded_mesh(task_.scene, numerics);
+        return numerics;
+      }
+
+      bool
+      run(const Numerics &numerics, SimulationResult &result)
+      {
+        possible_ = possible_ && ++n_runs_ <= most_runs &&
+                    numerics.n_cells <= std::max(most_cells, most_cells_of_piece * n_pieces_) &&
+                    smallest_size(task_.scene, numerics) >= smallest_cell;
+        if (!possible_)
+          return false;
+        result    = task_.run(first_step(numerics));
+        possible_ = result.time.status == "finished" && result.min_stretch.value > emptied;
+        return possible_;
+      }
+
+      /// Takes one refinement if it matters; @p change is how much it changed.
+      template <typename Refinement>
+      bool
+      try_one(double &change, const Refinement &refinement)
+      {
+        Numerics next = now_;
+        refinement(next);
+        SimulationResult result;
+        if (!run(next, result))
+          return false;
+        change = std::abs(result.displacement - result_.displacement);
+        if (change <= part * wanted_)
+          return false;
+        now_    = next;
+        result_ = result;
+        return true;
+      }
+
+      /// The same again and again; has there been one?
+      template <typename Refinement>
+      bool
+      refine(double &change, const Refinement &refinement)
+      {
+        bool any = false;
+        while (try_one(change, refinement))
+          any = true;
+        return any;
+      }
+
+      const GradedTask &task_;
+      Numerics now_;
+      const unsigned int n_pieces_; ///< of the body, between breaks
+      SimulationResult result_;
+      double wanted_ = 0., time_change_ = 0., space_change_ = 0.;
+      unsigned int n_runs_ = 0;
+      bool possible_       = true;
+    };
+  } // namespace
+
+  /// The rate of the smallest cell's highest modes is about k q^4/(gamma h^2).
+  double
+  first_step_on_graded_mesh(const Scene &scene, const Numerics &numerics)
+  {
+    const double h = smallest_size(scene, numerics), k = scene.body.elastic_modulus / natural_units(scene).force;
+    const double size = h * h / k / std::pow(numerics.degree, 4.);
+    return std::clamp(size, shortest_first_step, longest_first_step) * scene.end_time;
+  }
+
+  Numerics
+  with_finer_grading(const Scene &scene, const Numerics &numerics)
+  {
+    Numerics result = numerics;
+    if (result.grading.ratio < fine_ratio)
+      result.grading = finer(result.grading);
+    ++result.grading.levels;
+    result.initial_step = std::min(result.initial_step, first_step_on_graded_mesh(scene, result));
+    return result;
+  }
+
+  std::optional<GradedChoice>
+  find_graded_mesh(const GradedTask &task)
+  {
+    return Search(task).find();
+  }
+} // namespace crawler

@@ -1,0 +1,445 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/error_estimate.h>
+#include <crawler/accuracy/finer_run_errors.h>
+#include <crawler/accuracy/mesh_family.h>
+#include <crawler/run/gait.h>
+#include <crawler/run/gait_efficiency.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    // The constants of the rule; doc/numerics.md says how they were found.
+    /// Cells of the finest mesh, and for a smaller Accuracy than accurate.
+    constexpr unsigned int most_cells = 3200, most_cells_if_accurate = 6400;
+    /// But of bodies that invert: more do not help where the time of that converges slowly, -1 < a < 0.
+    constexpr unsigned int most_cells_if_inverted = 1600, most_cells_if_it_sticks = 400;
+    constexpr double accurate = 2e-6;
+    /// Cells times steps that the next mesh may take, about a second for each 2e6, and how many times as many as the
+    /// last one it does.
+    constexpr double most_work = 2.5e7, most_work_if_accurate = 5e7, more_work = 5.;
+    /// The error in time may be this part of the wanted one, and the time tolerance is made smaller so often for that.
+    constexpr double time_part             = 0.3;
+    constexpr unsigned int most_tolerances = 5;
+    constexpr double finer_tolerance       = 0.1;
+    /// The bound is at least this part of the wanted error: what all runs have in common.
+    constexpr double least_part = 0.5;
+    /// Observed orders between which second order is believed.
+    constexpr double least_order = 1.5, largest_order = 2.7;
+    /// A time tolerance, relative to the strain, that is so many times too large or small is chosen anew.
+    constexpr double too_large = 2., too_small = 0.05;
+    /// An inversion whose time is not known better than this, relative to it, may be none.
+    constexpr double believed = 0.3;
+    /// No displacement is known better than this, in lengths of the body.
+    constexpr double round_off = 4e-15;
+    /// The displacement counts as no smaller than this part of the deformation.
+    constexpr double displacement_floor = 1e-4;
+    /// Extrapolations that settle at least so fast are believed to go on so; and what settles faster than fourth order
+    /// does it by chance.
+    constexpr double fast = 5., credited = 4., fastest = 16.;
+    /// That is believed where the order is as near to 2 as this.
+    constexpr double clean = 0.25;
+
+    class Family
+    {
+    public:
+      Family(const RunParameters &parameters,
+             const Scene &scene,
+             const NumericsChoice &choice,
+             const Simulation::Options &options,
+             const std::function<bool()> &keep_going)
+        : parameters_(parameters)
+        , scene_(scene)
+        , options_(options)
+        , keep_going_(keep_going)
+        , accuracy_(parameters.accuracy)
+      {
+        answer_.choice      = choice;
+        options_.resolution = true; // the size of the deformation
+        if (options_.cycles)
+          options_.cycles->accuracy *= 0.1; // displacements are compared
+      }
+
+      Answer
+      compute()
+      {
+        settle_time();
+        if (is_final(latest_))
+          return end();
+        keep(latest_);
+        for (;;)
+        {
+          const bool good = is_good();
+          if (good ? is_fine_in_time() : 2 * latest_.mesh->n_cells > most_cells_now() || !is_worth_it())
+            break;
+          if (!good)
+            numerics().parts *= 2;
+          latest_ = run(numerics());
+          if (is_final(latest_))
+            return end();
+          keep(latest_);
+        }
+        if (latest_.inversion && std::isfinite(space_error_) && !has_order_ && sticks())
+          check_inversion();
+        return end();
+      }
+
+    private:
+      bool
+      sticks() const
+      {
+        const double a = scene_.friction_exponent();
+        return a > -1. && a < 0.;
+      }
+
+      bool
+      is_worth_it() const
+      {
+        const double work = 1. * latest_.mesh->n_cells * latest_.time.steps;
+        return more_work * work <= (accuracy_ < accurate ? most_work_if_accurate : most_work);
+      }
+
+      unsigned int
+      most_cells_now() const
+      {
+        if (latest_.inversion && std::isfinite(space_error_))
+          return sticks() ? most_cells_if_it_sticks : most_cells_if_inverted;
+        return accuracy_ < accurate ? most_cells_if_accurate : most_cells;
+      }
+
+      Numerics &
+      numerics()
+      {
+        return answer_.choice.numerics;
+      }
+
+      SimulationResult
+      run(const Numerics &numerics)
+      {
+        ++n_runs_;
+        return Simulation(MPI_COMM_SELF, scene_, parameters_.time, numerics).run({}, options_, {}, keep_going_);
+      }
+
+      static bool
+      finished(const SimulationResult &result)
+      {
+        return result.time.status == "finished";
+      }
+
+      /// Does a finer mesh not say more?
+      static bool
+      is_final(const SimulationResult &result)
+      {
+        return result.time.status == "stopped" || result.time.reason == "inverted_at_end" ||
+               result.time.reason == "law_not_positive" || result.time.reason == "nonfinite";
+      }
+
+      /// What has to settle: the displacement, or the time when the body inverts.
+      static std::optional<double>
+      value(const SimulationResult &result)
+      {
+        if (finished(result))
+          return result.displacement;
+        return result.inversion ? std::optional(result.inversion->t) : std::nullopt;
+      }
+
+      static bool
+      are_alike(const SimulationResult &a, const SimulationResult &b)
+      {
+        return value(a) && value(b) && finished(a) == finished(b);
+      }
+
+      static double
+      strain(const SimulationResult &result)
+      {
+        return std::max(1. - result.min_stretch.value, result.max_stretch.value - 1.);
+      }
+
+      void
+      measure_size()
+      {
+        size_ = finished(latest_) ? std::max(std::abs(latest_.displacement), displacement_floor * latest_.largest_u)
+                                  : scene_.end_time;
+      }
+
+      double
+      wanted() const
+      {
+        return std::max(accuracy_ * size_, round_off * scene_.body.length);
+      }
+
+      /// The time tolerance: on the coarsest mesh a tenth of it must not change much.
+      void
+      settle_time()
+      {
+        latest_            = run(numerics());
+        const double right = numerics().tolerance * strain(latest_) / answer_.choice.strain;
+        if (!parameters_.time.tolerance && strain(latest_) > 0. &&
+            (numerics().tolerance > too_large * right || numerics().tolerance < too_small * right))
+        {
+          numerics().tolerance = std::min(right, numerics().tolerance * 100.);
+          latest_              = run(numerics());
+        }
+        measure_size();
+        for (unsigned int i = 0; i < most_tolerances && value(latest_); ++i)
+        {
+          Numerics finer = numerics();
+          finer.tolerance *= finer_tolerance;
+          const SimulationResult other = run(finer);
+          if (!value(other))
+          {
+            if (is_final(other))
+              latest_ = other;
+            break;
+          }
+          if (are_alike(other, latest_))
+          {
+            time_error_  = 2. * std::abs(*value(other) - *value(latest_));
+            time_errors_ = number_errors(other, latest_, 2., 0.);
+            if (time_error_ <= time_part * wanted() || parameters_.time.tolerance)
+              break;
+          }
+          numerics().tolerance = finer.tolerance;
+          latest_              = other;
+          measure_size();
+        }
+      }
+
+      /// The error in time grows with the number of cells on stiff bodies: so it is measured again on the last mesh but
+      /// one. If it is too large the last mesh must be done again, with the smaller tolerance.
+      bool
+      is_fine_in_time()
+      {
+        if (parameters_.time.tolerance || levels_.size() < 2)
+          return true;
+        Numerics other = numerics();
+        other.parts /= 2;
+        other.tolerance *= finer_tolerance;
+        const SimulationResult result = run(other);
+        SimulationResult &before      = levels_[levels_.size() - 2].result;
+        if (!are_alike(result, before))
+          return true;
+        const double error = 2. * std::abs(*value(result) - *value(before));
+        if (error <= time_part * wanted() || ++n_corrections_ > most_tolerances)
+        {
+          time_error_ = std::max(time_error_, error);
+          return true;
+        }
+        numerics().tolerance = other.tolerance;
+        before               = result;
+        levels_.pop_back();
+        return false;
+      }
+
+      /// Extrapolates, and finds the error in space.
+      void
+      keep(const SimulationResult &result)
+      {
+        measure_size();
+        extrapolated_ = result;
+        space_error_  = HUGE_VAL;
+        if (!value(result))
+        {
+          levels_.clear();
+          return;
+        }
+        if (!levels_.empty() && !are_alike(result, levels_.back().result)) // what was believed before is not true
+          levels_.clear();
+        Level now{result, *value(result)};
+        if (!levels_.empty())
+        {
+          const Level &before = levels_.back();
+          const double change = std::abs(*value(result) - *value(before.result));
+          extrapolate(before.result);
+          now.value   = *value(extrapolated_);
+          now.change  = change;
+          now.settled = std::abs(now.value - before.value);
+          if (levels_.size() > 1) // two displacements may agree by chance
+            space_error_ = (end_is_nearly_lost() ? 2. : 1.) * error_of(before, now);
+        }
+        levels_.push_back(now);
+      }
+
+      struct Level
+      {
+        SimulationResult result;
+        double value; ///< extrapolated
+        double change  = 0.,
+               settled = HUGE_VAL; ///< of the value itself and of the extrapolated one since the last level
+      };
+
+      /// There the last half of a cell has friction unlike that of its middle, and order 2 shows late.
+      bool
+      end_is_nearly_lost() const
+      {
+        const double L = scene_.body.length, s = latest_.min_stretch.s;
+        return latest_.min_stretch.value < 0.1 && (s < 0.02 * L || s > 0.98 * L);
+      }
+
+      /// Of the extrapolated value, from the last two changes.
+      double
+      error_of(const Level &before, const Level &now)
+      {
+        const double order = std::log2(before.change / now.change);
+        has_order_         = order > least_order;
+        if (!(order > 0.2))
+          return 5. * now.change;
+        if (order < least_order)
+          return std::max(now.settled, now.change / (std::exp2(order) - 1.));
+        if (order > largest_order)
+          return std::max(now.settled, now.change / 3.);
+        if (levels_.size() == 2)
+          return now.settled;
+        return before.settled > fast * now.settled && std::abs(order - 2.) < clean
+                 ? std::max(now.settled, before.settled / fastest) / credited
+                 : std::max(now.settled, before.settled / fastest);
+      }
+
+      /// Near an inversion the last of the stretch may be fed by tiny flows, and the time converges slowly; what the
+      /// rule for the nodes makes of them is a part of the error.
+      void
+      check_inversion()
+      {
+        Numerics other             = numerics();
+        other.other_rule           = true;
+        const SimulationResult run = this->run(other);
+        space_error_ =
+          are_alike(run, latest_) ? std::max(space_error_, std::abs(*value(run) - *value(latest_))) : HUGE_VAL;
+      }
+
+      void
+      extrapolate(const SimulationResult &coarse)
+      {
+        const auto better        = [](const double fine, const double rough) { return (4. * fine - rough) / 3.; };
+        SimulationResult &result = extrapolated_;
+        if (result.inversion)
+        {
+          result.inversion->t = better(result.inversion->t, coarse.inversion->t);
+          return;
+        }
+        result.displacement       = better(result.displacement, coarse.displacement);
+        const auto energy_balance = [&](std::optional<EnergyBalance> &fine, const std::optional<EnergyBalance> &rough) {
+          if (fine && rough)
+            *fine = fine->combined(4. / 3., *rough, -1. / 3.);
+        };
+        energy_balance(result.energy_balance, coarse.energy_balance);
+        if (result.gait && coarse.gait && result.gait->period == coarse.gait->period)
+        {
+          result.gait->displacement = better(result.gait->displacement, coarse.gait->displacement);
+          energy_balance(result.gait->energy_balance, coarse.gait->energy_balance);
+        }
+        if (result.gait_efficiency)
+          result.gait_efficiency = gait_efficiency(scene_, result);
+      }
+
+      bool
+      is_good() const
+      {
+        return value(latest_) && std::max(space_error_, least_part * wanted()) + time_error_ <= wanted();
+      }
+
+      Answer
+      end()
+      {
+        answer_.choice.explanation += fmt::format("; {} runs with up to {} cells, tolerance {:.2g}",
+                                                  n_runs_,
+                                                  latest_.mesh ? latest_.mesh->n_cells : 0,
+                                                  numerics().tolerance);
+        answer_.choice.wanted_error = wanted();
+        answer_.result              = latest_;
+        SimulationResult &result    = answer_.result;
+        if (is_final(latest_))
+          return answer_;
+        if (finished(latest_))
+        {
+          result              = extrapolated_;
+          const double cycles = result.cycles ? result.cycles->bound : 0.;
+          const double floor  = least_part * wanted();
+          result.error        = {.total = std::max(space_error_, floor) + time_error_ + cycles,
+                                 .space = std::max(space_error_, floor),
+                                 .time  = time_error_ + cycles,
+                                 .model = 0.};
+          result.errors       = number_errors(result, latest_, 1., least_part * accuracy_);
+          for (std::size_t i = 0; i < NumberErrors::n; ++i)
+            result.errors->values[i] += time_errors_.values[i];
+          answer_.choice.promised_error = result.error->total;
+          if (!std::isfinite(space_error_))
+            result.error = DisplacementError();
+          if (!(result.error->total <= wanted() * (1. + 1e-9)))
+          {
+            result.time.status = "failed";
+            result.time.reason = accuracy_not_met;
+            result.time.message =
+              std::isfinite(space_error_)
+                ? fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}",
+                              result.error->total,
+                              wanted())
+                : "the error of the displacement is not known: the meshes do not agree";
+          }
+        }
+        else if (latest_.inversion)
+        {
+          result = extrapolated_;
+          result.time.message =
+            fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model "
+                        "ends there",
+                        result.inversion->s,
+                        result.inversion->t);
+          if (std::isfinite(space_error_))
+            result.inversion_error = std::max(space_error_, least_part * wanted()) + time_error_;
+          if (!(result.inversion_error.value_or(HUGE_VAL) <= believed * latest_.inversion->t))
+          {
+            result.time.status  = "failed";
+            result.time.reason  = "under_resolved";
+            result.time.message = fmt::format("the stretch was lost at s = {:.6g}, t = {:.6g} with {} cells, but the "
+                                              "meshes do not agree on it: more cells or a smaller tolerance are needed",
+                                              latest_.inversion->s,
+                                              latest_.inversion->t,
+                                              latest_.mesh ? latest_.mesh->n_cells : 0);
+            result.inversion.reset();
+            result.inverted_places.reset();
+            result.inversion_error.reset();
+          }
+        }
+        return answer_;
+      }
+
+      const RunParameters &parameters_;
+      const Scene &scene_;
+      Simulation::Options options_;
+      const std::function<bool()> &keep_going_;
+      const double accuracy_;
+      Answer answer_;
+      SimulationResult latest_, extrapolated_;
+      std::vector<Level> levels_; ///< those that agree
+      NumberErrors time_errors_;
+      double size_ = 0., time_error_ = 0., space_error_ = HUGE_VAL;
+      unsigned int n_runs_ = 0, n_corrections_ = 0;
+      bool has_order_ = false; ///< observed between the last meshes
+    };
+  } // namespace
+
+  Answer
+  answer_of_family(const RunParameters &parameters,
+                   const Scene &scene,
+                   const NumericsChoice &choice,
+                   const Simulation::Options &options,
+                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
+                   const std::function<bool()> &keep_going)
+  {
+    Answer answer = Family(parameters, scene, choice, options, keep_going).compute();
+    if (!simulate || answer.result.time.status == "stopped")
+      return answer;
+    const SimulationResult files = simulate(answer.choice);
+    // Its frames make its steps a little different; the numbers are those that the bounds are for.
+    if (files.time.status == "stopped")
+      answer.result = files;
+    answer.result.output_seconds = files.output_seconds;
+    return answer;
+  }
+} // namespace crawler

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/model_choice.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/reduced_models/perturbation.h>
+#include <crawler/reduced_models/reduced_scene.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Errors below this part of the length are no errors.
+    constexpr double floor = 1e-12;
+    /// The model's share of the error of the kinematic level; the rest is for its quadrature.
+    constexpr double model_share = 0.75;
+
+    /// A body that starts from rest starts with the stretch 1.
+    void
+    require_start_at_rest(const Scene &scene, const std::string &model)
+    {
+      constexpr double round_off   = 1e-8; // also of numbers in a table
+      const StrainHistory *history = scene.active_stress->prescribed_strain();
+      if (history == nullptr)
+        return;
+      const StrainExtremes start = find_extremes(*history, scene.body.length, 0., 129, 2),
+                           all   = find_extremes(*history, scene.body.length, scene.end_time, 65, 65);
+      const auto size            = [](const StrainExtremes &e) {
+        return std::max(std::abs(e.smallest.strain), std::abs(e.largest.strain));
+      };
+      const StrainExtreme &worst =
+        std::abs(start.smallest.strain) > std::abs(start.largest.strain) ? start.smallest : start.largest;
+      if (size(start) > round_off * size(all))
+        throw InputError(fmt::format("the strain at t = 0 is {:.6g} at s = {:.6g}, but 0 is expected everywhere, since "
+                                     "the {} model starts from rest (Model = kinematic does not)",
+                                     worst.strain,
+                                     worst.s,
+                                     model),
+                         "Active stress/Generator");
+    }
+
+    void
+    require_fit(const std::string &model, const RunParameters &parameters, const ReducedScene &levels)
+    {
+      if (model == "perturbation" && !levels.wave() && parameters.active_stress.generator == "optimal wave")
+        throw InputError(
+          fmt::format("Model is perturbation, which is a series for Fourier coefficients, but the Shape of "
+                      "the optimal wave is {}; Model = kinematic, nonlinear or auto is expected",
+                      parameters.active_stress.optimal_wave.shape),
+          "Model");
+      if (model == "perturbation" && !levels.wave())
+        throw InputError(fmt::format("Model is perturbation, which is a series for the optimal wave, but the Generator "
+                                     "is {}; Model = kinematic, nonlinear or auto is expected",
+                                     parameters.active_stress.generator),
+                         "Model");
+      if (model == "kinematic" && levels.strain() == nullptr)
+        throw InputError(
+          fmt::format("Model is kinematic, which needs the rate of the active stress, but that of Generator = "
+                      "{} is not known, or jumps; Model = nonlinear or auto is expected",
+                      parameters.active_stress.generator),
+          "Model");
+    }
+
+    /// An approximate level that was tried.
+    struct Candidate
+    {
+      std::string model;
+      bool known;
+      double error, displacement; ///< in natural units
+
+      double
+      relative() const
+      {
+        return error / std::abs(displacement);
+      }
+      bool
+      meets(const double accuracy, const double share) const
+      {
+        return known && error <= share * std::max(accuracy * std::abs(displacement), floor);
+      }
+      std::string
+      in_words() const
+      {
+        if (!known)
+          return "an error that is not known";
+        return fmt::format("an error of {:.2g}", relative());
+      }
+    };
+
+    ModelChoice
+    choose_by_error(const ReducedScene &levels, const double accuracy)
+    {
+      if (levels.is_prescribed())
+        return {"kinematic", "Model kinematic: the strain is prescribed, so there is no equation to solve"};
+      if (levels.scene().body.friction_exponent() == 0.)
+        return {"linear", "Model linear: a = 0, where the equation is linear and the displacement 0"};
+      if (levels.strain() == nullptr)
+        return {"nonlinear", "Model nonlinear: no simpler one fits this active stress"};
+      const ModelErrors errors = levels.model_errors();
+      std::vector<Candidate> candidates;
+      if (levels.wave())
+        candidates.push_back(
+          {"perturbation", errors.known, errors.perturbation, Perturbation(*levels.wave()).displacement(1.)});
+      candidates.push_back({"kinematic", errors.known, errors.kinematic, errors.displacement});
+      std::string tried;
+      for (const Candidate &candidate : candidates)
+      {
+        if (candidate.meets(accuracy, candidate.model == "kinematic" ? model_share : 1.))
+          return {candidate.model,
+                  fmt::format("Model {}: its estimated error{} is below {}",
+                              candidate.model,
+                              candidate.error <= floor ? "" : fmt::format(" {:.2g}", candidate.relative()),
+                              candidate.error <= floor ? fmt::format("{:g} of the length", floor)
+                                                       : fmt::format("Accuracy {:g}", accuracy))};
+        tried += fmt::format("{}{} {}, ", candidate.model, tried.empty() ? " has" : "", candidate.in_words());
+      }
+      return {"nonlinear", fmt::format("Model nonlinear: {}Accuracy is {:g}", tried, accuracy)};
+    }
+  } // namespace
+
+  ModelChoice
+  choose_model(const RunParameters &parameters, const Scene &scene)
+  {
+    ModelChoice choice{parameters.model, "Model " + parameters.model + ": as set"};
+    if (parameters.model == "linear" && scene.body.friction_exponent() != 0.)
+      throw InputError(
+        fmt::format("Model is linear, but a = 1 - p is {:g}; a = 0 is expected (Anchoring exponent p = 1)",
+                    scene.body.friction_exponent()),
+        "Model");
+    if (parameters.model != "linear" && parameters.model != "nonlinear")
+    {
+      if (!scene.is_plain())
+        return {"nonlinear",
+                "Model nonlinear: simpler ones are for plain bodies and grounds, and here is " +
+                  scene.general_features()};
+      const ReducedScene levels(scene);
+      if (parameters.model == "auto")
+        choice = choose_by_error(levels, parameters.accuracy);
+      require_fit(choice.model, parameters, levels);
+    }
+    if (choice.needs_mesh())
+      require_start_at_rest(scene, choice.model);
+    return choice;
+  }
+} // namespace crawler

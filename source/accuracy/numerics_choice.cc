@@ -1,0 +1,699 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/form_choice.h>
+#include <crawler/accuracy/graded_choice.h>
+#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/accuracy/stress_scales.h>
+#include <crawler/time/integrators.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace crawler
+{
+  namespace
+  {
+    // The constants of the rule; doc/numerics.md says how they were found.
+    constexpr unsigned int automatic_degree = 6;
+    constexpr unsigned int fewest_cells = 4, most_cells = 4096;
+    /// A pilot that breaks off with a smaller stretch than this has lost it.
+    constexpr double emptied = 0.1;
+    /// Meshes that would need more cells than this are adaptive, with this degree.
+    constexpr unsigned int most_uniform_cells = 256, adaptive_degree = 4;
+    /// The error of the displacement, relative, is below this times the sum of the error indicators over the strain.
+    constexpr double indicator_factor = 8.;
+    /// The coarsest mesh of the stretch form, cells for each length in which the active stress changes, and the part of
+    /// Accuracy that the time tolerance is, relative to the strain, and at most.
+    constexpr unsigned int first_family_cells = 25;
+    constexpr double cells_of_length = 4., family_tolerance = 10., largest_family_tolerance = 1e-3;
+    /// Its layers: of this many lengths k/max|m_s|, at most this part of the body.
+    constexpr double layer_lengths = 1., largest_layer = 0.02;
+    constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000,
+                           most_adaptive_pilot_cells = 1200;
+    /// How well a pilot that ends when its cycles repeat must know the displacement.
+    constexpr double pilot_accuracy = 1e-2;
+    /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
+    constexpr double resolved = 1e-3;
+    /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
+    constexpr double space_factor = 4.;
+    /// Error of the displacement in time is below this times the number of steps times the tolerance.
+    constexpr double time_factor = 0.25;
+    /// The steps of radau 5 and 9 on uniform meshes in the position form end much more accurately than their tolerance
+    /// says: the tolerance is so many times the one of that rule.
+    constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
+    /// On uniform meshes runs for a smaller Accuracy than this are by radau 9, others by radau 5.
+    constexpr double radau_9_accuracy = 1.1e-4;
+    /// A stress that starts or jumps by more than this times the root of Accuracy, relative to the largest, makes
+    /// layers that count. Graded meshes have this degree, the higher one for a smaller Accuracy than that.
+    constexpr double sudden_part         = 0.1;
+    constexpr unsigned int graded_degree = 6, accurate_graded_degree = 8;
+    constexpr double accurate_graded = 1e-5;
+    /// More breaks would make graded meshes too large, or too many starts where nothing happens suddenly.
+    constexpr std::size_t most_graded_places = 200, most_gentle_breaks = 200;
+    /// First tolerances on graded meshes, relative to the wanted error.
+    constexpr double graded_radau_5 = 2., graded_radau_9 = 10., graded_others = 0.1;
+    /// Meshes for jumps that move: from the coarsest, doubled until the displacement settles, which it does like the
+    /// size of a cell, with tolerances that fall like it too; at most so many cells, and cells times steps.
+    constexpr unsigned int moving_degree = 2, first_moving_cells = 64, last_moving_cells = 2048;
+    constexpr double moving_tolerance = 0.1, most_moving_work = 1e7;
+    /// Steps of a period for each cell, at least.
+    constexpr double moving_steps = 4.;
+    /// The remaining error of a method of first order is the last change; a larger part is promised.
+    constexpr double moving_factor = 1.5, moving_factor_of_first = 4.;
+    /// First steps, relative to the duration: methods that start with order 1 need small ones.
+    constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
+    /// On adaptive meshes the error of bodies softer than this, in natural units, may be as large as soft_error,
+    /// relative, whatever Accuracy is: their layers are not seen by the indicators, and not at all on uniform meshes.
+    constexpr double very_soft = 2e-5, soft_error = 3e-3;
+    /// The displacement counts as no smaller than this part of the body's largest deformation.
+    constexpr double displacement_floor = 1e-4;
+
+    /// Is this the linear level, by its own stepper? Where "auto" chooses the level but other entries ask for what that
+    /// does not have, the stepper of the nonlinear level computes it.
+    bool
+    uses_linear_stepper(const RunParameters &parameters, const Scene &scene)
+    {
+      const bool fits =
+        parameters.body.friction_exponent() == 0. && scene.is_plain() && parameters.discretization.mesh != "adaptive" &&
+        parameters.discretization.formulation != "stretch" && parameters.time.engine == "automatic" &&
+        (parameters.time.integrator == "automatic" || integrator(parameters.time.integrator).petsc_type == "radau");
+      return fits && (parameters.model == "linear" || parameters.model == "auto");
+    }
+  } // namespace
+
+  namespace
+  {
+    /// Somebody does not want the pilots to go on.
+    struct Interrupted
+    {
+    };
+
+    /// The choice as it grows; each function below makes one decision.
+    class Chooser
+    {
+    public:
+      Chooser(MPI_Comm communicator,
+              const RunParameters &parameters,
+              const Scene &scene,
+              const std::function<bool()> &keep_going)
+        : communicator_(communicator)
+        , keep_going_(keep_going)
+        , parameters_(parameters)
+        , scene_(scene)
+        , scales_(stress_scales(scene))
+        , user_cells_(parameters.discretization.n_cells)
+        , user_tolerance_(parameters.time.tolerance)
+        , T_(scene.end_time)
+        , L_(scene.body.length)
+        , accuracy_(parameters.accuracy)
+        , scale_(scales_.displacement > 0. ? scales_.displacement : L_)
+        , adaptive_steps_(parameters.time.step_control == "adaptive")
+      {
+        Numerics &n              = choice_.numerics;
+        n.linear                 = uses_linear_stepper(parameters, scene);
+        n.degree                 = parameters.discretization.degree.value_or(automatic_degree);
+        n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
+        n.step_limits            = scales_.step_limits;
+        n.least_event            = scales_.jumps_move ? 0. : least_event * scales_.stress;
+        pilot_time_              = parameters.time;
+        pilot_time_.step_control = "adaptive";
+        if (!integrator(pilot_time_.integrator).adaptive)
+        {
+          pilot_time_.integrator = "bdf";
+          pilot_time_.order      = 5;
+        }
+        pilot_time_.petsc_prefix = "pilot_"; // options after "--" are for the real run
+        pilot_time_.max_steps    = std::min(pilot_time_.max_steps, most_pilot_steps);
+        tolerance_               = std::max(1e-3 * scale_, smallest());
+        cycles_                  = cycle_wish(parameters, scene, 0);
+        if (cycles_)
+          cycles_->accuracy = std::max(accuracy_, pilot_accuracy);
+      }
+
+      NumericsChoice
+      choose()
+      {
+        const std::string &mesh = parameters_.discretization.mesh;
+        const bool fixed        = parameters_.time.step_control == "fixed";
+        if (parameters_.discretization.formulation == "stretch")
+        {
+          stretch_form();
+          return choice_;
+        }
+        choice_.is_users = user_cells_ || user_tolerance_ || fixed || parameters_.discretization.mesh_tolerance;
+        if (user_cells_ && (user_tolerance_ || fixed) && mesh != "adaptive")
+        {
+          choice_.numerics.n_cells   = *user_cells_;
+          choice_.numerics.tolerance = user_tolerance_.value_or(1e-10 * L_); // of Newton's method only
+          choice_.explanation        = "cells and time steps as set by the user";
+          return choice_;
+        }
+        if (mesh == "automatic" && scales_.jumps_move && adaptive_steps_ && !user_cells_ && !user_tolerance_ &&
+            !choice_.numerics.linear)
+        {
+          moving_jumps();
+          finish(fixed);
+          return choice_;
+        }
+        if (mesh == "automatic" && starts_or_jumps() && graded())
+        {
+          finish(fixed);
+          return choice_;
+        }
+        if (may_be_stretch() && is_soft(stiffness(), scene_.friction_exponent(), accuracy_))
+        {
+          stretch_form();
+          return choice_;
+        }
+        bool enough = false;
+        if (mesh != "adaptive")
+          enough =
+            uniform(mesh == "uniform" || user_cells_ || choice_.numerics.linear ? most_cells : most_uniform_cells);
+        // What no uniform mesh resolves is steep, not fine, if the active stress is smooth: fronts of friction.
+        if (!enough && may_be_stretch() && scene_.friction_exponent() < 0. && pilot_.time.reason != "inverted_at_end" &&
+            is_cheaper_than_adaptive(L_ / scales_.length, accuracy_))
+        {
+          stretch_form();
+          return choice_;
+        }
+        if (mesh == "adaptive" ||
+            (mesh == "automatic" && !enough && !is_for_stretch() && !user_cells_ && !choice_.numerics.linear))
+          adaptive();
+        if (is_for_stretch())
+        {
+          stretch_form();
+          return choice_;
+        }
+        finish(fixed);
+        return choice_;
+      }
+
+    private:
+      /// Motions below this are nothing, and their squares underflow.
+      double
+      smallest() const
+      {
+        return 1e-25 * L_;
+      }
+
+      SimulationResult
+      pilot(const Numerics &numerics)
+      {
+        Simulation simulation(communicator_, scene_, pilot_time_, numerics);
+        ++n_pilots_;
+        SimulationResult result =
+          simulation.run({}, {.energy_balance = false, .resolution = true, .cycles = cycles_}, {}, keep_going_);
+        if (result.time.status == "stopped" && result.time.reason.empty())
+          throw Interrupted();
+        return result;
+      }
+
+      Numerics
+      pilot_numerics(const unsigned int degree, const unsigned int n_cells, const double tolerance) const
+      {
+        Numerics numerics     = choice_.numerics;
+        numerics.degree       = degree;
+        numerics.n_cells      = n_cells;
+        numerics.tolerance    = tolerance;
+        numerics.initial_step = first_step(pilot_time_);
+        return numerics;
+      }
+
+      /// The automatic size of the first step of a run with these parameters.
+      double
+      first_step(const TimeParameters &time) const
+      {
+        const std::string &name = time.integrator == "automatic" ? choice_.numerics.integrator : time.integrator;
+        return (name.starts_with("radau") ? one_step_start : multistep_start) * T_;
+      }
+
+      /// Of the last pilot, whether it went there or its cycles were extrapolated.
+      double
+      steps_to_the_end() const
+      {
+        const double steps = std::max(pilot_.time.steps, 1u);
+        return pilot_.cycles ? steps * (1. + 1. * pilot_.cycles->extrapolated / pilot_.cycles->computed) : steps;
+      }
+
+      /// The size of the displacement, of which Accuracy is a part. The linear model knows it, 0, without any effort;
+      /// there the deformation u counts.
+      void
+      measure_size()
+      {
+        const bool finished = pilot_.time.status == "finished";
+        size_               = std::max(finished ? std::abs(pilot_.displacement) : 0.,
+                         (choice_.numerics.linear ? 1. : displacement_floor) * pilot_.largest_u);
+      }
+
+      /// k T/(gamma L^2)
+      double
+      stiffness() const
+      {
+        return scene_.body.elastic_modulus / natural_units(scene_).force;
+      }
+
+      /// k T/(g L^2) for the largest friction g of the last pilot, which thin layers are a matter of.
+      double
+      stiffness_over_friction() const
+      {
+        const double a       = scene_.friction_exponent();
+        const double largest = std::max(std::pow(pilot_.min_stretch.value, a), std::pow(pilot_.max_stretch.value, a));
+        return stiffness() / largest;
+      }
+
+      /// Does the active stress make layers suddenly, and may a graded mesh be chosen for that?
+      bool
+      starts_or_jumps() const
+      {
+        const double sudden = sudden_part * std::sqrt(accuracy_);
+        return scales_.sudden > sudden && scales_.in_space <= most_graded_places &&
+               (scales_.sudden_later > sudden || scales_.in_time <= most_gentle_breaks) && !user_cells_ &&
+               !choice_.numerics.linear && adaptive_steps_ && !parameters_.discretization.mesh_tolerance;
+      }
+
+      /// A mesh that is graded towards the ends and breaks in space; returns whether there is one that is enough.
+      bool
+      graded()
+      {
+        Numerics start = choice_.numerics;
+        start.degree   = parameters_.discretization.degree.value_or(accuracy_ < accurate_graded ? accurate_graded_degree
+                                                                                              : graded_degree);
+        start.n_cells  = static_cast<unsigned int>(
+          std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 1. * most_cells));
+        const std::string &own = parameters_.time.integrator;
+        // Each piece between breaks has a cell at least.
+        start.n_cells          = std::max(start.n_cells, static_cast<unsigned int>(scales_.in_space) + 1);
+        start.integrator       = accuracy_ < radau_9_accuracy ? "radau 9" : "radau 5";
+        const std::string name = own == "automatic" ? start.integrator : own;
+        start.tolerance        = user_tolerance_.value_or(0.);
+        const auto cycles      = cycles_;
+        if (cycles_)
+          cycles_->accuracy = accuracy_; // the displacements are compared here
+        const auto found = find_graded_mesh({.scene             = scene_,
+                                             .start             = start,
+                                             .accuracy          = accuracy_,
+                                             .scale             = scale_,
+                                             .choose_tolerance  = !user_tolerance_,
+                                             .choose_first_step = !parameters_.time.initial_step,
+                                             .tolerance_factor  = name == "radau 9"   ? graded_radau_9
+                                                                  : name == "radau 5" ? graded_radau_5
+                                                                                      : graded_others,
+                                             .run = [this](const Numerics &numerics) { return pilot(numerics); },
+                                             .size =
+                                               [this](const SimulationResult &result) {
+                                                 pilot_ = result;
+                                                 measure_size();
+                                                 return size_;
+                                               }});
+        cycles_          = cycles;
+        if (!found)
+        {
+          size_ = 0.;
+          return false;
+        }
+        choice_.numerics = found->numerics;
+        pilot_           = found->result;
+        space_over_time_ = found->space_over_time;
+        measure_size();
+        return true;
+      }
+
+      /// A uniform mesh with up to @p most cells; returns whether that is enough.
+      bool
+      uniform(const unsigned int most)
+      {
+        Numerics &n = choice_.numerics;
+        if (adaptive_steps_ || n.linear)
+          n.integrator = "radau 5";
+        // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
+        const unsigned int pilot_degree = std::max(choice_.numerics.degree, 2u);
+        // A cell of this degree resolves a stress whose scale is a quarter of its size.
+        const double seen    = std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 0.25 * most_cells);
+        unsigned int n_cells = user_cells_.value_or(static_cast<unsigned int>(seen));
+        if (n_cells > most && !user_cells_)
+          return false;
+        bool good = false;
+        while (!good && n_pilots_ < 20)
+        {
+          pilot_ = pilot(pilot_numerics(pilot_degree, n_cells, tolerance_));
+          measure_size();
+          if (accuracy_ >= 1e-7 && is_for_stretch())
+            return true;
+          const bool finished = pilot_.time.status == "finished";
+          const bool resolves = user_cells_ || pilot_.unresolved <= std::max(resolved, accuracy_) || n_cells >= most;
+          // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
+          if (!finished && !user_cells_ && n_cells < std::min(most, 64u))
+          {
+            n_cells *= 2;
+            tolerance_ *= 0.1;
+          }
+          else if (finished && !resolves)
+            n_cells = std::min(most, 2 * n_cells);
+          else if (finished && size_ > 0. && tolerance_ > 0.03 * size_)
+            tolerance_ = std::max(0.01 * size_, 1e-3 * tolerance_);
+          else
+            good = true;
+        }
+        const bool predicts      = pilot_.time.status == "finished";
+        choice_.numerics.n_cells = n_cells;
+        if (!predicts || pilot_.unresolved > std::max(resolved, accuracy_))
+          return most == most_cells; // whatever it is, there is no more
+        if (most < most_cells && stiffness() < very_soft)
+          return false; // a pilot may pass over such layers by luck
+        if (user_cells_)
+          return true;
+
+        // On smooth solutions `unresolved` goes down as (cell size)^(2q-2), q the pilot's degree, and the error of the
+        // displacement at least as fast. Thin layers look resolved before they are: so the rate is measured, with
+        // smaller steps whose errors do not hide it, on meshes twice as fine each time until it is at least half of
+        // that.
+        const double enough_cells = n_cells; // fewer failed or left too much unresolved
+        const double full_rate = 2. * pilot_degree - 2., wanted_part = accuracy_ / space_factor;
+        const auto rate_of = [full_rate](const double coarse, const double fine) {
+          return std::clamp(std::log2(coarse / fine), 0.5, full_rate);
+        };
+        double unresolved = pilot_.unresolved, indicator = pilot_.largest_indicator, rate = 0., indicator_rate = 0.;
+        const auto unbalanced = [&]() {
+          return most < most_cells && indicator_factor * indicator > accuracy_ * pilot_.strain &&
+                 indicator_rate < 0.5 * full_rate;
+        };
+        while ((rate < 0.5 * full_rate || unbalanced()) && 2 * n_cells <= most_cells / 4)
+        {
+          if (2 * n_cells > most)
+            return false;
+          const SimulationResult finer = pilot(pilot_numerics(pilot_degree, 2 * n_cells, 0.01 * tolerance_));
+          if (finer.time.status != "finished" || finer.unresolved == 0.)
+            break;
+          rate           = rate_of(unresolved, finer.unresolved);
+          indicator_rate = rate_of(indicator, finer.largest_indicator);
+          unresolved     = finer.unresolved;
+          indicator      = finer.largest_indicator;
+          n_cells *= 2;
+          if (unresolved <= 0.01 * wanted_part && !unbalanced())
+            break;
+        }
+        double cells = rate > 0. ? n_cells * std::pow(unresolved / wanted_part, 1. / rate) : n_cells;
+        // Layers that are thinner than the cells are not seen in the stretch, but the balance of forces tells; its
+        // rate, too, must be that of a smooth solution.
+        const double gain      = std::pow(std::max(1., cells / n_cells), full_rate);
+        const double too_large = indicator_factor * indicator / (accuracy_ * gain * pilot_.strain);
+        if (most < most_cells && too_large > 1.)
+        {
+          if (indicator_rate < 0.5 * full_rate || stiffness_over_friction() < very_soft)
+            return false;
+          cells = std::max(cells, 1. * n_cells) * std::pow(too_large, 1. / indicator_rate);
+        }
+        choice_.numerics.n_cells =
+          static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(most_cells)));
+        // The rule's own idea of the error in space, relative to the wanted one.
+        space_over_time_ = std::pow(cells / choice_.numerics.n_cells, rate > 0. ? rate : full_rate);
+        return choice_.numerics.n_cells <= most;
+      }
+
+      /// An adaptive mesh: pilots measure the strain, to which its tolerance is relative, and the number of steps.
+      void
+      adaptive()
+      {
+        Numerics &n  = choice_.numerics;
+        n.integrator = "";
+        n.degree     = parameters_.discretization.degree.value_or(adaptive_degree);
+        n.n_cells    = user_cells_.value_or(
+          static_cast<unsigned int>(std::clamp(std::ceil(L_ / scales_.length), 8., 1. * most_cells)));
+        n.mesh        = {1., parameters_.discretization.smallest_cell.value_or(1e-6 * L_)};
+        double strain = pilot_.strain > 0. ? pilot_.strain : scale_ * scale_ / L_;
+        // What needs more than this collapses, and the scheme that is safe then costs less.
+        const TimeParameters usual = pilot_time_;
+        pilot_time_.max_steps      = std::min(pilot_time_.max_steps, most_adaptive_pilot_steps);
+        double tighter             = 1.;
+        for (int i = 0; i < 4; ++i)
+        {
+          Numerics settings        = pilot_numerics(n.degree, n.n_cells, tolerance_);
+          settings.mesh.tolerance  = tighter * resolved * strain;
+          settings.mesh.most_cells = most_adaptive_pilot_cells;
+          pilot_                   = pilot(settings);
+          measure_size();
+          const bool finished = pilot_.time.status == "finished";
+          const double before = strain;
+          if (finished && pilot_.strain > 0.)
+            strain = pilot_.strain;
+          const bool strain_known = strain < 4. * before && strain > 0.25 * before;
+          if (!finished)
+            tighter *= 0.01; // the stretch may have been lost because of the mesh
+          const bool coarse_steps = finished && size_ > 0. && tolerance_ > 0.03 * size_;
+          if (coarse_steps || (!finished && i < 2))
+            tolerance_ = finished ? std::max(0.01 * size_, 1e-3 * tolerance_) : 0.03 * tolerance_;
+          else if (strain_known)
+            break;
+        }
+        pilot_time_       = usual;
+        const double part = parameters_.discretization.mesh_tolerance.value_or(
+          std::min(accuracy_ / indicator_factor, tighter * resolved));
+        n.mesh.tolerance = part * strain;
+        // bdf starts anew with each mesh, a one-step method goes on; but where the stretch collapses bdf is the faster.
+        if (adaptive_steps_ && pilot_.min_stretch.value > emptied)
+          n.integrator = "radau 5";
+      }
+
+      /// May the form be chosen, and can the stretch form compute this?
+      bool
+      may_be_stretch() const
+      {
+        const DiscretizationParameters &own = parameters_.discretization;
+        return own.formulation == "automatic" && own.mesh == "automatic" && !own.degree && !user_cells_ &&
+               !user_tolerance_ && adaptive_steps_ && !choice_.numerics.linear &&
+               parameters_.time.engine == "automatic" &&
+               (parameters_.time.integrator == "automatic" || parameters_.time.integrator.starts_with("radau")) &&
+               reason_against_stretch_form(scene_).empty();
+      }
+
+      /// Did the last pilot come near an emptied state?
+      bool
+      is_for_stretch() const
+      {
+        // It has few digits; so for a smaller Accuracy only where the position form cannot go on.
+        return may_be_stretch() && pilot_.time.reason != "inverted_at_end" &&
+               (accuracy_ >= 1e-7 || pilot_.time.status != "finished") &&
+               empties(pilot_.min_stretch.value, scene_.friction_exponent(), accuracy_);
+      }
+
+      /// The stretch form: the first of a family of meshes (mesh_family.h), or what the user has set.
+      void
+      stretch_form()
+      {
+        Numerics &n      = choice_.numerics;
+        const double k   = scene_.body.elastic_modulus;
+        const double m_s = scales_.stress / scales_.length;
+        const double a   = std::max(1., std::abs(scene_.friction_exponent()));
+        n.formulation    = Formulation::stretch;
+        n.linear         = false;
+        n.degree         = 1;
+        n.mesh           = {};
+        n.grading        = {};
+        n.layer          = m_s > 0. ? std::min(largest_layer * L_, layer_lengths / a * k / m_s) : largest_layer * L_;
+        if (parameters_.discretization.mesh == "uniform")
+          n.layer = 0.;
+        n.parts        = 1;
+        n.integrator   = "radau 5";
+        choice_.strain = std::min(scale_ / std::min(L_, scales_.length), 0.3);
+        const double first =
+          std::clamp(std::ceil(cells_of_length * L_ / scales_.length), 1. * first_family_cells, 0.25 * most_cells);
+        n.n_cells   = user_cells_.value_or(static_cast<unsigned int>(first));
+        n.tolerance = user_tolerance_.value_or(
+          std::max(std::min(family_tolerance * accuracy_, largest_family_tolerance) * choice_.strain * L_, 1e-13 * L_));
+        if (!parameters_.time.initial_step)
+          n.initial_step = 1e-4 * T_;
+        choice_.is_family      = !user_cells_;
+        choice_.is_users       = !choice_.is_family;
+        choice_.promised_error = choice_.wanted_error = choice_.space_share = std::numeric_limits<double>::quiet_NaN();
+        choice_.explanation =
+          choice_.is_family
+            ? fmt::format(
+                "for Accuracy {:g}: the stretch form, on meshes that become finer until the displacement settles",
+                accuracy_)
+            : "stretch form, with cells as set by the user";
+      }
+
+      /**
+       * Where jumps of the active stress move through the cells every method is of order 1 in their size: the mesh is
+       * doubled until the displacement settles, or until it is clear that too many cells would be needed. The error
+       * that is left is the one that is reported.
+       */
+      void
+      moving_jumps()
+      {
+        Numerics &n  = choice_.numerics;
+        jumps_move_  = true;
+        n.jumps_move = true;
+        n.degree     = parameters_.discretization.degree.value_or(moving_degree);
+        n.integrator = "radau 5";
+        if (cycles_)
+          cycles_->accuracy = 0.01 * accuracy_; // the displacements are compared here
+        const double period = std::min(scene_.active_stress->period().value_or(T_), T_);
+        double change       = std::numeric_limits<double>::infinity();
+        for (n.n_cells = first_moving_cells;; n.n_cells *= 2)
+        {
+          // Steps that pass over many cells at once miss what happens on the way, and their errors look small.
+          n.step_limits        = {{0., period / (moving_steps * n.n_cells)}};
+          tolerance_           = moving_tolerance * scale_ / n.n_cells;
+          const double before  = pilot_.displacement;
+          const bool is_second = pilot_.time.status == "finished";
+          pilot_               = pilot(pilot_numerics(n.degree, n.n_cells, tolerance_));
+          measure_size();
+          const bool finished = pilot_.time.status == "finished";
+          if (!finished && (n.n_cells > first_moving_cells || pilot_.time.reason == "inverted_at_end"))
+            return; // the run will say why
+          // Each next mesh has twice the cells and up to twice the steps.
+          unsigned int last = n.n_cells;
+          for (double work = 4. * n.n_cells * pilot_.time.steps;
+               2 * last <= last_moving_cells && work < most_moving_work;
+               work *= 4.)
+            last *= 2;
+          if (finished && is_second)
+          {
+            const double change_before = change;
+            change                     = std::abs(pilot_.displacement - before);
+            // One change alone may be small by chance.
+            const bool is_first = !std::isfinite(change_before);
+            const double error =
+              is_first ? moving_factor_of_first * change : moving_factor * std::max(change, 0.5 * change_before);
+            const double wanted    = accuracy_ * size_;
+            choice_.promised_error = error;
+            choice_.space_share    = 0.9; // the tolerance is small
+            choice_.is_measured    = true;
+            choice_.advice         = "the active stress jumps at places that move through the cells, where the error "
+                                     "falls only like the size of a cell, and works and energies are known to some "
+                                     "percent only: fronts of finite width (a smoothed square profile) cost far less";
+            const bool hopeless    = !is_first && error > wanted * last / n.n_cells;
+            if (error <= 0.9 * wanted || hopeless) // the end of cycles has an error, too
+              return;
+          }
+          if (n.n_cells == last)
+            return;
+        }
+      }
+
+      /// The order of the error estimate of the run, by which its number of steps grows.
+      unsigned int
+      estimated_order() const
+      {
+        const std::string &own = parameters_.time.integrator;
+        const Integrator &method =
+          integrator(own == "automatic" && !choice_.numerics.integrator.empty() ? choice_.numerics.integrator : own);
+        if (method.petsc_type == "radau")
+          return method.n_stages;
+        return method.order > 0 ? method.order : parameters_.time.order;
+      }
+
+      /// How much larger than by the rule the tolerance may be.
+      double
+      superconvergence() const
+      {
+        const std::string &own  = parameters_.time.integrator;
+        const std::string &name = own == "automatic" ? choice_.numerics.integrator : own;
+        if (choice_.numerics.mesh.tolerance > 0. || pilot_.min_stretch.value < emptied)
+          return 1.;
+        return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
+      }
+
+      /// The time tolerance, and the explanation.
+      void
+      finish(const bool fixed)
+      {
+        Numerics &n         = choice_.numerics;
+        const bool predicts = pilot_.time.status == "finished";
+        if (size_ == 0.)
+          size_ = scale_;
+        const bool is_graded = n.grading.levels > 0; // then all is chosen already
+        if (!jumps_move_ && n.integrator == "radau 5" && n.mesh.tolerance == 0. && accuracy_ < radau_9_accuracy)
+          n.integrator = "radau 9";
+        if (!parameters_.time.initial_step && !is_graded)
+          n.initial_step = first_step(parameters_.time);
+        // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
+        // size.
+        const double r       = 1. / (1. + estimated_order());
+        const double wanted  = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
+        const double by_rule = std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
+                                        std::max(1e-15 * scale_, smallest()));
+        n.tolerance          = user_tolerance_.value_or(jumps_move_ ? tolerance_ : is_graded ? n.tolerance : by_rule);
+        if (predicts && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
+            !parameters_.discretization.mesh_tolerance)
+        {
+          choice_.space_share    = space_over_time_ / (1. + space_over_time_);
+          choice_.wanted_error   = accuracy_ * size_;
+          choice_.promised_error = choice_.wanted_error;
+          if (n.mesh.tolerance > 0. && stiffness() < very_soft)
+            choice_.least_error = soft_error * size_;
+        }
+        if (jumps_move_ && predicts)
+          choice_.wanted_error = accuracy_ * size_;
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const std::string kind =
+          jumps_move_ ? "jumps of the active stress that move, "
+          : is_graded
+            ? fmt::format("sudden stress, {} levels of cells smaller by {:g} each, ", n.grading.levels, n.grading.ratio)
+          : n.mesh.tolerance > 0. ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
+                                  : "";
+        choice_.explanation =
+          predicts ? fmt::format("for Accuracy {:g}: {}from {} pilot runs in {:.2g} s: displacement about {:.3g}",
+                                 accuracy_,
+                                 kind,
+                                 n_pilots_,
+                                 seconds,
+                                 pilot_.displacement)
+                   : fmt::format("for Accuracy {:g}: {}the last of {} pilot runs, with {} cells, ended early: {}",
+                                 accuracy_,
+                                 kind,
+                                 n_pilots_,
+                                 n.n_cells,
+                                 pilot_.time.message);
+        if (std::max(choice_.promised_error, choice_.least_error) > 1.5 * accuracy_ * size_)
+          choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
+                                             std::max(choice_.promised_error, choice_.least_error) / size_);
+        if (!scales_.sees_all)
+          choice_.explanation +=
+            "; an event of the active stress that is shorter than a step of its sampling may be missed";
+        if (jumps_move_ && !choice_.advice.empty())
+          choice_.explanation += "; " + choice_.advice;
+      }
+
+      const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+      const MPI_Comm communicator_;
+      const std::function<bool()> &keep_going_;
+      const RunParameters &parameters_;
+      const Scene &scene_;
+      const StressScales scales_;
+      const std::optional<unsigned int> &user_cells_;
+      const std::optional<double> &user_tolerance_;
+      const double T_, L_, accuracy_, scale_;
+      const bool adaptive_steps_;
+      TimeParameters pilot_time_;
+      std::optional<CycleWish> cycles_; ///< of pilots
+      NumericsChoice choice_;
+      SimulationResult pilot_; ///< the last one that counts
+      double tolerance_ = 0., size_ = 0.;
+      unsigned int n_pilots_  = 0;
+      bool jumps_move_        = false;
+      double space_over_time_ = 1.; ///< errors as the rule expects them
+    };
+  } // namespace
+
+  std::optional<NumericsChoice>
+  choose_numerics(MPI_Comm communicator,
+                  const RunParameters &parameters,
+                  const Scene &scene,
+                  const std::function<bool()> &keep_going)
+  {
+    try
+    {
+      return Chooser(communicator, parameters, scene, keep_going).choose();
+    }
+    catch (const Interrupted &)
+    {
+      return std::nullopt;
+    }
+  }
+} // namespace crawler

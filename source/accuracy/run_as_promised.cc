@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/error_estimate.h>
+#include <crawler/accuracy/mesh_family.h>
+#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/base/communication.h>
+#include <crawler/run/self_check.h>
+#include <crawler/time/failure.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /**
+     * Where the user chose the numerics a coarse mesh or long steps can fake a stretch that is lost inside: finer runs
+     * must lose it, too, at nearly the same time.
+     */
+    void
+    confirm_inversion(MPI_Comm communicator,
+                      const RunParameters &parameters,
+                      const Scene &scene,
+                      const NumericsChoice &choice,
+                      SimulationResult &result,
+                      const std::function<bool()> &keep_going)
+    {
+      constexpr unsigned int most_runs = 4;
+      constexpr double same            = 0.02; // relative
+      const TimeParameters time        = time_of_finer_run(parameters.time);
+      NumericsChoice finer             = choice;
+      const Extreme lost               = *result.inversion;
+      std::string found;
+      for (unsigned int i = 0; i < most_runs; ++i)
+      {
+        finer.numerics = numerics_of_finer_run(finer, time, scene);
+        const SimulationResult check =
+          Simulation(communicator, scene, time, finer.numerics).run({}, {}, {}, keep_going);
+        if (check.time.status == "stopped")
+          return;
+        const double before = result.inversion->t;
+        if (check.time.status != "inverted")
+        {
+          found = check.time.status == "finished" ? "did not lose it" : "ended with " + check.time.reason;
+          break;
+        }
+        if (std::abs(check.inversion->t - before) <= same * before)
+        {
+          if (i == 0)
+            return;
+          found = fmt::format("lost it at t = {:.6g} only", check.inversion->t);
+          break;
+        }
+        result.inversion->t = check.inversion->t;
+        found               = fmt::format("lost it at t = {:.6g}", check.inversion->t);
+      }
+      result.time.status = "failed";
+      result.time.reason = "under_resolved";
+      result.time.message =
+        fmt::format("the computed stretch was lost at s = {:.6g}, t = {:.6g}, but a run with {} cells "
+                    "and a smaller tolerance {}: a larger Discretization/Number of cells and a "
+                    "smaller Time/Tolerance are needed",
+                    lost.s,
+                    lost.t,
+                    finer.numerics.n_cells,
+                    found);
+      result.inversion.reset();
+    }
+
+    /// May a run with finer numerics end where this one did not?
+    bool
+    is_for_finer_numerics(const TimeOutcome &outcome)
+    {
+      constexpr const char *reasons[] = {"newton_diverged", "linear_failed", "rejection_limit", "under_resolved"};
+      return outcome.status == "failed" && std::ranges::find(reasons, outcome.reason) != std::end(reasons);
+    }
+  } // namespace
+
+  Answer
+  run_as_promised(MPI_Comm communicator,
+                  const RunParameters &parameters,
+                  const Scene &scene,
+                  const NumericsChoice &choice,
+                  const std::function<SimulationResult(const NumericsChoice &)> &simulate,
+                  const Simulation::Options &options,
+                  const bool writes,
+                  const std::function<bool()> &keep_going)
+  {
+    using Clock = std::chrono::steady_clock;
+    if (choice.is_family)
+      return answer_of_family(parameters,
+                              scene,
+                              choice,
+                              options,
+                              writes ? simulate : std::function<SimulationResult(const NumericsChoice &)>(),
+                              keep_going);
+    Answer answer;
+    answer.choice       = choice;
+    const double wanted = choice.wanted_error;
+    // What has been measured on one mesh after the other is not tried again.
+    const bool may_refine = !choice.is_measured && choice.least_error <= wanted;
+    answer.result         = simulate(choice);
+    for (;;)
+    {
+      SimulationResult &result = answer.result;
+      if (result.time.status == "inverted" && result.time.reason == "inverted_inside" && choice.is_users)
+        confirm_inversion(communicator, parameters, scene, choice, result, keep_going);
+      const bool retries = std::isfinite(choice.promised_error) && !choice.is_measured &&
+                           answer.refinements < most_refinements && is_for_finer_numerics(result.time);
+      if (!retries && (!parameters.error_estimate || result.time.status != "finished"))
+        return answer;
+      if (retries)
+      {
+        const NumericsChoice next = refined(answer.choice, scene);
+        result                    = simulate(next);
+        answer.choice             = next;
+        ++answer.refinements;
+        continue;
+      }
+      const auto start = Clock::now();
+      estimate_errors(communicator, parameters, scene, answer.choice, result, keep_going);
+      answer.estimate_seconds += std::chrono::duration<double>(Clock::now() - start).count();
+      const double total = result.error->total;
+      // A energy balance that does not close asks for a finer run, too; if that does not help it is the self-check's
+      // business.
+      const bool closes =
+        !result.energy_balance || result.energy_balance->residual() <= energy_balance_tolerance(result, parameters);
+      const bool stopped = std::isnan(total) && keep_going && !keep_going();
+      const bool is_good = std::isnan(wanted) || total <= wanted || stopped;
+      if (is_good && (closes || std::isnan(wanted)))
+        return answer;
+      std::string problem;
+      if (may_refine && answer.refinements < most_refinements)
+        try
+        {
+          const NumericsChoice next = refined(answer.choice, scene);
+          result                    = simulate(next);
+          answer.choice             = next;
+          ++answer.refinements;
+          continue;
+        }
+        catch (...) // the answer that is there stays
+        {
+          problem = "; the next try failed: " + failure_of(std::current_exception()).message;
+          if (size_of(communicator) > 1) // the other ranks may be waiting
+            throw;
+        }
+      if (is_good)
+        return answer;
+      result.time.status = "failed";
+      result.time.reason = accuracy_not_met;
+      result.time.message =
+        std::isnan(total)
+          ? "the error of the displacement is not known: a finer run did not finish"
+          : fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}", total, wanted);
+      result.time.message += problem;
+      if (!answer.choice.advice.empty())
+        result.time.message += "; " + answer.choice.advice;
+      return answer;
+    }
+  }
+} // namespace crawler

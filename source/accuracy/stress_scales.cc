@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/stress_scales.h>
+#include <crawler/scene/fast_changes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Is one of @p breaks (ascending) between @p from and @p to?
+    bool
+    any_between(const std::vector<double> &breaks, const double from, const double to)
+    {
+      const auto next = std::lower_bound(breaks.begin(), breaks.end(), from);
+      return next != breaks.end() && *next <= to;
+    }
+
+    /// A place where m jumps by more than @p least at the time @p t, without being one of the breaks @p in_space: where
+    /// the largest difference of neighbours of a sampling does not become smaller when the neighbours come closer.
+    std::optional<double>
+    undeclared_jump(const Scene &scene, const std::vector<double> &in_space, const double t, const double least)
+    {
+      constexpr unsigned int n = 512, n_bisections = 30;
+      const double L = scene.body.length;
+      std::vector<double> points(n + 1), m(n + 1);
+      for (unsigned int i = 0; i <= n; ++i)
+        points[i] = L * i / n;
+      scene.active_stress->at(points)->values(t, m);
+      double left = 0., right = 0., m_left = 0., m_right = 0.;
+      for (unsigned int i = 0; i < n; ++i)
+        if (std::abs(m[i + 1] - m[i]) > std::abs(m_right - m_left) && !any_between(in_space, points[i], points[i + 1]))
+        {
+          left    = points[i];
+          right   = points[i + 1];
+          m_left  = m[i];
+          m_right = m[i + 1];
+        }
+      for (unsigned int i = 0; i < n_bisections && std::abs(m_right - m_left) > least; ++i)
+      {
+        const std::vector<double> middle = {0.5 * (left + right)};
+        std::vector<double> m_middle(1);
+        scene.active_stress->at(middle)->values(t, m_middle);
+        const bool in_left           = std::abs(m_middle[0] - m_left) > std::abs(m_right - m_middle[0]);
+        (in_left ? right : left)     = middle[0];
+        (in_left ? m_right : m_left) = m_middle[0];
+      }
+      return std::abs(m_right - m_left) > least ? std::optional(0.5 * (left + right)) : std::nullopt;
+    }
+
+    /// Are there such jumps that are elsewhere at another time?
+    bool
+    jumps_that_move(const Scene &scene, const std::vector<double> &in_space, const double least)
+    {
+      constexpr unsigned int n_times = 8;
+      constexpr double golden        = 0.6180339887498949; // no multiple of a period
+      const double L = scene.body.length, beside = 1e-6 * L;
+      struct Jump
+      {
+        double place, time;
+      };
+      const auto is_there = [&](const double place, const double t) {
+        const std::vector<double> points = {std::max(0., place - beside), std::min(L, place + beside)};
+        std::vector<double> m(2);
+        scene.active_stress->at(points)->values(t, m);
+        return std::abs(m[1] - m[0]) > 0.5 * least;
+      };
+      std::vector<Jump> jumps;
+      for (unsigned int i = 1; i <= n_times; ++i)
+      {
+        const double t = scene.end_time * std::fmod(i * golden, 1.);
+        if (const auto place = undeclared_jump(scene, in_space, t, least))
+          jumps.push_back({*place, t});
+      }
+      for (std::size_t i = 1; i < jumps.size(); ++i)
+        if (!is_there(jumps[i].place, jumps[i - 1].time) && !is_there(jumps[i - 1].place, jumps[i].time))
+          return true;
+      return false;
+    }
+
+    /// Samples of m on two grids: many places at few times, and many times at few places.
+    class Samples
+    {
+    public:
+      /// Over [0, @p duration], which is a period of m or all the time; @p in_time are breaks relative to that.
+      Samples(const Scene &scene,
+              const double duration,
+              const std::vector<double> &in_space,
+              const std::vector<double> &in_time)
+        : scene_(scene)
+        , T_(duration)
+        , in_space_(in_space)
+        , in_time_(in_time)
+      {
+        constexpr unsigned int fine = 512, coarse = 16, very_fine = 8192;
+        look(fine, coarse);
+        look(coarse, fine);
+        // Where m is nearly 0 most of the time a short event may have been missed, unless the generator can tell.
+        if (is_often_quiet() && !scene.active_stress->bounds({0., scene.body.length, 0., T_}))
+          look(coarse, very_fine);
+      }
+
+      /// At many places at one more time.
+      void
+      look_at(const double t)
+      {
+        constexpr unsigned int fine = 512;
+        sample(scene_.active_stress->at(places(fine)).get(), fine, t);
+      }
+
+      double
+      largest_rate(const double from, const double to) const
+      {
+        const double n = static_cast<double>(rates_.size());
+        const auto i   = static_cast<std::size_t>(std::clamp(std::floor(from / T_ * n), 0., n - 1.)),
+                   j   = static_cast<std::size_t>(std::clamp(std::ceil(to / T_ * n), 1., n));
+        return *std::max_element(rates_.begin() + static_cast<std::ptrdiff_t>(i),
+                                 rates_.begin() + static_cast<std::ptrdiff_t>(std::max(j, i + 1)));
+      }
+
+      /// The largest |m_t| but for rare times, a tenth of all at the most, in which it is far larger.
+      double
+      usual_rate() const
+      {
+        constexpr double rare = 0.1, far = 4.;
+        std::vector<double> sorted = rates_;
+        std::sort(sorted.begin(), sorted.end());
+        const double usual =
+          sorted[static_cast<std::size_t>(std::floor((1. - rare) * static_cast<double>(sorted.size() - 1)))];
+        return *std::prev(std::upper_bound(sorted.begin(), sorted.end(), far * usual));
+      }
+
+      /// The rare times.
+      std::vector<FastChange>
+      rare_changes(const double usual) const
+      {
+        std::vector<FastChange> list;
+        const double dt = T_ / static_cast<double>(rates_.size());
+        for (std::size_t j = 0; j < rates_.size(); ++j)
+          if (rates_[j] > usual) // and a sample before and after
+            list.push_back({dt * (static_cast<double>(j) - 1.), dt * (static_cast<double>(j) + 2.), rates_[j]});
+        return list;
+      }
+
+      double largest = 0.; ///< |m|
+      double along   = 0.; ///< |m_s| between the breaks
+
+    private:
+      std::vector<double>
+      places(const unsigned int n) const
+      {
+        std::vector<double> list;
+        for (unsigned int i = 0; i <= n; ++i)
+          list.push_back(scene_.body.length * i / n);
+        return list;
+      }
+
+      void
+      sample(ActiveStressAtPoints *stress, const unsigned int n_points, const double t)
+      {
+        const double L = scene_.body.length;
+        m_.resize(n_points + 1);
+        stress->values(t, m_);
+        for (unsigned int i = 0; i <= n_points; ++i)
+        {
+          largest = std::max(largest, std::abs(m_[i]));
+          if (i > 0 && (in_space_.empty() || !any_between(in_space_, L * (i - 1) / n_points, L * i / n_points)))
+            along = std::max(along, std::abs(m_[i] - m_[i - 1]) * n_points / L);
+        }
+      }
+
+      void
+      look(const unsigned int n_points, const unsigned int n_times)
+      {
+        const auto stress = scene_.active_stress->at(places(n_points));
+        std::vector<double> before, rates(n_times, 0.);
+        for (unsigned int j = 0; j <= n_times; ++j)
+        {
+          before = m_;
+          sample(stress.get(), n_points, T_ * j / n_times);
+          if (j > 0 && !any_between(in_time_, (j - 1.) / n_times, 1. * j / n_times))
+            for (unsigned int i = 0; i <= n_points; ++i)
+              rates[j - 1] = std::max(rates[j - 1], std::abs(m_[i] - before[i]) * n_times / T_);
+        }
+        rates_.swap(rates); // finer than those before
+      }
+
+      /// Is the active stress nearly 0 for more than a tenth of the time?
+      bool
+      is_often_quiet() const
+      {
+        constexpr unsigned int n = 128, n_places = 4;
+        constexpr double quiet = 1e-6, often = 0.1;
+        std::vector<double> m(n_places + 1);
+        const auto stress    = scene_.active_stress->at(places(n_places));
+        unsigned int n_quiet = 0;
+        for (unsigned int j = 0; j < n; ++j)
+        {
+          stress->values(T_ * j / n, m);
+          n_quiet +=
+            std::all_of(m.begin(), m.end(), [&](const double value) { return std::abs(value) <= quiet * largest; });
+        }
+        return n_quiet > often * n;
+      }
+
+      const Scene &scene_;
+      const double T_;
+      const std::vector<double> &in_space_, &in_time_;
+      std::vector<double> m_, rates_; ///< |m_t| between samples, largest along the body
+    };
+
+    /// Limits of the steps such that no step is longer than the time in which m can change by the largest |m|: where it
+    /// is fast, and elsewhere.
+    std::vector<StepLimit>
+    step_limits(const std::vector<FastChange> &changes,
+                const double largest,
+                const double usual,
+                const double period,
+                const double end_time)
+    {
+      constexpr double unlimited        = std::numeric_limits<double>::infinity();
+      constexpr double similar          = 2.;
+      constexpr std::size_t most_limits = 100000;
+      if (largest == 0.)
+        return {};
+      const double longest = usual > 0. ? largest / usual : unlimited;
+      // Where changes begin and end; the fastest of those that go on is what counts.
+      std::map<double, std::vector<std::pair<double, bool>>> edges; // time -> rates, and whether they begin
+      for (const FastChange &change : changes)
+        if (change.rate > usual && change.from < period && change.to > 0.)
+        {
+          edges[std::max(change.from, 0.)].emplace_back(change.rate, true);
+          edges[std::min(change.to, period)].emplace_back(change.rate, false);
+        }
+      std::vector<StepLimit> limits = {{0., longest}};
+      std::multiset<double> rates;
+      for (const auto &[time, list] : edges)
+      {
+        for (const auto &[rate, begins] : list)
+          if (begins)
+            rates.insert(rate);
+          else
+            rates.erase(rates.find(rate));
+        const double now = rates.empty() ? longest : largest / *rates.rbegin();
+        StepLimit &last  = limits.back();
+        if (last.from >= time)
+          last.longest = now;
+        else if (!rates.empty() && last.longest < longest &&
+                 std::max(now, last.longest) <= similar * std::min(now, last.longest))
+          last.longest = std::min(now, last.longest);
+        else
+          limits.push_back({time, now});
+      }
+      const std::size_t n = limits.size();
+      if (n == 1)
+        return longest < unlimited ? limits : std::vector<StepLimit>();
+      const double n_periods = std::ceil(end_time / period * (1. - 1e-12));
+      if (static_cast<double>(n) * n_periods > static_cast<double>(most_limits))
+      {
+        double shortest = longest;
+        for (const StepLimit &limit : limits)
+          shortest = std::min(shortest, limit.longest);
+        return {{0., shortest}};
+      }
+      for (double i = 1.; i < n_periods; ++i)
+        for (std::size_t j = 0; j < n; ++j)
+          limits.push_back({limits[j].from + i * period, limits[j].longest});
+      return limits;
+    }
+
+    struct SuddenChange
+    {
+      double at_start, later;
+    };
+
+    /// The largest sudden changes of m at the ends and of its jumps at the breaks in space.
+    SuddenChange
+    largest_sudden_change(const Scene &scene, const std::vector<double> &in_space)
+    {
+      const double L = scene.body.length, T = scene.end_time, beside = 2. * least_space_between_breaks * L;
+      std::vector<double> points = {0., L};
+      for (const double s : in_space)
+        points.insert(points.end(), {s - beside, s + beside});
+      const auto stress = scene.active_stress->at(points);
+      std::vector<double> m(points.size());
+      const std::size_t n = 2 + in_space.size();
+      std::vector<double> before(n, 0.), now(n);
+      SuddenChange largest{0., 0.};
+      const auto look = [&](const double t) {
+        stress->values(t * T, m);
+        now[0] = m[0];
+        now[1] = m[1];
+        for (std::size_t i = 0; i < in_space.size(); ++i)
+          now[2 + i] = m[3 + 2 * i] - m[2 + 2 * i];
+      };
+      TimePieces pieces(*scene.active_stress, T);
+      for (double start = 0.;; pieces.go_on())
+      {
+        look(pieces.inside(start));
+        for (std::size_t i = 0; i < n; ++i)
+        {
+          double &known = start == 0. ? largest.at_start : largest.later;
+          known         = std::max(known, std::abs(now[i] - before[i]));
+        }
+        if (pieces.is_last())
+          return largest;
+        start = pieces.end();
+        look(pieces.inside(start));
+        before = now;
+      }
+    }
+  } // namespace
+
+  StressScales
+  stress_scales(const Scene &scene)
+  {
+    constexpr unsigned int fine = 512, most_looks = 64;
+    constexpr double jump_part = 0.05; // smaller jumps, relative to the largest |m|, are not looked for
+    const ActiveStress &stress = *scene.active_stress;
+    const double L = scene.body.length, T = scene.end_time;
+    // One period shows all.
+    const double P                     = std::min(stress.period().value_or(T), T);
+    const std::vector<double> in_space = breaks_in_space(stress, L), in_time = TimePieces(stress, T).breaks();
+    std::vector<double> in_period;
+    for (const double t : in_time)
+      if (t * T < P)
+        in_period.push_back(t * T / P);
+
+    Samples samples(scene, P, in_space, in_period);
+    const double usual              = samples.usual_rate();
+    std::vector<FastChange> changes = samples.rare_changes(usual);
+    const FastChanges found         = find_fast_changes(
+      stress,
+      L,
+      0.,
+      P,
+      [&](const double from, const double to) { return std::max(usual, samples.largest_rate(from, to)); },
+      samples.largest);
+    changes.insert(changes.end(), found.list.begin(), found.list.end());
+    std::sort(changes.begin(), changes.end(), [](const FastChange &a, const FastChange &b) { return a.from < b.from; });
+    for (std::size_t i = 0; i < changes.size(); i += 1 + changes.size() / most_looks)
+      samples.look_at(0.5 * (changes[i].from + changes[i].to));
+
+    const double largest = samples.largest, along = samples.along;
+    const SuddenChange change = largest > 0. ? largest_sudden_change(scene, in_space) : SuddenChange{0., 0.};
+    const double unit         = largest > 0. ? largest : 1.;
+    const bool may_jump       = along * L / fine > jump_part * largest;
+    return {std::min(largest * L / scene.body.elastic_modulus, largest * T / (L * scene.body.friction_coefficient)),
+            along > 0. ? largest / along : L,
+            step_limits(changes, largest, usual, P, T),
+            largest,
+            found.is_complete || stress.stride(),
+            std::max(change.at_start, change.later) / unit,
+            change.later / unit,
+            in_space.size(),
+            in_time.size(),
+            may_jump && jumps_that_move(scene, in_space, jump_part * largest)};
+  }
+
+  std::vector<StepLimit>
+  similar_step_limits(const Scene &scene, const std::vector<StepLimit> &known, double largest)
+  {
+    const ActiveStress &stress = *scene.active_stress;
+    const double L = scene.body.length, T = scene.end_time, P = std::min(stress.period().value_or(T), T);
+    if (!stress.bounds({0., L, 0., P})) // what it cannot tell is sampled, if there are events
+      return known.size() > 1 ? stress_scales(scene).step_limits : known;
+    double longest = 0.;
+    for (const StepLimit &limit : known)
+      longest = std::max(longest, limit.longest);
+    const double usual      = longest > 0. ? largest / longest : 0.;
+    const FastChanges found = find_fast_changes(
+      stress, L, 0., P, [usual](double, double) { return usual; }, largest);
+    if (found.list.empty())
+      return known.empty() ? known : std::vector<StepLimit>{{0., longest}};
+    return step_limits(found.list, largest, usual, P, T);
+  }
+} // namespace crawler

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/app/check.h>
+#include <crawler/base/communication.h>
+#include <crawler/run/simulation.h>
+#include <crawler/studies/core/input.h>
+#include <crawler/studies/core/log.h>
+#include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/progress.h>
+#include <crawler/studies/run/run.h>
+#include <crawler/studies/run/run_reduced_model.h>
+#include <crawler/studies/sweep/sweep_check.h>
+
+#include <fmt/format.h>
+
+namespace crawler
+{
+  ExitCode
+  check(MPI_Comm communicator, const CommandOptions &options)
+  {
+    Log log(rank_of(communicator) == 0, /*quiet=*/false);
+    ParameterFile file = read_file(communicator, options.file, options.overrides);
+    if (check_sweep(communicator, file, log))
+      return ExitCode::finished;
+    const Input input       = read_input(std::move(file));
+    const ModelChoice model = choose_model(input);
+    if (!model.needs_mesh())
+      return check_reduced_model(input, model, log);
+    PilotProgress pilots(log);
+    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, input.parameters, input.scene, [&]() {
+      pilots.step();
+      return true;
+    });
+    const Simulation simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);
+    report_plan(log, input, model, choice);
+    log.line(
+      fmt::format("Output: {} snapshots{}{}{}, to \"{}\" unless --output is given.",
+                  input.parameters.output.n_snapshots,
+                  input.parameters.output.kymograph && input.parameters.output.n_snapshots > 0 ? ", kymograph" : "",
+                  input.parameters.output.statistics ? ", statistics" : "",
+                  input.parameters.output.energy_balance ? ", energy balance" : "",
+                  output_folder(options.output, options.file).string()));
+    log.line(input.file.name() + " is in order; nothing but pilot runs was run, and nothing was written.");
+    return ExitCode::finished;
+  }
+} // namespace crawler

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/equation/assembler.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace crawler
+{
+  Assembler::Assembler(const Scene &scene, const Discretization &discretization)
+    : scene_(scene)
+    , discretization_(discretization)
+    , end_moduli_(scene.end_moduli())
+    , end_stress_(scene.active_stress->at({0., scene.body.length}))
+  {
+  }
+
+  Assembler::~Assembler() = default;
+
+  void
+  Assembler::sum_over_ranks(CellIntegrals &sum) const
+  {
+    static_assert(sizeof(CellIntegrals) % sizeof(double) == 0);
+    if (discretization_.n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE,
+                    &sum,
+                    sizeof(CellIntegrals) / sizeof(double),
+                    MPI_DOUBLE,
+                    MPI_SUM,
+                    discretization_.communicator());
+  }
+
+  std::pair<double, double>
+  Assembler::end_stretches(const double t)
+  {
+    std::array<double, 2> m{};
+    end_stress_->values(t, m);
+    return {1. - m[0] / end_moduli_.first, 1. - m[1] / end_moduli_.second};
+  }
+
+  std::vector<double>
+  Assembler::stretch_coefficients(const ConstVector y) const
+  {
+    const auto &element  = discretization_.element();
+    const unsigned int q = element.degree;
+    std::vector<double> buffer;
+    const auto local = discretization_.to_local<double>(displacement(y), buffer);
+    std::vector<double> strain(static_cast<std::size_t>(discretization_.n_local_cells()) * q, 0.);
+    for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
+      for (unsigned int p = 0; p < q; ++p)
+      {
+        double &sum = strain[c * q + p];
+        for (unsigned int i = 0; i < element.n; ++i)
+          sum += element.stretch_derivatives[p * element.n + i] * local[c * q + i];
+        sum /= discretization_.cell_size()[c];
+      }
+    return strain;
+  }
+
+  long
+  Assembler::look_at_friction(const std::span<const double> w, const std::span<const double> g)
+  {
+    for (std::size_t i = 0; i < g.size(); ++i)
+      if (!(g[i] > 0. && std::isfinite(g[i])))
+      {
+        describe_bad_law_ = [stretch = w[i], friction = g[i]](const Units &) {
+          return BadLaw{fmt::format("the friction law is {} at the stretch w = {:.6g}, which the body has reached; a "
+                                    "positive number is expected",
+                                    friction > 0. || friction <= 0. ? "not positive" : "not a finite number",
+                                    stretch),
+                        "Ground/Friction law"};
+        };
+        return static_cast<long>(i);
+      }
+    return -1;
+  }
+
+  void
+  Assembler::find_piece_ends(const unsigned int n_pieces)
+  {
+    const auto &left  = discretization_.cell_left();
+    const auto &size  = discretization_.cell_size();
+    const auto s      = [&](const unsigned int end) { return discretization_.length() * end / n_pieces; };
+    piece_ends_       = {n_pieces, 0, {}, {}};
+    unsigned int next = 0;
+    while (next <= n_pieces && !left.empty() && s(next) < left.front())
+      ++next;
+    piece_ends_.first = next;
+    for (unsigned int c = 0; c < left.size(); ++c)
+    {
+      const bool is_last = !discretization_.has_right_neighbour() && c + 1 == left.size();
+      std::vector<double> places;
+      for (; next <= n_pieces && (is_last || s(next) < left[c] + size[c]); ++next)
+      {
+        places.push_back(std::clamp((s(next) - left[c]) / size[c], 0., 1.));
+        piece_ends_.cells.push_back(c);
+      }
+      const auto shape = interpolation_matrix(discretization_.element().nodes, places);
+      piece_ends_.shape.insert(piece_ends_.shape.end(), shape.begin(), shape.end());
+    }
+  }
+
+  std::vector<double>
+  Assembler::displacement_at(const unsigned int n_pieces, const ConstVector y)
+  {
+    if (piece_ends_.n_pieces != n_pieces)
+      find_piece_ends(n_pieces);
+    const auto u         = discretization_.to_local<double>(displacement(y), u_local_);
+    const unsigned int n = discretization_.element().n, q = discretization_.element().degree;
+    std::vector<double> values(n_pieces + 1, 0.);
+    for (std::size_t e = 0; e < piece_ends_.cells.size(); ++e)
+      for (unsigned int i = 0; i < n; ++i)
+        values[piece_ends_.first + e] +=
+          piece_ends_.shape[e * n + i] * u[static_cast<std::size_t>(piece_ends_.cells[e]) * q + i];
+    if (discretization_.n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE,
+                    values.data(),
+                    static_cast<int>(values.size()),
+                    MPI_DOUBLE,
+                    MPI_SUM,
+                    discretization_.communicator());
+    return values;
+  }
+} // namespace crawler

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/equation/end_power.h>
+
+#include <array>
+
+namespace crawler
+{
+  EndPower::EndPower(const Assembler &assembler)
+    : assembler_(assembler)
+    , stress_(assembler.scene().active_stress->at({0., assembler.scene().body.length}))
+  {
+    if (!assembler.has_known_ends())
+      sampler_ = GeneralSampler::at_ends(assembler);
+  }
+
+  double
+  EndPower::operator()(const double t, const std::span<const double> y, const std::span<const double> v)
+  {
+    std::array<double, 2> m{};
+    if (!sampler_)
+      stress_->values(t, m);
+    else
+    {
+      sampler_->sample(t, y, v);
+      const auto &own = sampler_->force().m;
+      if (!own.empty()) // the left one is used by the first rank only, the right one by the last
+        m = {{own.front(), own.back()}};
+    }
+    const Discretization &d = assembler_.discretization();
+    double power            = 0.;
+    if (d.rank() == 0)
+      power -= m[0] * v.front();
+    if (d.n_local() > 0 && !d.has_right_neighbour())
+      power += m[1] * v.back();
+    if (d.n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, d.communicator());
+    return power;
+  }
+} // namespace crawler

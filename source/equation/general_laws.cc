@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/equation/crawler_equation.h>
+#include <crawler/equation/general_laws.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    std::vector<double>
+    profile_at(const std::shared_ptr<const Profile> &profile, const std::vector<double> &points)
+    {
+      std::vector<double> values(points.size(), 1.);
+      if (profile)
+        profile->values(points, values);
+      return values;
+    }
+  } // namespace
+
+  SlidingAtPoints::SlidingAtPoints(const Scene &scene, std::vector<double> points)
+    : force(points.size())
+    , by_v(points.size())
+    , by_u(points.size(), 0.)
+    , scene_(scene)
+    , points_(std::move(points))
+    , b_(profile_at(scene.profiles.friction, points_))
+    , x_(points_.size())
+    , c_(points_.size(), 1.)
+    , slope_(points_.size(), 0.)
+  {
+  }
+
+  long
+  SlidingAtPoints::evaluate(const std::span<const double> u, const std::span<const double> v)
+  {
+    const std::size_t n    = points_.size();
+    const Ground &ground   = scene_.ground;
+    const bool directional = ground.direction.ratio != 1.;
+    if (ground.profile)
+    {
+      for (std::size_t i = 0; i < n; ++i)
+        x_[i] = points_[i] + u[i];
+      ground.profile->values_and_slopes(x_, c_, slope_);
+    }
+    long bad = -1;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      const double factor = directional ? ground.direction.factor(v[i]) : 1.;
+      force[i]            = b_[i] * c_[i] * factor * v[i];
+      by_v[i]             = b_[i] * c_[i] * (directional ? ground.direction.force_slope(v[i]) : 1.);
+      by_u[i]             = b_[i] * slope_[i] * factor * v[i];
+      if (bad < 0 && !(c_[i] > 0. && std::isfinite(c_[i])))
+        bad = static_cast<long>(i);
+    }
+    return bad;
+  }
+
+  BadLaw
+  SlidingAtPoints::describe(const long point, const Units &units) const
+  {
+    const auto i = static_cast<std::size_t>(point);
+    return {fmt::format("the profile of the ground is {} at x = {:.6g}, which the body has reached; a positive number "
+                        "is expected",
+                        std::isnan(c_[i]) ? "not known" : fmt::format("{:.6g}", c_[i]),
+                        x_[i] * units.length),
+            "Ground/Profile"};
+  }
+
+  BodyForceAtPoints::BodyForceAtPoints(const Scene &scene, const std::vector<double> &points)
+    : k(profile_at(scene.profiles.elastic_modulus, points))
+    , N(points.size())
+    , m(points.size())
+  {
+    for (double &value : k)
+      value *= scene.body.elastic_modulus;
+    by_w                            = k;
+    const StretchFeedback *feedback = scene.active_stress->feedback();
+    if (feedback == nullptr)
+    {
+      stress_ = scene.active_stress->at(points);
+      return;
+    }
+    feedback_ = feedback->at(points);
+    if (feedback->uses_rate())
+      by_rate.resize(points.size());
+    if (feedback->sees_near())
+      by_near.resize(points.size());
+  }
+
+  void
+  BodyForceAtPoints::evaluate(const double t,
+                              const std::span<const double> e,
+                              const StretchSeen &seen,
+                              const double *known_m)
+  {
+    if (feedback_)
+    {
+      feedback_->values(t, seen, {m, by_w, by_rate, by_near});
+      for (std::size_t i = 0; i < k.size(); ++i)
+        by_w[i] += k[i];
+    }
+    else if (known_m != nullptr)
+      std::copy_n(known_m, m.size(), m.begin());
+    else
+      stress_->values(t, m);
+    for (std::size_t i = 0; i < k.size(); ++i)
+      N[i] = equation::body_force(e[i], m[i], k[i]);
+  }
+
+  StretchElsewhere::StretchElsewhere(const Scene &scene,
+                                     const Discretization &discretization,
+                                     const std::vector<double> &points)
+    : discretization_(discretization)
+    , points_(points)
+  {
+    const StretchFeedback *feedback = scene.active_stress->feedback();
+    if (feedback == nullptr)
+      return;
+    if (feedback->sees_near())
+    {
+      std::vector<double> others = points;
+      for (double &s : others)
+        s += feedback->distance();
+      if (feedback->sensor_length() > 0.)
+        sensors_.emplace(discretization.cells(), discretization.element(), others, feedback->sensor_length());
+      else
+        near_places_.emplace(discretization.cells(), discretization.element(), others);
+      near.resize(points.size());
+    }
+    delay_ = feedback->delay();
+    if (delay_ > 0.)
+    {
+      at_start_ = profile_at(scene.profiles.initial_stretch, points);
+      delayed   = at_start_;
+    }
+  }
+
+  void
+  StretchElsewhere::evaluate(const double t, const std::span<const double> own, const StretchHistory *history)
+  {
+    const auto to_stretch = [](std::vector<double> &values) {
+      for (double &value : values)
+        value += 1.;
+    };
+    if (near_places_)
+      near_places_->interpolate(discretization_.gather(own), near);
+    if (sensors_)
+      sensors_->mean(discretization_.gather(own), near);
+    to_stretch(near);
+    if (delay_ == 0.)
+      return;
+    const StretchHistory::Step *step = history != nullptr && t > delay_ ? history->find(t - delay_) : nullptr;
+    if (step == nullptr)
+    {
+      delayed = at_start_;
+      return;
+    }
+    auto known =
+      std::find_if(places_.begin(), places_.end(), [&](const auto &entry) { return entry.first == step->cells; });
+    if (known == places_.end())
+    {
+      constexpr std::size_t most = 4;
+      if (places_.size() == most)
+        places_.erase(places_.begin());
+      places_.emplace_back(step->cells, StretchPlaces(*step->cells, *step->element, points_));
+      known = places_.end() - 1;
+    }
+    StretchHistory::coefficients(*step, t - delay_, coefficients_);
+    known->second.interpolate(coefficients_, delayed);
+    to_stretch(delayed);
+  }
+
+  void
+  StretchElsewhere::change_of_near(const std::span<const double> own_change, const std::span<double> change) const
+  {
+    if (sensors_)
+      sensors_->mean(discretization_.gather(own_change), change);
+    else
+      near_places_->interpolate(discretization_.gather(own_change), change);
+  }
+} // namespace crawler

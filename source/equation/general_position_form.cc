@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/equation/crawler_equation.h>
+#include <crawler/equation/general_position_form.h>
+#include <crawler/equation/newton_velocity.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  GeneralPositionForm::GeneralPositionForm(const Scene &scene, const Discretization &discretization)
+    : PositionForm(scene, discretization)
+    , sliding_(scene, discretization.points(discretization.element().points))
+    , force_(scene, discretization.points(discretization.element().points))
+    , elsewhere_(scene, discretization, discretization.points(discretization.element().points))
+  {
+    const std::size_t n = static_cast<std::size_t>(discretization.n_local_cells()) * discretization.element().n;
+    for (auto *field : {&e_, &w_, &u_, &v_, &rate_, &g_, &w_dg_})
+      field->resize(n);
+  }
+
+  long
+  GeneralPositionForm::evaluate(const double t, const ConstVector u, const CellInput &in)
+  {
+    const ReferenceElement &element = *in.element;
+    const unsigned int n = element.n, q = element.degree;
+    long bad = -1;
+    for (std::size_t c = 0; c < in.n_cells; ++c)
+      for (unsigned int p = 0; p < n; ++p)
+      {
+        const std::size_t i = c * n + p;
+        e_[i] = u_[i] = v_[i] = rate_[i] = 0.;
+        for (unsigned int j = 0; j < n; ++j)
+        {
+          const double u_j = in.u[c * q + j], v_j = in.v != nullptr ? in.v[c * q + j] : 0.;
+          u_[i] += element.values[p * n + j] * u_j;
+          v_[i] += element.values[p * n + j] * v_j;
+          e_[i] += element.derivatives[p * n + j] / in.cell_size[c] * u_j;
+          rate_[i] += element.derivatives[p * n + j] / in.cell_size[c] * v_j;
+        }
+        w_[i] = 1. + e_[i];
+        if (bad < 0 && !(w_[i] > 0.))
+          bad = static_cast<long>(i);
+      }
+    elsewhere_.evaluate(t, stretch_coefficients(u), history_);
+    if (bad >= 0)
+      return bad;
+    force_.evaluate(t, e_, {w_, rate_, elsewhere_.near, elsewhere_.delayed}, in.m);
+    scene_.friction->values_and_log_derivatives(w_, g_, w_dg_);
+    bad = sliding_.evaluate(u_, v_);
+    if (bad >= 0)
+      describe_bad_law_ = [this, bad](const Units &units) { return sliding_.describe(bad, units); };
+    else
+      bad = look_at_friction(w_, g_);
+    return bad;
+  }
+
+  long
+  GeneralPositionForm::add_residual(const double t, const ConstVector u, const CellInput &in, double *F)
+  {
+    const long bad = evaluate(t, u, in);
+    if (bad >= 0)
+      return bad;
+    const ReferenceElement &element = *in.element;
+    const unsigned int n = element.n, q = element.degree;
+    for (std::size_t c = 0; c < in.n_cells; ++c)
+      for (unsigned int p = 0; p < n; ++p)
+      {
+        const double friction = in.cell_size[c] * element.weights[p] * g_[c * n + p] * sliding_.force[c * n + p],
+                     force    = element.weights[p] * force_.N[c * n + p];
+        for (unsigned int i = 0; i < n; ++i)
+          F[c * q + i] += friction * element.values[p * n + i] + force * element.derivatives[p * n + i];
+      }
+    return -1;
+  }
+
+  /// by_state dF/du + by_velocity dF/dv for the state of the last evaluate().
+  void
+  GeneralPositionForm::blocks_of(const CellInput &in,
+                                 const double by_state,
+                                 const double by_velocity,
+                                 double *blocks) const
+  {
+    const ReferenceElement &element = *in.element;
+    const unsigned int n            = element.n;
+    const bool has_rate             = !force_.by_rate.empty();
+    std::fill_n(blocks, static_cast<std::size_t>(in.n_cells) * n * n, 0.);
+    for (std::size_t c = 0; c < in.n_cells; ++c)
+      for (unsigned int p = 0; p < n; ++p)
+      {
+        const std::size_t at = c * n + p;
+        const double h = in.cell_size[c], weight = element.weights[p];
+        const double phi_by_phi =
+          h * weight * g_[at] * (by_state * sliding_.by_u[at] + by_velocity * sliding_.by_v[at]);
+        const double phi_by_phi_s = weight * by_state * w_dg_[at] / w_[at] * sliding_.force[at]; // h * (1/h)
+        const double phi_s_by_phi_s =
+          weight / h * (by_state * force_.by_w[at] + (has_rate ? by_velocity * force_.by_rate[at] : 0.));
+        const double *phi = &element.values[p * n], *phi_s = &element.derivatives[p * n];
+        for (unsigned int i = 0; i < n; ++i)
+          for (unsigned int j = 0; j < n; ++j)
+            blocks[(c * n + i) * n + j] +=
+              phi[i] * (phi_by_phi * phi[j] + phi_by_phi_s * phi_s[j]) + phi_s[i] * phi_s_by_phi_s * phi_s[j];
+      }
+  }
+
+  void
+  GeneralPositionForm::jacobian_blocks(
+    const double t, const ConstVector u, const CellInput &in, const double sigma, double *blocks)
+  {
+    evaluate(t, u, in);
+    blocks_of(in, 1., sigma, blocks);
+  }
+
+  void
+  GeneralPositionForm::mass_blocks(const double t, const ConstVector u, const CellInput &in, double *blocks)
+  {
+    evaluate(t, u, in);
+    blocks_of(in, 0., 1., blocks);
+  }
+
+  GeneralPositionForm::Far
+  GeneralPositionForm::far() const
+  {
+    return {force_.by_near};
+  }
+
+  void
+  GeneralPositionForm::add_far(const Far &far, const ConstVector x, const Vector result) const
+  {
+    if (scene_.active_stress->feedback() == nullptr || !scene_.active_stress->feedback()->sees_near())
+      return;
+    const ReferenceElement &element = discretization_.element();
+    const unsigned int n = element.n, q = element.degree;
+    std::vector<double> change(far.by_near.size()), local(discretization_.n_local(), 0.), owned(result.size());
+    elsewhere_.change_of_near(stretch_coefficients(x), change);
+    for (std::size_t c = 0; c < discretization_.n_local_cells(); ++c)
+      for (unsigned int p = 0; p < n; ++p)
+        for (unsigned int i = 0; i < n; ++i)
+          local[c * q + i] +=
+            element.weights[p] * far.by_near[c * n + p] * change[c * n + p] * element.derivatives[p * n + i];
+    discretization_.add_to_owned<double>(local, owned);
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i] += owned[i];
+  }
+
+  bool
+  GeneralPositionForm::setup_jacobian(const double t, const ConstVector u, const ConstVector v, const double sigma)
+  {
+    const bool ok = PositionForm::setup_jacobian(t, u, v, sigma);
+    jacobian_far_ = far();
+    return ok;
+  }
+
+  void
+  GeneralPositionForm::jacobian_vmult(const ConstVector x, const Vector y)
+  {
+    PositionForm::jacobian_vmult(x, y);
+    add_far(jacobian_far_, x, y);
+  }
+
+  void
+  GeneralPositionForm::setup_stage(const unsigned int stage, const double t, const ConstVector u, const ConstVector v)
+  {
+    PositionForm::setup_stage(stage, t, u, v);
+    if (stage_far_.size() <= stage)
+      stage_far_.resize(stage + 1);
+    stage_far_[stage] = far();
+  }
+
+  void
+  GeneralPositionForm::stage_vmult(const unsigned int stage,
+                                   const ConstVector x,
+                                   const ConstVector x_dot,
+                                   const Vector result)
+  {
+    PositionForm::stage_vmult(stage, x, x_dot, result);
+    add_far(stage_far_[stage], x, result);
+  }
+
+  bool
+  GeneralPositionForm::velocity(const double t, const ConstVector u, const Vector v)
+  {
+    if (!mass_)
+      mass_ = std::make_unique<BlockTridiagonalMatrix<double>>(discretization_);
+    std::fill(v.begin(), v.end(), 0.);
+    return newton_velocity(
+      discretization_,
+      v,
+      [&](const ConstVector at, const Vector F) { return residual(t, u, at, F); },
+      [&](const ConstVector at, const Vector change) {
+        mass_blocks(t, u, input(t, u, at), mass_->blocks().data());
+        if (!mass_->factorize())
+          return false;
+        mass_->solve(change, change);
+        return true;
+      });
+  }
+
+  CellIntegrals
+  GeneralPositionForm::integrals(const double t, const ConstVector u, const ConstVector v)
+  {
+    const CellInput in = input(t, u, v);
+    evaluate(t, u, in);
+    const ReferenceElement &element = *in.element;
+    CellIntegrals sum;
+    for (std::size_t c = 0; c < in.n_cells; ++c)
+      for (unsigned int p = 0; p < element.n; ++p)
+      {
+        const std::size_t i   = c * element.n + p;
+        const double ds       = in.cell_size[c] * element.weights[p];
+        const double power    = equation::stress_power(force_.m[i], rate_[i]),
+                     friction = equation::friction_force(g_[i], sliding_.force[i]);
+        sum.displacement += ds * u_[i];
+        sum.velocity += ds * v_[i];
+        sum.elastic_energy += ds * equation::elastic_energy(e_[i], force_.k[i]);
+        sum.stress_power += ds * power;
+        sum.positive_power += ds * std::max(power, 0.);
+        sum.absolute_power += ds * std::abs(power);
+        sum.dissipation += ds * friction * v_[i];
+        sum.net_friction += ds * friction;
+        sum.abs_friction += ds * std::abs(friction);
+      }
+    sum_over_ranks(sum);
+    return sum;
+  }
+
+  void
+  GeneralPositionForm::friction(const double t, const ConstVector u, const ConstVector v, std::vector<double> &g_v)
+  {
+    evaluate(t, u, input(t, u, v));
+    g_v.resize(g_.size());
+    for (std::size_t i = 0; i < g_.size(); ++i)
+      g_v[i] = g_[i] * sliding_.force[i];
+  }
+
+  std::unique_ptr<PositionForm>
+  create_position_form(const Scene &scene, const Discretization &discretization)
+  {
+    if (scene.is_plain())
+      return std::make_unique<PositionForm>(scene, discretization);
+    return std::make_unique<GeneralPositionForm>(scene, discretization);
+  }
+} // namespace crawler

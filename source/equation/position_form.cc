@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/parabola.h>
+#include <crawler/equation/general_sampler.h>
+#include <crawler/equation/position_form.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace crawler
+{
+  namespace
+  {
+    /// The entry of the rank with the smallest key, on all ranks.
+    StretchAt
+    reduce_minimum(const StretchAt own, const double sign, const Discretization &discretization)
+    {
+      const unsigned int size = discretization.n_ranks();
+      if (size == 1)
+        return own;
+      const double sent[2] = {own.value, own.s};
+      std::vector<double> all(2 * size);
+      MPI_Allgather(sent, 2, MPI_DOUBLE, all.data(), 2, MPI_DOUBLE, discretization.communicator());
+      StretchAt best{all[0], all[1]};
+      for (unsigned int r = 1; r < size; ++r)
+        if (sign * all[2 * r] < sign * best.value || (std::isnan(all[2 * r]) && !std::isnan(best.value)))
+          best = {all[2 * r], all[2 * r + 1]};
+      return best;
+    }
+
+    /// Where the stretch is looked at in a cell: its ends and the quadrature points, from left to right.
+    std::vector<double>
+    sampled_places(const ReferenceElement &element)
+    {
+      std::vector<double> places = {0.};
+      places.insert(places.end(), element.points.begin(), element.points.end());
+      places.push_back(1.);
+      return places;
+    }
+
+    /// The sampler at these places, made once for each degree.
+    const StretchSampler &
+    stretch_sampler(const ReferenceElement &element)
+    {
+      static std::map<unsigned int, const StretchSampler> samplers;
+      const auto known = samplers.find(element.degree);
+      return known != samplers.end()
+               ? known->second
+               : samplers.try_emplace(element.degree, element, sampled_places(element)).first->second;
+    }
+  } // namespace
+
+  PositionForm::PositionForm(const Scene &scene, const Discretization &discretization)
+    : Assembler(scene, discretization)
+    , kernels_(cell_kernels(discretization.element().degree))
+    , jacobian_(discretization)
+    , stress_(scene.active_stress->at(discretization.points(discretization.element().points)))
+    , n_stress_points_(static_cast<std::size_t>(discretization.n_local_cells()) * discretization.element().n)
+    , stresses_(1)
+    , sampler_(stretch_sampler(discretization.element()))
+  {
+  }
+
+  PositionForm::~PositionForm() = default;
+
+  CellInput
+  PositionForm::input(const double t, const ConstVector u, const ConstVector v)
+  {
+    CellInput in = geometry();
+    in.u         = discretization_.to_local<double>(u, u_local_).data();
+    in.v         = v.data() == nullptr ? nullptr : discretization_.to_local<double>(v, v_local_).data();
+    in.m         = stress_at(t).data();
+    return in;
+  }
+
+  const std::vector<double> &
+  PositionForm::stress_at(const double t)
+  {
+    auto found =
+      std::find_if(stresses_.begin(), stresses_.end(), [t](const StressAtTime &stress) { return stress.time == t; });
+    if (found == stresses_.end())
+    {
+      found          = stresses_.begin() + oldest_stress_;
+      oldest_stress_ = (oldest_stress_ + 1) % stresses_.size();
+      found->m.resize(n_stress_points_);
+      stress_->values(t, found->m);
+      found->time = t;
+    }
+    return found->m;
+  }
+
+  void
+  PositionForm::keep_stresses(const unsigned int n_times)
+  {
+    stresses_.resize(n_times);
+    oldest_stress_ = 0;
+  }
+
+  void
+  PositionForm::forget_stresses()
+  {
+    for (StressAtTime &stress : stresses_)
+      stress.time = std::numeric_limits<double>::quiet_NaN();
+  }
+
+  CellInput
+  PositionForm::geometry() const
+  {
+    return {discretization_.n_local_cells(),
+            discretization_.cell_size().data(),
+            &discretization_.element(),
+            scene_.friction.get(),
+            scene_.body.elastic_modulus,
+            nullptr,
+            nullptr,
+            nullptr};
+  }
+
+  StretchAt
+  PositionForm::smallest_of_ranks(const StretchAt own) const
+  {
+    return reduce_minimum(own, 1., discretization_);
+  }
+
+  StretchRange
+  PositionForm::stretch_range(const ConstVector y)
+  {
+    const auto local          = discretization_.to_local<double>(displacement(y), u_local_);
+    const unsigned n          = discretization_.element().n;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    const auto place      = [&](const unsigned int i) { return sampler_.places()[i]; };
+    const auto stretch_at = [&](const unsigned int c, const unsigned int i) {
+      return sampler_.stretch(local, c, discretization_.cell_size()[c], i);
+    };
+
+    struct Found
+    {
+      double w;
+      unsigned int cell, i;
+    };
+    Found smallest{infinity, 0, 0}, largest{-infinity, 0, 0};
+    for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
+      for (unsigned int i = 0; i < n + 2; ++i)
+      {
+        const double w = stretch_at(c, i);
+        if (w < smallest.w || (std::isnan(w) && !std::isnan(smallest.w)))
+          smallest = {w, c, i};
+        if (w > largest.w)
+          largest = {w, c, i};
+      }
+
+    // Inside a cell the parabola through the neighbours comes closer to the extreme than the sample.
+    const auto sharpened = [&](const Found &found) {
+      double x = place(found.i), w = found.w;
+      if (discretization_.n_local_cells() == 0)
+        return StretchAt{w, 0.};
+      if (found.i > 0 && found.i <= n && std::isfinite(w))
+      {
+        const auto [vertex_x, vertex_w] = parabola_vertex(place(found.i - 1),
+                                                          stretch_at(found.cell, found.i - 1),
+                                                          x,
+                                                          w,
+                                                          place(found.i + 1),
+                                                          stretch_at(found.cell, found.i + 1));
+        if (w <= 0. || vertex_w > 0.)
+        {
+          x = vertex_x;
+          w = vertex_w;
+        }
+      }
+      return StretchAt{w, discretization_.cell_left()[found.cell] + discretization_.cell_size()[found.cell] * x};
+    };
+    return {reduce_minimum(sharpened(smallest), 1., discretization_),
+            reduce_minimum(sharpened(largest), -1., discretization_)};
+  }
+
+  void
+  PositionForm::set_initial_state(const Vector y)
+  {
+    std::fill(y.begin(), y.end(), 0.);
+    const auto &initial = scene_.profiles.initial_stretch;
+    if (!initial)
+      return;
+    // u is the integral of w - 1, from node to node by a Gauss formula, minus its mean.
+    const auto &element     = discretization_.element();
+    const auto &formula     = reference_element(ReferenceElement::highest_degree);
+    const unsigned int n    = element.n;
+    const std::size_t first = static_cast<std::size_t>(discretization_.first_cell()) * element.degree +
+                              (discretization_.has_left_neighbour() ? 1 : 0);
+    std::vector<double> u(discretization_.n_unknowns(), 0.), places(formula.n), w(formula.n);
+    double mean = 0.;
+    for (std::size_t c = 0; c < discretization_.n_cells(); ++c)
+    {
+      const Cell &cell = discretization_.cells()[c];
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        double &here = u[c * element.degree + i];
+        if (i > 0)
+        {
+          const double from = cell.left + cell.size * element.nodes[i - 1],
+                       size = cell.size * (element.nodes[i] - element.nodes[i - 1]);
+          for (unsigned int p = 0; p < formula.n; ++p)
+            places[p] = from + size * formula.points[p];
+          initial->values(places, w);
+          here = u[c * element.degree + i - 1];
+          for (unsigned int p = 0; p < formula.n; ++p)
+            here += size * formula.weights[p] * (w[p] - 1.);
+        }
+        mean += cell.size * element.node_weights[i] * here;
+      }
+    }
+    for (std::size_t i = 0; i < discretization_.n_owned(); ++i)
+      y[i] = u[first + i] - mean / discretization_.length();
+  }
+
+  long
+  PositionForm::add_residual(double, ConstVector, const CellInput &in, double *F)
+  {
+    return kernels_.residual(in, F);
+  }
+
+  void
+  PositionForm::jacobian_blocks(double, ConstVector, const CellInput &in, const double sigma, double *blocks)
+  {
+    kernels_.jacobian(in, sigma, blocks);
+  }
+
+  void
+  PositionForm::mass_blocks(double, ConstVector, const CellInput &in, double *blocks)
+  {
+    kernels_.mass(in, blocks);
+  }
+
+  bool
+  PositionForm::residual(const double t, const ConstVector u, const ConstVector v, const Vector F)
+  {
+    const CellInput in = input(t, u, v);
+    const bool one     = discretization_.n_active_ranks() == 1;
+    double *data       = F.data();
+    if (one)
+      std::fill(F.begin(), F.end(), 0.);
+    else
+    {
+      F_local_.assign(discretization_.n_local(), 0.);
+      data = F_local_.data();
+    }
+    const long bad = add_residual(t, u, in, data);
+    if (!one)
+      discretization_.add_to_owned<double>(F_local_, F);
+
+    StretchAt found{std::numeric_limits<double>::infinity(), 0.};
+    if (bad >= 0)
+    {
+      const auto &element      = discretization_.element();
+      const unsigned int cell  = static_cast<unsigned int>(bad) / element.n,
+                         point = static_cast<unsigned int>(bad) % element.n;
+      const double h           = discretization_.cell_size()[cell];
+      double w                 = 1.;
+      for (unsigned int i = 0; i < element.n; ++i)
+        w += element.derivatives[point * element.n + i] / h * in.u[cell * element.degree + i];
+      found = {w, discretization_.cell_left()[cell] + h * element.points[point]};
+    }
+    int any = bad >= 0;
+    if (discretization_.n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, discretization_.communicator());
+    if (any == 0)
+      return true;
+    bad_stretch_ = smallest_of_ranks(found);
+    return false;
+  }
+
+  void
+  PositionForm::jacobian(
+    const double t, const ConstVector u, const ConstVector v, const double sigma, BlockTridiagonalMatrix<double> &A)
+  {
+    jacobian_blocks(t, u, input(t, u, v), sigma, A.blocks().data());
+  }
+
+  bool
+  PositionForm::setup_jacobian(const double t, const ConstVector u, const ConstVector v, const double sigma)
+  {
+    jacobian(t, u, v, sigma, jacobian_);
+    return jacobian_.factorize();
+  }
+
+  void
+  PositionForm::solve_with_jacobian(const ConstVector b, const Vector x)
+  {
+    jacobian_.solve(b, x);
+  }
+
+  void
+  PositionForm::jacobian_vmult(const ConstVector x, const Vector y)
+  {
+    jacobian_.multiply(x, y);
+  }
+
+  bool
+  PositionForm::setup_complex_jacobians(const double t,
+                                        const ConstVector u,
+                                        const ConstVector v,
+                                        const std::span<const Complex> sigma)
+  {
+    setup_stage(0, t, u, v);
+    bool ok = true;
+    for (std::size_t i = 0; i < sigma.size(); ++i)
+    {
+      if (complex_jacobians_.size() <= i)
+        complex_jacobians_.emplace_back(discretization_);
+      const auto &by_u = stages_[0].by_u.blocks(), &by_v = stages_[0].by_v.blocks();
+      auto &blocks = complex_jacobians_[i].blocks();
+      for (std::size_t j = 0; j < blocks.size(); ++j)
+        blocks[j] = by_u[j] + sigma[i] * by_v[j];
+      ok = complex_jacobians_[i].factorize() && ok;
+    }
+    return ok;
+  }
+
+  void
+  PositionForm::solve_with_complex_jacobian(const unsigned int i,
+                                            const std::span<const Complex> b,
+                                            const std::span<Complex> x)
+  {
+    complex_jacobians_[i].solve(b, x);
+  }
+
+  void
+  PositionForm::setup_stage(const unsigned int stage, const double t, const ConstVector u, const ConstVector v)
+  {
+    while (stages_.size() <= stage)
+      stages_.push_back(
+        {BlockTridiagonalMatrix<double>(discretization_), BlockTridiagonalMatrix<double>(discretization_)});
+    const CellInput in = input(t, u, v);
+    jacobian_blocks(t, u, in, 0., stages_[stage].by_u.blocks().data());
+    mass_blocks(t, u, in, stages_[stage].by_v.blocks().data());
+  }
+
+  void
+  PositionForm::stage_vmult(const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector result)
+  {
+    stages_[stage].by_u.multiply(x, result);
+    product_.resize(result.size());
+    stages_[stage].by_v.multiply(x_dot, product_);
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i] += product_[i];
+  }
+
+  bool
+  PositionForm::velocity(const double t, const ConstVector u, const Vector v)
+  {
+    if (!mass_)
+      mass_ = std::make_unique<BlockTridiagonalMatrix<double>>(discretization_);
+    if (!residual(t, u, {}, v))
+      return false;
+    for (double &value : v)
+      value = -value;
+    mass_blocks(t, u, input(t, u, {}), mass_->blocks().data());
+    if (!mass_->factorize())
+      return false;
+    mass_->solve(v, v);
+    return true;
+  }
+
+  CellIntegrals
+  PositionForm::integrals(const double t, const ConstVector u, const ConstVector v)
+  {
+    CellIntegrals sum;
+    kernels_.integrals(input(t, u, v), sum);
+    sum_over_ranks(sum);
+    return sum;
+  }
+} // namespace crawler

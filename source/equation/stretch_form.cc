@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/parabola.h>
+#include <crawler/equation/crawler_equation.h>
+#include <crawler/equation/stretch_form.h>
+#include <crawler/equation/stretch_loops.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  using generic::node_force;
+  using generic::NodeDirection;
+  using generic::NodeRule;
+
+  namespace
+  {
+    /// Steep friction on a soft body makes fronts that the mean of two cells does not follow.
+    constexpr double steep_exponent = -4., soft = 1e-3;
+    /// Where the stretch is less than this its extremes are those of the cells; parabolas there lead nowhere.
+    constexpr double nearly_empty = 0.1;
+
+    std::vector<double>
+    middles(const Discretization &discretization)
+    {
+      return discretization.points({0.5});
+    }
+  } // namespace
+
+  StretchMethod
+  stretch_method(const Scene &scene, const bool other)
+  {
+    const double a            = scene.friction_exponent();
+    const bool may_invert     = a > -1. && a < 0.;
+    const NodeRule rule       = a >= 0. ? NodeRule::friction
+                                : may_invert || (a <= steep_exponent && scene.body.elastic_modulus <= soft)
+                                  ? NodeRule::upwind
+                                  : NodeRule::fronts;
+    const NodeRule other_rule = rule == NodeRule::fronts ? NodeRule::upwind : NodeRule::fronts;
+    return {static_cast<unsigned char>(other ? other_rule : rule), may_invert && scene.is_plain()};
+  }
+
+  std::string
+  reason_against_stretch_form(const Scene &scene)
+  {
+    if (scene.ground.profile)
+      return "the friction of the ground depends on the place of each cell, and so on the stretches of all others";
+    const StretchFeedback *feedback = scene.active_stress->feedback();
+    if (feedback != nullptr && feedback->uses_rate() && scene.ground.direction.ratio != 1.)
+      return "the active stress depends on the rate of the stretch, and friction on the direction: the method for the "
+             "equations of a step does not converge";
+    if (feedback != nullptr && (feedback->sees_near() || feedback->delay() > 0.))
+      return "the active stress sees the stretch of other places or times";
+    return "";
+  }
+
+  StretchLaws::StretchLaws(const Scene &scene, const std::vector<double> &middles)
+    : friction(middles.size())
+    , mobility(middles.size())
+    , mobility_by_w(middles.size())
+    , scene_(scene)
+    , profile_(middles.size(), 1.)
+    , w_(middles.size())
+    , w_dg_(middles.size())
+    , strain_(middles.size())
+    , force_(scene, middles)
+  {
+    if (scene.profiles.friction)
+      scene.profiles.friction->values(middles, profile_);
+  }
+
+  long
+  StretchLaws::evaluate(const double t,
+                        const std::span<const double> w,
+                        const std::span<const double> rate,
+                        const double *known_m)
+  {
+    constexpr double empty = 1e-30; // its mobility is 0 if friction grows without bound
+    for (std::size_t j = 0; j < w.size(); ++j)
+    {
+      w_[j]      = std::max(w[j], empty);
+      strain_[j] = w[j] - 1.;
+    }
+    scene_.friction->values_and_log_derivatives(w_, friction, w_dg_);
+    long bad = -1;
+    for (std::size_t j = 0; j < w.size(); ++j)
+    {
+      if (bad < 0 && !(friction[j] > 0.))
+        bad = static_cast<long>(j);
+      mobility[j]      = 1. / (friction[j] * profile_[j]);
+      mobility_by_w[j] = mobility[j] > 0. ? -w_dg_[j] / friction[j] * mobility[j] / w_[j] : 0.;
+    }
+    force_.evaluate(t, strain_, {w, rate, {}, {}}, known_m);
+    return bad;
+  }
+
+  StretchForm::StretchForm(const Scene &scene, const Discretization &discretization, const bool other)
+    : Assembler(scene, discretization)
+    , method_(stretch_method(scene, other))
+    , power_(1. + scene.friction_exponent())
+    , may_be_empty_(scene.friction_exponent() < 0.)
+    , laws_(scene, middles(discretization))
+    , w_(discretization.n_cells())
+    , u_(discretization.n_unknowns())
+    , rate_(discretization.n_cells(), 0.)
+  {
+  }
+
+  Assembler::ConstVector
+  StretchForm::stretch(const ConstVector y) const
+  {
+    for (std::size_t j = 0; j < w_.size(); ++j)
+    {
+      const double positive = std::max(y[j], 0.);
+      w_[j]                 = std::isnan(y[j])   ? y[j]
+                              : method_.is_power ? std::pow(power_ * positive, 1. / power_)
+                              : may_be_empty_    ? positive
+                                                 : y[j];
+    }
+    return w_;
+  }
+
+  Assembler::ConstVector
+  StretchForm::displacement(const ConstVector y) const
+  {
+    const auto w = stretch(y);
+    u_[0]        = y[w.size()];
+    for (std::size_t j = 0; j < w.size(); ++j)
+    {
+      const double own = method_.is_power ? w[j] : y[j]; // the length of a cell may be negative within the tolerance
+      u_[j + 1]        = u_[j] + discretization_.cell_size()[j] * (own - 1.);
+    }
+    return u_;
+  }
+
+  std::vector<double>
+  StretchForm::stretch_slopes(const ConstVector y) const
+  {
+    const auto w        = stretch(y);
+    const auto &h       = discretization_.cell_size();
+    const std::size_t n = w.size();
+    std::vector<double> slopes(n, 0.);
+    if (n == 1)
+      return slopes;
+    for (std::size_t j = 0; j < n; ++j)
+    {
+      const auto to     = [&](const std::size_t other) { return (w[other] - w[j]) / (0.5 * (h[j] + h[other])); };
+      const double left = j > 0 ? -to(j - 1) : to(j + 1), right = j + 1 < n ? to(j + 1) : left;
+      slopes[j] = left * right > 0. ? std::copysign(std::min(std::abs(left), std::abs(right)), left) * h[j] : 0.;
+      if (j == 0 || j + 1 == n) // not below 0 at the end of the body
+        slopes[j] = std::clamp(slopes[j], -2. * w[j], 2. * w[j]);
+    }
+    return slopes;
+  }
+
+  void
+  StretchForm::evaluate(const double t, const ConstVector y, const ConstVector v) const
+  {
+    const auto w = stretch(y);
+    for (std::size_t j = 0; j < w.size(); ++j)
+      rate_[j] = (v[j + 1] - v[j]) / discretization_.cell_size()[j];
+    laws_.evaluate(t, w, rate_);
+  }
+
+  std::vector<double>
+  StretchForm::node_friction(const double t, const ConstVector y, const ConstVector v) const
+  {
+    evaluate(t, y, v);
+    const int n = static_cast<int>(w_.size());
+    std::vector<double> friction(w_.size() + 1);
+    for (int i = 0; i <= n; ++i)
+      friction[i] = node_force(static_cast<NodeRule>(method_.node_rule),
+                               n,
+                               discretization_.cell_size().data(),
+                               laws_.mobility.data(),
+                               laws_.force().N.data(),
+                               i)
+                      .slope;
+    return friction;
+  }
+
+  StretchRange
+  StretchForm::stretch_range(const ConstVector y)
+  {
+    const auto w        = stretch(y);
+    const std::size_t n = w.size();
+    const auto &left = discretization_.cell_left(), &size = discretization_.cell_size();
+    const auto middle = [&](const std::size_t j) { return left[j] + 0.5 * size[j]; };
+    if (n == 1)
+      return {{w[0], middle(0)}, {w[0], middle(0)}};
+    std::size_t least = 0, most = 0;
+    for (std::size_t j = 0; j < n; ++j)
+    {
+      if (w[j] < w[least] || std::isnan(w[j]))
+        least = j;
+      if (w[j] > w[most])
+        most = j;
+    }
+    const auto sharpened = [&](const std::size_t j) -> StretchAt {
+      if (j == 0 || j + 1 == n) // the end of the body, from the two cells there
+      {
+        const std::size_t next = j == 0 ? 1 : n - 2, end = j == 0 ? 0 : n - 1;
+        const double value = w[end] + (w[end] - w[next]) * 0.5 * size[end] / std::abs(middle(next) - middle(end));
+        return w[end] > nearly_empty ? StretchAt{value, j == 0 ? 0. : discretization_.length()}
+                                     : StretchAt{w[j], middle(j)};
+      }
+      const auto [s, value] = parabola_vertex(middle(j - 1), w[j - 1], middle(j), w[j], middle(j + 1), w[j + 1]);
+      const bool inside     = s > middle(j - 1) && s < middle(j + 1) && std::isfinite(value) && w[j] > nearly_empty;
+      return inside ? StretchAt{value, s} : StretchAt{w[j], middle(j)};
+    };
+    return {sharpened(least), sharpened(most)};
+  }
+
+  void
+  StretchForm::set_initial_state(const Vector y)
+  {
+    const std::size_t n = w_.size();
+    std::vector<double> w(n, 1.);
+    if (scene_.profiles.initial_stretch)
+    {
+      const auto &formula = reference_element(ReferenceElement::highest_degree);
+      const auto places   = discretization_.points(formula.points);
+      std::vector<double> values(places.size());
+      scene_.profiles.initial_stretch->values(places, values);
+      for (std::size_t j = 0; j < n; ++j)
+      {
+        w[j] = 0.;
+        for (unsigned int p = 0; p < formula.n; ++p)
+          w[j] += formula.weights[p] * values[j * formula.n + p];
+      }
+    }
+    for (std::size_t j = 0; j < n; ++j)
+      y[j] = method_.is_power ? std::pow(w[j], power_) / power_ : w[j];
+    y[n]         = 0.;
+    const auto u = displacement(y);
+    double mean  = 0.;
+    for (std::size_t j = 0; j < n; ++j)
+      mean += 0.5 * discretization_.cell_size()[j] * (u[j] + u[j + 1]);
+    y[n] = -mean / discretization_.length();
+  }
+
+  bool
+  StretchForm::velocity(const double t, const ConstVector y, const Vector v)
+  {
+    const StretchFeedback *feedback = scene_.active_stress->feedback();
+    const bool sees_rate            = feedback != nullptr && feedback->uses_rate();
+    const auto &h                   = discretization_.cell_size();
+    const int n                     = static_cast<int>(w_.size());
+    const NodeDirection direction{scene_.ground.direction.ratio, scene_.ground.direction.switching_velocity};
+    const auto rule = static_cast<NodeRule>(method_.node_rule);
+    std::fill(rate_.begin(), rate_.end(), 0.);
+    const auto w = stretch(y);
+    std::vector<double> lower, diagonal, upper, rest;
+    // One pass, unless the active stress depends on the rate: then Newton's method for w_t - (v_{j+1} - v_j)/h_j = 0.
+    for (unsigned int i = 0; i < (sees_rate ? 20 : 1); ++i)
+    {
+      if (laws_.evaluate(t, w, rate_) >= 0)
+      {
+        look_at_friction(w, laws_.friction);
+        return false;
+      }
+      const auto &N = laws_.force().N;
+      std::vector<double> by_left(n + 1, 0.), by_right(n + 1, 0.);
+      for (int node = 0; node <= n; ++node)
+      {
+        const auto f = node_force(rule, n, h.data(), laws_.mobility.data(), N.data(), node);
+        double slope = 1.;
+        v[node]      = direction.velocity(f.mobility.value * f.slope, slope);
+        if (!std::isfinite(v[node]))
+          return false;
+        if (!sees_rate)
+          continue;
+        const double conductance = slope * f.mobility.value / f.spacing;
+        if (node > 0)
+          by_left[node] = -conductance * laws_.force().by_rate[node - 1];
+        if (node < n)
+          by_right[node] = conductance * laws_.force().by_rate[node];
+      }
+      if (!sees_rate)
+        return true;
+      lower.assign(n, 0.), diagonal.assign(n, 1.), upper.assign(n, 0.), rest.assign(n, 0.);
+      double largest = 0., scale = 0.;
+      for (int j = 0; j < n; ++j)
+      {
+        rest[j]  = rate_[j] - (v[j + 1] - v[j]) / h[j];
+        lower[j] = by_left[j] / h[j];
+        diagonal[j] -= (by_left[j + 1] - by_right[j]) / h[j];
+        upper[j] = -by_right[j + 1] / h[j];
+        if (j > 0)
+        {
+          const double factor = lower[j] / diagonal[j - 1];
+          diagonal[j] -= factor * upper[j - 1];
+          rest[j] -= factor * rest[j - 1];
+        }
+      }
+      for (int j = n - 1; j >= 0; --j)
+      {
+        rest[j] = (rest[j] - (j + 1 < n ? upper[j] * rest[j + 1] : 0.)) / diagonal[j];
+        rate_[j] -= rest[j];
+        largest = std::max(largest, std::abs(rest[j]));
+        scale   = std::max(scale, std::abs(rate_[j]));
+      }
+      if (largest <= 1e-13 * scale || scale == 0.)
+        return true;
+    }
+    return false;
+  }
+
+  CellIntegrals
+  StretchForm::integrals(const double t, const ConstVector y, const ConstVector v)
+  {
+    evaluate(t, y, v);
+    const auto u                   = displacement(y);
+    const auto w                   = ConstVector(w_);
+    const auto &h                  = discretization_.cell_size();
+    const BodyForceAtPoints &force = laws_.force();
+    CellIntegrals sum;
+    for (std::size_t j = 0; j < w.size(); ++j)
+    {
+      const double strain = (u[j + 1] - u[j]) / h[j], power = equation::stress_power(force.m[j], rate_[j]);
+      sum.displacement += 0.5 * h[j] * (u[j] + u[j + 1]);
+      sum.velocity += 0.5 * h[j] * (v[j] + v[j + 1]);
+      sum.elastic_energy += h[j] * equation::elastic_energy(strain, force.k[j]);
+      sum.stress_power += h[j] * power;
+      sum.positive_power += h[j] * std::max(power, 0.);
+      sum.absolute_power += h[j] * std::abs(power);
+    }
+    // Friction is what balances the forces in the body.
+    for (std::size_t i = 0; i <= w.size(); ++i)
+    {
+      const double f = (i < w.size() ? force.N[i] : 0.) - (i > 0 ? force.N[i - 1] : 0.);
+      sum.dissipation += f * v[i];
+      sum.net_friction += f;
+      sum.abs_friction += std::abs(f);
+    }
+    return sum;
+  }
+
+  std::pair<double, double>
+  StretchForm::lost_places(const double t, const ConstVector y, const double reach)
+  {
+    std::vector<double> v(discretization_.n_unknowns());
+    if (!velocity(t, y, v))
+      return {0., 0.};
+    const auto w  = stretch(y);
+    const auto &h = discretization_.cell_size();
+    std::pair<double, double> places{discretization_.length(), 0.};
+    for (std::size_t j = 0; j < w.size(); ++j)
+    {
+      // w^(1+a) goes linearly to 0.
+      const double rate = power_ * (v[j + 1] - v[j]) / h[j];
+      if (w[j] <= 0. || (rate < 0. && w[j] <= -rate * reach))
+      {
+        const double s = discretization_.cell_left()[j] + 0.5 * h[j];
+        places         = {std::min(places.first, s), std::max(places.second, s)};
+      }
+    }
+    return places;
+  }
+} // namespace crawler

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/equation/stretch_history.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace crawler
+{
+  StretchPlaces::StretchPlaces(const std::vector<Cell> &cells,
+                               const ReferenceElement &element,
+                               const std::vector<double> &points)
+    : q_(element.degree)
+  {
+    std::vector<double> in_cells;
+    for (const double s : points)
+    {
+      const auto next = std::upper_bound(
+        cells.begin(), cells.end(), s, [](const double place, const Cell &cell) { return place < cell.left; });
+      const auto c = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - cells.begin(), 1)) - 1;
+      cells_.push_back(c);
+      in_cells.push_back(std::clamp((s - cells[c].left) / cells[c].size, 0., 1.));
+    }
+    weights_ = interpolation_matrix(element.stretch_points, in_cells);
+  }
+
+  void
+  StretchPlaces::interpolate(const std::span<const double> coefficients, const std::span<double> values) const
+  {
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+    {
+      values[i] = 0.;
+      for (unsigned int p = 0; p < q_; ++p)
+        values[i] += weights_[i * q_ + p] * coefficients[cells_[i] * q_ + p];
+    }
+  }
+
+  const std::array<double, 6> &
+  StretchHistory::places()
+  {
+    static const std::array<double, 6> list = []() {
+      std::array<double, 6> result{};
+      for (unsigned int i = 0; i < 6; ++i)
+        result[i] = 0.5 - 0.5 * std::cos(std::numbers::pi * i / 5.);
+      result[5] = 1.;
+      return result;
+    }();
+    return list;
+  }
+
+  void
+  StretchHistory::clear()
+  {
+    steps_.clear();
+  }
+
+  void
+  StretchHistory::add(Step step, const double forget)
+  {
+    steps_.push_back(std::move(step));
+    while (steps_.size() > 1 && steps_.front().to < forget)
+      steps_.pop_front();
+  }
+
+  const StretchHistory::Step *
+  StretchHistory::find(const double t) const
+  {
+    if (steps_.empty() || t < steps_.front().from)
+      return nullptr;
+    const auto found = std::lower_bound(
+      steps_.begin(), steps_.end(), t, [](const Step &step, const double time) { return step.to < time; });
+    return found == steps_.end() ? &steps_.back() : &*found;
+  }
+
+  void
+  StretchHistory::coefficients(const Step &step, const double t, std::vector<double> &values)
+  {
+    const double x = (t - step.from) / (step.to - step.from);
+    values.assign(step.coefficients[0].size(), 0.);
+    for (unsigned int j = 0; j < 6; ++j)
+    {
+      double weight = 1.;
+      for (unsigned int i = 0; i < 6; ++i)
+        if (i != j)
+          weight *= (x - places()[i]) / (places()[j] - places()[i]);
+      for (std::size_t k = 0; k < values.size(); ++k)
+        values[k] += weight * step.coefficients[j][k];
+    }
+  }
+} // namespace crawler

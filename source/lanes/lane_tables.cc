@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/lanes/lane_tables.h>
+#include <crawler/time/radau_tableau.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <new>
+
+namespace crawler
+{
+  namespace
+  {
+    std::vector<double>
+    interleaved(const std::vector<std::complex<double>> &values)
+    {
+      std::vector<double> result;
+      for (const auto &value : values)
+      {
+        result.push_back(value.real());
+        result.push_back(value.imag());
+      }
+      return result;
+    }
+  } // namespace
+
+  LaneTables::LaneTables(const LaneMethod &method)
+    : method_(method)
+    , element_(method.degree)
+    , sample_places_(method.is_stretch ? std::vector<double>{0.5} : element_.points)
+  {
+    if (!method.is_stretch)
+    {
+      sample_places_.insert(sample_places_.begin(), 0.);
+      sample_places_.push_back(1.);
+    }
+    samples_                    = interpolation_matrix(element_.nodes, sample_places_, 1);
+    const RadauTableau &tableau = radau_tableau(method.n_stages);
+    eigenvalues_                = interleaved(tableau.eigenvalues);
+    vectors_                    = interleaved(tableau.vectors);
+    rows_                       = interleaved(tableau.rows);
+    const bool uniform          = method.cell_ends.empty();
+    for (unsigned int c = 0; c < method.n_cells; ++c)
+    {
+      sizes_.push_back(uniform ? 1. / method.n_cells : method.cell_ends[c + 1] - method.cell_ends[c]);
+      for (const double place : method.is_stretch ? sample_places_ : element_.points)
+        points.push_back(uniform ? (c + place) / method.n_cells : method.cell_ends[c] + place * sizes_[c]);
+    }
+    setup            = {method.degree,
+                        method.n_cells,
+                        method.n_stages,
+                        sizes_.data(),
+                        element_.values.data(),
+                        element_.derivatives.data(),
+                        element_.weights.data(),
+                        element_.stiffness.data(),
+                        static_cast<unsigned int>(sample_places_.size()),
+                        samples_.data(),
+                        tableau.c.data(),
+                        tableau.inverse.data(),
+                        tableau.error_weights.data(),
+                        tableau.newton_fraction,
+                        tableau.real_eigenvalue,
+                        eigenvalues_.data(),
+                        vectors_.data(),
+                        rows_.data()};
+    setup.is_stretch = method.is_stretch;
+  }
+
+  double
+  LaneTables::place_of_sample(const unsigned int number) const
+  {
+    const unsigned int cell = number / setup.n_samples;
+    const double place      = sample_places_[number % setup.n_samples];
+    return method_.cell_ends.empty() ? (cell + place) / method_.n_cells
+                                     : method_.cell_ends[cell] + place * sizes_[cell];
+  }
+
+  std::shared_ptr<const LaneTables>
+  lane_tables(const LaneMethod &method)
+  {
+    constexpr std::size_t most_kept = 1000; // a sweep may have a mesh of its own at each point
+    static std::map<LaneMethod, std::shared_ptr<const LaneTables>> known;
+    const auto found = known.find(method);
+    if (found != known.end())
+      return found->second;
+    if (known.size() == most_kept)
+      known.clear();
+    return known[method] = std::make_shared<LaneTables>(method);
+  }
+
+  void
+  LaneStorageFree::operator()(double *memory) const
+  {
+    std::free(memory);
+  }
+
+  LaneStorage
+  lane_storage(const std::size_t n)
+  {
+    const std::size_t bytes = (n * sizeof(double) + 63) / 64 * 64;
+    LaneStorage memory(static_cast<double *>(std::aligned_alloc(64, bytes)));
+    if (!memory)
+      throw std::bad_alloc();
+    std::fill_n(memory.get(), bytes / sizeof(double), 0.);
+    return memory;
+  }
+
+  bool
+  fits_lanes(const Scene &scene)
+  {
+    return scene.is_plain();
+  }
+} // namespace crawler

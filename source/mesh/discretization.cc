@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/mesh/discretization.h>
+
+#include <deal.II/distributed/shared_tria.h>
+#include <deal.II/grid/grid_generator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace crawler
+{
+  namespace
+  {
+    /// The rank that owns a cell: each owns a run of neighbouring cells.
+    unsigned int
+    owner(const std::uint64_t cell, const std::uint64_t n_cells, const std::uint64_t n_ranks)
+    {
+      return static_cast<unsigned int>(cell * std::min(n_cells, n_ranks) / n_cells);
+    }
+  } // namespace
+
+  /// A sequence of meshes: cells of one size and what became of them. Most runs never adapt their mesh, and cells of
+  /// one size need no triangulation.
+  struct Discretization::Mesh
+  {
+    void
+    make_triangulation(MPI_Comm communicator)
+    {
+      triangulation     = std::make_unique<Triangulation>(communicator,
+                                                      dealii::Triangulation<1>::none,
+                                                      /*allow_artificial_cells=*/false,
+                                                      Triangulation::partition_custom_signal);
+      const auto assign = [this]() { assign_ranks(); };
+      triangulation->signals.create.connect(assign); // the first mesh does not count as a refinement
+      triangulation->signals.post_refinement.connect(assign);
+      if (ends.empty())
+        dealii::GridGenerator::subdivided_hyper_cube(*triangulation, n_coarse_cells, 0., length);
+      else
+      {
+        std::vector<dealii::Point<1>> vertices;
+        for (const double s : ends)
+          vertices.emplace_back(s);
+        std::vector<dealii::CellData<1>> coarse(n_coarse_cells);
+        for (unsigned int c = 0; c < n_coarse_cells; ++c)
+          coarse[c].vertices = {c, c + 1};
+        triangulation->create_triangulation(vertices, coarse, {});
+      }
+    }
+
+    using Triangulation = dealii::parallel::shared::Triangulation<1>;
+    using Iterator      = dealii::Triangulation<1>::active_cell_iterator;
+
+    /// The active cells from left to right; deal.II has them level by level.
+    std::vector<Iterator>
+    cells_along_the_body() const
+    {
+      std::vector<Iterator> cells;
+      cells.reserve(triangulation->n_active_cells());
+      for (const auto &cell : triangulation->active_cell_iterators())
+        cells.push_back(cell);
+      if (triangulation->n_levels() > 1)
+        std::sort(cells.begin(), cells.end(), [](const Iterator &a, const Iterator &b) {
+          return a->vertex(0)[0] < b->vertex(0)[0];
+        });
+      return cells;
+    }
+
+    void
+    assign_ranks()
+    {
+      const auto cells = cells_along_the_body();
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        cells[i]->set_subdomain_id(owner(i, cells.size(), n_ranks));
+    }
+
+    /// The cells from left to right.
+    std::vector<Cell>
+    cells() const
+    {
+      std::vector<Cell> result;
+      if (!triangulation)
+      {
+        result.reserve(n_coarse_cells);
+        for (unsigned int c = 0; c < n_coarse_cells; ++c)
+          result.push_back({ends.empty() ? c * coarse_size(c) : ends[c], coarse_size(c), 0, false});
+        return result;
+      }
+      result.reserve(triangulation->n_active_cells());
+      for (const auto &cell : cells_along_the_body())
+      {
+        auto coarse = dealii::Triangulation<1>::cell_iterator(cell);
+        while (coarse->level() > 0)
+          coarse = coarse->parent();
+        const bool is_left_half = cell->level() > 0 && cell->parent()->child_index(0) == cell->index();
+        result.push_back({cell->vertex(0)[0],
+                          std::ldexp(coarse_size(static_cast<unsigned int>(coarse->index())), -cell->level()),
+                          static_cast<unsigned int>(cell->level()),
+                          is_left_half});
+      }
+      return result;
+    }
+
+    double
+    coarse_size(const unsigned int c) const
+    {
+      return ends.empty() ? length / n_coarse_cells : ends[c + 1] - ends[c];
+    }
+
+    const double length;
+    const unsigned int n_ranks, n_coarse_cells;
+    const std::vector<double> ends               = {};      ///< of the coarse cells; empty if they have one size
+    std::unique_ptr<Triangulation> triangulation = nullptr; ///< once the mesh is adapted
+  };
+
+  Discretization::Discretization(MPI_Comm communicator,
+                                 const double length,
+                                 const unsigned int n_cells,
+                                 const unsigned int degree)
+    : Discretization(communicator,
+                     length,
+                     degree,
+                     std::make_shared<Mesh>(length, dealii::Utilities::MPI::n_mpi_processes(communicator), n_cells))
+  {
+  }
+
+  Discretization::Discretization(MPI_Comm communicator, std::vector<double> cell_ends, const unsigned int degree)
+    : Discretization(communicator,
+                     cell_ends.back(),
+                     degree,
+                     std::make_shared<Mesh>(cell_ends.back(),
+                                            dealii::Utilities::MPI::n_mpi_processes(communicator),
+                                            static_cast<unsigned int>(cell_ends.size() - 1),
+                                            cell_ends))
+  {
+  }
+
+  Discretization::Discretization(MPI_Comm communicator,
+                                 const double length,
+                                 const unsigned int degree,
+                                 std::shared_ptr<Mesh> mesh)
+    : communicator_(communicator)
+    , length_(length)
+    , element_(reference_element(degree))
+    , rank_(dealii::Utilities::MPI::this_mpi_process(communicator))
+    , n_ranks_(mesh->n_ranks)
+    , mesh_(std::move(mesh))
+  {
+    set_cells(mesh_->cells());
+  }
+
+  Discretization::~Discretization() = default;
+
+  void
+  Discretization::set_cells(std::vector<Cell> cells)
+  {
+    cells_          = std::move(cells);
+    n_active_ranks_ = std::min(n_cells(), n_ranks_);
+    for (unsigned int c = 0; c < n_cells(); ++c)
+    {
+      if (owner(c, n_cells(), n_ranks_) != rank_)
+        continue;
+      if (cell_left_.empty())
+        first_cell_ = c;
+      cell_left_.push_back(cells_[c].left);
+      cell_size_.push_back(cells_[c].size);
+    }
+  }
+
+  std::unique_ptr<Discretization>
+  Discretization::adapted(std::vector<CellChange> changes) const
+  {
+    const unsigned int n = n_cells();
+    if (!mesh_->triangulation)
+      mesh_->make_triangulation(communicator_);
+    const auto cells = mesh_->cells_along_the_body();
+    if (cells.size() != n)
+      throw std::logic_error("only the latest of a sequence of meshes can be adapted");
+
+    // Joining takes both halves of a cell.
+    for (unsigned int c = 0; c < n; ++c)
+      if (changes[c] == CellChange::join)
+      {
+        const bool is_pair = cells_[c].is_left_half && c + 1 < n && cells_[c + 1].level == cells_[c].level &&
+                             changes[c + 1] == CellChange::join;
+        if (is_pair)
+          ++c;
+        else
+          changes[c] = CellChange::keep;
+      }
+    // Neighbours differ by one level at most.
+    const auto level = [&](const unsigned int c) {
+      return static_cast<int>(cells_[c].level) + static_cast<int>(changes[c]);
+    };
+    const auto keep = [&](const unsigned int c) {
+      // The other half cannot be joined alone.
+      changes[c]                                      = CellChange::keep;
+      changes[cells_[c].is_left_half ? c + 1 : c - 1] = CellChange::keep;
+    };
+    for (bool changed = true; changed;)
+    {
+      changed = false;
+      for (unsigned int c = 0; c < n; ++c)
+        for (const int side : {-1, 1})
+        {
+          if ((side < 0 && c == 0) || (side > 0 && c + 1 == n) || level(c + side) - level(c) <= 1)
+            continue;
+          if (changes[c] == CellChange::join)
+            keep(c);
+          else
+            changes[c] = CellChange::divide;
+          changed = true;
+        }
+    }
+    for (unsigned int c = 0; c < n; ++c)
+      if (changes[c] == CellChange::divide)
+        cells[c]->set_refine_flag();
+      else if (changes[c] == CellChange::join)
+        cells[c]->set_coarsen_flag();
+    mesh_->triangulation->execute_coarsening_and_refinement();
+    return std::unique_ptr<Discretization>(new Discretization(communicator_, length_, element_.degree, mesh_));
+  }
+
+  std::vector<double>
+  Discretization::points(const std::vector<double> &places) const
+  {
+    std::vector<double> points;
+    points.reserve(cell_left_.size() * places.size());
+    for (std::size_t c = 0; c < cell_left_.size(); ++c)
+      for (const double x : places)
+        points.push_back(cell_left_[c] + x * cell_size_[c]);
+    return points;
+  }
+
+  std::vector<double>
+  Discretization::gather(const std::span<const double> own) const
+  {
+    if (n_ranks_ == 1)
+      return {own.begin(), own.end()};
+    const int n = static_cast<int>(own.size());
+    std::vector<int> counts(n_ranks_), offsets(n_ranks_, 0);
+    MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, communicator_);
+    for (unsigned int r = 1; r < counts.size(); ++r)
+      offsets[r] = offsets[r - 1] + counts[r - 1];
+    std::vector<double> all(static_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()));
+    MPI_Allgatherv(own.data(), n, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE, communicator_);
+    return all;
+  }
+
+  template <typename Number>
+  std::span<const Number>
+  Discretization::to_local(const std::span<const Number> owned, std::vector<Number> &buffer) const
+  {
+    if (n_active_ranks_ == 1 || n_local() == 0)
+      return owned;
+    Number from_left    = 0.;
+    constexpr int count = sizeof(Number) / sizeof(double);
+    const auto left     = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
+    const auto right    = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
+    MPI_Sendrecv(&owned.back(),
+                 count,
+                 MPI_DOUBLE,
+                 right,
+                 0,
+                 &from_left,
+                 count,
+                 MPI_DOUBLE,
+                 left,
+                 0,
+                 communicator_,
+                 MPI_STATUS_IGNORE);
+    if (!has_left_neighbour())
+      return owned;
+    buffer.resize(n_local());
+    buffer[0] = from_left;
+    std::copy(owned.begin(), owned.end(), buffer.begin() + 1);
+    return buffer;
+  }
+
+  template <typename Number>
+  void
+  Discretization::add_to_owned(const std::span<const Number> local, const std::span<Number> owned) const
+  {
+    if (n_local() == 0)
+      return;
+    const bool skip_first = has_left_neighbour();
+    if (owned.data() != local.data())
+      std::copy(local.begin() + (skip_first ? 1 : 0), local.end(), owned.begin());
+    if (n_active_ranks_ == 1)
+      return;
+    Number from_right   = 0.;
+    constexpr int count = sizeof(Number) / sizeof(double);
+    const auto left     = has_left_neighbour() ? static_cast<int>(rank_) - 1 : MPI_PROC_NULL;
+    const auto right    = has_right_neighbour() ? static_cast<int>(rank_) + 1 : MPI_PROC_NULL;
+    MPI_Sendrecv(local.data(),
+                 count,
+                 MPI_DOUBLE,
+                 left,
+                 1,
+                 &from_right,
+                 count,
+                 MPI_DOUBLE,
+                 right,
+                 1,
+                 communicator_,
+                 MPI_STATUS_IGNORE);
+    owned.back() += from_right;
+  }
+
+  template std::span<const double>
+  Discretization::to_local(std::span<const double>, std::vector<double> &) const;
+  template std::span<const std::complex<double>>
+  Discretization::to_local(std::span<const std::complex<double>>, std::vector<std::complex<double>> &) const;
+  template void Discretization::add_to_owned(std::span<const double>, std::span<double>) const;
+  template void Discretization::add_to_owned(std::span<const std::complex<double>>,
+                                             std::span<std::complex<double>>) const;
+} // namespace crawler

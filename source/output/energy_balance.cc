@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/output/energy_balance.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    constexpr unsigned int most_points = 6;
+    /// A point is not used for steps that are longer than the step before it by more than this factor.
+    constexpr double largest_growth = 25.;
+  } // namespace
+
+  double
+  EnergyBalance::residual() const
+  {
+    const double gap   = std::abs(stress_power - dissipation - elastic_energy + initial_energy - transfer_loss);
+    const double scale = std::max({exchanged, dissipation, elastic_energy, initial_energy});
+    return gap == 0. ? 0. : gap / scale;
+  }
+
+  EnergyBalance
+  EnergyBalance::scaled(const double unit) const
+  {
+    return {stress_power * unit,
+            dissipation * unit,
+            positive_power * unit,
+            exchanged * unit,
+            end_work * unit,
+            elastic_energy * unit,
+            transfer_loss * unit,
+            initial_energy * unit};
+  }
+
+  EnergyBalance
+  EnergyBalance::combined(const double own, const EnergyBalance &other, const double part) const
+  {
+    EnergyBalance result      = scaled(own);
+    const EnergyBalance added = other.scaled(part);
+    for (const auto energy : energies())
+      result.*energy += added.*energy;
+    result.initial_energy += added.initial_energy;
+    return result;
+  }
+
+  RateQuadrature::Rates
+  RateQuadrature::advance(const double time, const Rates &rates)
+  {
+    points_.push_front({time, rates});
+    if (points_.size() > most_points)
+      points_.pop_back();
+    Rates increment{};
+    if (points_.size() == 1)
+      return increment;
+
+    const double left = points_[1].time, step = time - left;
+    unsigned int n = 2;
+    while (n < points_.size() && (points_[n - 1].time - points_[n].time) * largest_growth >= step)
+      ++n;
+
+    // Gauss formula with three points, exact for the polynomial of degree n - 1 <= 5 through the n points.
+    const double offset         = 0.5 * std::sqrt(0.6);
+    constexpr double weights[3] = {5. / 18., 4. / 9., 5. / 18.};
+    const double x[3]           = {0.5 - offset, 0.5, 0.5 + offset};
+    for (unsigned int j = 0; j < n; ++j)
+    {
+      double weight = 0.;
+      for (unsigned int g = 0; g < 3; ++g)
+      {
+        double lagrange = weights[g];
+        for (unsigned int i = 0; i < n; ++i)
+          if (i != j)
+            lagrange *= (left + x[g] * step - points_[i].time) / (points_[j].time - points_[i].time);
+        weight += lagrange;
+      }
+      for (unsigned int r = 0; r < n_rates; ++r)
+        increment[r] += step * weight * points_[j].rates[r];
+    }
+    return increment;
+  }
+} // namespace crawler

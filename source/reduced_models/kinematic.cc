@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/reduced_models/kinematic.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace crawler
+{
+  namespace
+  {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+    std::vector<double>
+    with_ends(std::vector<double> points)
+    {
+      points.push_back(0.);
+      points.push_back(1.);
+      return points;
+    }
+
+    /// What the quadrature with some numbers of panels gives.
+    struct Sums
+    {
+      double displacement = 0., largest_friction = 0., largest_net_friction = 0.;
+      ReducedEnergies energies;
+      StrainExtreme smallest{HUGE_VAL, 0., 0.}, largest{-HUGE_VAL, 0., 0.};
+      bool stopped = false;
+    };
+
+    void
+    add(Sums &sums, const KinematicBody::Integrals &now)
+    {
+      sums.largest_friction     = std::max(sums.largest_friction, now.abs_friction);
+      sums.largest_net_friction = std::max(sums.largest_net_friction, std::abs(now.net_friction));
+      if (now.smallest.strain < sums.smallest.strain)
+        sums.smallest = now.smallest;
+      if (now.largest.strain > sums.largest.strain)
+        sums.largest = now.largest;
+    }
+
+    void
+    add(ReducedEnergies &energies, const KinematicBody::Integrals &now, const double weight)
+    {
+      energies.dissipation += weight * now.dissipation;
+      energies.stress_power += weight * now.stress_power;
+      energies.positive_power += weight * now.positive_power;
+      energies.exchanged += weight * now.absolute_power;
+      energies.end_work += weight * now.end_power;
+    }
+
+    Sums
+    integrate(const Scene &scene,
+              const StrainHistory &strain,
+              const unsigned int n_space,
+              const unsigned int n_time,
+              const std::function<bool()> &keep_going)
+    {
+      const GaussPanels time(0., 1., n_time);
+      KinematicBody body(scene, strain, n_space);
+      Sums sums;
+      add(sums, body.evaluate(0.));
+      sums.energies.elastic_start = body.evaluate(0.).elastic_energy;
+      for (std::size_t i = 0; i < time.points().size(); ++i)
+      {
+        const auto &now     = body.evaluate(time.points()[i]);
+        const double weight = time.weights()[i];
+        add(sums, now);
+        sums.displacement += weight * now.velocity;
+        add(sums.energies, now, weight);
+        if (i % GaussPanels::n_points == 0 && keep_going && !keep_going())
+        {
+          sums.stopped = true;
+          return sums;
+        }
+      }
+      const auto &end              = body.evaluate(1.);
+      sums.energies.elastic_energy = end.elastic_energy;
+      add(sums, end);
+      return sums;
+    }
+  } // namespace
+
+  KinematicBody::KinematicBody(const Scene &scene,
+                               const StrainHistory &strain,
+                               const unsigned int n_panels,
+                               const std::vector<double> &points)
+    : scene_(scene)
+    , panels_(0., 1., n_panels)
+    , points_(points)
+    , inside_(with_ends(panels_.points()))
+    , strain_(strain.at(inside_))
+    , strain_at_points_(strain.at(points))
+    , places_(panels_, points)
+    , e_(inside_.size())
+    , e_t_(inside_.size())
+    , w_(inside_.size())
+    , g_(panels_.points().size())
+    , B_(g_.size())
+    , B_t_(g_.size())
+    , gv_(g_.size())
+    , m_(g_.size())
+  {
+  }
+
+  const KinematicBody::Integrals &
+  KinematicBody::evaluate(const double t)
+  {
+    const std::size_t n = g_.size();
+    const auto &weights = panels_.weights();
+    time_               = t;
+    strain_->strain(t, e_);
+    strain_->rate(t, e_t_);
+    integrals_               = {};
+    const auto [least, most] = std::minmax_element(e_.begin(), e_.end());
+    integrals_.smallest      = {*least, inside_[static_cast<std::size_t>(least - e_.begin())], t};
+    integrals_.largest       = {*most, inside_[static_cast<std::size_t>(most - e_.begin())], t};
+    if (!(1. + *least > 0.) || !std::isfinite(*most))
+    {
+      integrals_.velocity = integrals_.dissipation = integrals_.stress_power = unknown;
+      return integrals_;
+    }
+    panels_.running_integral({e_t_.data(), n}, B_t_);
+    for (std::size_t i = 0; i < n; ++i)
+      w_[i] = 1. + e_[i];
+    scene_.friction->values({w_.data(), n}, g_);
+    double B_t_mean = 0., end_B_t = 0.;
+    g_mean_ = 0.;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      g_mean_ += weights[i] * g_[i];
+      B_t_mean += weights[i] * B_t_[i];
+      end_B_t += weights[i] * e_t_[i];
+    }
+    double covariance = 0.;
+    for (std::size_t i = 0; i < n; ++i)
+      covariance += weights[i] * (g_[i] - g_mean_) * (B_t_[i] - B_t_mean);
+    integrals_.velocity = -covariance / g_mean_;
+    drift_              = integrals_.velocity - B_t_mean; // v = B_t + drift
+    for (std::size_t i = 0; i < n; ++i)
+      gv_[i] = g_[i] * (B_t_[i] + drift_);
+    panels_.running_integral(gv_, m_);
+    const double k = scene_.body.elastic_modulus;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      const double v = B_t_[i] + drift_, m = m_[i] - k * e_[i], power = -m * e_t_[i];
+      integrals_.dissipation += weights[i] * gv_[i] * v;
+      integrals_.stress_power += weights[i] * power;
+      integrals_.positive_power += weights[i] * std::max(power, 0.);
+      integrals_.absolute_power += weights[i] * std::abs(power);
+      integrals_.elastic_energy += weights[i] * 0.5 * k * e_[i] * e_[i];
+      integrals_.net_friction += weights[i] * gv_[i];
+      integrals_.abs_friction += weights[i] * std::abs(gv_[i]);
+    }
+    // m = -k e at the ends, where no force acts.
+    integrals_.end_power = -k * (e_[n + 1] * (end_B_t + drift_) - e_[n] * drift_);
+    return integrals_;
+  }
+
+  ReducedFields
+  KinematicBody::fields(const double displacement)
+  {
+    const std::size_t n = g_.size(), n_points = points_.size();
+    ReducedFields fields;
+    fields.strain.resize(n_points);
+    fields.displacement.resize(n_points);
+    fields.velocity.resize(n_points);
+    fields.active_stress.resize(n_points);
+    strain_at_points_->strain(time_, fields.strain);
+    places_.running_integral({e_.data(), n}, fields.displacement);
+    places_.running_integral({e_t_.data(), n}, fields.velocity);
+    places_.running_integral(gv_, fields.active_stress);
+    panels_.running_integral({e_.data(), n}, B_);
+    const double B_mean = panels_.integral(B_);
+    for (std::size_t i = 0; i < n_points; ++i)
+    {
+      fields.displacement[i] += displacement - B_mean;
+      fields.velocity[i] += drift_;
+      fields.active_stress[i] -= scene_.body.elastic_modulus * fields.strain[i];
+    }
+    return fields;
+  }
+
+  double
+  advance(KinematicBody &body, const double start, const double end, ReducedEnergies &energies)
+  {
+    const GaussPanels time(start, end, 1);
+    double displacement = 0.;
+    for (std::size_t i = 0; i < time.points().size(); ++i)
+    {
+      const auto &now     = body.evaluate(time.points()[i]);
+      const double weight = time.weights()[i];
+      displacement += weight * now.velocity;
+      add(energies, now, weight);
+    }
+    energies.elastic_energy = body.evaluate(end).elastic_energy;
+    return displacement;
+  }
+
+  KinematicResult
+  kinematic(const Scene &scene,
+            const StrainHistory &strain,
+            const double tolerance,
+            const std::function<bool()> &keep_going)
+  {
+    constexpr double floor = 1e-12, share = 0.25;
+    constexpr unsigned int most_space = 1024, most_time = 1u << 17, most_in_all = 1u << 20;
+    KinematicResult result;
+    unsigned int n_space = 2, n_time = 4;
+    for (;;)
+    {
+      const Sums coarse  = integrate(scene, strain, n_space, n_time, keep_going);
+      const bool inverts = !(1. + coarse.smallest.strain > 0.);
+      Sums in_space, in_time, both;
+      if (!inverts && !coarse.stopped)
+      {
+        in_space = integrate(scene, strain, 2 * n_space, n_time, keep_going);
+        in_time  = integrate(scene, strain, n_space, 2 * n_time, keep_going);
+      }
+      if (coarse.stopped || in_space.stopped || in_time.stopped)
+      {
+        result.stopped = true;
+        return result;
+      }
+      result.space_error    = std::abs(in_space.displacement - coarse.displacement);
+      result.time_error     = std::abs(in_time.displacement - coarse.displacement);
+      const double allowed  = share * std::max(tolerance * std::abs(in_time.displacement), floor);
+      const bool space_fits = result.space_error <= allowed, time_fits = result.time_error <= allowed;
+      const bool at_limit = (!space_fits && 4 * n_space > most_space) || (!time_fits && 4 * n_time > most_time) ||
+                            std::size_t{16} * n_space * n_time > most_in_all;
+      if (!inverts && !(space_fits && time_fits) && !at_limit)
+      {
+        n_space *= space_fits ? 1 : 2;
+        n_time *= time_fits ? 1 : 2;
+        continue;
+      }
+      result.n_space_panels = 2 * n_space;
+      result.n_time_panels  = 2 * n_time;
+      if (!inverts)
+        both = integrate(scene, strain, 2 * n_space, 2 * n_time, keep_going);
+      // The extremes are looked for where the finest quadrature has seen them.
+      const unsigned int n_s = std::clamp(8 * n_space, 33u, 257u), n_t = std::clamp(8 * n_time, 33u, 2049u);
+      result.extremes = find_extremes(strain, 1., 1., n_s, n_t);
+      if (inverts || !(1. + result.extremes.smallest.strain > 0.) || !(1. + both.smallest.strain > 0.))
+      {
+        result.inversion = inverts ? coarse.smallest : result.extremes.smallest;
+        if (!inverts && 1. + result.extremes.smallest.strain > 0.)
+          result.inversion = both.smallest;
+        return result;
+      }
+      if (both.stopped)
+      {
+        result.stopped = true;
+        return result;
+      }
+      if (both.smallest.strain < result.extremes.smallest.strain)
+        result.extremes.smallest = both.smallest;
+      if (both.largest.strain > result.extremes.largest.strain)
+        result.extremes.largest = both.largest;
+      result.displacement = both.displacement;
+      result.energies     = both.energies;
+      result.net_friction = both.largest_friction > 0. ? both.largest_net_friction / both.largest_friction : 0.;
+      return result;
+    }
+  }
+} // namespace crawler

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/reduced_models/model_error.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace crawler
+{
+  namespace
+  {
+    constexpr double pi = std::numbers::pi;
+
+    constexpr unsigned int n_corrections = 3;
+    /// For all corrections that are left out: this times the change of the displacement by the last one.
+    constexpr double safety = 3.;
+    /// For the grid: this part of the error.
+    constexpr double grid_share = 0.3;
+    /// If the last change is more than this part of the largest one the corrections are not trusted.
+    constexpr double slowest_decay = 0.7;
+
+    /// An approximate motion on a grid: n_s points in the middle of equal parts of the body, n_t equal steps.
+    struct Motion
+    {
+      std::size_t n_s = 0, n_t = 0;
+      std::vector<double> e;   ///< strain, [t][s] with n_t + 1 times
+      std::vector<double> B_t; ///< int_0^s e_t
+      std::vector<double> f;   ///< m_s + k e_s; empty: 0
+
+      double
+      place(const std::size_t i) const
+      {
+        return (static_cast<double>(i) + 0.5) / static_cast<double>(n_s);
+      }
+      double
+      time(const std::size_t n) const
+      {
+        return static_cast<double>(n) / static_cast<double>(n_t);
+      }
+    };
+
+    /// f = m_s + k e_s is the velocity of leading order c sum a sin q(s+ct) + b cos q(s+ct), and B_t is f(s) - f(0).
+    Motion
+    motion_of(const NaturalWave &wave, const std::size_t n_s, const std::size_t n_t)
+    {
+      Motion motion{n_s, n_t, {}, {}, {}};
+      for (auto *field : {&motion.e, &motion.B_t, &motion.f})
+        field->assign(n_s * (n_t + 1), 0.);
+      std::vector<double> sine(n_s), cosine(n_s);
+      for (const auto &h : wave.harmonics)
+      {
+        for (std::size_t i = 0; i < n_s; ++i)
+        {
+          sine[i]   = std::sin(h.q * motion.place(i));
+          cosine[i] = std::cos(h.q * motion.place(i));
+        }
+        for (std::size_t n = 0; n <= n_t; ++n)
+        {
+          const double theta = h.q * wave.speed * motion.time(n), st = std::sin(theta), ct = std::cos(theta);
+          const double in_sine = h.a * ct - h.b * st, in_cosine = h.a * st + h.b * ct, c = wave.speed;
+          double *e = motion.e.data() + n * n_s, *B_t = motion.B_t.data() + n * n_s, *f = motion.f.data() + n * n_s;
+          for (std::size_t i = 0; i < n_s; ++i)
+          {
+            const double velocity = c * (in_sine * sine[i] + in_cosine * cosine[i]);
+            e[i] += (in_sine - h.a) * sine[i] + (in_cosine - h.b) * cosine[i];
+            f[i] += velocity;
+            B_t[i] += velocity - c * in_cosine;
+          }
+        }
+      }
+      return motion;
+    }
+
+    /// For e = -m/k, f = 0.
+    Motion
+    motion_of(const StrainHistory &strain, const std::size_t n_s, const std::size_t n_t)
+    {
+      Motion motion{n_s, n_t, std::vector<double>(n_s * (n_t + 1)), std::vector<double>(n_s * (n_t + 1)), {}};
+      std::vector<double> points(n_s), e_t(n_s);
+      for (std::size_t i = 0; i < n_s; ++i)
+        points[i] = motion.place(i);
+      const auto at = strain.at(points);
+      for (std::size_t n = 0; n <= n_t; ++n)
+      {
+        at->strain(motion.time(n), {motion.e.data() + n * n_s, n_s});
+        at->rate(motion.time(n), e_t);
+        double sum = 0.;
+        for (std::size_t i = 0; i < n_s; ++i)
+        {
+          motion.B_t[n * n_s + i] = (sum + 0.5 * e_t[i]) / static_cast<double>(n_s);
+          sum += e_t[i];
+        }
+      }
+      return motion;
+    }
+
+    /// Solves u_t = k u_ss - r in modes cos(j pi s), j = 1 ... n_modes.
+    class Correction
+    {
+    public:
+      Correction(const Motion &motion, const FrictionLaw &friction, const double stiffness)
+        : motion_(motion)
+        , friction_(friction)
+        , stiffness_(stiffness)
+        , n_modes_(motion.n_s * 2 / 3)
+        , cosine_(n_modes_ * motion.n_s)
+        , sine_(cosine_.size())
+        , modes_((motion.n_t + 1) * n_modes_, 0.)
+        , residual_(modes_.size())
+      {
+        for (std::size_t j = 1; j <= n_modes_; ++j)
+          for (std::size_t i = 0; i < motion.n_s; ++i)
+          {
+            const double angle                = static_cast<double>(j) * pi * motion.place(i);
+            cosine_[(j - 1) * motion.n_s + i] = std::cos(angle);
+            sine_[(j - 1) * motion.n_s + i]   = -static_cast<double>(j) * pi * std::sin(angle);
+          }
+      }
+
+      /// The displacement with the present correction, or not a number if a stretch is not positive; keeps the
+      /// residual.
+      double
+      displacement()
+      {
+        const std::size_t n_s = motion_.n_s, n_t = motion_.n_t;
+        const double dt = 1. / static_cast<double>(n_t), mean = 1. / static_cast<double>(n_s);
+        std::vector<double> w(n_s), u_t(n_s), v(n_s), g(n_s), rates(n_modes_);
+        double sum = 0.;
+        for (std::size_t n = 0; n <= n_t; ++n)
+        {
+          const std::size_t before = n == 0 ? 0 : n - 1, after = n == n_t ? n_t : n + 1;
+          const double span = dt * static_cast<double>(after - before);
+          std::fill(u_t.begin(), u_t.end(), 0.);
+          const double *e = motion_.e.data() + n * n_s, *B_t = motion_.B_t.data() + n * n_s;
+          for (std::size_t i = 0; i < n_s; ++i)
+            w[i] = 1. + e[i];
+          if (is_corrected_)
+            for (std::size_t j = 0; j < n_modes_; ++j)
+            {
+              const double mode = modes_[n * n_modes_ + j];
+              const double rate = (modes_[after * n_modes_ + j] - modes_[before * n_modes_ + j]) / span;
+              const double *c = cosine_.data() + j * n_s, *s = sine_.data() + j * n_s;
+              for (std::size_t i = 0; i < n_s; ++i)
+              {
+                w[i] += mode * s[i];
+                u_t[i] += rate * c[i];
+              }
+            }
+          if (!(*std::min_element(w.begin(), w.end()) > 0.))
+            return std::nan("");
+          friction_.values(w, g);
+          double g_mean = 0., v_mean = 0., covariance = 0.;
+          for (std::size_t i = 0; i < n_s; ++i)
+          {
+            v[i] = B_t[i] + u_t[i];
+            g_mean += mean * g[i];
+            v_mean += mean * v[i];
+          }
+          for (std::size_t i = 0; i < n_s; ++i)
+            covariance += mean * (g[i] - g_mean) * (v[i] - v_mean);
+          const double velocity = -covariance / g_mean;
+          sum += (n == 0 || n == n_t ? 0.5 : 1.) * dt * velocity;
+          for (std::size_t i = 0; i < n_s; ++i)
+            v[i] = g[i] * (v[i] - v_mean + velocity) - u_t[i];
+          if (!motion_.f.empty())
+            for (std::size_t i = 0; i < n_s; ++i)
+              v[i] -= motion_.f[n * n_s + i];
+          for (std::size_t j = 0; j < n_modes_; ++j)
+          {
+            double product  = 0.;
+            const double *c = cosine_.data() + j * n_s;
+            for (std::size_t i = 0; i < n_s; ++i)
+              product += v[i] * c[i];
+            residual_[n * n_modes_ + j] = 2. * mean * product;
+          }
+        }
+        return sum;
+      }
+
+      /// A new correction, from the residual of the last one.
+      void
+      correct()
+      {
+        const double dt = 1. / static_cast<double>(motion_.n_t);
+        for (std::size_t j = 0; j < n_modes_; ++j)
+        {
+          const double q = static_cast<double>(j + 1) * pi, z = stiffness_ * q * q * dt, decay = std::exp(-z);
+          // The integral over a step of exp(-z (1-x)) times 1-x and x.
+          const double both   = z < 1e-3 ? 1. - z / 2. + z * z / 6. : -std::expm1(-z) / z;
+          const double at_end = z < 1e-3 ? 0.5 - z / 6. + z * z / 24. : (1. - both) / z, at_start = both - at_end;
+          for (std::size_t n = 0; n < motion_.n_t; ++n)
+          {
+            const std::size_t now = n * n_modes_ + j, next = now + n_modes_;
+            modes_[next] = decay * modes_[now] - dt * (at_start * residual_[now] + at_end * residual_[next]);
+          }
+        }
+        is_corrected_ = true;
+      }
+
+    private:
+      const Motion &motion_;
+      const FrictionLaw &friction_;
+      const double stiffness_;
+      const std::size_t n_modes_;
+      std::vector<double> cosine_, sine_;    ///< [mode][point]: cos(j pi s) and its derivative
+      std::vector<double> modes_, residual_; ///< [time][mode]
+      bool is_corrected_ = false;
+    };
+
+    /// The displacement to second order in the strain, -a int <(e - <e>)(B_t - <B_t>)> dt, on the same grid.
+    double
+    second_order_displacement(const Motion &motion, const double a)
+    {
+      const std::size_t n_s = motion.n_s, n_t = motion.n_t;
+      double sum = 0.;
+      for (std::size_t n = 0; n <= n_t; ++n)
+      {
+        const double *e = motion.e.data() + n * n_s, *B_t = motion.B_t.data() + n * n_s;
+        double e_mean = 0., B_t_mean = 0., product = 0.;
+        for (std::size_t i = 0; i < n_s; ++i)
+        {
+          e_mean += e[i];
+          B_t_mean += B_t[i];
+          product += e[i] * B_t[i];
+        }
+        const double mean = 1. / static_cast<double>(n_s);
+        sum += (n == 0 || n == n_t ? 0.5 : 1.) * (product * mean - e_mean * mean * B_t_mean * mean);
+      }
+      return -a * sum / static_cast<double>(n_t);
+    }
+
+    ModelErrors
+    estimate(const Motion &motion, const Scene &scene)
+    {
+      Correction correction(motion, *scene.friction, scene.body.elastic_modulus);
+      std::array<double, n_corrections + 1> D{};
+      std::array<double, n_corrections> change{};
+      D[0] = correction.displacement();
+      for (unsigned int i = 0; i < n_corrections; ++i)
+      {
+        correction.correct();
+        D[i + 1]  = correction.displacement();
+        change[i] = std::abs(D[i + 1] - D[i]);
+        if (!std::isfinite(D[i + 1]))
+          return {};
+      }
+      const double last = change.back(), rest = safety * last;
+      ModelErrors errors;
+      errors.displacement = D.back();
+      errors.changes      = change;
+      errors.known        = last <= slowest_decay * *std::max_element(change.begin(), change.end() - 1);
+      const double series = second_order_displacement(motion, scene.body.friction_exponent());
+      errors.kinematic    = (1. + grid_share) * std::abs(D.back() - D.front()) + rest;
+      errors.perturbation = (1. + grid_share) * std::abs(D.back() - series) + rest;
+      return errors;
+    }
+  } // namespace
+
+  ModelErrors
+  estimate_model_errors(const Scene &scene, const NaturalWave &wave)
+  {
+    constexpr double per_wave = 24., most_steps = 20000., most_points = 256.;
+    const double strides = std::max(1., std::abs(wave.speed));
+    // Layers at the ends are as thick as the elastic force reaches within a stride.
+    const double layer = std::sqrt(scene.body.elastic_modulus / strides);
+    const double n_s   = std::min(most_points, std::max(per_wave * wave.n_waves(), 2. / layer));
+    const double n_t   = per_wave * wave.n_waves() * std::ceil(strides);
+    if (!(n_t <= most_steps))
+      return {};
+    return estimate(motion_of(wave, static_cast<std::size_t>(n_s), static_cast<std::size_t>(n_t)), scene);
+  }
+
+  ModelErrors
+  estimate_model_errors(const Scene &scene, const StiffStrain &strain)
+  {
+    constexpr std::size_t most = 512;
+    constexpr double tolerance = 0.1;
+    ModelErrors last;
+    for (std::size_t n = 32; n <= most; n *= 2)
+    {
+      const ModelErrors now = estimate(motion_of(strain, n, n), scene);
+      if (last.known && now.known && std::abs(now.kinematic - last.kinematic) <= tolerance * now.kinematic)
+        return now;
+      last = now;
+    }
+    return {};
+  }
+} // namespace crawler

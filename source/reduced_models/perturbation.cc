@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/reduced_models/perturbation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace crawler
+{
+  namespace
+  {
+    double
+    power(const NaturalWave::Harmonic &h)
+    {
+      return h.a * h.a + h.b * h.b;
+    }
+  } // namespace
+
+  double
+  Perturbation::displacement(const double t) const
+  {
+    double sum = 0.;
+    for (const auto &h : wave_.harmonics)
+      sum += power(h) * (-0.5 * wave_.speed * t + 0.5 * std::sin(h.q * wave_.speed * t) / h.q);
+    return wave_.friction_exponent * sum;
+  }
+
+  double
+  Perturbation::velocity(const double t) const
+  {
+    double sum = 0.;
+    for (const auto &h : wave_.harmonics)
+      sum += power(h) * (std::cos(h.q * wave_.speed * t) - 1.);
+    return 0.5 * wave_.friction_exponent * wave_.speed * sum + 0.; // never -0
+  }
+
+  ReducedEnergies
+  Perturbation::energies(const double t) const
+  {
+    ReducedEnergies energies;
+    energies.positive_power = ReducedEnergies::unknown;
+    for (const auto &h : wave_.harmonics)
+    {
+      const double half = std::sin(0.5 * h.q * wave_.speed * t);
+      energies.dissipation += 0.5 * wave_.speed * wave_.speed * power(h) * t;
+      energies.elastic_energy += wave_.stiffness * power(h) * half * half;
+    }
+    energies.stress_power = energies.dissipation + energies.elastic_energy;
+    energies.exchanged    = energies.stress_power; // the least that it can be
+    return energies;
+  }
+
+  ReducedFields
+  Perturbation::fields(const double t, const std::vector<double> &points) const
+  {
+    const double c = wave_.speed, D = displacement(t), V = velocity(t);
+    ReducedFields fields;
+    fields.strain.resize(points.size());
+    LeadingOrderStrain(wave_).at(points)->strain(t, fields.strain);
+    for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      const double s = points[i];
+      double u = 0., v = 0., m = 0.;
+      for (const auto &h : wave_.harmonics)
+      {
+        const double theta = h.q * (s + c * t), start = h.q * s, head = h.q * c * t;
+        u += (h.a * (std::cos(start) - std::cos(theta)) + h.b * (std::sin(theta) - std::sin(start))) / h.q;
+        v += c * (h.a * std::sin(theta) + h.b * std::cos(theta));
+        m += c * (h.a * (std::cos(head) - std::cos(theta)) + h.b * (std::sin(theta) - std::sin(head))) / h.q;
+      }
+      fields.displacement.push_back(D + u);
+      fields.velocity.push_back(V + v);
+      fields.active_stress.push_back(m - wave_.stiffness * fields.strain[i]);
+    }
+    return fields;
+  }
+
+  StrainExtremes
+  Perturbation::extremes() const
+  {
+    constexpr unsigned int per_wave = 16, most = 2001;
+    const double waves = wave_.n_waves(), strides = std::abs(wave_.speed);
+    const auto n_of = [](const double n) {
+      return static_cast<unsigned int>(std::min<double>(most, per_wave * std::ceil(n) + 1));
+    };
+    return find_extremes(LeadingOrderStrain(wave_), 1., 1., n_of(waves), n_of(waves * std::max(1., strides)));
+  }
+} // namespace crawler

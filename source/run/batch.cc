@@ -1,0 +1,447 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/extreme_history.h>
+#include <crawler/run/batch.h>
+#include <crawler/run/gait.h>
+#include <crawler/run/gait_efficiency.h>
+#include <crawler/run/lane_sampler.h>
+#include <crawler/time/integrators.h>
+#include <crawler/time/radau_tableau.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace crawler
+{
+  std::optional<LaneMethod>
+  lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
+  {
+    const std::string &name   = time.integrator == "automatic" ? numerics.integrator : time.integrator;
+    const Integrator &method  = integrator(name.empty() ? "automatic" : name);
+    const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == "adaptive";
+    const bool is_stretch     = numerics.formulation == Formulation::stretch;
+    if (numerics.linear || time.engine != "automatic" || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
+        !(is_stretch ? reason_against_stretch_form(scene).empty() : fits_lanes(scene)))
+      return std::nullopt;
+    LaneMethod result = {numerics.degree,
+                         numerics.n_cells,
+                         method.n_stages,
+                         first_cell_ends(scene, numerics),
+                         is_stretch,
+                         numerics.other_rule};
+    if (!result.cell_ends.empty())
+      result.n_cells = static_cast<unsigned int>(result.cell_ends.size() - 1);
+    return result;
+  }
+
+  std::optional<LaneMethod>
+  batch_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
+  {
+    return numerics.formulation == Formulation::position ? lane_method(scene, time, numerics) : std::nullopt;
+  }
+
+  namespace
+  {
+    /// A record that is beaten by less than this part of a strain may be beaten after sharpening.
+    constexpr double sharpening = 0.05;
+
+    /// Hands the runs of one method out to the lanes and makes results of what they give.
+    class Batch
+    {
+    public:
+      using Results = std::vector<std::optional<SimulationResult>>;
+
+      Batch(const LaneMethod &method,
+            const std::span<const BatchRun> runs,
+            const std::vector<std::size_t> &members,
+            const Simulation::Options &options,
+            const std::function<bool()> &keep_going,
+            Results &results)
+        : tables_owner_(lane_tables(method))
+        , tables_(*tables_owner_)
+        , tableau_(radau_tableau(method.n_stages))
+        , runs_(runs)
+        , members_(members)
+        , options_(options)
+        , keep_going_(keep_going)
+        , results_(results)
+        , sampler_(tables_.setup, tableau_, GaitMeter::n_pieces)
+      {
+      }
+
+      /// Returns false if it was interrupted.
+      bool
+      compute(const LaneEngine &engine)
+      {
+        lanes_.resize(engine.lanes);
+        const LaneHost host = {this, next, stress, accepted, done, options_.energy_balance};
+        const auto memory   = lane_storage(engine.memory(tables_.setup));
+        engine.run(tables_.setup, host, memory.get());
+        return !interrupted_;
+      }
+
+    private:
+      struct Lane
+      {
+        std::size_t run         = 0;
+        bool given_up           = false;
+        double stretch_at_start = 1.; ///< of the ends
+        double largest_friction = 0., largest_net_friction = 0.;
+        double k = 0.; ///< in natural units
+        Units units;
+        TimePieces pieces;
+        std::vector<double> frames;          ///< ends of the pieces, and where the last stride starts
+        std::vector<unsigned char> restarts; ///< which of them are where a new piece starts
+        std::vector<StepLimit> limits;
+        std::optional<GaitMeter> gait;
+        std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
+        std::optional<StressWatch> watch;
+        std::vector<double> m;
+        std::vector<std::array<double, 2>> end_stress; ///< m at the ends, in the stages of the step that is tried
+        std::size_t n_stress_calls = 0;
+        SimulationResult result;
+        ExtremeHistory least{ExtremeHistory::smallest}, most{ExtremeHistory::largest};
+      };
+
+      static Batch &
+      self(void *context)
+      {
+        return *static_cast<Batch *>(context);
+      }
+
+      static bool
+      next(void *context, const unsigned int l, LaneJob &job)
+      {
+        Batch &batch = self(context);
+        if (batch.next_ == batch.members_.size() || batch.interrupted_)
+          return false;
+        Lane &lane = batch.lanes_[l];
+        lane.run   = batch.members_[batch.next_++];
+        batch.start(lane, job);
+        return true;
+      }
+
+      void
+      start(Lane &lane, LaneJob &job) const
+      {
+        const Numerics &numerics = *runs_[lane.run].numerics;
+        const Scene &scene       = *runs_[lane.run].scene;
+        lane.units               = natural_units(scene);
+        lane.pieces              = TimePieces(*scene.active_stress, scene.end_time);
+        lane.frames              = lane.pieces.breaks();
+        lane.restarts.assign(lane.frames.size(), 1);
+        lane.frames.push_back(1.);
+        lane.restarts.push_back(0);
+        lane.limits = in_units(numerics, lane.units).step_limits;
+        start_gait(lane, scene);
+        std::vector<double> points = tables_.points;
+        for (double &s : points)
+          s *= lane.units.length;
+        points.push_back(0.);
+        points.push_back(lane.units.length);
+        lane.stress = scene.active_stress->at(points);
+        lane.watch.emplace(
+          *scene.active_stress, lane.units.length, numerics.least_event > 0. ? numerics.least_event : HUGE_VAL);
+        lane.m.resize(points.size());
+        lane.end_stress.resize(tableau_.n);
+        lane.n_stress_calls   = 0;
+        lane.given_up         = false;
+        lane.largest_friction = lane.largest_net_friction = 0.;
+        lane.k                                            = scene.body.elastic_modulus / lane.units.force;
+        lane.result                                       = {};
+        lane.least.start({});
+        lane.most.start({});
+        if (options_.energy_balance)
+          lane.result.energy_balance.emplace();
+        job = {.k              = lane.k,
+               .a              = scene.body.friction_exponent(),
+               .tolerance      = numerics.tolerance / lane.units.length,
+               .newton_factor  = 1.,
+               .initial_step   = numerics.initial_step / lane.units.time,
+               .limits         = lane.limits.data(),
+               .n_limits       = static_cast<unsigned int>(lane.limits.size()),
+               .most_steps     = runs_[lane.run].time->max_steps,
+               .least_stretch  = small_stretch,
+               .is_last_resort = false,
+               .start_time     = 0.,
+               .start          = nullptr,
+               .frames         = lane.frames.data(),
+               .n_frames       = static_cast<unsigned int>(lane.frames.size()),
+               .restarts       = lane.restarts.data()};
+      }
+
+      /// The run starts from rest, which may be where the last stride starts, too.
+      void
+      start_gait(Lane &lane, const Scene &scene) const
+      {
+        lane.gait.reset();
+        if (options_.gait == Simulation::GaitWish::none)
+          return;
+        const auto period = stride_of(*scene.active_stress, lane.units.length, lane.units.time);
+        if (!period)
+          return;
+        lane.gait.emplace(period, /*ends_early=*/false);
+        if (const auto start = lane.gait->stride_start())
+        {
+          const auto place = std::lower_bound(lane.frames.begin(), lane.frames.end(), *start - 1e-12);
+          if (*place > *start + 1e-12)
+          {
+            lane.restarts.insert(lane.restarts.begin() + (place - lane.frames.begin()), 0);
+            lane.frames.insert(place, *start);
+          }
+        }
+        const EnergyBalance none;
+        const std::vector<double> rest(GaitMeter::n_pieces + 1, 0.);
+        if (lane.gait->next_time() == 0.)
+          lane.gait->see(rest, 0.);
+        lane.gait->see_step(0., 0., options_.energy_balance ? &none : nullptr);
+      }
+
+      /// Shows the gait's samples that a step has passed.
+      void
+      watch_gait(Lane &lane, const LaneStep &step)
+      {
+        constexpr double same_time = 1e-12;
+        for (double time = lane.gait->next_time(); time <= step.time + same_time; time = lane.gait->next_time())
+        {
+          sampler_.sample(step, std::min(time, step.time));
+          lane.gait->see(sampler_.displacement(), sampler_.mean_displacement());
+        }
+        const LaneStage &end = step.stages[tableau_.n - 1];
+        lane.gait->see_extremes(end.min_stretch, end.max_stretch);
+        if (!step.is_frame)
+          return;
+        sampler_.sample(step, step.time);
+        lane.gait->see_step(
+          step.time, sampler_.mean_displacement(), lane.result.energy_balance ? &*lane.result.energy_balance : nullptr);
+      }
+
+      /// The engine asks for m at the start of a run or piece, and then in all stages of each step that it tries.
+      static void
+      stress(void *context, const unsigned int l, const double t, double *m)
+      {
+        Batch &batch        = self(context);
+        Lane &lane          = batch.lanes_[l];
+        const std::size_t n = batch.tables_.points.size(), stages = batch.tableau_.n;
+        lane.stress->values(lane.pieces.inside(t) * lane.units.time, lane.m);
+        if (lane.units.force != 1.)
+          for (double &value : lane.m)
+            value /= lane.units.force;
+        std::copy_n(lane.m.begin(), n, m);
+        const std::array<double, 2> ends{{lane.m[n], lane.m[n + 1]}};
+        if (lane.n_stress_calls == 0)
+          lane.stretch_at_start = end_stretch(lane, ends);
+        else
+          lane.end_stress[(lane.n_stress_calls - 1) % stages] = ends;
+        ++lane.n_stress_calls;
+      }
+
+      /// The smaller of the stretches that the end conditions prescribe, 1 - m/k.
+      static double
+      end_stretch(const Lane &lane, const std::array<double, 2> &m)
+      {
+        return 1. - std::max(m[0], m[1]) / lane.k;
+      }
+
+      /// Does an end invert (Simulation::end_inverts)? A coarse mesh may not have followed it. The ends are looked at
+      /// in the stages and between them, by the watch.
+      static bool
+      end_inverts(const Lane &lane)
+      {
+        double smallest = lane.stretch_at_start;
+        for (const auto &m : lane.end_stress)
+          smallest = std::min(smallest, end_stretch(lane, m));
+        if (!(smallest > 0.))
+          return true;
+        for (const StressWatch::Values &m : lane.watch->inside())
+          if (!(end_stretch(lane, {{m[0] / lane.units.force, m[1] / lane.units.force}}) > 0.))
+            return true;
+        return false;
+      }
+
+      static bool
+      accepted(void *context, const unsigned int l, const LaneStep &step)
+      {
+        Batch &batch = self(context);
+        Lane &lane   = batch.lanes_[l];
+        if (!batch.interrupted_ && batch.keep_going_ && !batch.keep_going_())
+          batch.interrupted_ = true;
+        // The engine calls a run finished that is stopped in its last step.
+        lane.given_up = batch.interrupted_ || !batch.look_at_step(lane, step);
+        return !lane.given_up;
+      }
+
+      /// False if the run is for a Simulation.
+      bool
+      look_at_step(Lane &lane, const LaneStep &step)
+      {
+        const double from = lane.pieces.inside(step.time - step.size), to = lane.pieces.inside(step.time);
+        if (!lane.watch->is_calm(from * lane.units.time, to * lane.units.time) || end_inverts(lane))
+          return false;
+        const unsigned int n = tableau_.n;
+        for (unsigned int i = options_.energy_balance ? 0 : n - 1; i < n; ++i)
+        {
+          const double t = i + 1 < n ? step.time - (1. - tableau_.c[i]) * step.size : step.time;
+          if (!(step.stages[i].min_stretch > small_stretch))
+            return false;
+          look_at_extremes(lane, step, i, t);
+          if (options_.energy_balance)
+            add_rates(lane, step, i);
+        }
+        if (lane.result.energy_balance)
+          lane.result.energy_balance->elastic_energy = step.elastic_energy;
+        if (lane.gait)
+          watch_gait(lane, step);
+        if (step.is_frame && !lane.pieces.is_last() && step.time == lane.pieces.end())
+        {
+          lane.pieces.go_on();
+          lane.watch->restart();
+          lane.least.interrupt();
+          lane.most.interrupt();
+          lane.n_stress_calls = 0;
+        }
+        return true;
+      }
+
+      /// The same as Assembler::stretch_range and Simulation::look_at_extremes: if a sample may be a new extreme, the
+      /// parabola through its neighbours in the cell comes closer.
+      void
+      look_at_extremes(Lane &lane, const LaneStep &step, const unsigned int i, const double t) const
+      {
+        const LaneStage &stage = step.stages[i];
+        const auto show        = [&](ExtremeHistory &history, const double value, const unsigned int sample) {
+          Extreme now{value, tables_.place_of_sample(sample), t};
+          const double record = history.extreme().value;
+          const double margin = sharpening * std::abs(record - 1.);
+          if (history.is_beyond(value, record) || std::abs(value - record) < margin)
+            sharpen(step, i, sample, now);
+          history.add(now);
+        };
+        show(lane.least, stage.min_stretch, stage.min_sample);
+        show(lane.most, stage.max_stretch, stage.max_sample);
+      }
+
+      void
+      sharpen(const LaneStep &step, const unsigned int i, const unsigned int sample, Extreme &now) const
+      {
+        const LaneSetup &setup   = tables_.setup;
+        const unsigned int place = sample % setup.n_samples, cell = sample / setup.n_samples;
+        if (place == 0 || place + 1 == setup.n_samples)
+          return;
+        const auto stretch_at = [&](const unsigned int p) {
+          const std::size_t n = setup.degree + 1, unknowns = setup.n_cells * setup.degree + 1;
+          double sum = 0.;
+          for (unsigned int j = 0; j < n; ++j)
+          {
+            const std::size_t d = cell * setup.degree + j;
+            const double u = step.y[d * step.stride] - step.z[((setup.n_stages - 1) * unknowns + d) * step.stride] +
+                             step.z[(i * unknowns + d) * step.stride];
+            sum += setup.sample_derivatives[p * n + j] * u;
+          }
+          return 1. + sum / setup.sizes[cell];
+        };
+        const auto [s, value] = parabola_vertex(tables_.place_of_sample(sample - 1),
+                                                stretch_at(place - 1),
+                                                now.s,
+                                                now.value,
+                                                tables_.place_of_sample(sample + 1),
+                                                stretch_at(place + 1));
+        if (value > 0. && s > tables_.place_of_sample(sample - 1) && s < tables_.place_of_sample(sample + 1))
+        {
+          now.s     = s;
+          now.value = value;
+        }
+      }
+
+      void
+      add_rates(Lane &lane, const LaneStep &step, const unsigned int i) const
+      {
+        const LaneStage &stage        = step.stages[i];
+        const double weight           = step.size * tableau_.b[i];
+        const auto &m                 = lane.end_stress[i];
+        EnergyBalance &energy_balance = *lane.result.energy_balance;
+        energy_balance.stress_power += weight * stage.stress_power;
+        energy_balance.dissipation += weight * stage.dissipation;
+        energy_balance.positive_power += weight * stage.positive_power;
+        energy_balance.exchanged += weight * stage.absolute_power;
+        energy_balance.end_work += weight * (m[1] * stage.right_velocity - m[0] * stage.left_velocity);
+        lane.largest_friction = std::max(lane.largest_friction, stage.abs_friction);
+        if (i + 1 == tableau_.n) // where the velocity balances all forces
+          lane.largest_net_friction = std::max(lane.largest_net_friction, std::abs(stage.net_friction));
+        if (lane.largest_friction > 0.)
+          lane.result.net_friction = lane.largest_net_friction / lane.largest_friction;
+      }
+
+      static void
+      done(void *context, const unsigned int l, const LaneOutcome &outcome)
+      {
+        Batch &batch = self(context);
+        Lane &lane   = batch.lanes_[l];
+        if (outcome.status == LaneOutcome::finished && !lane.given_up)
+          batch.results_[lane.run] = batch.result_of(lane, outcome);
+      }
+
+      SimulationResult
+      result_of(Lane &lane, const LaneOutcome &outcome) const
+      {
+        SimulationResult result       = std::move(lane.result);
+        const Units &units            = lane.units;
+        result.time.status            = "finished";
+        result.time.time              = runs_[lane.run].scene->end_time;
+        result.time.step_size         = outcome.step_size * units.time;
+        result.time.steps             = outcome.steps;
+        result.time.rejected_steps    = outcome.rejected;
+        result.time.newton_iterations = outcome.newton_iterations;
+        result.displacement           = outcome.displacement * units.length;
+        result.most_cells             = tables_.setup.n_cells;
+        result.mesh = {result.most_cells, tables_.setup.degree, result.most_cells * tables_.setup.degree + 1, false};
+        const auto in_units = [&units](const Extreme &extreme) {
+          return Extreme{extreme.value, extreme.s * units.length, extreme.t * units.time};
+        };
+        result.min_stretch = in_units(lane.least.extreme());
+        result.max_stretch = in_units(lane.most.extreme());
+        if (result.energy_balance)
+          result.energy_balance = result.energy_balance->scaled(units.energy());
+        if (lane.gait)
+          result.gait = lane.gait->gait();
+        if (result.gait)
+          result.gait = result.gait->in_units(units);
+        result.gait_efficiency = gait_efficiency(*runs_[lane.run].scene, result);
+        result.integrator      = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
+                                                                                 : runs_[lane.run].time->integrator;
+        result.engine          = "fused";
+        return result;
+      }
+
+      const std::shared_ptr<const LaneTables> tables_owner_;
+      const LaneTables &tables_;
+      const RadauTableau &tableau_;
+      const std::span<const BatchRun> runs_;
+      const std::vector<std::size_t> &members_; ///< numbers of the runs
+      const Simulation::Options options_;
+      const std::function<bool()> &keep_going_;
+      Results &results_;
+      LaneSampler sampler_;
+      std::vector<Lane> lanes_;
+      std::size_t next_ = 0;
+      bool interrupted_ = false;
+    };
+  } // namespace
+
+  std::vector<std::optional<SimulationResult>>
+  run_batch(const std::span<const BatchRun> runs,
+            const Simulation::Options &options,
+            const std::function<bool()> &keep_going,
+            const LaneEngine &engine)
+  {
+    std::map<LaneMethod, std::vector<std::size_t>> members;
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      members[batch_method(*runs[i].scene, *runs[i].time, *runs[i].numerics).value()].push_back(i);
+    std::vector<std::optional<SimulationResult>> results(runs.size());
+    for (const auto &[method, own] : members)
+      if (!Batch(method, runs, own, options, keep_going, results).compute(engine))
+        break;
+    return results;
+  }
+} // namespace crawler

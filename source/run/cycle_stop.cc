@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/run/cycle_stop.h>
+#include <crawler/run/run_parameters.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace crawler
+{
+  namespace
+  {
+    /// The part of the wanted accuracy that the bound may take.
+    constexpr double part = 0.2;
+    /// The displacement counts as no smaller than this part of the largest deformation (as in numerics_choice.cc).
+    constexpr double displacement_floor = 1e-4;
+    /// A cycle repeats if its strain differs from that of the one before by less than this part.
+    constexpr double same = 1e-3;
+    /// The displacement of a cycle may depend on its start by so much more than has been seen.
+    constexpr double safety = 10.;
+    /// A change of the strain that is smaller than this times the tolerance of the time integration is its noise.
+    constexpr double noise = 10.;
+    /// The drift that is still to come must be smaller than this part of the smallest stretch.
+    constexpr double least_part = 0.1;
+    /// A start closer to the first phase than this part of a cycle is left out.
+    constexpr double short_start = 1e-3;
+    /// So many cycles are watched.
+    constexpr unsigned int most_watched = 200;
+
+    double
+    whole_cycles(const double period)
+    {
+      return std::floor(1. / period * (1. + 1e-9));
+    }
+  } // namespace
+
+  std::optional<CycleWish>
+  cycle_wish(const RunParameters &parameters, const Scene &scene, const unsigned int n_frames)
+  {
+    const std::string &entry = parameters.time.cycle_stop;
+    if (entry == "off" || (entry == "automatic" && (n_frames > 0 || parameters.time.step_control != "adaptive")))
+      return std::nullopt;
+    if (!scene.is_plain()) // its cycles need not repeat
+      return std::nullopt;
+    const auto period = scene.active_stress->period();
+    if (!period || !CycleStop::fits(*period / scene.end_time))
+      return std::nullopt;
+    return CycleWish{*period, parameters.accuracy};
+  }
+
+  bool
+  CycleStop::fits(const double period)
+  {
+    return whole_cycles(period) >= fewest_cycles && whole_cycles(period) < 1e9;
+  }
+
+  CycleStop::CycleStop(const CycleWish &wish, const double tolerance)
+    : wish_(wish)
+    , tolerance_(tolerance)
+    , n_cycles_(static_cast<unsigned int>(whole_cycles(wish.period)))
+  {
+    const double P = wish.period;
+    start_         = 1. - n_cycles_ * P;
+    from_rest_     = start_ <= 1e-9 * P;
+    if (from_rest_)
+    {
+      start_ = 0.;
+      ends_.emplace_back();
+      compare(std::vector<double>(n_pieces, 1.));
+    }
+    else if (start_ < short_start * P)
+    {
+      start_ += P;
+      --n_cycles_;
+    }
+    const unsigned int n_watched = std::min(n_cycles_ - 1, most_watched);
+    for (unsigned int i = from_rest_ ? 1 : 0; i <= n_watched; ++i)
+      end_times_.push_back(start_ + P * i);
+  }
+
+  double
+  CycleStop::next_time() const
+  {
+    const std::size_t i = changes_.size() / n_phases, phase = changes_.size() % n_phases;
+    const double time = start_ + wish_.period * (static_cast<double>(i) + static_cast<double>(phase) / n_phases);
+    return repeats_ || end_times_.empty() || time > end_times_.back() * (1. + 1e-14) ? HUGE_VAL : time;
+  }
+
+  bool
+  CycleStop::next_is_end() const
+  {
+    return changes_.size() % n_phases == 0;
+  }
+
+  bool
+  CycleStop::observe(const std::span<const double> u,
+                     const double displacement,
+                     const EnergyBalance *energy_balance,
+                     const double decay)
+  {
+    double square = 0.;
+    std::vector<double> stretch(n_pieces);
+    for (unsigned int i = 0; i < n_pieces; ++i)
+    {
+      stretch[i] = 1. + (u[i + 1] - u[i]) * n_pieces;
+      least_     = std::min(least_, stretch[i]);
+      square += u[i] * u[i] / n_pieces;
+    }
+    largest_u_        = std::max(largest_u_, std::sqrt(square));
+    const bool is_end = next_is_end();
+    compare(stretch);
+    if (!is_end)
+      return false;
+    ends_.push_back({displacement, energy_balance ? *energy_balance : EnergyBalance()});
+    if (ends_.size() >= 3)
+      judge(decay);
+    return repeats_;
+  }
+
+  void
+  CycleStop::compare(const std::span<const double> stretch)
+  {
+    double strain = 0., change = 0., largest = 0.;
+    const bool known = stretches_.size() == n_phases;
+    for (unsigned int i = 0; i < n_pieces; ++i)
+    {
+      strain += (stretch[i] - 1.) * (stretch[i] - 1.) / n_pieces;
+      const double difference = known ? stretch[i] - stretches_.front()[i] : 0.;
+      change += difference * difference / n_pieces;
+      largest = std::max(largest, std::abs(difference));
+    }
+    strains_.push_back(std::sqrt(strain));
+    changes_.push_back(std::sqrt(change));
+    largest_changes_.push_back(largest);
+    if (known)
+      stretches_.pop_front();
+    stretches_.emplace_back(stretch.begin(), stretch.end());
+  }
+
+  /// The largest ratio of a change in the last cycle to the one a cycle before, at all phases where both are known.
+  /// Where the changes have gone down to the errors of the time integration, their ratio is that of errors; these do
+  /// not add up, which 1/2 stands for.
+  double
+  CycleStop::decay_of_changes() const
+  {
+    double largest         = 0.;
+    const std::size_t last = changes_.size() - 1;
+    for (std::size_t i = std::max<std::size_t>(last - n_phases + 1, 2 * n_phases); i <= last; ++i)
+    {
+      const double ratio = changes_[i] / std::max(changes_[i - n_phases], 1e-300);
+      largest            = std::max(largest, changes_[i] <= noise * tolerance_ ? std::min(ratio, 0.5) : ratio);
+    }
+    return largest;
+  }
+
+  /// Root mean square over the last cycle of the change of the strain since a cycle before, relative to the strain.
+  double
+  CycleStop::relative_change() const
+  {
+    double change = 0., strain = 0.;
+    for (std::size_t i = changes_.size() - n_phases; i < changes_.size(); ++i)
+    {
+      change += changes_[i] * changes_[i];
+      strain += strains_[i] * strains_[i];
+    }
+    return change > 0. ? std::sqrt(change / strain) : 0.;
+  }
+
+  /// At the end of the second and each later cycle; the formulas are those of doc/numerics.md, "Cycle stop".
+  void
+  CycleStop::judge(const double decay)
+  {
+    const std::size_t n        = ends_.size() - 1;
+    const double left          = static_cast<double>(n_cycles_ - n);
+    const double increment     = ends_[n].displacement - ends_[n - 1].displacement;
+    const double before        = ends_[n - 1].displacement - ends_[n - 2].displacement;
+    const double difference    = std::abs(increment - before);
+    const double change        = changes_.back();
+    const double change_before = changes_[changes_.size() - 1 - n_phases];
+    if (change_before > 0.)
+      sensitivity_ = std::max(sensitivity_, difference / change_before);
+    constexpr double pi = std::numbers::pi;
+    const double rho    = std::max(decay_of_changes(), std::exp(-pi * pi * decay * wish_.period));
+    if (!(rho < 1.))
+      return;
+    double next = std::max(rho * difference, sensitivity_ * change);
+    if (n >= 3)
+      next = std::min(next, safety * sensitivity_ * change);
+    // Increments are differences of displacements, which have round-off.
+    const double round_off = 4. * std::numeric_limits<double>::epsilon() * largest_u_;
+    bound_                 = left * (next / (1. - rho) + round_off);
+
+    const double size  = std::max(std::abs(ends_[n].displacement + left * increment), displacement_floor * largest_u_);
+    const double drift = largest_changes_.back() * rho / (1. - rho);
+    const EnergyBalance &now = ends_[n].energy_balance, &then = ends_[n - 1].energy_balance;
+    const double stored = left * std::abs(now.elastic_energy - then.elastic_energy);
+    const double work   = now.exchanged + left * (now.exchanged - then.exchanged);
+    repeats_ = bound_ <= part * wish_.accuracy * size && relative_change() <= same && drift <= least_part * least_ &&
+               stored <= wish_.accuracy * work;
+  }
+
+  Cycles
+  CycleStop::extrapolate(double &displacement, EnergyBalance *energy_balance) const
+  {
+    const std::size_t n = ends_.size() - 1;
+    const double left   = static_cast<double>(n_cycles_ - n);
+    const auto go_on    = [&](double &value, const auto of) { value += left * (of(ends_[n]) - of(ends_[n - 1])); };
+    go_on(displacement, [](const End &end) { return end.displacement; });
+    if (energy_balance)
+      for (double EnergyBalance::*integral : {&EnergyBalance::stress_power,
+                                              &EnergyBalance::dissipation,
+                                              &EnergyBalance::positive_power,
+                                              &EnergyBalance::exchanged,
+                                              &EnergyBalance::end_work,
+                                              &EnergyBalance::transfer_loss})
+        go_on(energy_balance->*integral, [&](const End &end) { return end.energy_balance.*integral; });
+    return {wish_.period, static_cast<unsigned int>(n), static_cast<unsigned int>(n_cycles_ - n), bound_};
+  }
+} // namespace crawler

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/reduced_models/perturbation.h>
+#include <crawler/run/gait_efficiency.h>
+#include <crawler/run/reduced_model.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    constexpr double unknown = ReducedEnergies::unknown;
+
+    Extreme
+    stretch_of(const StrainExtreme &e)
+    {
+      return {1. + e.strain, e.s, e.t};
+    }
+  } // namespace
+
+  EnergyBalance
+  energy_balance_of(const ReducedEnergies &energies)
+  {
+    EnergyBalance energy_balance;
+    energy_balance.stress_power   = energies.stress_power;
+    energy_balance.dissipation    = energies.dissipation;
+    energy_balance.positive_power = energies.positive_power;
+    energy_balance.exchanged      = energies.exchanged;
+    energy_balance.end_work       = energies.end_work;
+    energy_balance.elastic_energy = energies.elastic_energy;
+    energy_balance.transfer_loss  = -energies.elastic_start;
+    return energy_balance;
+  }
+
+  ReducedModel::ReducedModel(const Scene &scene, const std::string &model)
+    : levels_(scene)
+    , model_(model)
+  {
+  }
+
+  void
+  ReducedModel::compute_perturbation(SimulationResult &result) const
+  {
+    const Perturbation series(*levels_.wave());
+    const ModelErrors errors      = levels_.model_errors();
+    const StrainExtremes extremes = series.extremes();
+    result.displacement           = series.displacement(1.);
+    result.error                  = {.space = 0., .time = 0., .model = errors.known ? errors.perturbation : unknown};
+    result.energy_balance         = energy_balance_of(series.energies(1.));
+    result.net_friction           = unknown;
+    result.min_stretch            = stretch_of(extremes.smallest);
+    result.max_stretch            = stretch_of(extremes.largest);
+  }
+
+  void
+  ReducedModel::compute_kinematic(SimulationResult &result,
+                                  const double accuracy,
+                                  const std::function<bool()> &keep_going)
+  {
+    const KinematicResult motion = kinematic(levels_.scene(), *levels_.strain(), 0.5 * accuracy, keep_going);
+    n_space_panels_              = motion.n_space_panels;
+    n_time_panels_               = motion.n_time_panels;
+    if (motion.stopped)
+    {
+      result.time.status = "stopped";
+      return;
+    }
+    result.min_stretch = stretch_of(motion.extremes.smallest);
+    result.max_stretch = stretch_of(motion.extremes.largest);
+    if (motion.inversion)
+    {
+      result.time.status = "inverted";
+      result.inversion   = stretch_of(*motion.inversion);
+      result.energy_balance.reset();
+      return;
+    }
+    const ModelErrors errors = levels_.model_errors();
+    result.displacement      = motion.displacement;
+    result.error             = {
+                  .space = motion.space_error, .time = motion.time_error, .model = errors.known ? errors.kinematic : unknown};
+    result.energy_balance = energy_balance_of(motion.energies);
+    result.net_friction   = motion.net_friction;
+  }
+
+  /// Is the error as small as was asked for?
+  void
+  ReducedModel::judge(SimulationResult &result, const double accuracy) const
+  {
+    constexpr double floor   = 1e-12;
+    DisplacementError &error = *result.error;
+    error.total              = error.space + error.time + error.model;
+    if (error.total <= std::max(accuracy * std::abs(result.displacement), floor))
+      return;
+    result.time.status = "failed";
+    result.time.reason = "accuracy_not_met";
+    const std::string relative =
+      result.displacement == 0. ? "" : fmt::format(" ({:.2g} of it)", error.total / std::abs(result.displacement));
+    result.time.message =
+      std::isfinite(error.total)
+        ? fmt::format(
+            "the estimated error of the displacement is {:.3g}{}, but Accuracy is {:g}; a larger one, or Model "
+            "= auto, is needed",
+            error.total * levels_.units().length,
+            relative,
+            accuracy)
+        : fmt::format(
+            "the error of the {} model cannot be estimated for this scene, since its corrections do not become "
+            "smaller; Model = auto is needed",
+            model_);
+  }
+
+  SimulationResult
+  ReducedModel::compute(const double accuracy, const bool energy_balance, const std::function<bool()> &keep_going)
+  {
+    const auto start = std::chrono::steady_clock::now();
+    SimulationResult result;
+    result.time.status = "finished";
+    if (model_ == "perturbation")
+      compute_perturbation(result);
+    else
+      compute_kinematic(result, accuracy, keep_going);
+    if (result.error)
+      judge(result, accuracy);
+
+    const Units &units     = levels_.units();
+    const double end_time  = units.time;
+    const bool is_complete = result.time.status != "stopped" && !result.inversion;
+    result.time.time       = is_complete ? end_time : result.inversion ? result.inversion->t * end_time : 0.;
+    result.displacement *= units.length;
+    if (result.error)
+      for (double *part : {&result.error->total, &result.error->space, &result.error->time, &result.error->model})
+        *part *= units.length;
+    if (!energy_balance)
+      result.energy_balance.reset();
+    if (result.energy_balance)
+      result.energy_balance = result.energy_balance->scaled(units.energy());
+    for (Extreme *extreme : {&result.min_stretch, &result.max_stretch})
+    {
+      extreme->s *= units.length;
+      extreme->t *= units.time;
+    }
+    if (result.inversion)
+    {
+      result.inversion->s *= units.length;
+      result.inversion->t *= units.time;
+      const double s      = result.inversion->s;
+      result.time.reason  = s == 0. || s == units.length ? "inverted_at_end" : "inverted_inside";
+      result.time.message = fmt::format("the strain that the kinematic model assumes gives the stretch {:.3g} at s = "
+                                        "{:.6g}, t = {:.6g}; Model = nonlinear is needed",
+                                        result.inversion->value,
+                                        result.inversion->s,
+                                        result.inversion->t);
+    }
+    result.solve_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+  }
+
+  void
+  ReducedModel::replay(const std::vector<double> &times,
+                       const std::vector<double> &points,
+                       const std::function<bool(double time, const State &state)> &see) const
+  {
+    State state;
+    if (model_ == "perturbation")
+    {
+      const Perturbation series(*levels_.wave());
+      KinematicBody body(levels_.scene(), *levels_.strain(), 2, points);
+      for (const double t : times)
+      {
+        const auto &now    = body.evaluate(t); // for its extremes
+        state.displacement = series.displacement(t);
+        state.velocity     = series.velocity(t);
+        state.energies     = series.energies(t);
+        state.smallest     = now.smallest;
+        state.largest      = now.largest;
+        state.fields       = series.fields(t, points);
+        if (!see(t, state))
+          return;
+      }
+      return;
+    }
+    KinematicBody body(levels_.scene(), *levels_.strain(), n_space_panels_, points);
+    state.energies.elastic_start = body.evaluate(0.).elastic_energy;
+    for (std::size_t i = 0; i < times.size(); ++i)
+    {
+      if (i > 0)
+      {
+        const double span = times[i] - times[i - 1];
+        const auto panels = static_cast<unsigned int>(std::ceil(span * n_time_panels_));
+        for (unsigned int j = 0; j < panels; ++j)
+          state.displacement += advance(body,
+                                        times[i - 1] + span * j / panels,
+                                        j + 1 == panels ? times[i] : times[i - 1] + span * (j + 1) / panels,
+                                        state.energies);
+      }
+      const auto &now               = body.evaluate(times[i]);
+      state.energies.elastic_energy = now.elastic_energy;
+      state.velocity                = now.velocity;
+      state.net_friction            = now.net_friction;
+      state.smallest                = now.smallest;
+      state.largest                 = now.largest;
+      state.fields                  = body.fields(state.displacement);
+      if (!see(times[i], state))
+        return;
+    }
+  }
+
+  void
+  ReducedModel::describe_gait(const Scene &scene, SimulationResult &result) const
+  {
+    if (result.time.status != "finished")
+      return;
+    if (result.energy_balance)
+      result.gait_efficiency = gait_efficiency(scene, result);
+    const auto period = stride_of(*levels_.scene().active_stress, 1., 1.);
+    if (!period)
+      return;
+    GaitMeter meter(*period, false);
+    std::vector<double> ends;
+    for (unsigned int i = 0; i <= GaitMeter::n_pieces; ++i)
+      ends.push_back(static_cast<double>(i) / GaitMeter::n_pieces);
+    replay(meter.times(), ends, [&](const double t, const State &state) {
+      meter.see(state.fields.displacement, state.displacement);
+      meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // of the whole motion
+      meter.see_extremes(1. + state.smallest.strain, 1. + state.largest.strain);
+      const EnergyBalance energy_balance = energy_balance_of(state.energies);
+      meter.see_step(t, state.displacement, &energy_balance);
+      return true;
+    });
+    if (const auto gait = meter.gait())
+      result.gait = gait->in_units(levels_.units());
+  }
+
+  std::string
+  ReducedModel::description() const
+  {
+    if (model_ == "perturbation")
+      return "No mesh and no time steps: the series is a closed form.";
+    return fmt::format("No mesh and no time steps: quadrature on {} panels in s and {} in t, of {} points each.",
+                       n_space_panels_,
+                       n_time_panels_,
+                       GaussPanels::n_points);
+  }
+} // namespace crawler

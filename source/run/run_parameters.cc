@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/equation/stretch_form.h>
+#include <crawler/output/active_stress_table.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/parameters/parameter_file.h>
+#include <crawler/run/run_parameters.h>
+#include <crawler/time/integrators.h>
+
+#include <fmt/format.h>
+
+#include <optional>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Squares of entries in natural units must not leave the range of doubles.
+    void
+    require_computable(const std::optional<double> &value, const double unit, const char *name, const char *unit_name)
+    {
+      constexpr double smallest = 1e-100, largest = 1e100;
+      if (value && !(*value / unit >= smallest && *value / unit <= largest))
+        throw InputError(fmt::format("{0} is {1:g}, but a number from {2:g} to {3:g} times the {4} is expected",
+                                     name,
+                                     *value,
+                                     smallest,
+                                     largest,
+                                     unit_name),
+                         std::string("Time/") + name);
+    }
+
+    /// The linear model has one formulation, one kind of mesh and one family of integrators.
+    void
+    require_linear(const RunParameters &p)
+    {
+      const auto require =
+        [](const bool ok, const std::string &entry, const std::string &found, const std::string &expected) {
+          if (!ok)
+            throw InputError(
+              fmt::format(
+                "Model is linear and {} is {}, but {} is expected", entry.substr(entry.find('/') + 1), found, expected),
+              entry);
+        };
+      require(
+        p.discretization.mesh != "adaptive", "Discretization/Mesh", p.discretization.mesh, "automatic or uniform");
+      require(p.discretization.formulation != "stretch",
+              "Discretization/Formulation",
+              p.discretization.formulation,
+              "automatic or position");
+      require(p.time.integrator == "automatic" || integrator(p.time.integrator).petsc_type == "radau",
+              "Time/Integrator",
+              p.time.integrator,
+              "automatic, radau 5 or radau 9");
+      require(p.time.engine == "automatic", "Time/Engine", p.time.engine, "automatic");
+    }
+    /// The stretch form has meshes and integrators of its own.
+    void
+    require_stretch_form(const RunParameters &p, const Scene &scene)
+    {
+      const auto require =
+        [](const bool ok, const std::string &entry, const std::string &found, const std::string &expected) {
+          if (!ok)
+            throw InputError(fmt::format("Formulation is stretch and {} is {}, but {} is expected",
+                                         entry.substr(entry.find('/') + 1),
+                                         found,
+                                         expected),
+                             entry);
+        };
+      const DiscretizationParameters &d = p.discretization;
+      require(d.mesh != "adaptive", "Discretization/Mesh", d.mesh, "automatic or uniform");
+      require(!d.degree || *d.degree == 1, "Discretization/Degree", fmt::format("{}", d.degree.value_or(1)), "1");
+      require(d.share_cells != "yes", "Discretization/Share cells", d.share_cells, "automatic or no");
+      require(p.time.integrator == "automatic" || integrator(p.time.integrator).petsc_type == "radau",
+              "Time/Integrator",
+              p.time.integrator,
+              "automatic, radau 5 or radau 9");
+      require(p.time.engine == "automatic", "Time/Engine", p.time.engine, "automatic");
+      require(p.time.step_control == "adaptive", "Time/Step control", p.time.step_control, "adaptive");
+      require(!p.time.tolerance || *p.time.tolerance <= 1e-3 * p.body.length,
+              "Time/Tolerance",
+              fmt::format("{:g}", p.time.tolerance.value_or(0.)),
+              fmt::format("at most a thousandth of the Length, {:g},", 1e-3 * p.body.length));
+      if (const std::string reason = reason_against_stretch_form(scene); !reason.empty())
+        throw InputError(fmt::format("Formulation is stretch, but position or automatic is expected, since {}", reason),
+                         "Discretization/Formulation");
+    }
+
+    /// What only plain scenes have.
+    void
+    require_general(const RunParameters &p, const Scene &scene)
+    {
+      const std::string features = scene.general_features();
+      if (p.model != "auto" && p.model != "nonlinear")
+        throw InputError(
+          fmt::format("Model is {}, which is for plain bodies and grounds, but the scene has {}; nonlinear or "
+                      "auto is expected",
+                      p.model,
+                      features),
+          "Model");
+      if (scene.active_stress->prescribed_strain() != nullptr)
+        throw InputError(fmt::format("Generator is {}, which is for plain bodies and grounds, but the scene has {}; "
+                                     "another one is expected",
+                                     p.active_stress.generator,
+                                     features),
+                         "Active stress/Generator");
+      if (p.time.cycle_stop == "on")
+        throw InputError(fmt::format("Cycle stop is on, which is for plain bodies and grounds, but the scene has {}; "
+                                     "automatic or off is expected",
+                                     features),
+                         "Time/Cycle stop");
+      const StretchFeedback *feedback = scene.active_stress->feedback();
+      const double delay              = feedback != nullptr ? feedback->delay() : 0.;
+      if (delay > 0. && p.time.step_control == "fixed" && p.time.initial_step && *p.time.initial_step > delay)
+        throw InputError(
+          fmt::format("Initial step is {:g} and Step control is fixed, but no more than the delay of the "
+                      "feedback, {:g}, is expected",
+                      *p.time.initial_step,
+                      delay),
+          "Time/Initial step");
+    }
+  } // namespace
+
+  void
+  RunParameters::count_terms(const ParameterFile &file)
+  {
+    const std::string sum = "Active stress/Sum", term = "Term ";
+    const auto names = file.subsections(sum);
+    std::size_t n    = 0;
+    while (names.contains(term + std::to_string(n + 1)))
+      ++n;
+    for (const std::string &name : names)
+    {
+      const bool is_number = name.size() > term.size() && name.starts_with(term) &&
+                             name.find_first_not_of("0123456789", term.size()) == std::string::npos;
+      if (is_number && name[term.size()] != '0' &&
+          (name.size() > term.size() + 6 || std::stoul(name.substr(term.size())) > n))
+        throw InputError(
+          fmt::format("{}: the section \"{}/{}\" is found, but \"{}{}\" is not; terms are expected to be "
+                      "numbered without a gap, from Term 1 on",
+                      file.name(),
+                      sum,
+                      name,
+                      term,
+                      n + 1));
+    }
+    // With none, the names of the first are known all the same where the file has a slip in them.
+    active_stress.sum.terms.assign(names.empty() ? 0 : std::max<std::size_t>(n, 1), {});
+    for (TermParameters &parameters : active_stress.sum.terms)
+      parameters.stress.generator = "expression";
+  }
+
+  void
+  RunParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.choice(
+      "Model",
+      model,
+      {"auto", "perturbation", "kinematic", "linear", "nonlinear"},
+      "The level of the model's ladder (doc/theory.md): the series for the optimal wave in closed form, "
+      "a body whose strain is known, the equation for a = 0, or the full nonlinear equation; auto is "
+      "the first of these whose estimated error is at most Accuracy.");
+    declarations.number("Accuracy",
+                        accuracy,
+                        between(1e-12, 0.1),
+                        "Wanted error of the displacement, relative to it (or to 1e-4 of the largest deformation, if "
+                        "that is larger). Chooses degree, cells and time tolerance where they "
+                        "are automatic (doc/numerics.md).",
+                        "1");
+    declarations.flag("Error estimate",
+                      error_estimate,
+                      "Whether a second, finer run tells the error of the displacement; about as expensive as a run "
+                      "without output.");
+    body.add_parameters(declarations);
+    ground.add_parameters(declarations);
+    active_stress.add_parameters(declarations);
+    discretization.add_parameters(declarations);
+    time.add_parameters(declarations);
+    output.add_parameters(declarations);
+  }
+
+  Scene
+  RunParameters::create_scene() const
+  {
+    time.validate();
+    if (model == "linear")
+      require_linear(*this);
+    require_computable(time.tolerance, body.length, "Tolerance", "Length");
+    require_computable(time.initial_step, time.end_time, "Initial step", "End time");
+    if (discretization.smallest_cell && !(*discretization.smallest_cell < body.length))
+      throw InputError(fmt::format("Smallest cell is {:g}, but less than the Length, {:g}, is expected",
+                                   *discretization.smallest_cell,
+                                   body.length),
+                       "Discretization/Smallest cell");
+    if (time.cycle_stop == "on" && output.n_snapshots > 0)
+      throw InputError(
+        fmt::format("Cycle stop is on, but {} snapshots until the end time are wanted; 0 is expected for "
+                    "Output/Number of snapshots, or automatic or off here",
+                    output.n_snapshots),
+        "Time/Cycle stop");
+    Scene scene{body, nullptr, nullptr, time.end_time};
+    natural_units(scene); // first, since nothing else is prepared for numbers that it refuses
+    scene.profiles = read_profiles(body, time.end_time);
+    scene.ground   = create_ground(ground, body, time.end_time);
+    scene.friction = create_friction_law(ground, body, time.end_time);
+    if (ground.friction_law != "power") // the power law that touches it where the stretch is 1
+      scene.body.anchoring_exponent = 1. - scene.friction->exponent(1.);
+    scene.active_stress = create_active_stress(active_stress, scene.body, time.end_time);
+    require_computable_stress(scene);
+    require_table_fits(output.active_stress_table, *scene.active_stress);
+    if (!scene.is_plain())
+      require_general(*this, scene);
+    if (discretization.formulation == "stretch")
+      require_stretch_form(*this, scene);
+    return scene;
+  }
+} // namespace crawler

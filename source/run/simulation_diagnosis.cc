@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The part of Simulation that gives a lost stretch and a failed time step their names (doc/numerics.md, "Failures and
+// inversions").
+#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/run/simulation.h>
+
+#include <boost/math/tools/toms748_solve.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /// In the position form a stretch below this is lost: nothing that is computed from it has a digit left.
+    constexpr double lost_in_position = 1e-12;
+    /// An end that inverts within this part of the duration after the inside was lost is the cause.
+    constexpr double end_reach = 1e-6;
+    /// The same if the stretch was lost at the very end: the body's own is 1 - m/k there, and nothing else.
+    constexpr double end_reach_at_end = 1e-3;
+    /// If states are refused, a stretch that is gone within this part of the duration at its present rate is lost.
+    constexpr double nearly_lost = 1e-4;
+
+    /**
+     * In the stretch form cells may be empty if they then stick, a <= -1. For -1 < a < 0 w^(1+a) goes linearly to 0
+     * near an inversion, so this is where 1e-6 of it is left.
+     */
+    double
+    lost_in_stretch_form(const double a)
+    {
+      return a <= -1. ? -HUGE_VAL : a < 0. ? std::exp(std::clamp(-14. / (1. + a), -690., std::log(1e-3))) : 1e-9;
+    }
+
+    /// The time in [from, to] where @p function, positive at @p from and not at @p to, becomes 0.
+    template <typename Function>
+    double
+    first_zero(const Function &function, const double from, const double to)
+    {
+      const double at_from = function(from), at_to = function(to);
+      if (!(at_from > 0.) || !(at_to < 0.))
+        return at_from > 0. ? to : from;
+      std::uintmax_t iterations = 100;
+      const auto bracket        = boost::math::tools::toms748_solve(
+        function, from, to, at_from, at_to, boost::math::tools::eps_tolerance<double>(50), iterations);
+      return 0.5 * (bracket.first + bracket.second);
+    }
+  } // namespace
+
+  /// A stretch at or below this is lost.
+  double
+  Simulation::lost_stretch() const
+  {
+    return position_ != nullptr ? lost_in_position : lost_in_stretch_form(scene_.friction_exponent());
+  }
+
+  /// Has the stretch that the end conditions prescribe, 1 - m/k, become 0 since @p from? Then the diagnosis says so.
+  bool
+  Simulation::end_inverts(const double from, const double to)
+  {
+    constexpr int parts = 4;
+    const auto smallest = [this](const double t) {
+      const auto [left, right] = assembler_->end_stretches(t);
+      return std::min(left, right);
+    };
+    if (!assembler_->has_known_ends())
+      return false;
+    double begin = from;
+    for (int i = from < to ? 1 : parts; i <= parts; ++i)
+    {
+      const double end = i == parts ? to : from + (to - from) * i / parts;
+      if (!(smallest(end) <= 0.))
+      {
+        begin = end;
+        continue;
+      }
+      const double t           = begin < end ? first_zero(smallest, begin, end) : end;
+      const auto [left, right] = assembler_->end_stretches(t);
+      const double s           = left <= right ? 0. : 1.;
+      inverted_at_end(s, t, "where 1 - m/k is not positive");
+      return true;
+    }
+    return false;
+  }
+
+  void
+  Simulation::inverted_at_end(const double s, const double t, const std::string &reason)
+  {
+    result_.inversion = SimulationResult::Extreme{0., s, t};
+    diagnosis_        = {"inverted",
+                         "inverted_at_end",
+                         fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, {}; "
+                                     "the model ends there",
+                              s * units_.length,
+                              t * units_.time,
+                              reason)};
+  }
+
+  /// The stretch was lost inside within the step: finds where and when on the integrator's dense output.
+  void
+  Simulation::locate_inversion(const Step &step)
+  {
+    const double threshold = lost_stretch();
+    std::vector<double> y(assembler_->n_owned());
+    StretchAt smallest = stretch_.min;
+    const auto above   = [&](const double t) {
+      stepper_->interpolate(t, y);
+      smallest = assembler_->stretch_range(y).min;
+      return smallest.value - threshold;
+    };
+    double t = step.time;
+    if (step.size > 0.)
+      t = first_zero(above, step.time - step.size, step.time);
+    if (step.size > 0.)
+      above(t); // the smallest stretch of that time
+    const bool at_end  = smallest.s == 0. || smallest.s == 1.;
+    const double reach = at_end ? end_reach_at_end : end_reach;
+    if (at_end && !assembler_->has_known_ends())
+      inverted_at_end(smallest.s, t, "where the active stress with its feedback is not below k");
+    else if (!end_inverts(t, std::min(t + reach, 1.)))
+    {
+      inverted_inside(stretch_.min.value, smallest.s, t);
+      if (result_.inversion && stretch_form_ != nullptr)
+      {
+        // There disturbances travel without bound, so all of these places are lost at once.
+        constexpr double at_once = 1e-6;
+        stepper_->interpolate(t, y);
+        const auto [first, last] = stretch_form_->lost_places(t, y, at_once);
+        result_.inverted_places  = {std::min(first, smallest.s), std::max(last, smallest.s)};
+      }
+    }
+  }
+
+  /// Has the active stress failed since the run began, on any rank (collective)? Then the diagnosis says how.
+  bool
+  Simulation::stress_failed()
+  {
+    const StressFailures *failures = scene_.active_stress->failures();
+    if (failures == nullptr) // the same on all ranks
+      return false;
+    const int rank = static_cast<int>(rank_of(communicator_)), n_ranks = static_cast<int>(size_of(communicator_));
+    int first = failures->count > n_failures_ ? rank : n_ranks;
+    if (n_ranks > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, communicator_);
+    if (first == n_ranks)
+      return false;
+    std::string message = failures->latest;
+    if (n_ranks > 1)
+    {
+      const std::vector<std::string> all = gather(message, communicator_);
+      message = broadcast(rank == 0 ? all[static_cast<std::size_t>(first)] : "", communicator_);
+    }
+    diagnosis_ = {"failed", "nonfinite", message};
+    return true;
+  }
+
+  /// Was a law not positive on one of the ranks? Then all say so.
+  bool
+  Simulation::law_failed()
+  {
+    const auto bad   = assembler_->bad_law(units_);
+    const int n      = size_of(communicator_);
+    int speaker      = bad ? rank_of(communicator_) : n;
+    std::string text = bad ? bad->entry + "\n" + bad->message : "";
+    MPI_Allreduce(MPI_IN_PLACE, &speaker, 1, MPI_INT, MPI_MIN, communicator_);
+    if (speaker == n)
+      return false;
+    unsigned long length = text.size();
+    MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, speaker, communicator_);
+    text.resize(length);
+    MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, speaker, communicator_);
+    const auto end = text.find('\n');
+    diagnosis_     = {
+          "failed",
+          "law_not_positive",
+          fmt::format("{}: {}; at t = {:.6g}", text.substr(0, end), text.substr(end + 1), accepted_time_ * units_.time)};
+    return true;
+  }
+
+  /// What a failure of the time stepper means.
+  void
+  Simulation::explain_failure()
+  {
+    if (stress_failed())
+      return;
+    TimeOutcome &outcome = result_.time;
+    const double t       = accepted_time_;
+    if (outcome.domain_error && law_failed())
+      return;
+    // Very small steps may be the end of the model.
+    const double reach = std::max(end_reach, 2. * outcome.step_size);
+    if (outcome.reason != "petsc_error")
+    {
+      if (end_inverts(t, std::min(t + reach, 1.)))
+        return;
+      // How long is left at the present rate?
+      const StretchAt smallest = assembler_->stretch_range(accepted_).min;
+      const Extreme before     = min_history_.before_last();
+      const double rate        = t > before.t ? (before.value - smallest.value) / (t - before.t) : 0.;
+      const double left        = rate > 0. ? smallest.value / rate : 1.;
+      // For a >= 0 the stretch reaches 0 at a bounded rate, so one that is not near 0 was not lost by the body.
+      const bool near = left < (outcome.domain_error ? nearly_lost : end_reach);
+      if (near || (outcome.domain_error && scene_.friction_exponent() < 0.))
+      {
+        inverted_inside(smallest.value, smallest.s, std::min(t + (near ? left : 0.), 1.));
+        return;
+      }
+    }
+    outcome.message +=
+      fmt::format(", at t = {:.9g} with step size {:.3g}", outcome.time * units_.time, outcome.step_size * units_.time);
+  }
+
+  /**
+   * For a <= -1 the stretch inside stays positive as long as the ends do (doc/theory.md, "When a body can invert"), so
+   * a loss of stretch there is an error of the mesh and is called that. For -1 < a < 0 bodies do invert, but the
+   * position form loses the stretch too early, or without need.
+   */
+  void
+  Simulation::inverted_inside(const double value, const double s, const double t)
+  {
+    const double a = scene_.friction_exponent();
+    if (a <= -1. || (a < 0. && position_ != nullptr))
+    {
+      under_resolved(value, s, t);
+      return;
+    }
+    result_.inversion = SimulationResult::Extreme{std::min(value, 0.), s, t};
+    diagnosis_        = {"inverted",
+                         "inverted_inside",
+                         fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model ends "
+                                     "there",
+                              s * units_.length,
+                              t * units_.time)};
+  }
+
+  void
+  Simulation::under_resolved(const double value, const double s, const double t)
+  {
+    const bool positive = scene_.friction_exponent() <= -1.;
+    diagnosis_          = {
+               "failed",
+               "under_resolved",
+               fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, {}: {} cells of degree {} "
+                           "are too coarse, or the steps too long; {}a larger Discretization/Number of cells or a smaller "
+                           "Time/Tolerance is needed",
+                  value,
+                  s * units_.length,
+                  t * units_.time,
+                  positive ? "where the body itself stays uninverted (a <= -1)"
+                                    : "which for a < 0 only the stretch form is believed",
+                  discretization_->n_cells(),
+                  discretization_->element().degree,
+                  position_ != nullptr ? "Discretization/Formulation = stretch, or " : "")};
+  }
+} // namespace crawler

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Who integrates the equation of a simulation over time, how they are connected, and which of their steps are made
+// again.
+#include <crawler/base/communication.h>
+#include <crawler/run/batch.h>
+#include <crawler/run/simulation.h>
+#include <crawler/time/integrators.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace crawler
+{
+  bool
+  Simulation::lanes_fit() const
+  {
+    return size_of(communicator_) == 1 && lane_method(scene_, time_, numerics_);
+  }
+
+  /// The fused engine where it fits and has not given up, else PETSc. What is not used is not built.
+  void
+  Simulation::choose_stepper()
+  {
+    if (numerics_.linear)
+    {
+      if (!linear_stepper_)
+        build_linear_stepper();
+      stepper_ = linear_stepper_.get();
+      return;
+    }
+    if (!lanes_gave_up_ && lanes_fit())
+    {
+      if (!lane_stepper_)
+        build_lane_stepper();
+      stepper_ = lane_stepper_.get();
+      return;
+    }
+    if (position_ == nullptr)
+      throw std::logic_error("the stretch form is for the fused engine");
+    if (!petsc_stepper_)
+      build_petsc_stepper();
+    stepper_ = petsc_stepper_.get();
+  }
+
+  /// PETSc takes the last accepted state, with a step that is as small as the first one, or as the engine wanted it.
+  void
+  Simulation::go_on_with_petsc(const TimeOutcome &outcome)
+  {
+    constexpr double smallest_step = 1e-9;
+    count_part(outcome);
+    lanes_gave_up_ = true;
+    y_             = accepted_;
+    next_step_     = std::max(std::min(outcome.step_size, numerics_.initial_step), smallest_step);
+  }
+
+  void
+  Simulation::build_linear_stepper()
+  {
+    if (scene_.body.friction_exponent() != 0. || !scene_.is_plain() || numerics_.mesh.tolerance > 0. ||
+        position_ == nullptr || integrator(time_.integrator).petsc_type != "radau")
+      throw std::logic_error("the linear model is for a = 0, the position form, uniform meshes and radau");
+    linear_stepper_ = std::make_unique<LinearStepper>(
+      scene_, *discretization_, integrator(time_.integrator).n_stages, time_.step_control == "adaptive");
+    linear_stepper_->stage_rates = [this](const double t, const std::span<const double> v) { keep_rate(t, v); };
+  }
+
+  void
+  Simulation::build_lane_stepper()
+  {
+    lane_stepper_ = std::make_unique<LaneStepper>(scene_, *lane_method(scene_, time_, numerics_));
+    if (keeps_rate())
+      lane_stepper_->stage_rates = [this](const double t, const std::span<const double> v) { keep_rate(t, v); };
+  }
+
+  void
+  Simulation::build_petsc_stepper()
+  {
+    using Vector         = TimeStepper::Vector;
+    using ConstVector    = TimeStepper::ConstVector;
+    using Complex        = TimeStepper::Complex;
+    petsc_stepper_       = std::make_unique<TimeStepper>(communicator_, position_->n_owned(), time_);
+    TimeStepper &stepper = *petsc_stepper_;
+    stepper.exact_elimination =
+      scene_.active_stress->feedback() == nullptr || !scene_.active_stress->feedback()->sees_near();
+
+    stepper.implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F) {
+      if (keeps_rate())
+        keep_rate(t, y_dot);
+      return position_->residual(t, y, y_dot, F);
+    };
+    stepper.setup_jacobian = [this](const double t, const ConstVector y, const ConstVector y_dot, const double shift) {
+      return position_->setup_jacobian(t, y, y_dot, shift);
+    };
+    stepper.solve_with_jacobian = [this](const ConstVector b, const Vector x) { position_->solve_with_jacobian(b, x); };
+    stepper.setup_complex_jacobians =
+      [this](const double t, const ConstVector y, const ConstVector y_dot, const std::span<const Complex> sigma) {
+        return position_->setup_complex_jacobians(t, y, y_dot, sigma);
+      };
+    stepper.solve_with_complex_jacobian =
+      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x) {
+        position_->solve_with_complex_jacobian(i, b, x);
+      };
+    stepper.setup_stage =
+      [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot) {
+        position_->setup_stage(stage, t, y, y_dot);
+      };
+    stepper.stage_vmult =
+      [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector y) {
+        position_->stage_vmult(stage, x, x_dot, y);
+      };
+    stepper.jacobian_vmult = [this](const ConstVector x, const Vector y) { position_->jacobian_vmult(x, y); };
+  }
+
+  /// The limit of steps at this time.
+  double
+  Simulation::longest_step(const double t) const
+  {
+    const auto after =
+      std::find_if(step_limits_.begin(), step_limits_.end(), [t](const StepLimit &limit) { return limit.from > t; });
+    return after == step_limits_.begin() ? HUGE_VAL : std::prev(after)->longest;
+  }
+
+  /// Did the active stress do something within the step that its ends do not show? Then the step is made again, by
+  /// shorter ones.
+  bool
+  Simulation::passed_over_event(const Step &step)
+  {
+    constexpr double shortest = 1e-6, part = 0.125;
+    if (!watch_ || step.size <= shortest || watch_->is_calm(step.time - step.size, step.time))
+      return false;
+    const auto after = std::find_if(
+      step_limits_.begin(), step_limits_.end(), [&](const StepLimit &limit) { return limit.from > step.time; });
+    const StepLimit later{step.time, longest_step(step.time)};
+    const auto begin = std::find_if(step_limits_.begin(), step_limits_.end(), [&](const StepLimit &limit) {
+      return limit.from > step.time - step.size;
+    });
+    const auto place = step_limits_.erase(begin, after);
+    step_limits_.insert(place, {{step.time - step.size, part * step.size}, later});
+    request_ = Request::retry;
+    return true;
+  }
+} // namespace crawler

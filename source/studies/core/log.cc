@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/studies/core/log.h>
+
+#include <iostream>
+
+namespace crawler
+{
+  Log::Log(const bool is_first_rank, const bool quiet)
+    : active_(is_first_rank)
+    , quiet_(quiet)
+  {
+  }
+
+  void
+  Log::line(const std::string &text)
+  {
+    if (!active_)
+      return;
+    if (!quiet_)
+      std::cout << text << std::endl;
+    keep(text);
+  }
+
+  void
+  Log::warn(const std::string &text)
+  {
+    if (!active_)
+      return;
+    std::cerr << "crawler: " << text << std::endl;
+    keep(text);
+  }
+
+  void
+  Log::keep(const std::string &text)
+  {
+    if (file_.is_open())
+      file_ << text << std::endl;
+    else
+      earlier_ += text + '\n';
+  }
+
+  void
+  Log::open(const std::filesystem::path &file, const bool append)
+  {
+    if (!active_)
+      return;
+    file_.open(file, append ? std::ios::app : std::ios::trunc);
+    file_ << earlier_ << std::flush;
+    if (!file_)
+      throw FileError("cannot write \"" + file.string() + "\"");
+  }
+} // namespace crawler

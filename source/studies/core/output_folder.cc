@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/file_lock.h>
+#include <crawler/studies/core/output_folder.h>
+
+#include <cerrno>
+#include <cstring>
+#include <unistd.h>
+
+namespace crawler
+{
+  namespace fs = std::filesystem;
+
+  fs::path
+  output_folder(const std::string &option, const std::string &parameter_file)
+  {
+    if (!option.empty())
+      return option;
+    return "output-" + (parameter_file == "-" ? std::string("stdin") : fs::path(parameter_file).stem().string());
+  }
+
+  void
+  require_usable(const fs::path &folder, const bool overwrite)
+  {
+    std::error_code error;
+    if (!fs::exists(folder, error))
+    {
+      // The nearest folder that exists must let us make the missing ones.
+      fs::path parent = fs::absolute(folder).parent_path();
+      while (!fs::exists(parent, error) && parent.has_relative_path())
+        parent = parent.parent_path();
+      if (!fs::is_directory(parent, error))
+        throw FileError("cannot make the output folder \"" + folder.string() + "\": \"" + parent.string() +
+                        "\" is not a folder");
+      if (::access(parent.c_str(), W_OK) != 0)
+        throw FileError("cannot make the output folder \"" + folder.string() + "\": " + std::strerror(errno));
+      return;
+    }
+    if (!fs::is_directory(folder, error))
+      throw FileError("the output folder \"" + folder.string() + "\" exists and is not a folder");
+    if (::access(folder.c_str(), W_OK) != 0)
+      throw FileError("cannot write to the output folder \"" + folder.string() + "\": " + std::strerror(errno));
+    if (fs::exists(folder / "solution", error) && !fs::is_directory(folder / "solution", error))
+      throw FileError("\"" + (folder / "solution").string() +
+                      "\" is not a folder, but one for the snapshots is expected");
+    if (!overwrite && !fs::is_empty(folder, error))
+      throw InputError("the output folder \"" + folder.string() +
+                       "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
+  }
+
+  const std::string sweep_lock_name = "sweep.lock";
+
+  void
+  require_no_sweep(const fs::path &folder)
+  {
+    std::error_code error;
+    if (!fs::exists(folder / sweep_lock_name, error))
+      return;
+    FileLock lock(folder / sweep_lock_name);
+    if (lock.lock() == FileLock::State::of_another_process)
+      throw InputError("a sweep writes to \"" + folder.string() +
+                       "\"; another folder is expected for --output, or that the sweep has ended");
+  }
+
+  void
+  prepare(const fs::path &folder)
+  {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+      throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
+    for (const char *name : {"original.prm",
+                             "parameters.prm",
+                             "log.txt",
+                             "summary.json",
+                             "results.csv",
+                             "results.h5",
+                             "results.h5.part",
+                             "results.png",
+                             "results.svg",
+                             "atlas.csv",
+                             "atlas.h5",
+                             "atlas.png",
+                             "atlas.svg",
+                             "tradeoff.csv",
+                             "tradeoff.h5",
+                             "tradeoff.png",
+                             "tradeoff.svg",
+                             "recommendations.prm",
+                             "reference.json"})
+      fs::remove(folder / name, error);
+    remove_fields(folder);
+  }
+
+  void
+  remove_fields(const fs::path &folder)
+  {
+    std::error_code error;
+    for (const char *name : {"statistics.csv", "solution.pvd", "kymograph.vts"})
+      fs::remove(folder / name, error);
+    if (fs::is_directory(folder / "solution", error))
+      for (const auto &file : fs::directory_iterator(folder / "solution"))
+        if (file.path().extension() == ".vtu" || file.path().extension() == ".part")
+          fs::remove(file.path(), error);
+  }
+} // namespace crawler

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/files.h>
+#include <crawler/output/active_stress_table.h>
+#include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/run_files.h>
+#include <crawler/time/time_integration.h>
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+namespace crawler
+{
+  void
+  report_scene(Log &log, const Input &input)
+  {
+    const Parameters &p = input.parameters;
+    log.line(fmt::format("Body L = {:g}, k = {:g}, gamma = {:g}, p = {:g} (a = {:g}), end time {:g}",
+                         p.body.length,
+                         p.body.elastic_modulus,
+                         p.body.friction_coefficient,
+                         p.body.anchoring_exponent,
+                         p.body.friction_exponent(),
+                         p.time.end_time));
+    if (!input.scene.is_plain())
+      log.line("Besides: " + input.scene.general_features());
+    std::ostringstream wave;
+    input.scene.active_stress->report(wave);
+    std::istringstream lines(wave.str());
+    log.line("Active stress: " + p.active_stress.generator);
+    for (std::string line; std::getline(lines, line);)
+      log.line("  " + line);
+    for (const std::string &note : input.notes)
+      log.line(note);
+    if (const auto *failures = input.scene.active_stress->failures(); failures != nullptr && failures->count > 0)
+      log.warn("warning: " + failures->latest);
+  }
+
+  void
+  begin_files(Log &log, const Input &input, const std::filesystem::path &folder)
+  {
+    prepare(folder);
+    if (input.parameters.output.n_snapshots > 0)
+      std::filesystem::create_directories(folder / "solution");
+    write_file(folder / "original.prm", input.file.text());
+    write_file(folder / "parameters.prm", input.effective);
+    log.open(folder / "log.txt");
+    const std::vector<double> &size = input.parameters.output.active_stress_table;
+    if (size.empty())
+      return;
+    const std::string problem = write_active_stress_table(folder / "active_stress.csv",
+                                                          *input.scene.active_stress,
+                                                          input.scene.body.length,
+                                                          input.scene.end_time,
+                                                          static_cast<unsigned int>(size[0]),
+                                                          static_cast<unsigned int>(size[1]));
+    if (!problem.empty())
+      log.warn("warning: active_stress.csv is not written: " + problem);
+  }
+
+  ExitCode
+  exit_code(const TimeOutcome &outcome)
+  {
+    if (outcome.status == "finished")
+      return ExitCode::finished;
+    if (outcome.status == "inverted")
+      return ExitCode::inverted;
+    if (outcome.status == "stopped")
+      return ExitCode::stopped;
+    if (outcome.reason == "ledger_residual" || outcome.reason == "net_friction")
+      return ExitCode::self_check_failed;
+    return ExitCode::numerical_failure;
+  }
+} // namespace crawler

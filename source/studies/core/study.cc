@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/process.h>
+#include <crawler/base/versions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/parameters/parameter_file.h>
+#include <crawler/studies/core/parameters.h>
+#include <crawler/studies/core/study.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+namespace crawler
+{
+  double
+  now()
+  {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
+  std::string
+  duration_in_words(const double seconds)
+  {
+    return seconds <= 0.       ? "0 s"
+           : seconds < 0.01    ? fmt::format("{:.2g} ms", 1e3 * seconds)
+           : seconds < 1.      ? fmt::format("{:.0f} ms", 1e3 * seconds)
+           : seconds < 10.     ? fmt::format("{:.1f} s", seconds)
+           : seconds < 120.    ? fmt::format("{:.0f} s", seconds)
+           : seconds < 7200.   ? fmt::format("{:.0f} min", seconds / 60.)
+           : seconds < 172800. ? fmt::format("{:.1f} h", seconds / 3600.)
+                               : fmt::format("{:.1f} days", seconds / 86400.);
+  }
+
+  StudyProgress::StudyProgress(Log &log, const unsigned long n_parts, std::string parts)
+    : log_(log)
+    , n_parts_(n_parts)
+    , parts_(std::move(parts))
+  {
+  }
+
+  bool
+  StudyProgress::is_due() const
+  {
+    constexpr double pause = 5.; // seconds
+    return now() >= last_ + pause;
+  }
+
+  void
+  StudyProgress::report(const unsigned long done, const std::string &remark)
+  {
+    if (!is_due())
+      return;
+    last_             = now();
+    const double rate = done / (last_ - start_);
+    log_.line(fmt::format("  {:3.0f} %  {} of {} {}, {:.3g} {}/s, {}{}",
+                          100. * done / n_parts_,
+                          done,
+                          n_parts_,
+                          parts_,
+                          rate,
+                          parts_,
+                          done > 0 ? duration_in_words((n_parts_ - done) / rate) + " left" : "time left not known yet",
+                          remark));
+  }
+
+  unsigned long
+  golden_stride(const unsigned long n)
+  {
+    auto stride = static_cast<unsigned long>(std::ceil(0.618034 * n));
+    while (std::gcd(stride, n) != 1)
+      ++stride;
+    return stride;
+  }
+
+  std::string
+  without_comments(const std::string &parameters)
+  {
+    std::string bare;
+    std::istringstream lines(parameters);
+    for (std::string line; std::getline(lines, line);)
+      if (const std::string text = trimmed(line); !text.empty() && text[0] != '#')
+        bare += line + "\n";
+    return bare;
+  }
+
+  std::map<std::string, std::string>
+  provenance(const std::string &effective, const std::string &command_line)
+  {
+    // Without comments: HDF5 allows an attribute 64 KB.
+    std::map<std::string, std::string> attributes = {{"parameters.prm", without_comments(effective)},
+                                                     {"command line", command_line}};
+    for (const auto &[name, version] : versions())
+      attributes["version of " + name] = version;
+    return attributes;
+  }
+
+  std::vector<std::string>
+  differences(const std::string &before, const std::string &after, const std::vector<std::string> &others)
+  {
+    const auto values = [](const std::string &text) {
+      Parameters parameters;
+      Declarations declarations;
+      const ParameterFile file = ParameterFile::from_text(text, "parameters.prm");
+      parameters.count_terms(file);
+      parameters.add_parameters(declarations);
+      file.apply(declarations);
+      std::map<std::string, std::string> list;
+      for (unsigned int i = 0; i < declarations.entries().size(); ++i)
+        list.emplace(declarations.entries()[i].path, declarations.value(i));
+      return list;
+    };
+    const auto are_same_number = [](const std::string &a, const std::string &b) {
+      const auto number = [](const std::string &quoted) {
+        return quoted.size() < 2 ? std::nullopt : to_number(quoted.substr(1, quoted.size() - 2));
+      };
+      return number(a) && number(a) == number(b);
+    };
+    const auto old_values = values(before), new_values = values(after);
+    std::vector<std::string> list;
+    const auto compare = [&](const std::string &entry) {
+      const auto value_in = [&](const auto &all) {
+        const auto found = all.find(entry);
+        return found == all.end() ? std::string("not there") : "\"" + found->second + "\"";
+      };
+      const std::string was = value_in(old_values), is = value_in(new_values);
+      if (was != is && !are_same_number(was, is) && std::find(others.begin(), others.end(), entry) == others.end())
+        list.push_back(fmt::format("{} was {} and is {}", entry, was, is));
+    };
+    for (const auto &[entry, value] : old_values)
+      compare(entry);
+    for (const auto &[entry, value] : new_values)
+      if (old_values.count(entry) == 0)
+        compare(entry);
+    return list;
+  }
+
+  std::string
+  plot_script(const std::string &name)
+  {
+    // Beside an installed program, else in the folder of the source code.
+    std::error_code ignored;
+    const auto program   = std::filesystem::read_symlink("/proc/self/exe", ignored);
+    const auto installed = program.parent_path().parent_path() / CRAWLER_INSTALLED_PLOTS / name;
+    return std::filesystem::exists(installed, ignored) ? installed.string()
+                                                       : CRAWLER_SOURCE_DIR "/contrib/plot/" + name;
+  }
+
+  void
+  draw(const std::string &script, const std::filesystem::path &folder, Log &log)
+  {
+    const std::string path    = plot_script(script);
+    const std::string debians = "/usr/bin/python3";
+    for (const std::string &python : {debians, std::string("python3")})
+      if (run_silently({python, path, folder.string()}))
+        return;
+    log.line(fmt::format("There is no picture (it needs Python with numpy and matplotlib); draw it with: "
+                         "python3 {} {}",
+                         path,
+                         folder.string()));
+  }
+} // namespace crawler

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/study.h>
+#include <crawler/studies/sweep/sweep_inputs.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+namespace crawler
+{
+  const std::vector<std::string> free_sweep_entries = {
+    "Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"};
+
+  namespace
+  {
+    using Texts = std::map<std::string, std::string>;
+
+    const std::string effective_name = "parameters.prm", scenes_name = "scene files", files_name = "data files";
+
+    std::string
+    as_json(const nlohmann::json &json)
+    {
+      return json.dump(-1, ' ', /*ensure_ascii=*/false, nlohmann::json::error_handler_t::replace);
+    }
+
+    /// "WHAT was A and is B" for each name whose text differs; a text that is missing is @p otherwise.
+    void
+    compare(const Texts &before,
+            const Texts &now,
+            const std::string &what,
+            const std::string &otherwise,
+            std::vector<std::string> &list)
+    {
+      const auto text_in = [&](const Texts &texts, const std::string &name) {
+        const auto found = texts.find(name);
+        return found == texts.end() ? otherwise : found->second;
+      };
+      Texts all = before;
+      all.insert(now.begin(), now.end());
+      for (const auto &[name, ignored] : all)
+        if (const std::string was = text_in(before, name), is = text_in(now, name); was != is)
+          list.push_back(fmt::format(fmt::runtime(what), name) + fmt::format(" was {} and is {}", was, is));
+    }
+  } // namespace
+
+  Texts
+  SweepInputs::attributes() const
+  {
+    return {{effective_name, effective}, {scenes_name, as_json(scenes)}, {files_name, as_json(files)}};
+  }
+
+  SweepInputs
+  SweepInputs::from_attributes(const Texts &attributes)
+  {
+    const auto parsed = [&](const std::string &name) {
+      const auto json = nlohmann::json::parse(attributes.at(name), nullptr, /*allow_exceptions=*/false);
+      if (!json.is_object() && !json.is_null())
+        throw InputError("the attribute \"" + name + "\" of the table is damaged: JSON is expected");
+      return json;
+    };
+    return {attributes.at(effective_name), parsed(scenes_name), parsed(files_name)};
+  }
+
+  SweepInputs
+  sweep_inputs(const SweepPoints &points)
+  {
+    SweepInputs inputs{without_comments(points.effective()), {}, {}};
+    const auto add_file = [&](const std::string &name) {
+      std::error_code ignored;
+      if (!name.empty() && inputs.files.count(name) == 0 && std::filesystem::is_regular_file(name, ignored))
+        inputs.files.emplace(name, fingerprint(name));
+    };
+    const auto values = [&](const Declarations &declarations) {
+      Texts texts;
+      for (unsigned int i = 0; i < declarations.entries().size(); ++i)
+      {
+        const EntryInfo &entry  = declarations.entries()[i];
+        const std::string value = declarations.value(i);
+        texts.emplace(entry.path, value);
+        if (!entry.names_file)
+          continue;
+        if (!points.design().varies(entry.path))
+          add_file(value);
+        for (const SweepAxis &axis : points.design().axes())
+          if (axis.entry == entry.path)
+            for (const std::string &one : axis.values)
+              add_file(one);
+      }
+      return texts;
+    };
+    const Texts base = values(points.declarations());
+    for (const auto &[name, declarations] : points.scene_declarations())
+      for (const auto &[entry, value] : values(*declarations))
+      {
+        const auto found = base.find(entry);
+        if (!points.design().varies(entry) && (found == base.end() || found->second != value))
+          inputs.scenes[name].emplace(entry, "\"" + value + "\"");
+      }
+    return inputs;
+  }
+
+  std::vector<std::string>
+  differences(const SweepInputs &before, const SweepInputs &now)
+  {
+    std::vector<std::string> list;
+    try
+    {
+      list = differences(before.effective, now.effective, free_sweep_entries);
+    }
+    catch (const InputError &) // what it says may be bytes that no terminal can show
+    {
+      throw InputError(
+        "the parameters that are kept in results.h5 cannot be read: it is damaged, or of another version "
+        "of crawler; a whole one is expected");
+    }
+    const auto scene_in = [](const SweepInputs &inputs, const std::string &name) {
+      const auto found = inputs.scenes.find(name);
+      return found == inputs.scenes.end() ? Texts() : found->second;
+    };
+    auto all = before.scenes;
+    all.insert(now.scenes.begin(), now.scenes.end());
+    for (const auto &[name, ignored] : all)
+      compare(scene_in(before, name), scene_in(now, name), "{} in " + name, "not set", list);
+    compare(before.files, now.files, "the file \"{}\"", "not there", list);
+    return list;
+  }
+} // namespace crawler

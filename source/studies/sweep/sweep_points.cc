@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/axis.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/input.h>
+#include <crawler/studies/sweep/sweep_points.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    const std::string axes_entry = "Sweep/Axes";
+  }
+
+  struct SweepPoints::Form
+  {
+    Form(const ParameterFile &file, const ParameterFile *scene)
+    {
+      const bool scene_has_terms = scene != nullptr && !scene->subsections("Active stress/Sum").empty();
+      parameters.count_terms(scene_has_terms ? *scene : file);
+      parameters.add_parameters(declarations);
+      file.apply(declarations);
+      for (const Assignment &assignment : scene != nullptr ? scene->assignments() : std::vector<Assignment>())
+        try
+        {
+          declarations.set(assignment.path, assignment.value);
+        }
+        catch (const InputError &error)
+        {
+          throw InputError(assignment.place + ": " + error.what());
+        }
+      for (const Assignment &assignment : file.assignments())
+        if (assignment.is_override) // stronger than all files
+          declarations.set(assignment.path, assignment.value);
+    }
+    Form(const Form &) = delete;
+
+    Parameters parameters;
+    Declarations declarations; ///< its entries are the members of parameters
+  };
+
+  SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file)
+    : file_(file)
+  {
+    auto base = std::make_unique<Form>(file, nullptr);
+    sweep_    = base->parameters.sweep;
+    std::ostringstream text;
+    base->declarations.print_prm(text);
+    effective_ = text.str();
+    try
+    {
+      design_    = std::make_unique<SweepDesign>(sweep_);
+      file_axis_ = design_->axes().size();
+      for (std::size_t i = 0; i < design_->axes().size(); ++i)
+        if (design_->axes()[i].is_file())
+          file_axis_ = i;
+      if (file_axis_ < design_->axes().size())
+        for (const std::string &name : design_->axes()[file_axis_].values)
+          if (scenes_.count(name) == 0)
+            scenes_.emplace(name, read_file(communicator, name, {}));
+      forms_[""] = std::move(base);
+      for (const auto &[name, scene] : scenes_)
+      {
+        for (const Assignment &assignment : scene.assignments())
+          if (assignment.path.starts_with("Sweep/"))
+            throw InputError(fmt::format("{}: \"{}\" stands in a file of a sweep, but section Sweep belongs to {}",
+                                         assignment.place,
+                                         assignment.path,
+                                         file.name()));
+        forms_[name] = std::make_unique<Form>(file, &scene);
+      }
+      require_admissible_values();
+      require_words();
+      require_scene();
+      kept_points();
+    }
+    catch (const InputError &error)
+    {
+      throw file.with_place(error);
+    }
+  }
+
+  SweepPoints::~SweepPoints() = default;
+
+  const Declarations &
+  SweepPoints::declarations() const
+  {
+    return forms_.at("")->declarations;
+  }
+
+  std::map<std::string, const Declarations *>
+  SweepPoints::scene_declarations() const
+  {
+    std::map<std::string, const Declarations *> list;
+    for (const auto &[name, scene] : scenes_)
+      list.emplace(name, &forms_.at(name)->declarations);
+    return list;
+  }
+
+  void
+  SweepPoints::require_admissible_values()
+  {
+    for (std::size_t number = 0; number < design_->axes().size(); ++number)
+    {
+      const SweepAxis &axis = design_->axes()[number];
+      if (axis.is_file())
+        continue;
+      for (const char *section : {"Sweep/", "Atlas/", "Tradeoff/"})
+        if (axis.entry.starts_with(section))
+          throw InputError(
+            fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),
+            axes_entry);
+      Form scratch(file_, nullptr);
+      require_valid({axis.entry, axis.values}, axes_entry, scratch.declarations);
+      if (axis.is_range) // most numbers in it are not whole
+        require_valid({axis.entry, {design_->value(number, 0)}}, axes_entry, scratch.declarations);
+    }
+  }
+
+  /// Words are looked at by what they make of the scene: a formula with an unknown name, a table that is not there.
+  void
+  SweepPoints::require_words()
+  {
+    for (const SweepAxis &axis : design_->axes())
+      if (!axis.is_file())
+        for (const std::string &word : std::set<std::string>(axis.values.begin(), axis.values.end()))
+        {
+          if (to_number(word))
+            continue;
+          parameters(0);
+          Form &form = *forms_.at(file_axis_ < design_->axes().size() ? design_->value(file_axis_, 0) : "");
+          form.declarations.set(axis.entry, word);
+          try
+          {
+            form.parameters.create_scene();
+          }
+          catch (const InputError &error) // of another entry: it may fit at other points
+          {
+            if (error.entry == axis.entry)
+              throw InputError(
+                fmt::format("\"{}\", value \"{}\" of \"{}\": {}", axes_entry, word, axis.entry, error.what()),
+                axes_entry);
+          }
+        }
+  }
+
+  /// Values that do not fit together at one point are a row that failed; if they do so at the first, the middle and
+  /// the last point the file itself is wrong.
+  void
+  SweepPoints::require_scene()
+  {
+    std::optional<InputError> wrong;
+    for (const unsigned long point : {0ul, design_->n_points() / 2, design_->n_points() - 1})
+      try
+      {
+        parameters(point).create_scene();
+        return;
+      }
+      catch (const InputError &error)
+      {
+        if (!wrong)
+          wrong.emplace(error);
+      }
+    throw InputError(*wrong);
+  }
+
+  const Parameters &
+  SweepPoints::parameters(const unsigned long point)
+  {
+    const auto &axes = design_->axes();
+    Form &form       = *forms_.at(file_axis_ < axes.size() ? design_->value(file_axis_, point) : "");
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      if (i != file_axis_)
+        form.declarations.set(axes[i].entry, design_->value(i, point));
+    return form.parameters;
+  }
+
+  std::vector<std::string>
+  SweepPoints::overrides(const SweepDesign &design, const unsigned long point) const
+  {
+    std::vector<std::string> list;
+    const auto &axes = design.axes();
+    if (file_axis_ < axes.size())
+      for (const Assignment &assignment : scenes_.at(design.value(file_axis_, point)).assignments())
+        list.push_back(assignment.path + "=" + assignment.value);
+    list.insert(list.end(), file_.overrides().begin(), file_.overrides().end());
+    for (std::size_t i = 0; i < axes.size(); ++i)
+      if (i != file_axis_)
+        list.push_back(axes[i].entry + "=" + design.value(i, point));
+    return list;
+  }
+
+  std::vector<unsigned long>
+  SweepPoints::kept_points() const
+  {
+    const std::string entry = "Sweep/Keep fields";
+    std::vector<unsigned long> list;
+    if (sweep_.keep_fields.empty())
+      return list;
+    for (const std::string &text : parse_values(sweep_.keep_fields, entry))
+    {
+      const auto number = to_number(text);
+      if (!number || *number != std::floor(*number) || *number < 0. ||
+          *number >= static_cast<double>(design_->n_points()))
+        throw InputError(fmt::format("\"{}\": found \"{}\", but the number of a point, from 0 to {}, is expected",
+                                     entry,
+                                     text,
+                                     design_->n_points() - 1),
+                         entry);
+      list.push_back(static_cast<unsigned long>(*number));
+    }
+    return list;
+  }
+} // namespace crawler

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/model_choice.h>
+#include <crawler/base/communication.h>
+#include <crawler/base/files.h>
+#include <crawler/base/stop_signal.h>
+#include <crawler/base/work_queue.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/input.h>
+#include <crawler/studies/core/log.h>
+#include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/study.h>
+#include <crawler/studies/tradeoff/tradeoff.h>
+#include <crawler/studies/tradeoff/tradeoff_measurement.h>
+#include <crawler/studies/tradeoff/tradeoff_reference.h>
+#include <crawler/studies/tradeoff/tradeoff_results.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    namespace fs = std::filesystem;
+
+    enum class Start
+    {
+      anew,
+      resumed,
+      nothing_left
+    };
+
+    /// Whether the folder has a study that can go on. Throws InputError if it has something else.
+    Start
+    how_to_start(const fs::path &folder, const CommandOptions &options, const std::string &effective)
+    {
+      if (options.resume && options.overwrite)
+        throw InputError("--resume and --overwrite contradict each other; one of them is expected");
+      std::error_code error;
+      if (!options.resume || !fs::exists(folder, error) || fs::is_empty(folder, error))
+      {
+        require_usable(folder, options.overwrite);
+        require_no_sweep(folder);
+        return Start::anew;
+      }
+      require_usable(folder, /*overwrite=*/true);
+      const bool finished = fs::exists(folder / "tradeoff.csv", error) && !fs::exists(folder / "rows", error);
+      if (!fs::exists(folder / "parameters.prm", error) || !(finished || fs::is_directory(folder / "rows", error)))
+        throw InputError("\"" + folder.string() +
+                         "\" has no tradeoff that could be resumed; another folder is expected "
+                         "for --output, or --overwrite");
+      const auto changes = differences(read_whole_file(folder / "parameters.prm"), effective, {"Tradeoff/Time limit"});
+      if (!changes.empty())
+        throw InputError(
+          fmt::format("the tradeoff in \"{}\" was made with other parameters: {}; it can be resumed with "
+                      "the same ones only (but for Tradeoff/Time limit)",
+                      folder.string(),
+                      fmt::join(changes, ", ")));
+      return finished ? Start::nothing_left : Start::resumed;
+    }
+
+    /// What all parts of the study need.
+    struct Study
+    {
+      const Parameters &parameters;
+      const Scene &scene;
+      const TradeoffReference &reference;
+      const std::vector<TradeoffFamily> &families;
+      const std::function<bool()> &interrupted;
+    };
+
+    /// The rows of one family, in the order of its tolerances.
+    std::vector<TradeoffRow>
+    rows_of(const TradeoffFamily &family, const std::map<unsigned long, TradeoffRow> &rows)
+    {
+      std::vector<TradeoffRow> own;
+      for (std::size_t i = 0; i < family.tolerances.size(); ++i)
+      {
+        const auto found = rows.find(family.first_index + i);
+        if (found == rows.end())
+          break;
+        own.push_back(found->second);
+      }
+      return own;
+    }
+
+    std::optional<std::size_t>
+    next_of(const Study &study, const TradeoffFamily &family, const std::vector<TradeoffRow> &rows)
+    {
+      std::vector<TriedSetting> tried;
+      for (const TradeoffRow &row : rows)
+        tried.push_back({row.status, row.reason, row.displacement});
+      return next_tolerance(family, tried, study.reference.displacement(), study.reference.bar);
+    }
+
+    /// This rank's share of the families that are not done. A signal ends the work of all ranks.
+    std::vector<TradeoffRow>
+    measure_own(MPI_Comm communicator,
+                const Study &study,
+                const std::map<unsigned long, TradeoffRow> &kept,
+                TradeoffRowWriter &writer,
+                Log &log)
+    {
+      std::vector<const TradeoffFamily *> pending;
+      for (const TradeoffFamily &family : study.families)
+        if (next_of(study, family, rows_of(family, kept)))
+          pending.push_back(&family);
+      std::vector<TradeoffRow> own;
+      if (pending.empty())
+        return own;
+      WorkQueue queue(communicator, pending.size());
+      StudyProgress progress(log, pending.size(), "meshes");
+      const unsigned long stride = golden_stride(pending.size());
+      while (const auto number = queue.next())
+      {
+        const TradeoffFamily &family = *pending[*number * stride % pending.size()];
+        TradeoffMeasurement measurement(study.parameters, study.scene, family, study.reference.size, study.interrupted);
+        std::vector<TradeoffRow> rows = rows_of(family, kept);
+        while (const auto tolerance = next_of(study, family, rows))
+        {
+          const auto row = study.interrupted() ? std::nullopt : measurement.measure(*tolerance);
+          if (!row)
+          {
+            queue.close();
+            return own;
+          }
+          writer.write(*row);
+          rows.push_back(*row);
+          own.push_back(*row);
+        }
+        queue.done();
+        progress.report(queue.so_far().done, fmt::format(" ({} settings on this rank)", own.size()));
+      }
+      return own;
+    }
+
+    /// A short run that is the same on all ranks: its processor time, on all ranks at once [s].
+    std::vector<double>
+    calibrate(MPI_Comm communicator, const Study &study)
+    {
+      TradeoffFamily family;
+      family.setting.formulation      = "position";
+      family.setting.mesh             = "uniform";
+      family.setting.engine           = "petsc";
+      family.setting.integrator       = "bdf";
+      family.setting.degree           = 4;
+      family.setting.cells            = 8;
+      family.tolerances               = {1e-5};
+      Parameters parameters           = study.parameters;
+      parameters.tradeoff.repetitions = 5;
+      MPI_Barrier(communicator);
+      TradeoffMeasurement measurement(parameters, study.scene, family, study.reference.size, study.interrupted);
+      const auto row       = measurement.measure(0);
+      const double seconds = row ? row->seconds : TradeoffRow::unknown;
+      std::vector<double> all(size_of(communicator));
+      MPI_Allgather(&seconds, 1, MPI_DOUBLE, all.data(), 1, MPI_DOUBLE, communicator);
+      return all;
+    }
+
+    /// The rows of all ranks, with those that were kept, on rank 0.
+    std::vector<TradeoffRow>
+    collect(MPI_Comm communicator,
+            const std::map<unsigned long, TradeoffRow> &kept,
+            const std::vector<TradeoffRow> &own)
+    {
+      std::string text;
+      for (const TradeoffRow &row : own)
+        text += pack(row) + "\n";
+      std::vector<TradeoffRow> rows;
+      if (rank_of(communicator) == 0)
+        for (const auto &[index, row] : kept)
+          rows.push_back(row);
+      for (const std::string &part : gather(text, communicator))
+      {
+        std::istringstream lines(part);
+        for (std::string line; std::getline(lines, line);)
+          rows.push_back(unpack_row(line));
+      }
+      return rows;
+    }
+
+    void
+    report_reference(const TradeoffReference &reference, const Parameters &parameters, Log &log)
+    {
+      log.line(fmt::format("Reference: displacement {:.15g} by {}; the last refinement changed it by {:.1e}.",
+                           reference.displacement(),
+                           reference.first.method,
+                           reference.first.change / reference.size));
+      if (reference.is_checked())
+        log.line(
+          fmt::format("  Checked by {}: it differs by {:.1e}. Errors below the bar of {:.1e} cannot be told from 0.",
+                      reference.second.method,
+                      std::abs(reference.second.displacement - reference.displacement()) / reference.size,
+                      reference.relative_bar()));
+      else
+        log.warn(fmt::format("no second method could check the reference; its own last change gives the bar, {:.1e}",
+                             reference.relative_bar()));
+      if (reference.relative_bar() > parameters.accuracy)
+        log.warn(fmt::format("the reference is known to {:.1e} only, but Accuracy is {:g}: nothing can be said about "
+                             "settings that are as good as that",
+                             reference.relative_bar(),
+                             parameters.accuracy));
+    }
+
+    /// Without a reference there is nothing to measure against.
+    ExitCode
+    no_reference(const TradeoffReference &reference, Log &log)
+    {
+      if (reference.status == "stopped" && reference.message.empty())
+      {
+        log.warn("stopped while the reference was made; --resume starts with it");
+        return ExitCode::stopped;
+      }
+      log.warn("no method gives a displacement to measure errors against; the last one: " + reference.message);
+      return reference.status == "inverted" ? ExitCode::inverted : ExitCode::numerical_failure;
+    }
+
+    /// All files of the results, written by rank 0.
+    void
+    write_results(const fs::path &folder,
+                  const TradeoffResults &results,
+                  const TradeoffCourse &course,
+                  const std::string &effective,
+                  Log &log)
+    {
+      const Table table = tradeoff_table(results);
+      write_file(folder / "tradeoff.csv", csv(table));
+      write_hdf5(folder / "tradeoff.h5", "tradeoff", table, provenance(effective, course.command_line));
+      write_file(folder / "recommendations.prm", recommendations_prm(results));
+      write_file(folder / "summary.json", tradeoff_json(results, course));
+      if (course.status == "finished")
+        fs::remove_all(folder / "rows");
+      log.line(in_words(results, course));
+      for (const std::string &line : recommendation_lines(results))
+        log.line(line);
+      if (std::count(results.on_front.begin(), results.on_front.end(), true) > 0) // there is something to draw
+        draw("tradeoff.py", folder, log);
+      log.line(fmt::format("Results are in {0}/; {0}/recommendations.prm has the blocks to paste.", folder.string()));
+    }
+  } // namespace
+
+  ExitCode
+  tradeoff(MPI_Comm communicator, const CommandOptions &options)
+  {
+    const StopSignal stop_signal; // from here on a signal ends the study in order
+    const double start = now();
+    const bool first   = rank_of(communicator) == 0;
+    Log log(first, options.quiet);
+    const Input input            = read_input(communicator, options.file, options.overrides);
+    const Parameters &parameters = input.parameters;
+    const TradeoffLists lists    = [&]() {
+      try
+      {
+        // The reference needs the whole equation.
+        Parameters whole = parameters;
+        whole.model      = "nonlinear";
+        choose_model(whole, input.scene);
+        return read_lists(parameters);
+      }
+      catch (const InputError &error)
+      {
+        throw input.file.with_place(error);
+      }
+    }();
+    const auto folder                       = output_folder(options.output, options.file);
+    const auto reference_file               = folder / "rows" / "reference.json";
+    const auto is_out_of_time               = [&]() { return now() - start > parameters.tradeoff.time_limit; };
+    const std::function<bool()> interrupted = [&]() {
+      return stop_signal.arrived_anywhere(MPI_COMM_SELF) || is_out_of_time();
+    };
+
+    Start how = Start::anew;
+    std::map<unsigned long, TradeoffRow> kept;
+    std::string known = on_first_rank(communicator, [&]() -> std::string {
+      how = how_to_start(folder, options, input.effective);
+      if (how == Start::nothing_left)
+        return "done";
+      if (how == Start::resumed)
+      {
+        log.open(folder / "log.txt", /*append=*/true);
+        kept = recover_rows(folder);
+        return fs::exists(reference_file) ? read_whole_file(reference_file) : "";
+      }
+      prepare(folder);
+      fs::remove_all(folder / "rows"); // of a study that was killed
+      fs::create_directories(folder / "rows");
+      write_file(folder / "original.prm", input.file.text());
+      write_file(folder / "parameters.prm", input.effective);
+      log.open(folder / "log.txt");
+      return "";
+    });
+    if (known == "done")
+    {
+      log.line(fmt::format("The tradeoff in {} is finished; nothing is left to do.", folder.string()));
+      return ExitCode::finished;
+    }
+    // All ranks know the rows that are kept.
+    std::string kept_text;
+    for (const auto &[index, row] : kept)
+      kept_text += pack(row) + "\n";
+    std::istringstream kept_lines(broadcast(kept_text, communicator));
+    for (std::string line; std::getline(kept_lines, line);)
+      kept.emplace(unpack_row(line).index, unpack_row(line));
+    if (options.resume)
+      log.line(fmt::format("Resumed with {} settings that are done.", kept.size()));
+
+    log.line(fmt::format("Tradeoff of {} on {} rank{}: making the reference ...",
+                         input.file.name(),
+                         size_of(communicator),
+                         size_of(communicator) == 1 ? "" : "s"));
+    for (const std::string &note : input.notes)
+      log.line(note);
+    if (known.empty())
+    {
+      // On every rank alike, that no one has an idle core beside it; what counts is the first one's.
+      const auto report = [&log](const std::string &line) { log.line(line); };
+      known = broadcast(pack(make_reference(parameters, input.scene, lists, interrupted, report)), communicator);
+      if (first && unpack_reference(known).status == "finished")
+        write_file(reference_file, known);
+    }
+    const TradeoffReference reference = unpack_reference(known);
+    if (reference.status != "finished")
+      return no_reference(reference, log);
+    report_reference(reference, parameters, log);
+    const auto all_families = families(lists, parameters, input.scene, reference.meshes);
+    const Study study{parameters, input.scene, reference, all_families, interrupted};
+    TradeoffCourse course;
+    course.n_settings           = all_families.back().first_index + all_families.back().tolerances.size();
+    course.n_ranks              = size_of(communicator);
+    course.command_line         = options.command_line;
+    course.calibration.at_start = calibrate(communicator, study);
+    log.line(fmt::format(
+      "{} settings on {} meshes; the reference took {:.1f} s.", course.n_settings, all_families.size(), now() - start));
+
+    TradeoffRowWriter writer(folder, rank_of(communicator));
+    const auto own            = measure_own(communicator, study, kept, writer, log);
+    course.calibration.at_end = calibrate(communicator, study);
+    auto rows                 = collect(communicator, kept, own);
+    int code                  = 0;
+    if (first)
+    {
+      std::map<unsigned long, TradeoffRow> by_index;
+      for (const TradeoffRow &row : rows)
+        by_index.emplace(row.index, row);
+      const bool finished = std::none_of(all_families.begin(), all_families.end(), [&](const TradeoffFamily &family) {
+        return next_of(study, family, rows_of(family, by_index)).has_value();
+      });
+      course.status       = finished ? "finished" : "stopped";
+      course.reason       = finished ? "" : is_out_of_time() ? "time_limit" : "signal";
+      code                = static_cast<int>(finished ? ExitCode::finished : ExitCode::stopped);
+      course.seconds      = now() - start;
+    }
+    on_first_rank(communicator, [&]() {
+      write_results(folder, evaluate(reference, std::move(rows)), course, input.effective, log);
+      if (course.status == "stopped")
+        log.warn(fmt::format("stopped by {} after {} settings; --resume goes on",
+                             course.reason == "signal" ? "a signal" : "Tradeoff/Time limit",
+                             kept.size() + own.size()));
+      return "";
+    });
+    MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
+    return static_cast<ExitCode>(code);
+  }
+} // namespace crawler

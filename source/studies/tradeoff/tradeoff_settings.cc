@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/model_choice.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
+#include <crawler/mesh/reference_element.h>
+#include <crawler/parameters/axis.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/run/batch.h>
+#include <crawler/studies/tradeoff/tradeoff_settings.h>
+#include <crawler/time/integrators.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace crawler
+{
+  namespace
+  {
+    /// On a mesh with the relative error e, tolerances above this times e are left out.
+    constexpr double loosest_over_mesh_error = 1e4;
+    /// An error that changes by less than this part of itself, so many times, is that of the mesh.
+    constexpr double settled                = 0.1;
+    constexpr std::size_t settled_changes   = 2;
+    constexpr std::size_t failures_in_a_row = 3;
+    /// First steps, relative to the duration, as numerics_choice.cc has them.
+    constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
+
+    /// The largest Accuracy.
+    constexpr double loosest_accuracy = 0.1;
+
+    std::vector<std::string>
+    words(const std::string &text, const std::string &entry, const std::vector<std::string> &known)
+    {
+      const std::string name = "Tradeoff/" + entry;
+      const auto values      = parse_values(text, name);
+      for (const std::string &value : values)
+        if (std::find(known.begin(), known.end(), value) == known.end())
+        {
+          const auto near = nearest_names(value, known, 1);
+          throw InputError(fmt::format("\"{}\": found \"{}\", but {} is expected{}",
+                                       name,
+                                       value,
+                                       quoted_list(known),
+                                       near.empty() ? "" : "; the nearest is " + quoted_list(near)),
+                           name);
+        }
+      return values;
+    }
+
+    std::vector<double>
+    numbers(const std::string &text, const std::string &entry)
+    {
+      const std::string name = "Tradeoff/" + entry;
+      std::vector<double> result;
+      for (const std::string &value : parse_values(text, name))
+      {
+        const auto number = to_number(value);
+        if (!number || !(*number > 0.) || !(*number < 1.))
+          throw InputError(fmt::format("\"{}\": found \"{}\", but a number between 0 and 1 is expected", name, value),
+                           name);
+        result.push_back(*number);
+      }
+      std::sort(result.rbegin(), result.rend());
+      return result;
+    }
+
+    std::vector<unsigned int>
+    whole_numbers(const std::string &text, const std::string &entry, const unsigned int largest)
+    {
+      const std::string name = "Tradeoff/" + entry;
+      std::vector<unsigned int> result;
+      for (const std::string &value : parse_values(text, name))
+      {
+        const auto number = to_number(value);
+        if (!number || *number != std::round(*number) || *number < 1 || *number > largest)
+          throw InputError(
+            fmt::format("\"{}\": found \"{}\", but a whole number from 1 to {} is expected", name, value, largest),
+            name);
+        result.push_back(static_cast<unsigned int>(*number));
+      }
+      std::sort(result.begin(), result.end());
+      return result;
+    }
+
+    /// Names of integrators that choose their steps themselves. What is known against others is said.
+    std::vector<std::string>
+    read_integrators(const Parameters &parameters)
+    {
+      const std::string name = "Tradeoff/Integrators";
+      const auto values      = parse_values(parameters.tradeoff.integrators, name);
+      for (const std::string &value : values)
+        try
+        {
+          if (value == "automatic")
+            throw InputError("\"automatic\" is no integrator, but the name of one is expected");
+          TimeParameters time = parameters.time;
+          time.integrator     = value;
+          time.step_control   = "adaptive";
+          time.initial_step.reset();
+          time.validate();
+        }
+        catch (const InputError &error)
+        {
+          throw InputError(fmt::format("\"{}\": {}", name, error.what()), name);
+        }
+      return values;
+    }
+
+    Formulation
+    formulation_of(const std::string &name)
+    {
+      return name == "position" ? Formulation::position : Formulation::stretch;
+    }
+
+    /// Why the program cannot do this; empty if it can.
+    std::string
+    refusal(const TradeoffSetting &setting, const Scene &scene)
+    {
+      const bool is_stretch = setting.formulation == "stretch";
+      if (const std::string reason = reason_against_stretch_form(scene); is_stretch && !reason.empty())
+        return "the stretch form cannot compute this: " + reason;
+      if (is_stretch && (setting.engine != "fused" || setting.mesh != "uniform"))
+        return "the stretch form is for the fused engine, one run at a time, and for meshes that do not change";
+      if (setting.engine == "petsc")
+        return "";
+      Numerics numerics;
+      numerics.degree         = 1;
+      numerics.n_cells        = 1;
+      numerics.formulation    = formulation_of(setting.formulation);
+      numerics.mesh.tolerance = setting.mesh == "adaptive" ? 1. : 0.;
+      TimeParameters time;
+      time.integrator = setting.integrator;
+      if (!lane_method(scene, time, numerics))
+        return fmt::format("the fused engine{} has the radau integrators, on uniform meshes",
+                           setting.is_batch() ? ", which computes batches," : "");
+      return "";
+    }
+  } // namespace
+
+  namespace
+  {
+    /// A level without a mesh: one setting, or several of different Accuracy.
+    TradeoffFamily
+    reduced_family(const std::string &model,
+                   const TradeoffLists &lists,
+                   const Parameters &parameters,
+                   const Scene &scene)
+    {
+      TradeoffFamily family;
+      family.setting.model = model;
+      family.tolerances    = {loosest_accuracy};
+      try
+      {
+        Parameters own = parameters;
+        own.model      = model;
+        choose_model(own, scene);
+        if (model == "kinematic") // a closed form has no tolerance
+          for (const double tolerance : lists.tolerances)
+            if (tolerance < loosest_accuracy)
+              family.tolerances.push_back(tolerance);
+      }
+      catch (const InputError &error)
+      {
+        family.not_offered = error.what();
+        family.tolerances  = {TradeoffSetting::none};
+      }
+      return family;
+    }
+  } // namespace
+
+  std::string
+  in_words(const TradeoffSetting &s)
+  {
+    if (s.has_no_mesh())
+      return fmt::format(
+        "model {}{}", s.model, std::isnan(s.tolerance) ? "" : fmt::format(", Accuracy {:g}", s.tolerance));
+    std::vector<std::string> parts;
+    for (const std::string &word : {s.formulation, s.engine, s.integrator})
+      if (!word.empty())
+        parts.push_back(word);
+    if (s.degree > 0)
+      parts.push_back(fmt::format("degree {}", s.degree));
+    if (s.cells > 0)
+      parts.push_back(fmt::format("{} cell{}", s.cells, s.cells == 1 ? "" : "s"));
+    if (s.mesh == "adaptive")
+      parts.push_back(std::isnan(s.mesh_tolerance) ? std::string("adaptive mesh")
+                                                   : fmt::format("adaptive mesh of tolerance {:g}", s.mesh_tolerance));
+    if (!std::isnan(s.tolerance))
+      parts.push_back(fmt::format("tolerance {:g} of the displacement", s.tolerance));
+    return fmt::format("{}", fmt::join(parts, ", "));
+  }
+
+  TradeoffLists
+  read_lists(const Parameters &parameters)
+  {
+    const TradeoffParameters &texts = parameters.tradeoff;
+    TradeoffLists lists;
+    lists.models          = words(texts.models, "Models", {"perturbation", "kinematic", "nonlinear"});
+    lists.formulations    = words(texts.formulations, "Formulations", {"position", "stretch"});
+    lists.meshes          = words(texts.meshes, "Meshes", {"uniform", "adaptive"});
+    lists.engines         = words(texts.engines, "Engines", {"fused", "petsc", "batch"});
+    lists.integrators     = read_integrators(parameters);
+    lists.degrees         = whole_numbers(texts.degrees, "Degrees", ReferenceElement::highest_degree);
+    lists.mesh_tolerances = numbers(texts.mesh_tolerances, "Mesh tolerances");
+    lists.tolerances      = numbers(texts.tolerances, "Tolerances");
+    if (trimmed(texts.cells) != "automatic")
+      lists.cells = whole_numbers(texts.cells, "Cells", 10000000);
+    return lists;
+  }
+
+  std::vector<TradeoffFamily>
+  families(const TradeoffLists &lists, const Parameters &parameters, const Scene &scene, const MeshErrors &meshes)
+  {
+    std::vector<TradeoffFamily> result;
+    unsigned long index = 0;
+    const auto add      = [&](const TradeoffSetting &setting, const std::vector<double> &tolerances) {
+      result.push_back({setting, tolerances, index, ""});
+      index += tolerances.size();
+    };
+    const auto add_meshes = [&](TradeoffSetting setting) {
+      if (setting.mesh == "adaptive")
+      {
+        for (const double mesh_tolerance : lists.mesh_tolerances)
+        {
+          setting.mesh_tolerance = mesh_tolerance;
+          add(setting, lists.tolerances);
+        }
+        return;
+      }
+      for (const auto &[cells, error] : meshes.at(setting.degree))
+      {
+        setting.cells = cells;
+        std::vector<double> tolerances;
+        for (const double tolerance : lists.tolerances)
+          if (tolerance <= loosest_over_mesh_error * error)
+            tolerances.push_back(tolerance);
+        if (tolerances.empty())
+          tolerances.push_back(lists.tolerances.back());
+        add(setting, tolerances);
+      }
+    };
+    for (const std::string &model : lists.models)
+      if (model != "nonlinear")
+      {
+        result.push_back(reduced_family(model, lists, parameters, scene));
+        result.back().first_index = index;
+        index += result.back().tolerances.size();
+      }
+    if (std::find(lists.models.begin(), lists.models.end(), "nonlinear") == lists.models.end())
+      return result;
+    for (const std::string &formulation : lists.formulations)
+      for (const std::string &mesh : lists.meshes)
+        for (const std::string &engine : lists.engines)
+          for (const std::string &integrator : lists.integrators)
+          {
+            TradeoffSetting setting;
+            setting.formulation   = formulation;
+            setting.mesh          = mesh;
+            setting.engine        = engine;
+            setting.integrator    = integrator;
+            const std::string why = refusal(setting, scene);
+            if (!why.empty())
+            {
+              result.push_back({setting, {TradeoffSetting::none}, index++, why});
+              continue;
+            }
+            for (const unsigned int degree : formulation == "stretch" ? std::vector<unsigned int>{1} : lists.degrees)
+            {
+              setting.degree = degree;
+              add_meshes(setting);
+            }
+          }
+    return result;
+  }
+
+  std::optional<std::size_t>
+  next_tolerance(const TradeoffFamily &family,
+                 const std::vector<TriedSetting> &tried,
+                 const double reference,
+                 const double bar)
+  {
+    const std::size_t n = tried.size();
+    if (n == 0)
+      return 0;
+    const TriedSetting &last = tried.back();
+    if (n == family.tolerances.size() || last.status == "refused" || last.reason == "time_limit")
+      return std::nullopt;
+    const auto error = [&](const std::size_t i) { return std::abs(tried[i].displacement - reference); };
+    if (last.status == "finished" && error(n - 1) <= bar)
+      return std::nullopt;
+    std::size_t failures = 0;
+    while (failures < n && tried[n - 1 - failures].status != "finished")
+      ++failures;
+    if (failures >= failures_in_a_row)
+      return std::nullopt;
+    std::size_t changes = 0;
+    while (changes + 1 < n && std::abs(tried[n - 1 - changes].displacement - tried[n - 2 - changes].displacement) <
+                                settled * error(n - 1 - changes))
+      ++changes;
+    return changes >= settled_changes ? std::nullopt : std::optional(n);
+  }
+
+  Parameters
+  with_setting(const Parameters &parameters, const TradeoffSetting &setting, const double size)
+  {
+    Parameters result = parameters;
+    result.model      = setting.model;
+    if (setting.has_no_mesh())
+    {
+      result.accuracy = setting.tolerance;
+      return result;
+    }
+    result.discretization.formulation = setting.formulation;
+    result.discretization.mesh        = setting.mesh;
+    result.discretization.degree      = setting.degree;
+    if (setting.mesh == "adaptive")
+      result.discretization.mesh_tolerance = setting.mesh_tolerance;
+    else
+      result.discretization.n_cells = setting.cells;
+    result.time.integrator   = setting.integrator;
+    result.time.engine       = setting.engine == "petsc" ? "petsc" : "automatic";
+    result.time.step_control = "adaptive";
+    result.time.cycle_stop   = "off"; // its error is no matter of the setting
+    result.time.tolerance    = std::stod(fmt::format("{:.5e}", setting.tolerance * size));
+    if (!result.time.initial_step)
+      result.time.initial_step =
+        (setting.integrator.starts_with("radau") ? one_step_start : multistep_start) * parameters.time.end_time;
+    return result;
+  }
+
+  std::string
+  as_prm(const Parameters &parameters, const TradeoffSetting &setting)
+  {
+    if (setting.has_no_mesh())
+      return fmt::format("set Model    = {}\nset Accuracy = {}\n", parameters.model, to_text(parameters.accuracy));
+    const DiscretizationParameters &d = parameters.discretization;
+    const TimeParameters &t           = parameters.time;
+    std::string text                  = fmt::format("# with Model = {}\nsubsection Discretization\n"
+                                                    "  set Formulation     = {}\n  set Mesh            = {}\n"
+                                                    "  set Degree          = {}\n",
+                                   parameters.model,
+                                   d.formulation,
+                                   d.mesh,
+                                   d.degree.value());
+    if (setting.mesh == "adaptive")
+      text += fmt::format("  set Mesh tolerance  = {}\n", to_text(d.mesh_tolerance.value()));
+    if (d.n_cells)
+      text += fmt::format("  set Number of cells = {}\n", *d.n_cells);
+    text += fmt::format(
+      "end\nsubsection Time\n  set Integrator      = {}\n  set Engine          = {}\n", t.integrator, t.engine);
+    if (t.integrator == "bdf")
+      text += fmt::format("  set Order           = {}\n", t.order);
+    return text + fmt::format("  set Step control    = {}\n  set Cycle stop      = {}\n  set Tolerance       = {}\n  "
+                              "set Initial step    = {}\nend\n",
+                              t.step_control,
+                              t.cycle_stop,
+                              to_text(t.tolerance.value()),
+                              to_text(t.initial_step.value()));
+  }
+} // namespace crawler

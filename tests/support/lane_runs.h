@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include "run_text.h"
+
+#include <crawler/run/batch.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace crawler::test
+{
+  /// Everything that a run needs. It cannot be moved, since the others point to it.
+  struct LaneRun
+  {
+    Parameters parameters;
+    Scene scene;
+    Numerics numerics;
+
+    LaneRun(const Settings &settings, const std::string &integrator, const Numerics &chosen)
+      : parameters(parameters_with(settings))
+      , numerics(chosen)
+    {
+      parameters.time.integrator = integrator;
+      scene                      = parameters.create_scene();
+    }
+    LaneRun(const LaneRun &) = delete;
+
+    BatchRun
+    entry() const
+    {
+      return {&scene, &parameters.time, &numerics};
+    }
+
+    /// By a Simulation, on the fused engine ("automatic") or on PETSc ("petsc").
+    SimulationResult
+    simulate(const std::string &engine, const Simulation::Options &options = {.energy_balance = true}) const
+    {
+      TimeParameters time = parameters.time;
+      time.engine         = engine;
+      return Simulation(MPI_COMM_WORLD, scene, time, numerics).run({}, options);
+    }
+  };
+  using LaneRuns = std::vector<std::unique_ptr<LaneRun>>;
+
+  inline std::vector<BatchRun>
+  entries(const LaneRuns &runs)
+  {
+    std::vector<BatchRun> result;
+    for (const auto &run : runs)
+      result.push_back(run->entry());
+    return result;
+  }
+
+  /// A run alone in a batch.
+  inline std::optional<SimulationResult>
+  run_alone(const LaneRun &run,
+            const Simulation::Options &options = {.energy_balance = true},
+            const LaneEngine &engine           = batch_engine())
+  {
+    const std::array<BatchRun, 1> only = {{run.entry()}};
+    return run_batch(only, options, {}, engine).front();
+  }
+
+  /// The engines that this processor has.
+  inline std::vector<const LaneEngine *>
+  batch_engines()
+  {
+    std::vector<const LaneEngine *> result;
+    for (const char *name : {"baseline", "avx2", "avx512"})
+      if (const LaneEngine *engine = batch_engine(name))
+        result.push_back(engine);
+    return result;
+  }
+
+  /// Settings, and others that are stronger.
+  inline Settings
+  with(Settings settings, const Settings &others)
+  {
+    settings.insert(settings.end(), others.begin(), others.end());
+    return settings;
+  }
+
+  /// A stress by a formula, friction exponent @p a.
+  inline Settings
+  expression(const double a, const std::string &formula, const double end_time = 1., const double k = 1.)
+  {
+    return {{"Body/Anchoring exponent", text(1. - a)},
+            {"Body/Elastic modulus", text(k)},
+            {"Active stress/Generator", "expression"},
+            {"Active stress/Expression/Active stress", formula},
+            {"Time/End time", text(end_time)}};
+  }
+
+  /// All numbers of a result but the seconds.
+  inline std::vector<double>
+  numbers_of(const SimulationResult &r)
+  {
+    std::vector<double> result = {r.time.time,
+                                  r.time.step_size,
+                                  static_cast<double>(r.time.steps),
+                                  static_cast<double>(r.time.rejected_steps),
+                                  static_cast<double>(r.time.newton_iterations),
+                                  r.displacement,
+                                  r.largest_u,
+                                  r.unresolved,
+                                  r.strain,
+                                  r.net_friction,
+                                  r.min_stretch.value,
+                                  r.min_stretch.s,
+                                  r.min_stretch.t,
+                                  r.max_stretch.value,
+                                  r.max_stretch.s,
+                                  r.max_stretch.t,
+                                  static_cast<double>(r.mesh_changes),
+                                  static_cast<double>(r.most_cells),
+                                  r.largest_indicator};
+    if (r.energy_balance)
+      for (const double value : {r.energy_balance->stress_power,
+                                 r.energy_balance->dissipation,
+                                 r.energy_balance->positive_power,
+                                 r.energy_balance->exchanged,
+                                 r.energy_balance->end_work,
+                                 r.energy_balance->elastic_energy,
+                                 r.energy_balance->transfer_loss})
+        result.push_back(value);
+    return result;
+  }
+
+  inline std::vector<double>
+  numbers_of(const Gait &gait)
+  {
+    std::vector<double> result = {gait.period, gait.n_strides, gait.displacement, gait.length};
+    if (gait.wave)
+      result.insert(result.end(), {gait.wave->speed, gait.wave->coherence});
+    if (gait.energy_balance)
+      for (double EnergyBalance::*energy : EnergyBalance::energies())
+        result.push_back((*gait.energy_balance).*energy);
+    return result;
+  }
+
+  /// The same to the last bit; signs of zeros and what is not a number included.
+  inline bool
+  same_bits(const std::vector<double> &a, const std::vector<double> &b)
+  {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+  }
+
+  inline bool
+  same_bits(const std::optional<SimulationResult> &a, const std::optional<SimulationResult> &b)
+  {
+    return a.has_value() == b.has_value() &&
+           (!a || (a->time.status == b->time.status && a->inversion.has_value() == b->inversion.has_value() &&
+                   same_bits(numbers_of(*a), numbers_of(*b)) && a->gait.has_value() == b->gait.has_value() &&
+                   (!a->gait || same_bits(numbers_of(*a->gait), numbers_of(*b->gait)))));
+  }
+} // namespace crawler::test

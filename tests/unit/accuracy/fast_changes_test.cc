@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/run_text.h"
+
+#include <crawler/accuracy/stress_scales.h>
+#include <crawler/scene/fast_changes.h>
+#include <crawler/scene/period.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  Scene
+  formula(const std::string &text, const double end_time = 1.)
+  {
+    return test::parameters_with({{"Active stress/Generator", "expression"},
+                                  {"Active stress/Expression/Active stress", text},
+                                  {"Time/End time", test::text(end_time)}})
+      .create_scene();
+  }
+
+  FastChanges
+  changes_of(const Scene &scene, const double known)
+  {
+    double largest = 0.1;
+    return find_fast_changes(
+      *scene.active_stress, scene.body.length, 0., scene.end_time, [known](double, double) { return known; }, largest);
+  }
+
+  /// The shortest limit that a step meets which starts at this time.
+  double
+  longest_step(const std::vector<StepLimit> &limits, const double t)
+  {
+    unsigned int present = 0;
+    return admitted_step(limits.data(), static_cast<unsigned int>(limits.size()), present, t, HUGE_VAL);
+  }
+} // namespace
+
+/// However short it is and wherever: events that samples cannot see.
+TEST(FastChanges, FindsEventsOfFormulas)
+{
+  for (const double width : {1e-3, 1e-4, 1e-5, 1e-7})
+    for (const double time : {0.0123, 0.31415926, 0.5, 0.77777})
+    {
+      const Scene scene       = formula(fmt::format(
+        "0.1*sin(2*pi*(s+t))*tanh(5*t)+0.6*sin(pi*s)*sin(2*pi*s)*exp(-((t-{})/{})^2)", time, test::text(width)));
+      const FastChanges found = changes_of(scene, 0.7);
+      EXPECT_TRUE(found.is_complete);
+      ASSERT_FALSE(found.list.empty()) << width << " at " << time;
+      EXPECT_GT(found.list.front().from, time - 100. * width);
+      EXPECT_LT(found.list.back().to, time + 100. * width);
+      const StressScales scales = stress_scales(scene);
+      EXPECT_TRUE(scales.sees_all);
+      EXPECT_LT(longest_step(scales.step_limits, time), 4. * width);
+      EXPECT_GT(longest_step(scales.step_limits, time + 0.01 + 20. * width), 0.05);
+      EXPECT_GT(scales.stress, 0.3);
+      EXPECT_LT(scales.stress, 0.6);
+    }
+}
+
+TEST(FastChanges, OfASlowStressAreNone)
+{
+  for (const char *text : {"0.1*sin(2*pi*(s+t))", "0.3*exp(-((s-0.2-0.5*t)/0.1)^2)*sin(pi*t)^2", "0.2*s"})
+  {
+    const Scene scene = formula(text);
+    EXPECT_TRUE(changes_of(scene, 2.).list.empty()) << text;
+    EXPECT_LE(stress_scales(scene).step_limits.size(), 1u) << text;
+  }
+}
+
+TEST(FastChanges, OfJumpsAreAsShortAsTheyCanBe)
+{
+  const FastChanges found = changes_of(formula("t<0.4321 ? 0.1*s : 0.2*s"), 1.);
+  ASSERT_EQ(found.list.size(), 1u);
+  EXPECT_NEAR(found.list.front().from, 0.4321, 1e-8);
+  EXPECT_NEAR(found.list.front().to, 0.4321, 1e-8);
+}
+
+/// A single pulse that runs over the body in a ten thousandth of the time.
+TEST(FastChanges, GeneratorsSayWhenTheyAct)
+{
+  const auto scene_with = [](test::Settings settings) {
+    settings.emplace_back("Time/End time", "1000");
+    return test::parameters_with(settings).create_scene();
+  };
+  const Scene pulse = scene_with({{"Active stress/Generator", "pulse"},
+                                  {"Active stress/Pulse/Amplitude", "0.4"},
+                                  {"Active stress/Pulse/Speed", "20"}});
+  const auto limits = stress_scales(pulse).step_limits;
+  EXPECT_NEAR(longest_step(limits, 0.05), 0.1 / 20. / 0.858, 1e-3);
+  EXPECT_GT(longest_step(limits, 1.), 100.);
+  const Scene robot = scene_with({{"Active stress/Generator", "segments"},
+                                  {"Active stress/Segments/Switching", "smooth"},
+                                  {"Active stress/Segments/Front width", "1e-4"},
+                                  {"Active stress/Segments/Frequency", "0.01"}});
+  EXPECT_LT(longest_step(stress_scales(robot).step_limits, 0.), 0.02);
+  const Scene sum = scene_with({{"Active stress/Generator", "sum"},
+                                {"Active stress/Sum/Term 1/Generator", "travelling wave"},
+                                {"Active stress/Sum/Term 1/Travelling wave/Frequency", "0.01"},
+                                {"Active stress/Sum/Term 2/Generator", "pulse"},
+                                {"Active stress/Sum/Term 2/Pulse/Speed", "20"},
+                                {"Active stress/Sum/Term 2/Pulse/Start position", "-9000"}});
+  EXPECT_LT(longest_step(stress_scales(sum).step_limits, 450.01), 0.02);
+}
+
+/// An event that happens once is no part of a period, also if it falls between the samples of the search.
+TEST(FastChanges, ThatHappenOnceSpoilAPeriod)
+{
+  EXPECT_TRUE(formula("0.1*sin(2*pi*(s+10*t))").active_stress->period());
+  EXPECT_FALSE(formula("0.1*sin(2*pi*(s+10*t))+0.1*exp(-((t-0.51234)/1e-6)^2)").active_stress->period());
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/run_text.h"
+
+#include <crawler/accuracy/form_choice.h>
+
+#include <gtest/gtest.h>
+
+using namespace crawler;
+
+TEST(FormChoice, SoftAndEmptiedBodiesAreForTheStretchForm)
+{
+  EXPECT_TRUE(is_soft(/*stiffness=*/1e-4, /*exponent=*/-1., /*accuracy=*/1e-4));
+  EXPECT_FALSE(is_soft(1., -1., 1e-4));
+  EXPECT_TRUE(empties(/*smallest_stretch=*/0.01, -1., 1e-4));
+  EXPECT_FALSE(empties(0.2, -1., 1e-4));
+}
+
+TEST(FormChoice, SteepFrictionMakesThinnerLayers)
+{
+  EXPECT_FALSE(is_soft(1e-2, -1., 1e-4));
+  EXPECT_TRUE(is_soft(1e-2, -7., 1e-4));
+}
+
+/// The stretch form is of second order, so digits are dearer there.
+TEST(FormChoice, LimitsFallWithAccuracy)
+{
+  EXPECT_FALSE(is_soft(1e-4, -1., 1e-9));
+  EXPECT_FALSE(empties(0.02, -1., 1e-8));
+  EXPECT_FALSE(is_cheaper_than_adaptive(/*lengths=*/6., 1e-9));
+  EXPECT_TRUE(is_cheaper_than_adaptive(6., 1e-4));
+  EXPECT_FALSE(is_cheaper_than_adaptive(100., 1e-4));
+}
+
+/// Friction that vanishes with the stretch holds nothing: what is lost there is lost.
+TEST(FormChoice, NothingIsEmptiedWhereFrictionVanishes)
+{
+  EXPECT_FALSE(empties(1e-3, 0.5, 1e-4));
+}
+
+/// What the user has chosen is not changed, and what the stretch form cannot compute stays with the position form.
+TEST(FormChoice, IsMadeByTheProgramOnly)
+{
+  const auto form_of = [](const test::Settings &more) {
+    test::Settings settings = test::wave(-1., 0.6);
+    settings.emplace_back("Accuracy", "1e-3");
+    settings.insert(settings.end(), more.begin(), more.end());
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    return choose_numerics(MPI_COMM_WORLD, parameters, scene)->numerics.formulation;
+  };
+  EXPECT_EQ(form_of({}), Formulation::stretch);
+  EXPECT_EQ(form_of({{"Discretization/Formulation", "position"}}), Formulation::position);
+  EXPECT_EQ(form_of({{"Discretization/Number of cells", "16"}, {"Time/Tolerance", "1e-3"}}), Formulation::position);
+}

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Answers of the stretch form: the order of its meshes, and what extrapolation and the reported errors are worth.
+#include "../../support/lane_runs.h"
+#include "../../support/observed_order.h"
+
+#include <crawler/run/summary.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace crawler;
+using test::Settings;
+
+namespace
+{
+  const Settings stretch = {{"Discretization/Formulation", "stretch"}};
+
+  /// doc/theory.md, section 5.
+  struct Row
+  {
+    double a, k, chi, displacement;
+  };
+
+  /// The answer finished with an error as small as wanted, and no smaller than the true one.
+  void
+  expect_true(const SimulationResult &result, const double exact, const double half_digit, const double accuracy)
+  {
+    ASSERT_EQ(result.time.status, "finished") << result.time.message;
+    ASSERT_TRUE(result.error);
+    EXPECT_EQ(result.formulation, Formulation::stretch);
+    EXPECT_LE(std::abs(result.displacement - exact), result.error->total + half_digit);
+    EXPECT_LE(result.error->total, accuracy * std::abs(exact) * 1.001);
+    EXPECT_LT(result.energy_balance->residual(), 1e-4);
+    EXPECT_LT(result.net_friction, 1e-12);
+  }
+} // namespace
+
+TEST(MeshFamily, IsOfSecondOrder)
+{
+  constexpr double exact          = 0.0900725298;
+  const std::vector<double> cells = {25, 50, 100};
+  std::vector<double> displacements, errors;
+  for (const double n : cells)
+  {
+    const auto result =
+      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch),
+                                {{"Discretization/Number of cells", test::text(n)}, {"Time/Tolerance", "1e-9"}}))
+        .result;
+    ASSERT_EQ(result.time.status, "finished");
+    EXPECT_EQ(result.mesh->n_cells, n);
+    displacements.push_back(result.displacement);
+    errors.push_back(std::abs(result.displacement - exact));
+  }
+  const double order = test::observed_order(cells, errors);
+  fmt::print("errors {:.2e}, {:.2e}, {:.2e}, order {:.3f}\n", errors[0], errors[1], errors[2], order);
+  EXPECT_NEAR(order, 2., 0.1);
+  EXPECT_GT(errors[2], 1e-4 * exact); // what extrapolation gains
+  const auto extrapolated = [&](const int i) {
+    return std::abs((4. * displacements[i] - displacements[i - 1]) / 3. - exact);
+  };
+  EXPECT_LT(extrapolated(2), 1e-5 * exact);
+  EXPECT_NEAR(std::log2(extrapolated(1) / extrapolated(2)), 4., 0.3);
+}
+
+TEST(MeshFamily, ErrorsAreTrueAndSmallEnough)
+{
+  for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7})
+  {
+    SCOPED_TRACE(accuracy);
+    const auto result =
+      test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch), {{"Accuracy", test::text(accuracy)}}))
+        .result;
+    expect_true(result, 0.0900725298, 1e-10, accuracy);
+  }
+}
+
+/// Bodies that nearly invert, stiff and very soft ones.
+TEST(MeshFamily, NumbersOfTheTable)
+{
+  for (const Row &row : {Row{-1., 1., 0.6, 0.2349598824},
+                         Row{-1., 1., 0.7, 0.287958443},
+                         Row{-1., 1., 0.8, 0.328038004},
+                         Row{-1., 10., 0.6, 0.26374413},
+                         Row{-1., 1e-5, 0.3, 0.047935667}})
+    for (const std::string formulation : {"stretch", "automatic"})
+    {
+      SCOPED_TRACE(fmt::format("k = {:g}, chi = {:g}, {}", row.k, row.chi, formulation));
+      const auto result =
+        test::run_with(test::with(test::wave(row.a, row.chi, 1., 1., row.k),
+                                  {{"Accuracy", "1e-4"}, {"Discretization/Formulation", formulation}}))
+          .result;
+      expect_true(result, row.displacement, 1e-9, 1e-4);
+    }
+}
+
+/// For -1 < a < 0 a body may lose its stretch inside: when is known as well as is said, and all places that are lost
+/// are named.
+TEST(MeshFamily, TimeOfAnInversion)
+{
+  for (const double accuracy : {1e-3, 1e-4})
+  {
+    const auto result = test::run_with(test::with(test::wave(-0.8, 0.77), {{"Accuracy", test::text(accuracy)}})).result;
+    EXPECT_EQ(result.time.status, "inverted");
+    EXPECT_EQ(result.time.reason, "inverted_inside");
+    EXPECT_EQ(result.formulation, Formulation::stretch);
+    ASSERT_TRUE(result.inversion && result.inversion_error && result.inverted_places);
+    EXPECT_NEAR(result.inversion->t, 0.322123, *result.inversion_error + 0.5e-6);
+    EXPECT_LE(*result.inversion_error, 1.001 * accuracy);
+    EXPECT_LE(result.inverted_places->first, result.inversion->s);
+    EXPECT_GE(result.inverted_places->second, result.inversion->s);
+  }
+}
+
+/// A body that is its own mirror image goes nowhere; that is known to a part of its deformation.
+TEST(MeshFamily, SymmetricBodiesStay)
+{
+  const auto result = test::run_with(test::with(test::expression(-1., "0.3*sin(pi*t)^2*sin(pi*s)"), stretch)).result;
+  EXPECT_EQ(result.time.status, "finished") << result.time.message;
+  EXPECT_GT(result.largest_u, 1e-3);
+  EXPECT_LT(std::abs(result.displacement), 1e-12);
+  ASSERT_TRUE(result.error);
+  EXPECT_GE(result.error->total, std::abs(result.displacement));
+}
+
+/// Works and energies are extrapolated like the displacement; all numbers have their errors.
+TEST(MeshFamily, WorksEnergiesAndTheirErrors)
+{
+  const Settings settings = test::wave(-1., 0.4);
+  const auto json_of      = [](const Settings &own) {
+    return summary_of(test::run_with(own).result, test::parameters_with(own));
+  };
+  const auto exact = json_of(test::with(settings, {{"Accuracy", "1e-9"}})),
+             found = json_of(test::with(test::with(settings, stretch), {{"Accuracy", "1e-4"}}));
+  for (const char *key : {"stress_power",
+                          "dissipation",
+                          "elastic_energy",
+                          "paper_energy",
+                          "positive_power",
+                          "min_stretch",
+                          "max_stretch"})
+  {
+    const auto value = [&](const auto &summary) {
+      return summary.at(key).is_object() ? summary.at(key).at("value").template get<double>()
+                                         : summary.at(key).template get<double>();
+    };
+    const double error = found.at("errors").at(key).get<double>();
+    EXPECT_NEAR(value(found), value(exact), error + 1e-5 * std::abs(value(exact))) << key;
+    EXPECT_LT(error, 0.02 * std::max(std::abs(value(exact)), exact.at("dissipation").get<double>())) << key;
+  }
+}
+
+TEST(MeshFamily, IsChosenWhereTheStretchIsSmallOrTheBodySoft)
+{
+  const auto form = [](const Settings &settings) { return test::run_with(settings).choice.numerics.formulation; };
+  EXPECT_EQ(form(test::wave(-1., 0.2)), Formulation::position);
+  EXPECT_EQ(form(test::wave(1., 0.2, -1.)), Formulation::position);
+  EXPECT_EQ(form(test::wave(-1., 0.6)), Formulation::stretch);
+  EXPECT_EQ(form(test::wave(-1., 0.2, 1., 1., 1e-5)), Formulation::stretch);
+  // What only the other form has.
+  EXPECT_EQ(form(test::with(test::wave(-1., 0.2, 1., 1., 1e-4), {{"Discretization/Degree", "4"}})),
+            Formulation::position);
+}
+
+/// Whoever does not want to wait gets no answer.
+TEST(MeshFamily, CanBeStopped)
+{
+  const Parameters parameters = test::parameters_with(test::with(test::wave(-1., 0.4), stretch));
+  const Scene scene           = parameters.create_scene();
+  const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene);
+  ASSERT_TRUE(choice && choice->is_family);
+  unsigned int n_steps  = 0;
+  const auto keep_going = [&]() { return ++n_steps < 100; };
+  const Answer answer   = answer_of_family(parameters, scene, *choice, {}, {}, keep_going);
+  EXPECT_EQ(answer.result.time.status, "stopped");
+  EXPECT_EQ(n_steps, 100u);
+}

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The generator "prescribed strain": its stress, its three sources of strain, and what it refuses; and the pieces that
+// it is made of (Gauss panels, splines, derivatives of formulas).
+#include "../../support/program.h"
+#include "../../support/run_text.h"
+
+#include <crawler/accuracy/model_choice.h>
+#include <crawler/base/cubic_spline.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/base/gauss_panels.h>
+#include <crawler/formula/formula_rate.h>
+#include <crawler/scene/active_stress/strain_table.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace crawler;
+
+namespace
+{
+  constexpr double pi = std::numbers::pi;
+
+  test::Settings
+  strain(const std::string &formula)
+  {
+    return {{"Active stress/Generator", "prescribed strain"}, {"Active stress/Prescribed strain/Strain", formula}};
+  }
+
+  /// What is wrong with these settings.
+  std::string
+  complaint(const test::Settings &settings)
+  {
+    try
+    {
+      const Parameters parameters = test::parameters_with(settings);
+      choose_model(parameters, parameters.create_scene());
+    }
+    catch (const InputError &error)
+    {
+      return error.what();
+    }
+    return "nothing";
+  }
+
+  std::string
+  table_complaint(const std::string &rows)
+  {
+    const test::TemporaryFolder folder;
+    const std::string name = (folder.path / "strain.csv").string();
+    test::write_text(name, rows);
+    try
+    {
+      StrainTable(name, 1., 1., "entry");
+    }
+    catch (const InputError &error)
+    {
+      EXPECT_EQ(error.entry, "entry");
+      const std::string message = error.what();
+      const auto place          = message.find("\"" + name + "\"");
+      return place == std::string::npos ? message
+                                        : message.substr(0, place) + "FILE" + message.substr(place + name.size() + 2);
+    }
+    return "nothing";
+  }
+
+  /// A grid of n x n samples.
+  std::string
+  grid(const unsigned int n, double (*f)(double s, double t), const std::string &without = "none")
+  {
+    std::string rows = "s,t,strain\n";
+    for (unsigned int j = 0; j < n; ++j)
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        const double s = static_cast<double>(i) / (n - 1), t = static_cast<double>(j) / (n - 1);
+        const std::string row = test::text(s) + "," + test::text(t) + "," + test::text(f(s, t)) + "\n";
+        if (row.find(without) != 0)
+          rows += row;
+      }
+    return rows;
+  }
+
+  double
+  wave_of(const double s, const double t)
+  {
+    return 0.3 * (std::sin(2. * pi * (s + t)) - std::sin(2. * pi * s));
+  }
+} // namespace
+
+/// Eight points integrate degree 15 exactly, and running integrals are exact for degree 7.
+TEST(GaussPanels, AreExactForPolynomials)
+{
+  const GaussPanels panels(0.5, 2., 3);
+  std::vector<double> f, g, running(panels.points().size()), at(2);
+  for (const double x : panels.points())
+  {
+    f.push_back(std::pow(x, 15));
+    g.push_back(std::pow(x, 7));
+  }
+  EXPECT_NEAR(panels.integral(f), (std::pow(2., 16) - std::pow(0.5, 16)) / 16., 1e-11);
+  panels.running_integral(g, running);
+  for (std::size_t i = 0; i < running.size(); ++i)
+    EXPECT_NEAR(running[i], (std::pow(panels.points()[i], 8) - std::pow(0.5, 8)) / 8., 1e-13);
+  GaussPanels::Places(panels, {0.5, 1.234}).running_integral(g, at);
+  EXPECT_NEAR(at[0], 0., 1e-14);
+  EXPECT_NEAR(at[1], (std::pow(1.234, 8) - std::pow(0.5, 8)) / 8., 1e-13);
+}
+
+TEST(CubicSpline, ReproducesCubicsOnAnyKnots)
+{
+  const std::vector<double> knots = {0., 0.3, 0.4, 1.1, 1.5, 2.};
+  const auto cubic                = [](const double x) { return 1. + x * (2. + x * (-3. + 0.7 * x)); };
+  std::vector<double> y;
+  for (const double x : knots)
+    y.push_back(cubic(x));
+  const CubicSpline spline(knots);
+  const auto M = spline.curvatures(y);
+  for (const double x : {0., 0.1, 0.35, 0.4, 1., 1.3, 1.99, 2.})
+  {
+    const auto p = spline.place(x);
+    EXPECT_NEAR(p.a * y[p.i] + p.b * y[p.i + 1] + p.c * M[p.i] + p.d * M[p.i + 1], cubic(x), 1e-13);
+    EXPECT_NEAR(p.da * y[p.i] + p.db * y[p.i + 1] + p.dc * M[p.i] + p.dd * M[p.i + 1], 2. + x * (-6. + 2.1 * x), 1e-12);
+  }
+}
+
+/// Every operator and function, against central differences.
+TEST(FormulaRate, IsTheDerivative)
+{
+  for (const std::string text : {"s*t + t^2 - 3*t/(s+2) + -t",
+                                 "sin(t*s) + cos(3*t) + tan(t/3)",
+                                 "asin(t/2) - acos(t*s/3) + atan(t) + atan2(t, s+1)",
+                                 "sinh(t) + cosh(s*t) + tanh(t-s) + asinh(t) + acosh(t+2) + atanh(t/3)",
+                                 "log(t+1) + ln(t+s+1) + log2(t+1) + log10(t+2) + exp(-t^2) + sqrt(t+s+1)",
+                                 "abs(t-2) + abs(t) + sign(t)*t + floor(7*t) + ceil(t) + rint(9*t)",
+                                 "t^3 + t^4 + 2*t+1 + s^t + t^s + pow(t, 2.5) + 2^t",
+                                 "mod(3*t, 0.7) + erf(t) + erfc(t*s)",
+                                 "min(t, s, 2) + max(t*s, 0.1) + sum(t, s, t^2) + avg(t, 3*t)",
+                                 "t > 0.3 ? sin(t) : cos(t)",
+                                 "(t > 0.9 || s < 0.1) && t < 2 ? t^2 : (t == 3 ? 1 : t*s)"})
+  {
+    const auto formula = std::make_shared<const Formula>(text, Formula::Constants{});
+    std::vector<double> points;
+    for (unsigned int i = 0; i < 100; ++i)
+      points.push_back(0.15 + 0.007 * i);
+    FormulaAtPoints values(formula, points);
+    FormulaRateAtPoints rate(formula, points);
+    std::vector<double> before(points.size()), after(points.size()), derivative(points.size());
+    const double t = 0.4123, h = 1e-5;
+    values.values(t - h, before);
+    values.values(t + h, after);
+    rate.values(t, derivative);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_NEAR(derivative[i], (after[i] - before[i]) / (2. * h), 1e-7) << text << " at s = " << points[i];
+  }
+}
+
+/// The stress balances the friction of the motion it makes: m_s + k e_s = g v, m + k e = 0 at both ends, and with the
+/// rate of strain the velocity follows.
+TEST(PrescribedStrain, BalancesForces)
+{
+  auto settings = strain("0.2*sin(2*pi*(s/2+t)) + 0.1*s*t");
+  settings.insert(settings.end(),
+                  {{"Body/Length", "2"},
+                   {"Body/Friction coefficient", "3"},
+                   {"Body/Elastic modulus", "5"},
+                   {"Body/Anchoring exponent", "2.7"}});
+  const Scene scene = test::parameters_with(settings).create_scene();
+  const double t = 0.31, h = 1e-4;
+  const auto velocity = [&](const double s) // g v = m_s + k e_s, so v = (m_s + k e_s)/g
+  {
+    std::vector<double> m(2), e(3), g(1);
+    scene.active_stress->at({s - h, s + h})->values(t, m);
+    scene.active_stress->prescribed_strain()->at({s - h, s, s + h})->strain(t, e);
+    const double w = 1. + e[1];
+    scene.friction->values({&w, 1}, g);
+    return ((m[1] - m[0]) + 5. * (e[2] - e[0])) / (2. * h) / g[0];
+  };
+  for (const double s : {0.3, 1., 1.6})
+  {
+    std::vector<double> rate(1);
+    scene.active_stress->prescribed_strain()->at({s})->rate(t, rate);
+    EXPECT_NEAR((velocity(s + 0.01) - velocity(s - 0.01)) / 0.02, rate[0], 2e-3 * std::abs(rate[0]) + 1e-4);
+  }
+  std::vector<double> m(2), e(2);
+  scene.active_stress->at({0., 2.})->values(t, m);
+  scene.active_stress->prescribed_strain()->at({0., 2.})->strain(t, e);
+  EXPECT_NEAR(m[0], -5. * e[0], 1e-12);
+  EXPECT_NEAR(m[1], -5. * e[1], 1e-12);
+}
+
+/// A wave, and a table of it, are the formula.
+TEST(PrescribedStrain, WaveAndTable)
+{
+  const Scene by_formula = test::parameters_with(strain("0.05 + 0.2*sin(2*pi*1.5*(s - 0.7*t) + 0.3)")).create_scene();
+  const Scene by_wave    = test::parameters_with({{"Active stress/Generator", "prescribed strain"},
+                                                  {"Active stress/Prescribed strain/Given by", "wave"},
+                                                  {"Active stress/Prescribed strain/Mean strain", "0.05"},
+                                                  {"Active stress/Prescribed strain/Amplitude", "0.2"},
+                                                  {"Active stress/Prescribed strain/Wave number", "1.5"},
+                                                  {"Active stress/Prescribed strain/Wave speed", "-0.7"},
+                                                  {"Active stress/Prescribed strain/Phase", "0.3"}})
+                          .create_scene();
+  const std::vector<double> points = {0., 0.123, 0.5, 1.};
+  std::vector<double> a(4), b(4);
+  const auto formula = by_formula.active_stress->prescribed_strain()->at(points),
+             wave    = by_wave.active_stress->prescribed_strain()->at(points);
+  formula->strain(0.4, a);
+  wave->strain(0.4, b);
+  for (unsigned int i = 0; i < 4; ++i)
+    EXPECT_NEAR(a[i], b[i], 1e-14);
+  formula->rate(0.4, a);
+  wave->rate(0.4, b);
+  for (unsigned int i = 0; i < 4; ++i)
+    EXPECT_NEAR(a[i], b[i], 1e-12);
+}
+
+/// The splines' error is of order h^4, that of the rate h^3.
+TEST(StrainTable, Orders)
+{
+  const test::TemporaryFolder folder;
+  const auto errors = [&](const unsigned int n) {
+    const std::string name = (folder.path / (std::to_string(n) + ".csv")).string();
+    test::write_text(name, grid(n, wave_of));
+    const StrainTable table(name, 1., 1., "");
+    std::vector<double> points, e(97), e_t(97);
+    for (unsigned int i = 0; i < 97; ++i)
+      points.push_back(i / 96.);
+    const auto at    = table.at(points);
+    double of_strain = 0., of_rate = 0.;
+    for (unsigned int j = 0; j < 97; ++j)
+    {
+      const double t = j / 96.;
+      at->strain(t, e);
+      at->rate(t, e_t);
+      for (unsigned int i = 0; i < 97; ++i)
+      {
+        of_strain = std::max(of_strain, std::abs(e[i] - wave_of(points[i], t)));
+        of_rate   = std::max(of_rate, std::abs(e_t[i] - 0.6 * pi * std::cos(2. * pi * (points[i] + t))));
+      }
+    }
+    return std::pair(of_strain, of_rate);
+  };
+  const auto coarse = errors(17), fine = errors(33);
+  EXPECT_GE(std::log2(coarse.first / fine.first), 3.7);
+  EXPECT_GE(std::log2(coarse.second / fine.second), 2.7);
+}
+
+TEST(StrainTable, SaysWhatIsWrong)
+{
+  EXPECT_EQ(table_complaint(grid(5, wave_of)), "nothing");
+  EXPECT_EQ(table_complaint("a,b\n"), "the first row of FILE is \"a,b\", but the header s,t,strain is expected");
+  EXPECT_EQ(table_complaint("s,t,strain\n0,0,0\n0,0.5,x\n"),
+            "row 3 of FILE is \"0,0.5,x\", but three numbers s,t,strain are expected");
+  EXPECT_EQ(table_complaint("s,t,strain\n0,0,0,1\n"),
+            "row 2 of FILE is \"0,0,0,1\", but three numbers s,t,strain are expected");
+  EXPECT_EQ(table_complaint("s,t,strain\n0,0,nan\n"),
+            "row 2 of FILE is \"0,0,nan\", but three numbers s,t,strain are expected");
+  EXPECT_EQ(table_complaint(grid(3, wave_of)), "FILE has 3 different values of s, but at least 4 are expected");
+  EXPECT_EQ(table_complaint(grid(5, wave_of) + "0.5,0.25,0\n"),
+            "row 27 of FILE gives s = 0.5, t = 0.25 a second time, after row 9");
+  EXPECT_EQ(table_complaint(grid(5, wave_of, "0.5,0.25")),
+            "FILE has 24 rows after the header, but 25 are expected, each of 5 values of s with each of 5 values of t; "
+            "the first that is missing is s = 0.5, t = 0.25");
+  EXPECT_NE(complaint({{"Active stress/Generator", "prescribed strain"},
+                       {"Active stress/Prescribed strain/Given by", "table"},
+                       {"Active stress/Prescribed strain/File", "/there/is/no/such/file.csv"}})
+              .find("cannot read \"/there/is/no/such/file.csv\""),
+            std::string::npos);
+}
+
+TEST(StrainTable, MustCoverBodyAndDuration)
+{
+  const test::TemporaryFolder folder;
+  const std::string name = (folder.path / "strain.csv").string();
+  test::write_text(name, grid(5, wave_of));
+  EXPECT_THROW(StrainTable(name, 2., 1., ""), InputError);
+  EXPECT_THROW(StrainTable(name, 1., 1.5, ""), InputError);
+  EXPECT_NO_THROW(StrainTable(name, 1., 1., ""));
+}
+
+TEST(PrescribedStrain, SaysWhatIsWrong)
+{
+  EXPECT_EQ(complaint(strain("-1.5*s*t")).substr(0, 61),
+            "the strain is -1.5 at s = 1, t = 1, but more than -1 is expec");
+  EXPECT_EQ(complaint(strain("1/(s-0.5)/0*t")).find("the strain is"), 0u);
+  EXPECT_EQ(complaint(strain("0.1*s*floor(3*t)"))
+              .find("the strain at s = 1 changes by 0.1 from t = 0.324324 to 0.351351, "
+                    "but the integral of its rate is 0; a strain without jumps"),
+            0u);
+  EXPECT_EQ(complaint(strain("sn(s)")).find("error in the formula \"sn(s)\" at position 1"), 0u);
+  EXPECT_EQ(complaint(strain("")).find("the formula of the strain is empty"), 0u);
+  // The nonlinear model starts from rest; the kinematic one does not.
+  auto settings = strain("0.3*sin(2*pi*(s+t))");
+  EXPECT_EQ(complaint(settings).find("the strain at t = 0 is"), 0u) << complaint(settings);
+  settings.emplace_back("Model", "kinematic");
+  EXPECT_EQ(complaint(settings), "nothing");
+  EXPECT_EQ(complaint(strain("0.3*(sin(2*pi*(s+t)) - sin(2*pi*s))")), "nothing");
+}

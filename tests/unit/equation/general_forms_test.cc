@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/derivative.h"
+#include "../../support/run_text.h"
+
+#include <crawler/equation/general_position_form.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  constexpr double t = 0.3;
+
+  struct Feature
+  {
+    std::string name;
+    test::Settings settings;
+  };
+
+  test::Settings
+  feedback(const std::string &formula, const std::string &distance = "0.37", const std::string &sensor = "0")
+  {
+    return {{"Active stress/Generator", "strain feedback"},
+            {"Active stress/Strain feedback/Active stress", formula},
+            {"Active stress/Strain feedback/Distance", distance},
+            {"Active stress/Strain feedback/Sensor length", sensor},
+            {"Active stress/Strain feedback/Delay", "0.1"}};
+  }
+
+  /// Each new term alone, and all together.
+  std::vector<Feature>
+  features()
+  {
+    std::vector<Feature> list = {
+      {"elastic modulus", {{"Body/Elastic modulus profile", "1+0.5*s"}}},
+      {"friction", {{"Body/Friction profile", "2-s^2"}}},
+      {"expression", {{"Ground/Friction law", "expression"}, {"Ground/Expression", "0.5*w^(-1.5)+0.5*w"}}},
+      {"Newtonian", {{"Ground/Friction law", "Newtonian"}}},
+      {"ground", {{"Ground/Profile", "1+0.4*sin(3*x)"}}},
+      {"direction", {{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.2"}}},
+      {"stretch", feedback("0.3*sin(w)*(1+s)")},
+      {"rate", feedback("0.2*w_t+0.1*tanh(w_t)*w")},
+      {"nearby", feedback("0.3*w_near^2*w")},
+      {"sensor", feedback("0.3*w_near^2*w", "-0.37", "0.28")},
+      {"sensor at the place", feedback("0.2*tanh(5*(w_near-1))*w", "0", "0.4")},
+    };
+    Feature all{"all", {}};
+    for (const Feature &feature : list)
+      if (feature.name != "Newtonian" && feature.name != "stretch" && feature.name != "rate" &&
+          feature.name != "nearby" && feature.name.rfind("sensor", 0) != 0)
+        all.settings.insert(all.settings.end(), feature.settings.begin(), feature.settings.end());
+    for (const auto &setting : feedback("0.3*sin(w)*(1+s)+0.2*w_t*w+0.3*w_near*w_delayed+0.1*sin(t)"))
+      all.settings.push_back(setting);
+    list.push_back(all);
+    all.name = "all with sensors";
+    all.settings.push_back({"Active stress/Strain feedback/Sensor length", "0.5"});
+    list.push_back(all);
+    return list;
+  }
+
+  /// The form on three cells, with a state of stretches between about 0.6 and 1.4.
+  struct Case
+  {
+    Case(const Feature &feature, const unsigned int degree)
+      : scene(test::parameters_with(feature.settings).create_scene())
+      , d(MPI_COMM_SELF, 1., 3, degree)
+      , form(create_position_form(scene, d))
+      , y(form->n_owned())
+      , y_dot(form->n_owned())
+    {
+      const auto &element  = d.element();
+      const unsigned int q = degree;
+      for (unsigned int c = 0; c < d.n_cells(); ++c)
+        for (unsigned int i = 0; i < element.n; ++i)
+        {
+          const double s         = d.cell_left()[c] + d.cell_size()[c] * element.nodes[i];
+          const std::size_t node = c * q + i;
+          y[node]                = 0.06 * std::sin(5. * s) + 0.02 * s * s;
+          y_dot[node]            = 0.3 * std::cos(4. * s) - 0.1;
+        }
+    }
+
+    std::vector<double>
+    residual(const std::vector<double> &by, const std::vector<double> &by_dot, const double step)
+    {
+      std::vector<double> x = y, x_dot = y_dot, F(y.size());
+      for (std::size_t i = 0; i < x.size(); ++i)
+      {
+        x[i] += step * by[i];
+        x_dot[i] += step * by_dot[i];
+      }
+      EXPECT_TRUE(form->residual(t, x, x_dot, F));
+      return F;
+    }
+
+    /// The derivative of the residual.
+    std::vector<double>
+    slope(const std::vector<double> &by, const std::vector<double> &by_dot)
+    {
+      return test::derivative([&](const double step) { return residual(by, by_dot, step); });
+    }
+
+    Scene scene;
+    Discretization d;
+    std::unique_ptr<PositionForm> form;
+    std::vector<double> y, y_dot;
+  };
+
+  double
+  largest(const std::vector<double> &x)
+  {
+    double result = 0.;
+    for (const double value : x)
+      result = std::max(result, std::abs(value));
+    return result;
+  }
+
+  void
+  expect_close(const std::vector<double> &x, const std::vector<double> &y, const std::string &what)
+  {
+    double error = 0.;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      error = std::max(error, std::abs(x[i] - y[i]));
+    EXPECT_LE(error, 1e-7 * largest(y)) << what;
+  }
+
+  /// Solves J x = b by Gauss elimination, J column by column from products.
+  std::vector<double>
+  dense_solution(PositionForm &form, std::vector<double> b)
+  {
+    const std::size_t n = b.size();
+    std::vector<std::vector<double>> A(n, std::vector<double>(n));
+    for (std::size_t j = 0; j < n; ++j)
+    {
+      std::vector<double> x(n, 0.), column(n);
+      x[j] = 1.;
+      form.jacobian_vmult(x, column);
+      for (std::size_t i = 0; i < n; ++i)
+        A[i][j] = column[i];
+    }
+    for (std::size_t k = 0; k < n; ++k)
+    {
+      std::size_t pivot = k;
+      for (std::size_t i = k; i < n; ++i)
+        if (std::abs(A[i][k]) > std::abs(A[pivot][k]))
+          pivot = i;
+      std::swap(A[k], A[pivot]);
+      std::swap(b[k], b[pivot]);
+      for (std::size_t i = k + 1; i < n; ++i)
+      {
+        const double factor = A[i][k] / A[k][k];
+        for (std::size_t j = k; j < n; ++j)
+          A[i][j] -= factor * A[k][j];
+        b[i] -= factor * b[k];
+      }
+    }
+    for (std::size_t k = n; k-- > 0;)
+    {
+      for (std::size_t j = k + 1; j < n; ++j)
+        b[k] -= A[k][j] * b[j];
+      b[k] /= A[k][k];
+    }
+    return b;
+  }
+} // namespace
+
+TEST(GeneralForms, ProductsMatchDifferences)
+{
+  constexpr double sigma = 37.;
+  for (const Feature &feature : features())
+    for (const unsigned int q : {1u, 2u, 4u})
+    {
+      Case test(feature, q);
+      ASSERT_FALSE(test.scene.is_plain());
+      const std::string what = feature.name + ", degree " + std::to_string(q);
+      const std::size_t n    = test.y.size();
+      for (const double roughness : {1., 40.})
+      {
+        std::vector<double> x(n), x_dot(n), sigma_x(n), product(n);
+        for (std::size_t i = 0; i < n; ++i)
+        {
+          x[i]       = 0.1 * std::sin(roughness * static_cast<double>(i) + 0.3);
+          sigma_x[i] = sigma * x[i];
+          x_dot[i]   = std::cos(roughness * static_cast<double>(i));
+        }
+        ASSERT_TRUE(test.form->setup_jacobian(t, test.y, test.y_dot, sigma));
+        test.form->jacobian_vmult(x, product);
+        expect_close(product, test.slope(x, sigma_x), what);
+        test.form->setup_stage(1, t, test.y, test.y_dot);
+        test.form->stage_vmult(1, x, x_dot, product);
+        expect_close(product, test.slope(x, x_dot), what + ", stage");
+
+        // The elimination is the inverse, unless a stretch at another place is in the equation.
+        const StretchFeedback *stress = test.scene.active_stress->feedback();
+        if (stress != nullptr && stress->sees_near())
+          continue;
+        std::vector<double> back(n);
+        test.form->jacobian_vmult(x, product);
+        test.form->solve_with_jacobian(product, back);
+        expect_close(back, x, what + ", solution");
+      }
+    }
+}
+
+/// The complex systems of Radau methods, by their real and imaginary parts.
+TEST(GeneralForms, ComplexSolutionsInvertTheProduct)
+{
+  using Complex                     = PositionForm::Complex;
+  const std::vector<Complex> shifts = {{11., 7.}};
+  for (const Feature &feature : features())
+  {
+    Case test(feature, 3);
+    const StretchFeedback *stress = test.scene.active_stress->feedback();
+    if (stress != nullptr && stress->sees_near())
+      continue;
+    const std::size_t n = test.y.size();
+    std::vector<double> real(n), imaginary(n), first(n), second(n), scaled(n);
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      real[i]      = std::sin(static_cast<double>(i));
+      imaginary[i] = std::cos(1.3 * static_cast<double>(i));
+    }
+    // (K + (a + i b) M)(r + i m) = K r + M (a r - b m) + i (K m + M (a m + b r))
+    ASSERT_TRUE(test.form->setup_complex_jacobians(t, test.y, test.y_dot, shifts));
+    test.form->setup_stage(0, t, test.y, test.y_dot);
+    for (std::size_t i = 0; i < n; ++i)
+      scaled[i] = 11. * real[i] - 7. * imaginary[i];
+    test.form->stage_vmult(0, real, scaled, first);
+    for (std::size_t i = 0; i < n; ++i)
+      scaled[i] = 11. * imaginary[i] + 7. * real[i];
+    test.form->stage_vmult(0, imaginary, scaled, second);
+    std::vector<Complex> b(n), x(n);
+    for (std::size_t i = 0; i < n; ++i)
+      b[i] = {first[i], second[i]};
+    test.form->solve_with_complex_jacobian(0, b, x);
+    for (std::size_t i = 0; i < n; ++i)
+      ASSERT_LT(std::abs(x[i] - Complex(real[i], imaginary[i])), 1e-9) << feature.name << ", row " << i;
+  }
+}
+
+/// Newton's method with these Jacobians for one backward Euler step: each residual is about the square of the one
+/// before.
+TEST(GeneralForms, NewtonConvergesQuadratically)
+{
+  constexpr double sigma = 20.;
+  for (const Feature &feature : features())
+  {
+    Case test(feature, 3);
+    std::vector<double> y = test.y, rate = test.y_dot, F(y.size()), norms;
+    for (int i = 0; i < 12 && (norms.empty() || norms.back() > 1e-12); ++i)
+    {
+      ASSERT_TRUE(test.form->residual(t, y, rate, F)) << feature.name;
+      norms.push_back(largest(F));
+      ASSERT_TRUE(test.form->setup_jacobian(t, y, rate, sigma));
+      const auto change = dense_solution(*test.form, F);
+      for (std::size_t k = 0; k < y.size(); ++k)
+      {
+        y[k] -= change[k];
+        rate[k] -= sigma * change[k];
+      }
+    }
+    ASSERT_LT(norms.back(), 1e-12) << feature.name;
+    for (std::size_t i = 1; i + 1 < norms.size(); ++i)
+    {
+      const bool is_near = norms[i] < 1e-2; // the root
+      EXPECT_TRUE(!is_near || norms[i + 1] < 50. * norms[i] * norms[i] + 1e-13) << feature.name << ", iteration " << i;
+    }
+  }
+}
+
+/// The velocity balances the forces, and the friction alone, for every feature.
+TEST(GeneralForms, IdentitiesOfAState)
+{
+  for (const Feature &feature : features())
+  {
+    Case test(feature, 4);
+    std::vector<double> v(test.d.n_unknowns()), F(test.y.size());
+    ASSERT_TRUE(test.form->velocity(t, test.y, v)) << feature.name;
+    ASSERT_TRUE(test.form->residual(t, test.y, v, F));
+    EXPECT_LT(largest(F), 1e-11) << feature.name;
+    const CellIntegrals sums = test.form->integrals(t, test.y, v);
+    EXPECT_LT(std::abs(sums.net_friction), 1e-11 * sums.abs_friction) << feature.name;
+    EXPECT_GT(sums.dissipation, 0.) << feature.name;
+  }
+}

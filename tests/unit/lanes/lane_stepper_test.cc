@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The fused engine carries out what the PETSc type "radau" does.
+#include "../../support/lane_runs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+using namespace crawler;
+using test::LaneRun;
+
+namespace
+{
+  /// L, T, gamma and k are not 1.
+  test::Settings
+  in_other_units(test::Settings settings)
+  {
+    return test::with(std::move(settings),
+                      {{"Body/Length", "2"},
+                       {"Body/Friction coefficient", "0.3"},
+                       {"Body/Elastic modulus", "0.7"},
+                       {"Active stress/Optimal wave/Wave speed", "1.5"},
+                       {"Time/End time", "1.7"}});
+  }
+
+  /// A stress that starts smoothly, with extremes inside and at the ends.
+  constexpr const char *formula = "0.15*(1-exp(-(t/0.2)^2))*sin(2.2*(s+1.3*t)+0.4*cos(t))";
+
+  struct Question
+  {
+    std::string integrator;
+    double a;
+    bool is_wave;
+  };
+
+  std::ostream &
+  operator<<(std::ostream &out, const Question &question)
+  {
+    return out << question.integrator << ", a = " << question.a << (question.is_wave ? ", wave" : ", expression");
+  }
+
+  std::vector<Question>
+  questions()
+  {
+    std::vector<Question> result;
+    for (const std::string integrator : {"radau 5", "radau 9"})
+      for (const double a : {-3., -1., -0.5, 0., 1., 2.5})
+        for (const bool is_wave : {true, false})
+          result.push_back({integrator, a, is_wave});
+    return result;
+  }
+
+  void
+  expect_near(const Extreme &a, const Extreme &b, const double value, const double place, const std::string &which)
+  {
+    EXPECT_NEAR(a.value, b.value, value) << which;
+    EXPECT_NEAR(a.s, b.s, place) << which;
+    EXPECT_NEAR(a.t, b.t, place) << which;
+  }
+
+  class LaneStepperTest : public ::testing::TestWithParam<Question>
+  {
+  };
+} // namespace
+
+TEST_P(LaneStepperTest, GivesWhatPetscGives)
+{
+  const auto [integrator, exponent, is_wave] = GetParam();
+  constexpr double tolerance                 = 1e-7;
+  const LaneRun run(in_other_units(is_wave ? test::wave(exponent, 0.25) : test::expression(exponent, formula)),
+                    integrator,
+                    {.degree = 5, .n_cells = 6, .tolerance = tolerance, .initial_step = 1e-4});
+  const SimulationResult petsc = run.simulate("petsc"), single = run.simulate("automatic");
+  const auto batch = test::run_alone(run);
+  ASSERT_TRUE(batch);
+  EXPECT_GT(petsc.time.linear_iterations, 0u);
+  EXPECT_EQ(single.time.linear_iterations, 0u) << "PETSc had to help";
+  for (const SimulationResult &fused : {single, *batch})
+  {
+    ASSERT_EQ(fused.time.status, "finished");
+    EXPECT_EQ(fused.time.time, petsc.time.time);
+    EXPECT_NEAR(fused.time.steps, petsc.time.steps, 0.1 * petsc.time.steps);
+    EXPECT_NEAR(fused.displacement, petsc.displacement, 1e-3 * tolerance);
+    const double energy    = tolerance * petsc.energy_balance->exchanged;
+    const EnergyBalance &a = *fused.energy_balance, &b = *petsc.energy_balance;
+    EXPECT_NEAR(a.stress_power, b.stress_power, 0.5 * energy);
+    EXPECT_NEAR(a.dissipation, b.dissipation, 0.5 * energy);
+    EXPECT_NEAR(a.positive_power, b.positive_power, 0.5 * energy);
+    EXPECT_NEAR(a.exchanged, b.exchanged, 0.5 * energy);
+    EXPECT_NEAR(a.end_work, b.end_work, 0.5 * energy);
+    EXPECT_NEAR(a.elastic_energy, b.elastic_energy, 1e-3 * energy);
+    EXPECT_LT(a.residual(), tolerance);
+    EXPECT_LT(fused.net_friction, 1e-13);
+    // Places and times of an extreme are known to the root of the error of its value.
+    expect_near(fused.min_stretch, petsc.min_stretch, 0.3 * tolerance, 0.1 * std::sqrt(tolerance), "smallest");
+    expect_near(fused.max_stretch, petsc.max_stretch, 0.3 * tolerance, 0.1 * std::sqrt(tolerance), "largest");
+  }
+}
+
+namespace
+{
+  /// Keeps what an observer sees in frames.
+  struct Seen
+  {
+    std::vector<double> times, computed_times, numbers;
+    std::vector<double> y; ///< of all frames
+    unsigned int steps = 0;
+  };
+
+  class Recorder : public Observer
+  {
+  public:
+    explicit Recorder(Seen &seen)
+      : seen_(seen)
+    {
+    }
+
+    void
+    observe(const Snapshot &snapshot) override
+    {
+      seen_.steps = snapshot.step.number;
+      if (!snapshot.step.is_frame)
+        return;
+      seen_.times.push_back(snapshot.step.time);
+      seen_.computed_times.push_back(snapshot.computed_time);
+      seen_.y.insert(seen_.y.end(), snapshot.y.begin(), snapshot.y.end());
+      const CellIntegrals &i = snapshot.integrals;
+      for (const double value : {i.displacement,
+                                 i.velocity,
+                                 i.stress_power,
+                                 i.dissipation,
+                                 snapshot.stretch.min.value,
+                                 snapshot.stretch.max.value})
+        seen_.numbers.push_back(value);
+    }
+
+  private:
+    Seen &seen_;
+  };
+
+  Seen
+  watch(const LaneRun &run, const std::string &engine, const std::vector<double> &frames)
+  {
+    TimeParameters time = run.parameters.time;
+    time.engine         = engine;
+    Seen seen;
+    std::vector<std::unique_ptr<Observer>> observers;
+    observers.push_back(std::make_unique<Recorder>(seen));
+    const auto result =
+      Simulation(MPI_COMM_WORLD, run.scene, time, run.numerics).run(frames, {.energy_balance = true}, observers);
+    EXPECT_EQ(result.time.status, "finished");
+    return seen;
+  }
+} // namespace
+
+TEST(LaneStepper, ObserversSeeTheFramesOfPetsc)
+{
+  constexpr double tolerance = 1e-7, end_time = 1.7;
+  std::vector<double> frames = {1e-9, 0.1, 0.1 + 1e-9, 0.7 / 3.};
+  for (unsigned int i = 1; i < 17; ++i)
+    frames.push_back(0.3 + i * (end_time - 0.3) / 17.);
+  frames.push_back(end_time);
+  for (const std::string integrator : {"radau 5", "radau 9"})
+    for (const double a : {-1., 1.})
+    {
+      const LaneRun run(in_other_units(test::wave(a, 0.25)),
+                        integrator,
+                        {.degree = 5, .n_cells = 6, .tolerance = tolerance, .initial_step = 1e-4});
+      const Seen petsc = watch(run, "petsc", frames), fused = watch(run, "automatic", frames);
+      EXPECT_EQ(fused.times, frames); // exactly
+      ASSERT_EQ(fused.computed_times.size(), frames.size());
+      for (std::size_t i = 0; i + 1 < frames.size(); ++i)
+        EXPECT_EQ(fused.computed_times[i], frames[i] / end_time);
+      EXPECT_EQ(fused.computed_times.back(), 1.);
+      EXPECT_NEAR(fused.steps, petsc.steps, 0.1 * petsc.steps);
+      ASSERT_EQ(fused.y.size(), petsc.y.size());
+      for (std::size_t i = 0; i < petsc.y.size(); ++i)
+        EXPECT_NEAR(fused.y[i], petsc.y[i], tolerance) << integrator;
+      ASSERT_EQ(fused.numbers.size(), petsc.numbers.size());
+      for (std::size_t i = 0; i < petsc.numbers.size(); ++i)
+        EXPECT_NEAR(fused.numbers[i], petsc.numbers[i], 10. * tolerance) << integrator << ", " << i;
+    }
+}
+
+/// Frames do not depend on who computes the run; without observers they are steps all the same.
+TEST(LaneStepper, ARunStopsAtOnce)
+{
+  const LaneRun run(
+    test::wave(-1., 0.3), "radau 5", {.degree = 5, .n_cells = 5, .tolerance = 1e-7, .initial_step = 1e-4});
+  const SimulationResult whole = run.simulate("automatic");
+  for (const std::string engine : {"petsc", "automatic"})
+    for (const unsigned int most : {1u, 2u, 17u})
+    {
+      TimeParameters time = run.parameters.time;
+      time.engine         = engine;
+      Simulation simulation(MPI_COMM_WORLD, run.scene, time, run.numerics);
+      unsigned int asked = 0;
+      const auto stopped = simulation.run({}, {.energy_balance = true}, {}, [&] { return ++asked < most; });
+      EXPECT_EQ(stopped.time.status, "stopped") << engine;
+      EXPECT_EQ(asked, most) << engine; // the initial state asks, too
+      EXPECT_EQ(stopped.time.steps, most - 1) << engine;
+      EXPECT_LT(stopped.time.time, 1.);
+      // The next run of the same object knows nothing of it.
+      EXPECT_EQ(simulation.run({}, {.energy_balance = true}).time.steps, whole.time.steps) << engine;
+    }
+}
+
+TEST(LaneStepper, ASecondRunIsTheSameToTheLastBit)
+{
+  for (const double a : {-1., 0.5})
+  {
+    const LaneRun run(
+      test::wave(a, 0.3), "radau 9", {.degree = 5, .n_cells = 5, .tolerance = 1e-7, .initial_step = 1e-4});
+    Simulation simulation(MPI_COMM_WORLD, run.scene, run.parameters.time, run.numerics);
+    const auto first  = simulation.run({}, {.energy_balance = true}),
+               second = simulation.run({}, {.energy_balance = true});
+    EXPECT_TRUE(test::same_bits(test::numbers_of(first), test::numbers_of(second)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllExponents, LaneStepperTest, ::testing::ValuesIn(questions()));

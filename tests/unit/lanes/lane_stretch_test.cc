@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The equations of the stretch form in the fused engine, and their linear systems, for one body and in packs.
+#include "../../support/derivative.h"
+#include "../../support/run_text.h"
+
+#define CRAWLER_PACK pack2 // of what is compiled here
+#include <crawler/lanes/lane_states.h>
+#include <crawler/lanes/lane_stretch.h>
+#include <crawler/lanes/lane_tables.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  constexpr double t = 0.3, real_shift = 23., complex_shift[2] = {11., 7.};
+  constexpr int pairs = 1;
+
+  template <typename Pack>
+  using System = generic::StretchSystem<Pack, pairs>;
+
+  struct Feature
+  {
+    std::string name;
+    test::Settings settings;
+  };
+
+  Feature
+  plain(const double a)
+  {
+    return {"a = " + test::text(a), test::wave(a, 0.3)};
+  }
+
+  test::Settings
+  feedback(const std::string &formula)
+  {
+    return {{"Active stress/Generator", "strain feedback"}, {"Active stress/Strain feedback/Active stress", formula}};
+  }
+
+  std::vector<Feature>
+  general()
+  {
+    test::Settings all = feedback("0.3*sin(w)*(1+s)+0.2*w_t*w+0.1*sin(t)");
+    all.insert(all.end(),
+               {{"Body/Elastic modulus profile", "1+0.5*s"},
+                {"Body/Friction profile", "2-s^2"},
+                {"Ground/Friction law", "expression"},
+                {"Ground/Expression", "0.5*w^(-1.5)+0.5*w"},
+                {"Ground/Backward ratio", "3"},
+                {"Ground/Switching velocity", "0.2"}});
+    return {{"profiles", {{"Body/Elastic modulus profile", "1+0.5*s"}, {"Body/Friction profile", "2-s^2"}}},
+            {"direction", {{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.2"}}},
+            {"feedback", feedback("0.3*sin(w)*(1+s)+0.1*sin(t)")},
+            {"rate", feedback("0.2*w_t+0.1*tanh(w_t)*w")},
+            {"all", all}};
+  }
+
+  /// @p n cells of two sizes.
+  std::vector<double>
+  cell_ends_of(const int n)
+  {
+    std::vector<double> ends = {0.};
+    for (int j = 0; j < n; ++j)
+      ends.push_back(ends.back() + (j % 3 == 1 ? 1.7 : 1.));
+    for (double &s : ends)
+      s /= ends[n];
+    return ends;
+  }
+
+  /// A body, its form and its state, and the system of the engine for it.
+  struct Case
+  {
+    explicit Case(const Feature &feature, const int n_cells = 8, const bool other = false)
+      : scene(test::parameters_with(feature.settings).create_scene())
+      , d(MPI_COMM_SELF, cell_ends_of(n_cells), 1)
+      , form(scene, d, other)
+      , laws(scene, d.points({0.5}))
+      , n(n_cells)
+      , y(n + 1)
+      , y_dot(n + 1)
+      , m(n)
+    {
+      const StretchMethod method      = stretch_method(scene, other);
+      const StretchFeedback *feedback = scene.active_stress->feedback();
+      setup.n_cells                   = static_cast<unsigned int>(n);
+      setup.sizes                     = d.cell_size().data();
+      setup.real_eigenvalue           = real_shift;
+      setup.eigenvalues               = complex_shift;
+      setup.is_stretch                = true;
+      setup.is_power                  = method.is_power;
+      setup.sees_rate                 = feedback != nullptr && feedback->uses_rate();
+      setup.node_rule                 = method.node_rule;
+      setup.backward_ratio            = scene.ground.direction.ratio;
+      setup.switching_velocity        = scene.ground.direction.switching_velocity;
+      host.context                    = this;
+      host.laws                       = scene.is_plain() ? nullptr : evaluate;
+      const double power              = 1. + scene.friction_exponent();
+      for (int j = 0; j < n; ++j)
+      {
+        const double w = 1. + 0.35 * std::cos(5. * (j + 0.5) / n + 0.4);
+        y[j]           = setup.is_power ? std::pow(w, power) / power : w;
+      }
+      scene.active_stress->at(d.points({0.5}))->values(t, m);
+      // The rates of the form.
+      std::vector<double> v(n + 1);
+      EXPECT_TRUE(form.velocity(t, y, v));
+      const auto w = form.stretch(y);
+      for (int j = 0; j < n; ++j)
+        y_dot[j] = (v[j + 1] - v[j]) / d.cell_size()[j] * (setup.is_power ? std::pow(w[j], power - 1.) : 1.);
+      y_dot[n] = v[0];
+    }
+    Case(const Case &) = delete;
+
+    static LaneLaws
+    evaluate(void *context, const double time, const double *known_m, const double *w, const double *rate)
+    {
+      auto &self         = *static_cast<Case *>(context);
+      StretchLaws &laws  = self.laws;
+      const auto n_cells = static_cast<std::size_t>(self.n);
+      EXPECT_LT(laws.evaluate(time, {w, n_cells}, {rate, n_cells}, known_m), 0);
+      return {laws.mobility.data(),
+              laws.mobility_by_w.data(),
+              laws.force().N.data(),
+              laws.force().by_w.data(),
+              laws.force().by_rate.data(),
+              1.};
+    }
+
+    Scene scene;
+    Discretization d;
+    StretchForm form;
+    StretchLaws laws;
+    const int n;
+    std::vector<double> y, y_dot, m;
+    LaneSetup setup{};
+    LaneHost host{};
+  };
+
+  /// The system in its memory.
+  template <typename Pack>
+  struct InMemory
+  {
+    explicit InMemory(const LaneSetup &setup, const LaneHost &host)
+      : system(setup, host)
+    {
+      generic::LaneMemory sizes(nullptr);
+      system.lay_out(sizes);
+      memory = lane_storage(sizes.size());
+      generic::LaneMemory pieces(memory.get());
+      system.lay_out(pieces);
+    }
+
+    void
+    set_body(const int lane, const double k, const double a)
+    {
+      LaneJob job{};
+      job.k = k;
+      job.a = a;
+      system.set_body(lane, job);
+      system.sort_bodies();
+    }
+
+    System<Pack> system;
+    LaneStorage memory;
+  };
+
+  struct Alone : Case, InMemory<double>
+  {
+    explicit Alone(const Feature &feature, const int n_cells = 8, const bool other = false)
+      : Case(feature, n_cells, other)
+      , InMemory<double>(setup, host)
+    {
+      set_body(0, scene.body.elastic_modulus, scene.friction_exponent());
+    }
+
+    std::vector<double>
+    residual(const std::vector<double> &by, const std::vector<double> &by_dot, const double step)
+    {
+      std::vector<double> x = y, x_dot = y_dot, F(y.size());
+      for (std::size_t i = 0; i < x.size(); ++i)
+      {
+        x[i] += step * by[i];
+        x_dot[i] += step * by_dot[i];
+      }
+      EXPECT_GT(system.residual(&t, x.data(), x_dot.data(), m.data(), F.data()), 0.);
+      return F;
+    }
+
+    /// The derivative of the residual.
+    std::vector<double>
+    slope(const std::vector<double> &by, const std::vector<double> &by_dot)
+    {
+      return test::derivative([&](const double step) { return residual(by, by_dot, step); });
+    }
+  };
+
+  double
+  largest(const std::vector<double> &x)
+  {
+    double result = 0.;
+    for (const double value : x)
+      result = std::max(result, std::abs(value));
+    return result;
+  }
+
+  std::vector<Feature>
+  all_features()
+  {
+    std::vector<Feature> list = general();
+    for (const double a : {-3., -1., -0.5, 0., 0.7, 2.})
+      list.push_back(plain(a));
+    return list;
+  }
+
+  std::vector<double>
+  scattered(const std::size_t n, const double phase)
+  {
+    std::vector<double> result(n);
+    for (std::size_t i = 0; i < n; ++i)
+      result[i] = std::sin(12.9898 * static_cast<double>(i + 1) + phase);
+    return result;
+  }
+} // namespace
+
+/// The engine and the form say the same of a state, each with its own loops.
+TEST(LaneStretch, TheVelocityOfTheFormIsTheSolution)
+{
+  for (const Feature &feature : all_features())
+    for (const bool other : {false, true})
+    {
+      Alone test(feature, 8, other);
+      EXPECT_GT(largest(test.y_dot), 0.1);
+      EXPECT_LT(largest(test.residual(test.y, test.y, 0.)), 1e-10) << feature.name << (other ? ", other rule" : "");
+    }
+}
+
+/// For x = (K + sigma M)^-1 b the derivative of F along (x, sigma x) is b: elimination and derivatives at once, for any
+/// number of cells on both sides of the middle. The upwind rule is not tried: its derivatives leave out the third cell.
+TEST(LaneStretch, SolutionsInvertTheDerivative)
+{
+  for (const Feature &feature : all_features())
+    for (const bool other : {false, true})
+      for (const int n : {2, 3, 4, 7, 8})
+      {
+        Alone test(feature, n, other);
+        if (test.setup.node_rule == static_cast<unsigned char>(generic::NodeRule::upwind))
+          continue;
+        const std::string which = feature.name + (other ? ", other rule" : "") + ", " + std::to_string(n) + " cells";
+        test.system.factorize(&t, test.y.data(), test.y_dot.data(), test.m.data(), /*inverse_h=*/1.);
+        const std::size_t size      = test.y.size();
+        const std::vector<double> b = scattered(size, 0.3), re = scattered(size, 1.), im = scattered(size, 2.);
+        std::vector<double> x = b, shifted(size);
+        std::vector<generic::Complex<double>> z(size);
+        for (std::size_t i = 0; i < size; ++i)
+          z[i] = {re[i], im[i]};
+        test.system.solve_all(x.data(), z.data());
+        std::vector<double> alone = b;
+        test.system.solve(alone.data());
+        EXPECT_EQ(alone, x) << which;
+        const auto expect = [&](const std::vector<double> &found, const std::vector<double> &expected) {
+          for (std::size_t i = 0; i < size; ++i)
+            EXPECT_NEAR(found[i], expected[i], 1e-8) << which << ", row " << i;
+        };
+        for (std::size_t i = 0; i < size; ++i)
+          shifted[i] = real_shift * x[i];
+        expect(test.slope(x, shifted), b);
+        // (a + i c)(x + i y): the real and the imaginary part.
+        for (std::size_t i = 0; i < size; ++i)
+        {
+          x[i]       = z[i].re;
+          shifted[i] = complex_shift[0] * z[i].re - complex_shift[1] * z[i].im;
+        }
+        expect(test.slope(x, shifted), re);
+        for (std::size_t i = 0; i < size; ++i)
+        {
+          x[i]       = z[i].im;
+          shifted[i] = complex_shift[0] * z[i].im + complex_shift[1] * z[i].re;
+        }
+        expect(test.slope(x, shifted), im);
+      }
+}
+
+/// The size of a vector in which one element is not a number is none, wherever that stands.
+TEST(LaneStretch, WhatIsNotANumberStays)
+{
+  EXPECT_TRUE(std::isnan(generic::added</*largest=*/true>(std::numeric_limits<double>::quiet_NaN(), 1.)));
+  EXPECT_TRUE(std::isnan(generic::added</*largest=*/true>(1., std::numeric_limits<double>::quiet_NaN())));
+  EXPECT_EQ(generic::added</*largest=*/true>(1., 2.), 2.);
+  EXPECT_EQ(generic::added</*largest=*/true>(2., 1.), 2.);
+}
+
+/// Bodies with other moduli and exponents do not see each other.
+TEST(LaneStretch, LanesAreBodiesAlone)
+{
+  constexpr int lanes                   = 2;
+  using Pack                            = generic::pack2;
+  const std::vector<double> exponents[] = {{0.7, 2.}, {-1., -2.5}, {-0.5, -0.3}};
+  const std::vector<double> moduli      = {1., 0.3};
+  for (const auto &a : exponents)
+  {
+    std::vector<std::unique_ptr<Alone>> alone;
+    for (int l = 0; l < lanes; ++l)
+    {
+      auto settings = test::wave(a[l], 0.3, 1., 1., moduli[l]);
+      alone.push_back(std::make_unique<Alone>(Feature{"", settings}));
+    }
+    InMemory<Pack> both(alone[0]->setup, alone[0]->host);
+    const int n = alone[0]->n;
+    std::vector<Pack> y(n + 1), y_dot(n + 1), m(n), F(n + 1);
+    for (int l = 0; l < lanes; ++l)
+    {
+      both.set_body(l, alone[l]->scene.body.elastic_modulus, a[l]);
+      for (int i = 0; i <= n; ++i)
+      {
+        y[i][l]     = alone[l]->y[i];
+        y_dot[i][l] = 0.3 * alone[l]->y_dot[i];
+        if (i < n)
+          m[i][l] = alone[l]->m[i];
+      }
+    }
+    const double times[lanes] = {t, t};
+    both.system.residual(times, y.data(), y_dot.data(), m.data(), F.data());
+    both.system.factorize(times, y.data(), y_dot.data(), m.data(), Pack{1., 2.});
+    std::vector<Pack> x = F;
+    both.system.solve(x.data());
+    for (int l = 0; l < lanes; ++l)
+    {
+      Alone &one = *alone[l];
+      for (double &rate : one.y_dot)
+        rate *= 0.3;
+      std::vector<double> F_one(n + 1);
+      one.system.residual(&t, one.y.data(), one.y_dot.data(), one.m.data(), F_one.data());
+      one.system.factorize(&t, one.y.data(), one.y_dot.data(), one.m.data(), 1. + l);
+      std::vector<double> x_one = F_one;
+      one.system.solve(x_one.data());
+      for (int i = 0; i <= n; ++i)
+      {
+        EXPECT_NEAR(F[i][l], F_one[i], 1e-13 * largest(F_one)) << "a = " << a[l] << ", row " << i;
+        EXPECT_NEAR(x[i][l], x_one[i], 1e-12 * largest(x_one)) << "a = " << a[l] << ", row " << i;
+      }
+    }
+  }
+}

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Prescribed strain by other generators, and the recovered active stress written as a table and read again.
+#include "../../support/program.h"
+#include "../../support/run_text.h"
+
+#include <crawler/base/exceptions.h>
+#include <crawler/output/active_stress_table.h>
+#include <crawler/run/reduced_model.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+using test::Settings;
+
+namespace
+{
+  Settings
+  strain_by(const std::string &generator, const Settings &own)
+  {
+    Settings settings = {{"Active stress/Generator", "prescribed strain"},
+                         {"Active stress/Prescribed strain/Given by", generator},
+                         {"Body/Anchoring exponent", "2"}};
+    settings.insert(settings.end(), own.begin(), own.end());
+    return settings;
+  }
+
+  double
+  kinematic_displacement(const Settings &settings)
+  {
+    const Scene scene = test::parameters_with(settings).create_scene();
+    return ReducedModel(scene, "kinematic").compute(1e-10, true).displacement;
+  }
+
+  std::string
+  complaint(const Settings &settings)
+  {
+    try
+    {
+      test::parameters_with(settings).create_scene();
+    }
+    catch (const InputError &error)
+    {
+      EXPECT_EQ(error.entry, "Active stress/Prescribed strain/Given by");
+      return error.what();
+    }
+    return "nothing";
+  }
+
+  const Settings wave = {{"Active stress/Travelling wave/Amplitude", "0.3"},
+                         {"Active stress/Travelling wave/Wave number", "1"}};
+} // namespace
+
+/// theory.md: e = 0.3 sin 2 pi (s + t) at a = -1 has D = 1 - sqrt(1 - 0.09), whoever writes it.
+TEST(GeneratedStrain, IsTheSameStrainFromAnyGenerator)
+{
+  const double exact    = 1. - std::sqrt(1. - 0.09);
+  const std::string sum = "Active stress/Sum/Term ";
+  EXPECT_NEAR(kinematic_displacement(strain_by("wave", {})), exact, 1e-11);
+  EXPECT_NEAR(kinematic_displacement(strain_by("travelling wave", wave)), exact, 1e-11);
+  EXPECT_NEAR(kinematic_displacement(strain_by("sum",
+                                               {{sum + "1/Expression/Active stress", "0.3*sin(2*pi*s)*cos(2*pi*t)"},
+                                                {sum + "2/Factor", "0.3"},
+                                                {sum + "2/Expression/Active stress", "cos(2*pi*s)*sin(2*pi*t)"}})),
+              exact,
+              1e-11);
+  const Scene scene = test::parameters_with(strain_by("travelling wave", wave)).create_scene();
+  EXPECT_NEAR(scene.active_stress->period().value_or(0.), 1., 1e-12);
+}
+
+/// A smooth start from rest, so that the full model can follow: it gives the displacement of the kinematic level, and
+/// so does its active stress as a table, to the accuracy asked for.
+TEST(GeneratedStrain, ItsActiveStressAsATableDrivesTheFullModel)
+{
+  Settings settings = strain_by("travelling wave", wave);
+  settings.insert(settings.end(),
+                  {{"Active stress/Travelling wave/Ramp duration", "0.5"},
+                   {"Accuracy", "1e-6"},
+                   {"Body/Length", "2"},
+                   {"Body/Elastic modulus", "3"},
+                   {"Body/Friction coefficient", "0.5"},
+                   {"Time/End time", "1.5"}});
+  const double kinematic = kinematic_displacement(settings);
+  EXPECT_GT(std::abs(kinematic), 0.01);
+  const auto full = test::run_with(settings).result;
+  EXPECT_EQ(full.time.status, "finished");
+  EXPECT_NEAR(full.displacement, kinematic, 1e-6 * std::abs(kinematic));
+
+  const test::TemporaryFolder folder;
+  const auto file   = folder.path / "active_stress.csv";
+  const Scene scene = test::parameters_with(settings).create_scene();
+  EXPECT_EQ(write_active_stress_table(file, *scene.active_stress, 2., 1.5, 129, 513), "");
+  settings.insert(settings.end(), {{"Active stress/Generator", "table"}, {"Active stress/Table/File", file.string()}});
+  const auto by_table = test::run_with(settings).result;
+  EXPECT_EQ(by_table.time.status, "finished");
+  EXPECT_NEAR(by_table.displacement, kinematic, 2e-6 * std::abs(kinematic));
+}
+
+TEST(GeneratedStrain, RefusesGeneratorsWithoutRateAndJumps)
+{
+  auto square = wave;
+  square.emplace_back("Active stress/Travelling wave/Profile", "square");
+  EXPECT_NE(complaint(strain_by("travelling wave", square)).find("does not know its rate of change"),
+            std::string::npos);
+  const std::string term = "Active stress/Sum/Term 1/";
+  const Settings cut     = {{term + "Expression/Active stress", "0.1*sin(t)*cos(s)"}, {term + "Window in t", "0.3, 2"}};
+  EXPECT_EQ(
+    complaint(strain_by("sum", cut)).find("Given by is sum, whose values jump at t = 0.3; a strain without jumps"), 0u);
+  const Settings half = {{term + "Expression/Active stress", "0.1*sin(t)*cos(s)"}, {term + "Window in s", "0.4, 2"}};
+  EXPECT_EQ(
+    complaint(strain_by("sum", half)).find("Given by is sum, whose values jump at s = 0.4; a strain without jumps"),
+    0u);
+  const Settings of_stress = {{term + "Generator", "prescribed strain"}};
+  EXPECT_EQ(complaint(strain_by("sum", of_stress)).find("Given by is sum, which does not know its rate of change"), 0u);
+  const Settings too_much = {{"Active stress/Travelling wave/Amplitude", "1.2"}};
+  EXPECT_NE(complaint(strain_by("travelling wave", too_much)).find("the body would be inverted"), std::string::npos)
+    << complaint(strain_by("travelling wave", too_much));
+}
+
+/// The sizes are looked at, and a stress that is not a function of s and t is refused elsewhere (sum_test.cc).
+TEST(ActiveStressTable, SaysWhatIsWrong)
+{
+  for (const std::string size : {"65", "1, 65", "65, 129, 3", "2.5, 10", "1e5, 1e5", "-3, 5"})
+    try
+    {
+      test::parameters_with({{"Output/Active stress table", size}}).create_scene();
+      ADD_FAILURE() << size << " is taken";
+    }
+    catch (const InputError &error)
+    {
+      EXPECT_EQ(error.entry, "Output/Active stress table");
+    }
+  EXPECT_NO_THROW(test::parameters_with({{"Output/Active stress table", "65, 129"}}).create_scene());
+}

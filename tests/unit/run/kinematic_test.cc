@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The kinematic level against closed forms and theory.md, sections 5 and 6.
+#include "../../support/run_text.h"
+
+#include <crawler/reduced_models/perturbation.h>
+#include <crawler/run/reduced_model.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  SimulationResult
+  compute(const test::Settings &settings, const std::string &model = "kinematic", const double accuracy = 1e-9)
+  {
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    return ReducedModel(scene, model).compute(accuracy, true);
+  }
+
+  test::Settings
+  strain(const double a, const std::string &formula)
+  {
+    return {{"Body/Anchoring exponent", test::text(1. - a)},
+            {"Active stress/Generator", "prescribed strain"},
+            {"Active stress/Prescribed strain/Strain", formula}};
+  }
+} // namespace
+
+TEST(Kinematic, StrainOfTheOptimalWave)
+{
+  EXPECT_NEAR(compute(test::wave(-1., 0.2)).displacement, 2.064390e-2, 1e-8);
+  EXPECT_NEAR(compute(test::wave(-1., 0.4)).displacement, 9.372520e-2, 1e-8);
+}
+
+/// For a = -1 and e = 0.3 sin 2 pi (s+t): D = Q = 1 - sqrt(1 - 0.09).
+TEST(Kinematic, SineWaveOfStrain)
+{
+  const double exact = 1. - std::sqrt(1. - 0.09);
+  const auto result  = compute(strain(-1., "0.3*sin(2*pi*(s+t))"));
+  EXPECT_EQ(result.time.status, "finished");
+  EXPECT_NEAR(result.displacement, exact, 1e-11);
+  EXPECT_LE(std::abs(result.displacement - exact), result.error->total + 1e-15);
+  EXPECT_EQ(result.error->model, 0.);
+  EXPECT_NEAR(result.energy_balance->dissipation, exact, 1e-11);
+  EXPECT_NEAR(result.energy_balance->stress_power, exact, 1e-11); // the elastic energy is what it was
+  EXPECT_LE(result.energy_balance->residual(), 1e-11);
+  EXPECT_LE(result.net_friction, 1e-12);
+  EXPECT_NEAR(result.min_stretch.value, 0.7, 1e-8);
+  EXPECT_NEAR(result.max_stretch.value, 1.3, 1e-8);
+}
+
+TEST(Kinematic, OptimisedGaits)
+{
+  const auto retrograde = compute(strain(-1., "0.08814294 + 0.29676868*sin(2*pi*(s+t)) + 0.09132339*cos(4*pi*(s+t))"));
+  EXPECT_NEAR(retrograde.displacement, 0.051149479, 2e-9);
+  EXPECT_NEAR(retrograde.energy_balance->dissipation, 0.051149479, 2e-9);
+  const auto prograde = compute(strain(2., "-0.0930008 + 0.29263653*sin(2*pi*(s-t)) - 0.10029035*cos(4*pi*(s-t))"));
+  EXPECT_NEAR(prograde.displacement, 0.10710692, 1e-8);
+  EXPECT_NEAR(prograde.energy_balance->dissipation, 0.045139762, 1e-9);
+}
+
+/// A standing wave of strain, which has no travelling part: the body ends where it started.
+TEST(Kinematic, ReciprocalMotionLeadsNowhere)
+{
+  const auto result = compute(strain(-2., "0.4*sin(2*pi*s + 1)*sin(pi*t)^2"));
+  EXPECT_NEAR(result.displacement, 0., 1e-12);
+  EXPECT_GT(result.energy_balance->dissipation, 1e-3);
+}
+
+/// The answer does not depend on the units: L = 2, gamma = 3, k = 5, T = 4.
+TEST(Kinematic, Units)
+{
+  auto scaled = strain(-1., "0.3*sin(2*pi*(s/2+t/4))");
+  scaled.insert(
+    scaled.end(),
+    {{"Body/Length", "2"}, {"Body/Friction coefficient", "3"}, {"Body/Elastic modulus", "5"}, {"Time/End time", "4"}});
+  const double exact = 1. - std::sqrt(1. - 0.09);
+  const auto result  = compute(scaled);
+  EXPECT_NEAR(result.displacement, 2. * exact, 1e-10);
+  EXPECT_NEAR(result.energy_balance->dissipation, 3. * 2. * 2. * 2. / 4. * exact, 1e-10); // gamma L^3/T
+  EXPECT_NEAR(result.min_stretch.value, 0.7, 1e-8);
+  const double s = result.min_stretch.s, t = result.min_stretch.t;
+  EXPECT_NEAR(std::sin(2. * std::acos(-1.) * (s / 2. + t / 4.)), -1., 1e-7);
+}
+
+/// For a = +1 the mean of g over the body is constant, and the level is the series exactly.
+TEST(Kinematic, IsTheSeriesForAEqualToOne)
+{
+  for (const double c : {-1., 0.7, 1.6})
+  {
+    auto settings = test::wave(1., 0.2, c, 0.9);
+    settings.emplace_back("Active stress/Optimal wave/Sine coefficients", "1, 0.3");
+    settings.emplace_back("Active stress/Optimal wave/Cosine coefficients", "0.2, -0.1");
+    const auto series = compute(settings, "perturbation", 1e-1), motion = compute(settings);
+    EXPECT_NEAR(motion.displacement, series.displacement, 1e-12 + 1e-10 * std::abs(series.displacement));
+  }
+}
+
+/// Halving a strain shows the order to which the series is the level: D/eps^2 = const + O(eps^2).
+TEST(Kinematic, TendsToTheSeries)
+{
+  const auto gap = [](const double chi) {
+    const auto settings = test::wave(-2.5, chi, 1.3, 0.8);
+    return std::abs(compute(settings).displacement / compute(settings, "perturbation").displacement - 1.);
+  };
+  EXPECT_NEAR(std::log2(gap(0.04) / gap(0.02)), 2., 0.1);
+}
+
+/// Of a stiff body: m = -k e makes the strain e, up to O(1/k).
+TEST(Kinematic, StiffBody)
+{
+  const auto gap = [](const std::string &k) {
+    test::Settings settings  = {{"Active stress/Generator", "expression"},
+                                {"Active stress/Expression/Active stress", k + "*0.2*(sin(2*pi*(s+t)) - sin(2*pi*s))"},
+                                {"Body/Elastic modulus", k}};
+    const double approximate = compute(settings).displacement;
+    settings.emplace_back("Accuracy", "1e-7");
+    return std::abs(approximate - test::run_with(settings).result.displacement);
+  };
+  EXPECT_NEAR(gap("100") / gap("200"), 2., 0.2);
+}
+
+TEST(Kinematic, InvertedByTheStrainItAssumes)
+{
+  const auto result = compute(test::wave(-1., 0.6));
+  EXPECT_EQ(result.time.status, "inverted");
+  ASSERT_TRUE(result.inversion);
+  EXPECT_LE(result.inversion->value, 0.);
+  EXPECT_FALSE(result.error);
+}
+
+/// A strain that is not smooth in s, whose kink is on the edge of no panel: the quadrature says how far it has come.
+TEST(Kinematic, AccuracyThatIsNotMetIsSaid)
+{
+  const auto result = compute(strain(-1., "0.3*(s > 1/3 ? 1 : 0)*sin(2*pi*t)*cos(2*pi*(s-t))"), "kinematic", 1e-10);
+  EXPECT_EQ(result.time.status, "failed");
+  EXPECT_EQ(result.time.reason, "accuracy_not_met");
+  EXPECT_GT(result.error->space, 0.);
+  const auto coarse = compute(strain(-1., "0.3*(s > 1/3 ? 1 : 0)*sin(2*pi*t)*cos(2*pi*(s-t))"), "kinematic", 1e-3);
+  EXPECT_EQ(coarse.time.status, "finished");
+  EXPECT_LE(std::abs(coarse.displacement - result.displacement), coarse.error->total + result.error->total);
+}

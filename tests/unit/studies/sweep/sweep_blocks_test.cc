@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/studies/sweep/sweep_blocks.h>
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace
+{
+  using namespace crawler;
+
+  ParameterFile
+  sweep_file(const std::string &axes, const std::string &more = "")
+  {
+    return ParameterFile::from_text("subsection Sweep\n set Axes = " + axes + "\n " + more + "\nend\n", "test.prm");
+  }
+
+  TEST(SweepBlocks, HaveEachPointOnceAndStayWithinTheLastAxis)
+  {
+    for (const auto &[p, chi] : {std::pair(1, 1), {1, 1000}, {7, 13}, {300, 65}, {20, 1000}})
+    {
+      SweepParameters parameters;
+      parameters.axes =
+        "A/p : linspace(1, 2, " + std::to_string(p) + "); A/chi : linspace(0, 1, " + std::to_string(chi) + ")";
+      const SweepDesign design(parameters);
+      const SweepBlocks blocks(design);
+      unsigned long next = 0;
+      for (unsigned long i = 0; i < blocks.size(); ++i)
+      {
+        const SweepBlock block = blocks[i];
+        ASSERT_EQ(block.first, next);
+        ASSERT_TRUE(block.size >= 1 && block.size <= 64);
+        if (chi > 1)
+        {
+          ASSERT_EQ(block.first / chi, (block.first + block.size - 1) / chi);
+        }
+        next += block.size;
+      }
+      EXPECT_EQ(next, design.n_points());
+      EXPECT_GE(blocks.size(), std::min(256ul, design.n_points()));
+    }
+  }
+
+  TEST(SweepOrder, VisitsEachBlockOnceAndLongOnesFirst)
+  {
+    for (const bool differ : {false, true})
+    {
+      const ParameterFile file = sweep_file(std::string(differ ? "Time/End time : 1, 5, 2; " : "") +
+                                            "Body/Anchoring exponent : linspace(1.5, 4, 500)");
+      SweepPoints points(MPI_COMM_SELF, file);
+      const SweepBlocks blocks(points.design());
+      const SweepOrder order(blocks, points);
+      std::set<unsigned long> seen;
+      double last = 1e300;
+      for (unsigned long i = 0; i < blocks.size(); ++i)
+      {
+        seen.insert(order[i]);
+        if (!differ)
+          continue;
+        const SweepBlock block = blocks[order[i]];
+        const double expected  = points.parameters(block.first).time.end_time * static_cast<double>(block.size);
+        EXPECT_LE(expected, last);
+        last = expected;
+      }
+      EXPECT_EQ(seen.size(), blocks.size());
+      EXPECT_EQ(*seen.rbegin(), blocks.size() - 1);
+    }
+  }
+} // namespace

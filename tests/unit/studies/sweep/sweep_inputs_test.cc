@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+#include <crawler/studies/sweep/sweep_inputs.h>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace
+{
+  using namespace crawler;
+
+  /// A folder of its own in which the program "was started".
+  class Inputs : public testing::Test
+  {
+  protected:
+    Inputs()
+      : before_(std::filesystem::current_path())
+      , folder_(std::filesystem::temp_directory_path() / ("sweep_inputs_test_" + std::to_string(::getpid())))
+    {
+      std::filesystem::create_directories(folder_);
+      std::filesystem::current_path(folder_);
+    }
+    ~Inputs() override
+    {
+      std::filesystem::current_path(before_);
+      std::filesystem::remove_all(folder_);
+    }
+
+    static SweepInputs
+    inputs(const std::string &text)
+    {
+      const ParameterFile file = ParameterFile::from_text(text, "test.prm");
+      return sweep_inputs(SweepPoints(MPI_COMM_SELF, file));
+    }
+
+  private:
+    const std::filesystem::path before_, folder_;
+  };
+
+  TEST_F(Inputs, ScenesAreKeptAsWhatTheySetAndComparedEntryByEntry)
+  {
+    write_file("soft.prm", "subsection Body\n set Elastic modulus = 2\nend\n");
+    write_file("plain.prm", "subsection Body\n set Length = 1 # the default\nend\n");
+    const std::string text =
+      "subsection Sweep\n set Axes = File : soft.prm, plain.prm; Body/Friction coefficient : 1, 2\n"
+      " set Time limit = 5\nend\n";
+    const SweepInputs before = inputs(text);
+    ASSERT_EQ(before.scenes.size(), 1u);
+    EXPECT_EQ(before.scenes.at("soft.prm"), (std::map<std::string, std::string>{{"Body/Elastic modulus", "\"2\""}}));
+    // What is written with the table gives the same back.
+    const SweepInputs kept = SweepInputs::from_attributes(before.attributes());
+    EXPECT_TRUE(differences(kept, before).empty());
+
+    auto damaged           = before.attributes();
+    damaged["scene files"] = "{\"soft.prm\": ";
+    EXPECT_THROW(SweepInputs::from_attributes(damaged), InputError);
+    SweepInputs garbled = before;
+    garbled.effective   = "subsection Bo\xff";
+    EXPECT_THROW(differences(garbled, before), InputError);
+
+    write_file("plain.prm", "subsection Body\n set Length = 2\n set Friction coefficient = 7\nend\n");
+    const auto changed = differences(kept, inputs(text)); // the friction coefficient is that of the axis anyway
+    EXPECT_EQ(changed, std::vector<std::string>{"Body/Length in plain.prm was not set and is \"2\""});
+    write_file("plain.prm", "set Accuracy = 1e-6\n");
+    EXPECT_EQ(differences(inputs(text), kept).size(), 1u);
+  }
+
+  TEST_F(Inputs, FilesThatEntriesNameHaveFingerprints)
+  {
+    write_file("ground.csv", "x,value\n-9,1\n0,2\n2,1\n9,1\n");
+    write_file("other.csv", "x,value\n-9,1\n0,2\n2,1\n9,3\n");
+    const std::string text = "subsection Sweep\n set Axes = Ground/Profile : ground.csv, other.csv, 1 + 0.1*x^2\nend\n";
+    const SweepInputs before = inputs(text);
+    EXPECT_EQ(before.files.size(), 2u);
+    EXPECT_EQ(before.files.at("ground.csv"), fingerprint("ground.csv"));
+    EXPECT_NE(before.files.at("ground.csv"), before.files.at("other.csv"));
+    write_file("other.csv", "x,value\n-9,1\n0,2\n2,1\n9,4\n");
+    const auto changed = differences(before, inputs(text));
+    ASSERT_EQ(changed.size(), 1u);
+    EXPECT_TRUE(changed[0].starts_with("the file \"other.csv\" was 25 bytes, CRC-32")) << changed[0];
+  }
+
+  TEST_F(Inputs, HowMuchIsComputedMayChange)
+  {
+    const std::string axes   = " set Axes = Body/Length : 1, 2\n";
+    const SweepInputs before = inputs("subsection Sweep\n" + axes + "end\n");
+    EXPECT_TRUE(differences(before, inputs("subsection Sweep\n" + axes + " set Time limit = 5\nend\n")).empty());
+    EXPECT_EQ(differences(before, inputs("set Accuracy = 1e-5\nsubsection Sweep\n" + axes + "end\n")).size(), 1u);
+  }
+
+  TEST_F(Inputs, TheChecksumIsThatOfZlib)
+  {
+    write_file("check", "123456789");
+    EXPECT_EQ(fingerprint("check"), "9 bytes, CRC-32 cbf43926"); // the check value of CRC-32
+    write_file("empty", "");
+    EXPECT_EQ(fingerprint("empty"), "0 bytes, CRC-32 00000000");
+    EXPECT_THROW(fingerprint("nothing"), FileError);
+  }
+} // namespace
