@@ -276,9 +276,9 @@ def test_begun(program, folder):
     whole = folder / "begun_whole"
     call(program, folder, "sweep", "sweep.prm", "--output", "begun_whole")
     reference = table(whole)
-    check(not (whole / "sweep.lock").exists(), "no lock stays behind")
-    for files in (("sweep.lock",), ("sweep.lock", "original.prm.part"),
-                  ("sweep.lock", "original.prm", "parameters.prm", "log.txt", "results.h5.part")):
+    check(not (whole / "study.lock").exists(), "no lock stays behind")
+    for files in (("study.lock",), ("study.lock", "original.prm.part"),
+                  ("study.lock", "original.prm", "parameters.prm", "log.txt", "results.h5.part")):
         begun = folder / "begun"
         shutil.rmtree(begun, ignore_errors=True)
         begun.mkdir()
@@ -301,7 +301,7 @@ def test_begun(program, folder):
         result = call(program, folder, "sweep", "sweep.prm", "--output", name, "--resume")
         after = {file: file.read_bytes() for file in (folder / name).rglob("*") if file.is_file()}
         check(result.returncode == 2 and before == after, f"--resume leaves {name} alone: {result.stderr.strip()}")
-    with open(whole / "sweep.lock", "wb") as lock:
+    with open(whole / "study.lock", "wb") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         result = call(program, folder, "sweep", "sweep.prm", "--output", "begun_whole", "--resume")
         check(result.returncode == 2 and "another sweep writes to" in result.stderr,

@@ -115,7 +115,7 @@ namespace crawler
     const auto folder              = output_folder(options.output, options.file);
     on_first_rank(communicator, [&]() {
       require_usable(folder, options.overwrite);
-      require_no_sweep(folder);
+      require_no_study(folder);
       return "";
     });
 

@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/summary.h>
+#include <crawler/studies/sweep/point_table.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 
 #include <nlohmann/json.hpp>
@@ -12,12 +13,14 @@
 
 namespace crawler
 {
+  const std::string sweep_file = "results.h5", sweep_group = "results";
+
   namespace
   {
     using Json = nlohmann::ordered_json;
 
     constexpr double not_known        = std::numeric_limits<double>::quiet_NaN();
-    constexpr unsigned int word_width = 24, reason_width = 32, message_width = 256, most_axis_width = 256;
+    constexpr unsigned int word_width = 24, reason_width = 32, message_width = 256;
 
     /// What is said of the process, not of the point, or has a column of its own.
     bool
@@ -107,16 +110,6 @@ namespace crawler
       return found == units.end() ? "1" : found->second;
     }
 
-    /// A text that is too long ends with dots.
-    std::string
-    shortened(const std::string &text, const std::size_t width)
-    {
-      if (text.size() <= width)
-        return text;
-      const std::string dots = "...";
-      return text.substr(0, whole_characters(text, width - dots.size())) + dots;
-    }
-
     RowFile::Value
     value_of(const Json &json, const bool is_text)
     {
@@ -131,25 +124,7 @@ namespace crawler
   std::vector<RowFile::Column>
   sweep_columns(const SweepDesign &design, const Declarations &declarations)
   {
-    std::vector<RowFile::Column> columns = {{"index", "1", "number of the point", 0}};
-    for (const SweepAxis &axis : design.axes())
-    {
-      std::string unit;
-      for (const EntryInfo &entry : declarations.entries())
-        if (entry.path == axis.entry)
-          unit = entry.unit;
-      bool is_number     = true;
-      std::size_t widest = 1;
-      for (const std::string &value : axis.values)
-      {
-        is_number = is_number && to_number(value).has_value();
-        widest    = std::max(widest, value.size());
-      }
-      columns.push_back({axis.entry,
-                         unit,
-                         "axis of the sweep",
-                         is_number ? 0 : std::min(static_cast<unsigned int>(widest), most_axis_width)});
-    }
+    std::vector<RowFile::Column> columns = axis_columns(design, declarations);
     for_each_value(full_summary(), "", [&](const std::string &key, const Json &value) {
       const bool is_text = value.is_string();
       columns.push_back({key, is_text ? "" : unit_of_key(key), "as in summary.json", is_text ? word_width : 0});
@@ -161,8 +136,6 @@ namespace crawler
     columns.push_back({"status", "", "finished, inverted, failed or stopped; empty: not computed yet", word_width});
     return columns;
   }
-
-  const std::string time_limit_reason = "time_limit";
 
   PointStatus
   status_of(const Task &task)
@@ -186,19 +159,6 @@ namespace crawler
     const TimeOutcome &time = task.computed.result.time;
     return time.status == "finished" ? PointStatus{time.status, "", ""}
                                      : PointStatus{time.status, time.reason, time.message};
-  }
-
-  RowFile::Known
-  known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design)
-  {
-    return {1 + design.axes().size(), [&](const std::size_t column, const unsigned long point) -> RowFile::Value {
-              if (column == 0)
-                return static_cast<double>(point);
-              const std::string text = design.value(column - 1, point);
-              if (columns[column].width > 0)
-                return text;
-              return *to_number(text);
-            }};
   }
 
   RowFile::Row
