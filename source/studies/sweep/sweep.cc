@@ -108,18 +108,16 @@ namespace crawler
     {
       const SweepBlocks blocks(points.design());
       const SweepOrder order(blocks, points);
-      const auto written = table.written_columns();
-      RowFile results(communicator, folder / table.file, table.group, written);
-      return share_work(
-        communicator,
-        {blocks.size(),
-         static_cast<unsigned long>(std::count(done.begin(), done.end(), false)),
-         "points",
-         interrupted,
-         [&](const unsigned long number, const auto &stops, const auto &see) {
-           return SweepWorker(points, written, done, results, stops).compute(blocks[order[number]], see);
-         }},
-        log);
+      RowFile results(communicator, folder / table.file, table.group, table.written_columns());
+      return share_work(communicator,
+                        {blocks.size(),
+                         static_cast<unsigned long>(std::count(done.begin(), done.end(), false)),
+                         "points",
+                         interrupted,
+                         [&](const unsigned long number, const auto &stops, const auto &see) {
+                           return SweepWorker(points, done, results, stops).compute(blocks[order[number]], see);
+                         }},
+                        log);
     }
 
     /// What stands in the log at the end.

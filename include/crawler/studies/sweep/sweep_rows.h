@@ -19,9 +19,9 @@ namespace crawler
 
   extern const std::string sweep_file, sweep_group; ///< results.h5, and the group in it
 
-  /// The row of a point that has been computed, in @p columns, those after the known ones.
+  /// The row of a point that has been computed, in the columns after the known ones.
   RowFile::Row
-  sweep_row(const std::vector<RowFile::Column> &columns, const Task &task);
+  sweep_row(const Task &task);
 
   /// What has become of a point, in a word, and why.
   struct PointStatus
