@@ -76,7 +76,7 @@ namespace crawler
   atlas_table(const SweepPoints &points)
   {
     PointTable table = {
-      "atlas.h5", "atlas", axis_columns(points.design(), points.declarations()), 3, point_texts[0].name, {}, 0.};
+      "atlas.h5", "atlas", axis_columns(points.design(), points.declarations(), "axis of the atlas"), 3, point_texts[0].name, {}, 0.};
     for (const PointText &text : point_texts)
       table.columns.push_back({text.name, "", text.description, text.width});
     for (const char *name : AtlasPoint::run_names)

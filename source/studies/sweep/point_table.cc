@@ -87,7 +87,7 @@ namespace crawler
   }
 
   std::vector<RowFile::Column>
-  axis_columns(const SweepDesign &design, const Declarations &declarations)
+  axis_columns(const SweepDesign &design, const Declarations &declarations, const std::string &description)
   {
     constexpr unsigned int most_axis_width = 256;
     std::vector<RowFile::Column> columns   = {{"index", "1", "number of the point", 0}};
@@ -106,7 +106,7 @@ namespace crawler
       }
       columns.push_back({axis.entry,
                          unit,
-                         "value on the axis",
+                         description,
                          is_number ? 0 : std::min(static_cast<unsigned int>(widest), most_axis_width)});
     }
     return columns;

@@ -34,7 +34,7 @@ namespace crawler
   std::vector<RowFile::Column>
   sweep_columns(const SweepDesign &design, const Declarations &declarations)
   {
-    std::vector<RowFile::Column> columns = axis_columns(design, declarations);
+    std::vector<RowFile::Column> columns = axis_columns(design, declarations, "axis of the sweep");
     for (const ResultEntry &entry : result_table())
       if (!entry.of_process)
         columns.push_back({entry.key, entry.unit, entry.meaning, entry.is_word ? word_width : 0});
