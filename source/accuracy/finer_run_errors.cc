@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/finer_run_errors.h>
+#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/result_table.h>
 
 #include <algorithm>
@@ -9,8 +10,7 @@ namespace crawler
 {
   namespace
   {
-    // Calibrated by tests/verification/number_errors.py.
-    constexpr double more_if_sampled = 1.5, sampling_error = 2.;
+    using namespace accuracy_rule::number_bounds;
 
     double
     number(const ResultEntry &entry, const SimulationResult &result)

@@ -71,7 +71,7 @@ def same(one, other, but=("seconds",)):
 
 
 def test_grid(program, mpirun, folder):
-    """Values, order, error bars, CSV, pandas."""
+    """Values, order, error bounds, CSV, pandas."""
     write(folder, f"{P} : 0, 2, 3; {CHI} : 0.1, 0.4")
     result = call(program, folder, "sweep", "sweep.prm", "--output", "grid")
     check(result.returncode == 0, f"a grid finishes with 0 ({result.returncode}) {result.stderr.strip()}")
@@ -98,7 +98,7 @@ def test_grid(program, mpirun, folder):
     summary = json.loads((folder / "single" / "summary.json").read_text(encoding="utf-8"))
     check(single.returncode == 0 and abs(summary["displacement"] - rows["displacement"][5])
           <= summary["displacement_error"]["total"] + rows["displacement_error.total"][5],
-          "a point agrees with crawler run within the error bars")
+          "a point agrees with crawler run within the error bounds")
 
     def in_summary(key):
         value = summary
@@ -304,7 +304,7 @@ def test_begun(program, folder):
     with open(whole / "study.lock", "wb") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         result = call(program, folder, "sweep", "sweep.prm", "--output", "begun_whole", "--resume")
-        check(result.returncode == 2 and "another sweep writes to" in result.stderr,
+        check(result.returncode == 2 and "another study writes to" in result.stderr,
               f"two sweeps at once are refused: {result.stderr.strip()}")
         with subprocess.Popen([program, "sweep", "sweep.prm", "--output", "begun_whole", "--resume"], cwd=folder,
                               env=ENVIRONMENT, stdout=subprocess.DEVNULL) as process:
@@ -365,7 +365,7 @@ def test_kills(program, mpirun, folder):
     error = np.abs(reference["displacement"] - table(folder / "accurate")["displacement"])
     covered = np.mean(error <= reference["displacement_error.total"])
     wanted = np.all(reference["displacement_error.total"] <= 1e-4 * np.abs(reference["displacement"]))
-    check(covered >= 0.99 and wanted, f"{100 * covered:.2f} % of the points are within their error bars, all bars within Accuracy")
+    check(covered >= 0.99 and wanted, f"{100 * covered:.2f} % of the points are within their error bounds, all bars within Accuracy")
     start = time.time()
     call(program, folder, "sweep", "sweep.prm", "--output", "timed", command=(mpirun, "--oversubscribe", "-n", "2"))
     duration = time.time() - start

@@ -75,8 +75,13 @@ namespace crawler
   PointTable
   atlas_table(const SweepPoints &points)
   {
-    PointTable table = {
-      "atlas.h5", "atlas", axis_columns(points.design(), points.declarations(), "axis of the atlas"), 3, point_texts[0].name, {}, 0.};
+    PointTable table = {"atlas.h5",
+                        "atlas",
+                        axis_columns(points.design(), points.declarations(), "axis of the atlas"),
+                        3,
+                        point_texts[0].name,
+                        {},
+                        0.};
     for (const PointText &text : point_texts)
       table.columns.push_back({text.name, "", text.description, text.width});
     for (const char *name : AtlasPoint::run_names)

@@ -104,10 +104,8 @@ namespace crawler
         is_number = is_number && to_number(value).has_value();
         widest    = std::max(widest, value.size());
       }
-      columns.push_back({axis.entry,
-                         unit,
-                         description,
-                         is_number ? 0 : std::min(static_cast<unsigned int>(widest), most_axis_width)});
+      columns.push_back(
+        {axis.entry, unit, description, is_number ? 0 : std::min(static_cast<unsigned int>(widest), most_axis_width)});
     }
     return columns;
   }
