@@ -4,7 +4,7 @@
 #include <crawler/equation/crawler_equation.h>
 #include <crawler/scene/friction_law.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -24,84 +24,145 @@ namespace crawler
     struct Kernels
     {
       static constexpr int n = q + 1;
-      using Points           = std::array<double, n>;
 
-      /// g at the points of a cell.
-      static auto
-      friction_of(const CellInput &in)
+      /// g at the points of a cell, and its derivative by log w.
+      struct Friction
       {
-        return [&in](const double *w, double *g) { in.friction->values({w, n}, {g, n}); };
+        const FrictionLaw &law;
+
+        void
+        operator()(const double *w, double *g) const
+        {
+          law.values({w, n}, {g, n});
+        }
+        void
+        operator()(const double *w, double *g, double *w_dg) const
+        {
+          law.values_and_log_derivatives({w, n}, {g, n}, {w_dg, n});
+        }
+      };
+      using Plain = PlainLaws<n, double, Friction>;
+
+      /// Laws whose values at the points of the cell are known.
+      struct General
+      {
+        static constexpr bool has_one_modulus = false, has_place = true, has_rate = true;
+        const PointLaws &all;
+        std::size_t first; ///< point of the cell
+
+        void
+        forces(const double *, const double *, const double *, double *N, double *f) const
+        {
+          std::copy_n(all.N + first, n, N);
+          std::copy_n(all.f + first, n, f);
+        }
+        template <bool>
+        void
+        derivatives(const double *, const double *w, const double *, PointDerivatives<n, double> &D) const
+        {
+          for (int p = 0; p < n; ++p)
+          {
+            D.f_v[p]    = all.f_v[first + p];
+            D.f_u[p]    = all.f_u[first + p];
+            D.f_w[p]    = all.w_f_w[first + p] / w[p];
+            D.N_w[p]    = all.N_w[first + p];
+            D.N_rate[p] = all.N_rate != nullptr ? all.N_rate[first + p] : 0.;
+          }
+        }
+        void
+        densities(const double *e, const double *, const double *, const double *v_s, PointDensities<double> *at) const
+        {
+          for (int p = 0; p < n; ++p)
+            at[p] = {equation::elastic_energy(e[p], all.k[first + p]),
+                     equation::stress_power(all.m[first + p], v_s[p]),
+                     all.f[first + p]};
+        }
+      };
+
+      /// Calls @p use(laws, c) for each cell.
+      template <typename Use>
+      static void
+      for_cells(const CellInput &in, const Use &use)
+      {
+        if (in.laws != nullptr)
+          for (unsigned int c = 0; c < in.n_cells; ++c)
+            use(General{*in.laws, static_cast<std::size_t>(c) * n}, c);
+        else
+          for (unsigned int c = 0; c < in.n_cells; ++c)
+            use(Plain{in.k, in.m + c * n, {*in.friction}}, c);
       }
 
-      static long
+      static const double *
+      velocity(const CellInput &in, const unsigned int c)
+      {
+        return in.v != nullptr ? in.v + c * q : nullptr;
+      }
+
+      [[gnu::flatten]] static long
       residual(const CellInput &in, double *F)
       {
-        const ElementTables tables = tables_of(*in.element);
-        const auto friction        = friction_of(in);
-        long bad                   = -1;
-        for (unsigned int c = 0; c < in.n_cells; ++c)
-        {
+        long bad = -1;
+        for_cells(in, [&](const auto &laws, const unsigned int c) {
           double w[n];
-          const double *v = in.v != nullptr ? in.v + c * q : nullptr;
-          cell_residual<n>(tables, in.cell_size[c], in.k, in.u + c * q, v, in.m + c * n, friction, w, F + c * q);
+          cell_residual<n>(tables_of(*in.element), in.cell_size[c], laws, in.u + c * q, velocity(in, c), w, F + c * q);
           for (int p = 0; p < n; ++p)
             if (!(w[p] > 0.) && bad < 0)
               bad = static_cast<long>(c) * n + p;
-        }
+        });
         return bad;
       }
 
       static void
-      jacobian(const CellInput &in, const double sigma, double *blocks)
+      blocks(const CellInput &in, const double by_state, const double by_velocity, double *A)
       {
-        const double *values = in.element->values.data(), *derivatives = in.element->derivatives.data();
-        const double *weights = in.element->weights.data(), *stiffness = in.element->stiffness.data();
-        for (unsigned int c = 0; c < in.n_cells; ++c)
-        {
-          const double h = in.cell_size[c], k_over_h = in.k / h;
-          double *J = blocks + c * n * n;
-          Points w, g, dg, v;
-          evaluate<n>(derivatives, in.u + c * q, 1. / h, 1., w.data());
-          evaluate<n>(values, in.v + c * q, 1., 0., v.data());
-          in.friction->values_and_log_derivatives(w, g, dg);
-          for (int i = 0; i < n * n; ++i)
-            J[i] = k_over_h * stiffness[i];
-          for (int p = 0; p < n; ++p)
+        const ElementTables tables = tables_of(*in.element);
+        for_cells(in, [&](const auto &laws, const unsigned int c) {
+          double K[n * n], M[n * n], *block = A + c * n * n;
+          const double *u = in.u + c * q, *v = velocity(in, c);
+          if (by_state == 0.)
           {
-            const double from_v = h * weights[p] * sigma * g[p];
-            const double from_w = weights[p] * dg[p] / w[p] * v[p]; // h * (1/h)
-            Points column;
-            for (int j = 0; j < n; ++j)
-              column[j] = from_v * values[p * n + j] + from_w * derivatives[p * n + j];
-            for (int i = 0; i < n; ++i)
-              for (int j = 0; j < n; ++j)
-                J[i * n + j] += values[p * n + i] * column[j];
+            cell_blocks<n, false, double>(tables, in.cell_size[c], laws, u, v, nullptr, M);
+            for (int i = 0; i < n * n; ++i)
+              block[i] = by_velocity * M[i];
+            return;
           }
-        }
-      }
-
-      static void
-      mass(const CellInput &in, double *blocks)
-      {
-        for (unsigned int c = 0; c < in.n_cells; ++c)
-          cell_mass<n>(tables_of(*in.element), in.cell_size[c], in.u + c * q, friction_of(in), blocks + c * n * n);
+          cell_blocks<n, true>(tables, in.cell_size[c], laws, u, v, K, M);
+          for (int i = 0; i < n * n; ++i)
+            block[i] = by_state * K[i] + by_velocity * M[i];
+        });
       }
 
       static void
       integrals(const CellInput &in, CellIntegrals &sum)
       {
-        for (unsigned int c = 0; c < in.n_cells; ++c)
-          cell_integrals<n>(tables_of(*in.element),
-                            in.cell_size[c],
-                            in.k,
-                            in.u + c * q,
-                            in.v + c * q,
-                            in.m + c * n,
-                            friction_of(in),
-                            sum);
+        for_cells(in, [&](const auto &laws, const unsigned int c) {
+          cell_integrals<n>(tables_of(*in.element), in.cell_size[c], laws, in.u + c * q, in.v + c * q, sum);
+        });
       }
 
-      static constexpr CellKernels table = {residual, jacobian, mass, integrals};
+      static void
+      states(const CellInput &in, double *u, double *v, double *e, double *rate)
+      {
+        const ElementTables tables = tables_of(*in.element);
+        for (unsigned int c = 0; c < in.n_cells; ++c)
+        {
+          const double by_h = 1. / in.cell_size[c];
+          evaluate<n>(tables.values, in.u + c * q, 1., 0., u + c * n);
+          evaluate<n>(tables.derivatives, in.u + c * q, by_h, 0., e + c * n);
+          if (in.v != nullptr)
+          {
+            evaluate<n>(tables.values, in.v + c * q, 1., 0., v + c * n);
+            evaluate<n>(tables.derivatives, in.v + c * q, by_h, 0., rate + c * n);
+          }
+          else
+          {
+            std::fill_n(v + c * n, n, 0.);
+            std::fill_n(rate + c * n, n, 0.);
+          }
+        }
+      }
+
+      static constexpr CellKernels table = {residual, blocks, integrals, states};
     };
   } // namespace
 

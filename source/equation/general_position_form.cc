@@ -15,33 +15,21 @@ namespace crawler
     , elsewhere_(scene, discretization, discretization.points(discretization.element().points))
   {
     const std::size_t n = static_cast<std::size_t>(discretization.n_local_cells()) * discretization.element().n;
-    for (auto *field : {&e_, &w_, &u_, &v_, &rate_, &g_, &w_dg_})
+    for (auto *field : {&e_, &w_, &u_, &v_, &rate_, &g_, &w_dg_, &f_, &f_u_, &f_v_, &w_f_w_})
       field->resize(n);
   }
 
   long
   GeneralPositionForm::evaluate(const double t, const ConstVector u, const CellInput &in)
   {
-    const ReferenceElement &element = *in.element;
-    const unsigned int n = element.n, q = element.degree;
+    kernels_.states(in, u_.data(), v_.data(), e_.data(), rate_.data());
     long bad = -1;
-    for (std::size_t c = 0; c < in.n_cells; ++c)
-      for (unsigned int p = 0; p < n; ++p)
-      {
-        const std::size_t i = c * n + p;
-        e_[i] = u_[i] = v_[i] = rate_[i] = 0.;
-        for (unsigned int j = 0; j < n; ++j)
-        {
-          const double u_j = in.u[c * q + j], v_j = in.v != nullptr ? in.v[c * q + j] : 0.;
-          u_[i] += element.values[p * n + j] * u_j;
-          v_[i] += element.values[p * n + j] * v_j;
-          e_[i] += element.derivatives[p * n + j] / in.cell_size[c] * u_j;
-          rate_[i] += element.derivatives[p * n + j] / in.cell_size[c] * v_j;
-        }
-        w_[i] = 1. + e_[i];
-        if (bad < 0 && !(w_[i] > 0.))
-          bad = static_cast<long>(i);
-      }
+    for (std::size_t i = 0; i < e_.size(); ++i)
+    {
+      w_[i] = 1. + e_[i];
+      if (bad < 0 && !(w_[i] > 0.))
+        bad = static_cast<long>(i);
+    }
     elsewhere_.evaluate(t, stretch_coefficients(u), history_);
     if (bad >= 0)
       return bad;
@@ -52,7 +40,31 @@ namespace crawler
       describe_bad_law_ = [this, bad](const Units &units) { return sliding_.describe(bad, units); };
     else
       bad = look_at_friction(w_, g_);
+    for (std::size_t i = 0; i < g_.size(); ++i)
+    {
+      f_[i]     = equation::friction_force(g_[i], sliding_.force[i]);
+      f_u_[i]   = g_[i] * sliding_.by_u[i];
+      f_v_[i]   = g_[i] * sliding_.by_v[i];
+      w_f_w_[i] = w_dg_[i] * sliding_.force[i];
+    }
     return bad;
+  }
+
+  CellInput
+  GeneralPositionForm::with_laws(const CellInput &in)
+  {
+    laws_             = {force_.N.data(),
+                         f_.data(),
+                         f_u_.data(),
+                         f_v_.data(),
+                         w_f_w_.data(),
+                         force_.by_w.data(),
+             force_.by_rate.empty() ? nullptr : force_.by_rate.data(),
+                         force_.k.data(),
+                         force_.m.data()};
+    CellInput general = in;
+    general.laws      = &laws_;
+    return general;
   }
 
   long
@@ -61,46 +73,7 @@ namespace crawler
     const long bad = evaluate(t, u, in);
     if (bad >= 0)
       return bad;
-    const ReferenceElement &element = *in.element;
-    const unsigned int n = element.n, q = element.degree;
-    for (std::size_t c = 0; c < in.n_cells; ++c)
-      for (unsigned int p = 0; p < n; ++p)
-      {
-        const double friction = in.cell_size[c] * element.weights[p] * g_[c * n + p] * sliding_.force[c * n + p],
-                     force    = element.weights[p] * force_.N[c * n + p];
-        for (unsigned int i = 0; i < n; ++i)
-          F[c * q + i] += friction * element.values[p * n + i] + force * element.derivatives[p * n + i];
-      }
-    return -1;
-  }
-
-  /// by_state dF/du + by_velocity dF/dv for the state of the last evaluate().
-  void
-  GeneralPositionForm::blocks_of(const CellInput &in,
-                                 const double by_state,
-                                 const double by_velocity,
-                                 double *blocks) const
-  {
-    const ReferenceElement &element = *in.element;
-    const unsigned int n            = element.n;
-    const bool has_rate             = !force_.by_rate.empty();
-    std::fill_n(blocks, static_cast<std::size_t>(in.n_cells) * n * n, 0.);
-    for (std::size_t c = 0; c < in.n_cells; ++c)
-      for (unsigned int p = 0; p < n; ++p)
-      {
-        const std::size_t at = c * n + p;
-        const double h = in.cell_size[c], weight = element.weights[p];
-        const double phi_by_phi =
-          h * weight * g_[at] * (by_state * sliding_.by_u[at] + by_velocity * sliding_.by_v[at]);
-        const double phi_by_phi_s = weight * by_state * w_dg_[at] / w_[at] * sliding_.force[at]; // h * (1/h)
-        const double phi_s_by_phi_s =
-          weight / h * (by_state * force_.by_w[at] + (has_rate ? by_velocity * force_.by_rate[at] : 0.));
-        const double *phi = &element.values[p * n], *phi_s = &element.derivatives[p * n];
-        for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j < n; ++j)
-            blocks[(c * n + i) * n + j] +=
-              phi[i] * (phi_by_phi * phi[j] + phi_by_phi_s * phi_s[j]) + phi_s[i] * phi_s_by_phi_s * phi_s[j];
-      }
+    return kernels_.residual(with_laws(in), F);
   }
 
   void
@@ -108,14 +81,14 @@ namespace crawler
     const double t, const ConstVector u, const CellInput &in, const double sigma, double *blocks)
   {
     evaluate(t, u, in);
-    blocks_of(in, 1., sigma, blocks);
+    kernels_.blocks(with_laws(in), 1., sigma, blocks);
   }
 
   void
   GeneralPositionForm::mass_blocks(const double t, const ConstVector u, const CellInput &in, double *blocks)
   {
     evaluate(t, u, in);
-    blocks_of(in, 0., 1., blocks);
+    kernels_.blocks(with_laws(in), 0., 1., blocks);
   }
 
   GeneralPositionForm::Far
@@ -201,25 +174,8 @@ namespace crawler
   {
     const CellInput in = input(t, u, v);
     evaluate(t, u, in);
-    const ReferenceElement &element = *in.element;
     CellIntegrals sum;
-    for (std::size_t c = 0; c < in.n_cells; ++c)
-      for (unsigned int p = 0; p < element.n; ++p)
-      {
-        const std::size_t i   = c * element.n + p;
-        const double ds       = in.cell_size[c] * element.weights[p];
-        const double power    = equation::stress_power(force_.m[i], rate_[i]),
-                     friction = equation::friction_force(g_[i], sliding_.force[i]);
-        sum.displacement += ds * u_[i];
-        sum.velocity += ds * v_[i];
-        sum.elastic_energy += ds * equation::elastic_energy(e_[i], force_.k[i]);
-        sum.stress_power += ds * power;
-        sum.positive_power += ds * std::max(power, 0.);
-        sum.absolute_power += ds * std::abs(power);
-        sum.dissipation += ds * friction * v_[i];
-        sum.net_friction += ds * friction;
-        sum.abs_friction += ds * std::abs(friction);
-      }
+    kernels_.integrals(with_laws(in), sum);
     sum_over_ranks(sum);
     return sum;
   }
@@ -228,9 +184,7 @@ namespace crawler
   GeneralPositionForm::friction(const double t, const ConstVector u, const ConstVector v, std::vector<double> &g_v)
   {
     evaluate(t, u, input(t, u, v));
-    g_v.resize(g_.size());
-    for (std::size_t i = 0; i < g_.size(); ++i)
-      g_v[i] = g_[i] * sliding_.force[i];
+    g_v = f_;
   }
 
   std::unique_ptr<PositionForm>

@@ -223,13 +223,13 @@ namespace crawler
   void
   PositionForm::jacobian_blocks(double, ConstVector, const CellInput &in, const double sigma, double *blocks)
   {
-    kernels_.jacobian(in, sigma, blocks);
+    kernels_.blocks(in, 1., sigma, blocks);
   }
 
   void
   PositionForm::mass_blocks(double, ConstVector, const CellInput &in, double *blocks)
   {
-    kernels_.mass(in, blocks);
+    kernels_.blocks(in, 0., 1., blocks);
   }
 
   bool

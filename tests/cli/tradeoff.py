@@ -137,7 +137,7 @@ def check_hdf5(folder, rows):
     """The same numbers and texts in tradeoff.h5."""
     with h5py.File(folder / "tradeoff.h5") as file:
         group = file["tradeoff"]
-        names = {dataset.attrs["name"]: dataset for dataset in group.values()}
+        names = {bytes(dataset.attrs["name"]).decode(): dataset for dataset in group.values()}
         good = set(names) == set(rows[0])
         for name, dataset in names.items():
             if h5py.check_string_dtype(dataset.dtype):
@@ -145,7 +145,7 @@ def check_hdf5(folder, rows):
             else:
                 good &= all(same(a, number(row[name])) for a, row in zip(dataset[:], rows))
         check(good, "tradeoff.h5 has what tradeoff.csv has")
-        check(group["seconds"].attrs["unit"] == "s" and "subsection Tradeoff" in group.attrs["parameters.prm"]
+        check(group["seconds"].attrs["unit"] == b"s" and b"subsection Tradeoff" in group.attrs["parameters.prm"]
               and "version of PETSc" in group.attrs, "tradeoff.h5 knows units and where it comes from")
 
 

@@ -9,6 +9,13 @@ namespace crawler
 {
   class FrictionLaw;
 
+  /// What general laws say at the points [cell][point] of a run of cells, for the state at hand; f is the friction per
+  /// reference length, N the force in the body. Null: the body's force does not depend on the rate of the stretch.
+  struct PointLaws
+  {
+    const double *N, *f, *f_u, *f_v, *w_f_w, *N_w, *N_rate, *k, *m;
+  };
+
   /// What the integrals over a run of cells need. Arrays over nodes are local ones (discretization.h).
   struct CellInput
   {
@@ -16,10 +23,11 @@ namespace crawler
     const double *cell_size;
     const ReferenceElement *element;
     const FrictionLaw *friction;
-    double k;        ///< elastic modulus
-    const double *u; ///< displacement at the nodes
-    const double *v; ///< velocity at the nodes; may be null in residual(): then without friction
-    const double *m; ///< active stress at the quadrature points
+    double k;                        ///< elastic modulus
+    const double *u;                 ///< displacement at the nodes
+    const double *v;                 ///< velocity at the nodes; may be null in residual(): then without friction
+    const double *m;                 ///< active stress at the quadrature points
+    const PointLaws *laws = nullptr; ///< of a general scene, in place of k, m and friction
   };
 
   /// Integrals over the body that the energy balance is made of; see theory.md section 1 for their relations.
@@ -39,18 +47,17 @@ namespace crawler
   /**
    * The loops over cells, compiled for each degree so that the compiler unrolls them. With phi_i the shape functions:
    *
-   *   residual   F_i  = int g(w) v phi_i + int N phi_i,s                    (added to F)
-   *   jacobian   J_ij = sigma int g phi_j phi_i + int g' v phi_j,s phi_i + int k phi_j,s phi_i,s
-   *                     = dF_i/du_j + sigma dF_i/dv_j                       (dense block of each cell)
-   *   mass       M_ij = int g(w) phi_j phi_i
+   *   residual   F_i  = int f phi_i + int N phi_i,s          (added to F); f = g(w) v, N = m + k (w - 1) of plain
+   * scenes blocks     by_state dF_i/du_j + by_velocity dF_i/dv_j  (dense block of each cell) states     u, v, strain
+   * and rate of the stretch at the quadrature points
    */
   struct CellKernels
   {
     /// Returns the local quadrature point number (cell*n + point) of the first stretch that is not positive, or -1.
     long (*residual)(const CellInput &, double *F);
-    void (*jacobian)(const CellInput &, double sigma, double *blocks);
-    void (*mass)(const CellInput &, double *blocks);
+    void (*blocks)(const CellInput &, double by_state, double by_velocity, double *blocks);
     void (*integrals)(const CellInput &, CellIntegrals &);
+    void (*states)(const CellInput &, double *u, double *v, double *e, double *rate);
   };
 
   /// The kernels for one degree, 1 to ReferenceElement::highest_degree.

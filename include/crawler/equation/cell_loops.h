@@ -34,148 +34,234 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   }
 
   /**
-   * Adds int N phi_i,s, and if there is a velocity @p v int g v phi_i, to @p f. @p friction(w, g) writes the friction
-   * at all points; the stretches are left in @p w.
+   * The equation in a cell: the loops below are all that the program has, for any number type and any laws. Laws tell,
+   * at the n points of a cell, for strains e, stretches w and velocities v and their gradients v_s:
+   *
+   *   forces(e, w, v, N, f)        force in the body N and, unless v is null, friction per reference length f
+   *   derivatives(e, w, v, D)      derivatives of both: PointDerivatives; without by_state those by v and v_s only
+   *   densities(e, w, v, v_s, at)  PointDensities
+   *
+   * A new term of the equation is a line in each of these, and in nothing else.
    */
-  template <int n, typename Number, typename Friction>
-  inline void
-  cell_residual(const ElementTables &tables,
-                const double h,
-                const Number &k,
-                const Number *u,
-                const Number *v,
-                const Number *m,
-                const Friction &friction,
-                Number *w,
-                Number *f)
+  template <int n, typename Number>
+  struct PointDerivatives
   {
-    Number e[n], force[n];
-    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
+    Number f_v[n], f_w[n]; ///< of the friction by velocity and stretch
+    Number N_w[n];         ///< of the force in the body by the stretch; not set if the laws have one modulus k
+    Number f_u[n];         ///< of the friction by the place; not set unless the laws have_place
+    Number N_rate[n];      ///< of the force in the body by the rate of the stretch; not set unless they have_rate
+  };
+
+  template <typename Number>
+  struct PointDensities
+  {
+    Number elastic_energy, power, force; ///< power of the active stress, friction force
+  };
+
+  /// Adds int N phi_i,s, and int f phi_i unless @p f is null.
+  template <int n, typename Number>
+  inline void
+  add_forces(const ElementTables &tables, const double h, const Number *N, const Number *f, Number *F)
+  {
+    Number force[n], friction[n];
     for (int p = 0; p < n; ++p)
+      force[p] = tables.weights[p] * N[p];
+    if (f != nullptr)
     {
-      w[p]     = 1. + e[p];
-      force[p] = tables.weights[p] * equation::body_force(e[p], m[p], k);
-    }
-    if (v != nullptr)
-    {
-      Number g[n], v_at[n];
-      friction(w, g);
-      evaluate<n>(tables.values, v, 1., 0., v_at);
       for (int p = 0; p < n; ++p)
-        g[p] = h * tables.weights[p] * equation::friction_force(g[p], v_at[p]);
+        friction[p] = h * tables.weights[p] * f[p];
       for (int p = 0; p < n; ++p)
         for (int i = 0; i < n; ++i)
-          f[i] += g[p] * tables.values[p * n + i] + force[p] * tables.derivatives[p * n + i];
+          F[i] += friction[p] * tables.values[p * n + i] + force[p] * tables.derivatives[p * n + i];
     }
     else
       for (int p = 0; p < n; ++p)
         for (int i = 0; i < n; ++i)
-          f[i] += force[p] * tables.derivatives[p * n + i];
+          F[i] += force[p] * tables.derivatives[p * n + i];
   }
 
-  /// dF/du (@p K) and dF/dv (@p M). @p friction(w, g, w_dg) writes g and its derivative by log w.
-  template <int n, typename Number, typename Friction>
+  /// Adds the residual of a cell to @p F, without friction if @p v is null; the stretches are left in @p w.
+  template <int n, typename Number, typename Laws>
   inline void
-  cell_jacobians(const ElementTables &tables,
-                 const double h,
-                 const Number &k,
-                 const Number *u,
-                 const Number *v,
-                 const Friction &friction,
-                 Number *K,
-                 Number *M)
+  cell_residual(const ElementTables &tables,
+                const double h,
+                const Laws &laws,
+                const Number *u,
+                const Number *v,
+                Number *w,
+                Number *F)
   {
-    Number w[n], g[n], dg[n], v_at[n];
-    evaluate<n>(tables.derivatives, u, 1. / h, 1., w);
+    Number e[n], N[n], f[n], v_at[n];
+    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
+    for (int p = 0; p < n; ++p)
+      w[p] = 1. + e[p];
+    if (v == nullptr)
+    {
+      laws.forces(e, w, v, N, f);
+      add_forces<n, Number>(tables, h, N, nullptr, F);
+      return;
+    }
     evaluate<n>(tables.values, v, 1., 0., v_at);
-    friction(w, g, dg);
+    laws.forces(e, w, v_at, N, f);
+    add_forces<n>(tables, h, N, f, F);
+  }
+
+  /// The derivatives at the points of a cell.
+  template <int n, bool by_state, typename Number, typename Laws>
+  inline PointDerivatives<n, Number>
+  cell_derivatives(const ElementTables &tables, const double h, const Laws &laws, const Number *u, const Number *v)
+  {
+    Number e[n], w[n], v_at[n];
+    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
+    for (int p = 0; p < n; ++p)
+      w[p] = 1. + e[p];
+    if (v != nullptr)
+      evaluate<n>(tables.values, v, 1., 0., v_at);
+    else
+      for (int p = 0; p < n; ++p)
+        v_at[p] = Number{};
+    PointDerivatives<n, Number> D;
+    laws.template derivatives<by_state>(e, w, v_at, D);
+    return D;
+  }
+
+  /// dF/du (@p K, unless not by_state) and dF/dv (@p M) of a cell, dense blocks.
+  template <int n, bool by_state, typename Number, typename Laws>
+  inline void
+  cell_blocks(const ElementTables &tables,
+              const double h,
+              const Laws &laws,
+              const Number *u,
+              const Number *v,
+              Number *K,
+              Number *M)
+  {
+    auto D = cell_derivatives<n, by_state, Number>(tables, h, laws, u, v);
     for (int p = 0; p < n; ++p)
     {
-      dg[p] = tables.weights[p] * dg[p] / w[p] * v_at[p]; // h * (1/h)
-      g[p]  = h * tables.weights[p] * g[p];
+      const double ds = h * tables.weights[p], d_by_s = tables.weights[p] * (1. / h);
+      D.f_v[p] = ds * D.f_v[p];
+      if constexpr (by_state)
+        D.f_w[p] = tables.weights[p] * D.f_w[p]; // h * (1/h)
+      if constexpr (Laws::has_place)
+        D.f_u[p] = ds * D.f_u[p];
+      if constexpr (!Laws::has_one_modulus)
+        D.N_w[p] = d_by_s * D.N_w[p];
+      if constexpr (Laws::has_rate)
+        D.N_rate[p] = d_by_s * D.N_rate[p];
     }
+    const auto add = [](const Number &factor, const double *trial, Number *row) {
+      for (int j = 0; j < n; ++j)
+        row[j] += factor * trial[j];
+    };
     for (int i = 0; i < n; ++i)
     {
       Number row_K[n], row_M[n];
       for (int j = 0; j < n; ++j)
       {
-        row_K[j] = k * (1. / h) * tables.stiffness[i * n + j];
         row_M[j] = Number{};
+        if constexpr (Laws::has_one_modulus)
+          row_K[j] = laws.k * (1. / h) * tables.stiffness[i * n + j];
+        else
+          row_K[j] = Number{};
       }
       for (int p = 0; p < n; ++p)
       {
-        const Number from_w = tables.values[p * n + i] * dg[p], from_v = tables.values[p * n + i] * g[p];
-        for (int j = 0; j < n; ++j)
+        const double *phi = tables.values + p * n, *phi_s = tables.derivatives + p * n;
+        if constexpr (by_state)
         {
-          row_K[j] += from_w * tables.derivatives[p * n + j];
-          row_M[j] += from_v * tables.values[p * n + j];
+          add(phi[i] * D.f_w[p], phi_s, row_K);
+          if constexpr (Laws::has_place)
+            add(phi[i] * D.f_u[p], phi, row_K);
+          if constexpr (!Laws::has_one_modulus)
+            add(phi_s[i] * D.N_w[p], phi_s, row_K);
         }
+        add(phi[i] * D.f_v[p], phi, row_M);
+        if constexpr (Laws::has_rate)
+          add(phi_s[i] * D.N_rate[p], phi_s, row_M);
       }
       for (int j = 0; j < n; ++j)
       {
-        K[i * n + j] = row_K[j];
+        if constexpr (by_state)
+          K[i * n + j] = row_K[j];
         M[i * n + j] = row_M[j];
       }
     }
   }
 
-  /// M alone.
-  template <int n, typename Number, typename Friction>
-  inline void
-  cell_mass(const ElementTables &tables, const double h, const Number *u, const Friction &friction, Number *M)
-  {
-    Number w[n], g[n];
-    evaluate<n>(tables.derivatives, u, 1. / h, 1., w);
-    friction(w, g);
-    for (int i = 0; i < n; ++i)
-    {
-      Number row[n];
-      for (int j = 0; j < n; ++j)
-        row[j] = Number{};
-      for (int p = 0; p < n; ++p)
-      {
-        const Number factor = h * tables.weights[p] * tables.values[p * n + i] * g[p];
-        for (int j = 0; j < n; ++j)
-          row[j] += factor * tables.values[p * n + j];
-      }
-      for (int j = 0; j < n; ++j)
-        M[i * n + j] = row[j];
-    }
-  }
-
   /// Adds the integrals of a cell to @p sum, which has the members of CellIntegrals (cell_kernels.h).
-  template <int n, typename Number, typename Friction, typename Sums>
+  template <int n, typename Number, typename Laws, typename Sums>
   inline void
-  cell_integrals(const ElementTables &tables,
-                 const double h,
-                 const Number &k,
-                 const Number *u,
-                 const Number *v,
-                 const Number *m,
-                 const Friction &friction,
-                 Sums &sum)
+  cell_integrals(
+    const ElementTables &tables, const double h, const Laws &laws, const Number *u, const Number *v, Sums &sum)
   {
-    Number e[n], w[n], g[n], u_at[n], v_at[n], v_s[n];
+    Number e[n], w[n], u_at[n], v_at[n], v_s[n];
     evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
     for (int p = 0; p < n; ++p)
       w[p] = 1. + e[p];
     evaluate<n>(tables.values, u, 1., 0., u_at);
     evaluate<n>(tables.values, v, 1., 0., v_at);
     evaluate<n>(tables.derivatives, v, 1. / h, 0., v_s);
-    friction(w, g);
+    PointDensities<Number> at[n];
+    laws.densities(e, w, v_at, v_s, at);
     for (int p = 0; p < n; ++p)
     {
       const double ds    = h * tables.weights[p];
-      const Number power = equation::stress_power(m[p], v_s[p]), force = equation::friction_force(g[p], v_at[p]);
+      const Number power = at[p].power, force = at[p].force;
       sum.displacement += ds * u_at[p];
       sum.velocity += ds * v_at[p];
-      sum.elastic_energy += ds * equation::elastic_energy(e[p], k);
+      sum.elastic_energy += ds * at[p].elastic_energy;
       sum.stress_power += ds * power;
       sum.positive_power += ds * (power > 0. ? power : Number{});
       sum.absolute_power += ds * (power > 0. ? power : -power);
-      sum.dissipation += ds * equation::dissipation(g[p], v_at[p]);
+      sum.dissipation += ds * (force * v_at[p]);
       sum.net_friction += ds * force;
       sum.abs_friction += ds * (force > 0. ? force : -force);
     }
   }
+
+  /// The laws of plain bodies and grounds: N = m + k e, f = g(w) v. @p friction(w, g) writes g at the points, and
+  /// (w, g, w_dg) its derivative by log w, too.
+  template <int n, typename Number, typename Friction>
+  struct PlainLaws
+  {
+    static constexpr bool has_one_modulus = true, has_place = false, has_rate = false;
+    Number k;
+    const Number *m; ///< at the points
+    Friction friction;
+
+    void
+    forces(const Number *e, const Number *w, const Number *v, Number *N, Number *f) const
+    {
+      for (int p = 0; p < n; ++p)
+        N[p] = equation::body_force(e[p], m[p], k);
+      if (v == nullptr)
+        return;
+      friction(w, f);
+      for (int p = 0; p < n; ++p)
+        f[p] = equation::friction_force(f[p], v[p]);
+    }
+
+    template <bool by_state>
+    void
+    derivatives(const Number *, const Number *w, const Number *v, PointDerivatives<n, Number> &D) const
+    {
+      if constexpr (!by_state)
+        return friction(w, D.f_v);
+      friction(w, D.f_v, D.f_w);
+      for (int p = 0; p < n; ++p)
+        D.f_w[p] = D.f_w[p] / w[p] * v[p];
+    }
+
+    void
+    densities(const Number *e, const Number *w, const Number *v, const Number *v_s, PointDensities<Number> *at) const
+    {
+      Number g[n];
+      friction(w, g);
+      for (int p = 0; p < n; ++p)
+        at[p] = {equation::elastic_energy(e[p], k),
+                 equation::stress_power(m[p], v_s[p]),
+                 equation::friction_force(g[p], v[p])};
+    }
+  };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

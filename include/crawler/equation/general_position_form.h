@@ -59,13 +59,15 @@ namespace crawler
     void
     add_far(const Far &far, ConstVector x, Vector result) const;
 
-    void
-    blocks_of(const CellInput &in, double by_state, double by_velocity, double *blocks) const;
+    /// The laws of the last evaluate() beside @p in.
+    CellInput
+    with_laws(const CellInput &in);
 
     SlidingAtPoints sliding_;
     BodyForceAtPoints force_;
     StretchElsewhere elsewhere_;
-    std::vector<double> e_, w_, u_, v_, rate_, g_, w_dg_;
+    std::vector<double> e_, w_, u_, v_, rate_, g_, w_dg_, f_, f_u_, f_v_, w_f_w_;
+    PointLaws laws_;
     Far jacobian_far_;
     std::vector<Far> stage_far_;
   };

@@ -136,6 +136,7 @@ namespace crawler
     virtual void
     mass_blocks(double t, ConstVector u, const CellInput &in, double *blocks);
 
+    const CellKernels &kernels_;
     std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< built when a velocity is first asked for
 
   private:
@@ -144,7 +145,6 @@ namespace crawler
     const std::vector<double> &
     stress_at(double t);
 
-    const CellKernels &kernels_;
     BlockTridiagonalMatrix<double> jacobian_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;
     std::unique_ptr<GeneralSampler> quadrature_sampler_; ///< of a general scene, once it is needed

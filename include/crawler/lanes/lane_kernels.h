@@ -118,6 +118,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     };
 
+    using Laws = PlainLaws<n, Pack, CellFriction>;
+
+    static Laws
+    laws_of(const LaneMesh<Pack> &mesh, const Pack *m, const int c)
+    {
+      return {mesh.k, m != nullptr ? m + c * n : nullptr, {mesh.friction}};
+    }
+
     /// Of the nodes of cell @p c those that no cell before it has.
     static void
     set_to_zero(const int c, Pack *F)
@@ -133,12 +141,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     residual(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, Pack *F)
     {
       Pack least = broadcast<Pack>(HUGE_VAL);
-      const CellFriction friction{mesh.friction};
       for (int c = 0; c < mesh.n_cells; ++c)
       {
         Pack w[n];
         set_to_zero(c, F);
-        cell_residual<n>(mesh.tables, mesh.sizes[c], mesh.k, u + c * q, v + c * q, m + c * n, friction, w, F + c * q);
+        cell_residual<n>(mesh.tables, mesh.sizes[c], laws_of(mesh, m, c), u + c * q, v + c * q, w, F + c * q);
         for (int p = 0; p < n; ++p)
           least = smaller(w[p], least); // a stretch that is not a number makes F one, too
       }
@@ -149,21 +156,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static void
     balance(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *m, Pack *F, Pack *blocks, Pack *schur)
     {
-      const CellFriction friction{mesh.friction};
       for (int c = 0; c < mesh.n_cells; ++c)
       {
         Pack w[n];
         set_to_zero(c, F);
-        cell_residual<n>(mesh.tables,
-                         mesh.sizes[c],
-                         mesh.k,
-                         u + c * q,
-                         static_cast<const Pack *>(nullptr),
-                         m + c * n,
-                         friction,
-                         w,
-                         F + c * q);
-        cell_mass<n>(mesh.tables, mesh.sizes[c], u + c * q, friction, blocks + c * n * n);
+        const Laws laws          = laws_of(mesh, m, c);
+        constexpr Pack *no_speed = nullptr;
+        cell_residual<n, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, no_speed, w, F + c * q);
+        cell_blocks<n, false, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, no_speed, nullptr, blocks + c * n * n);
         condense_cell<q>(blocks + c * n * n, schur + 4 * c, [](const auto &) {});
       }
       for (int i = 0; i <= mesh.n_cells * q; ++i)
@@ -183,12 +183,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
               Complex<Pack> *complex_blocks,
               Complex<Pack> *complex_schur)
     {
-      const CellFriction friction{mesh.friction};
       const auto any_pivot = [](const auto &) {}; // what is not finite is seen in the solution
       for (int c = 0; c < mesh.n_cells; ++c)
       {
         Pack K[n * n], M[n * n];
-        cell_jacobians<n>(mesh.tables, mesh.sizes[c], mesh.k, u + c * q, v + c * q, friction, K, M);
+        cell_blocks<n, true>(mesh.tables, mesh.sizes[c], laws_of(mesh, nullptr, c), u + c * q, v + c * q, K, M);
         Pack *A = blocks + c * n * n;
         for (int i = 0; i < n * n; ++i)
           A[i] = K[i] + real * M[i];
@@ -222,9 +221,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static void
     integrals(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, LaneIntegrals<Pack> &sum)
     {
-      const CellFriction friction{mesh.friction};
       for (int c = 0; c < mesh.n_cells; ++c)
-        cell_integrals<n>(mesh.tables, mesh.sizes[c], mesh.k, u + c * q, v + c * q, m + c * n, friction, sum);
+        cell_integrals<n>(mesh.tables, mesh.sizes[c], laws_of(mesh, m, c), u + c * q, v + c * q, sum);
     }
 
     /// int u ds.
