@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/petsc_object.h>
 #include <crawler/base/versions.h>
 #include <crawler/run/summary.h>
 
@@ -190,7 +191,9 @@ namespace crawler
                const unsigned int n_ranks,
                const std::string &command_line)
   {
-    Json json            = summary_of(result, parameters);
+    Json json = summary_of(result, parameters);
+    if (result.engine == "petsc")
+      json["integrator"] = integrator_of_petsc(result.integrator);
     json["ranks"]        = n_ranks;
     json["versions"]     = versions();
     json["command_line"] = command_line;

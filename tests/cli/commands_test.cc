@@ -332,6 +332,48 @@ TEST_F(Commands, OverridesBeatTheFileAndStandardInputIsRead)
   EXPECT_EQ(lines_of(result.out).back(), "Results are in output-stdin/.");
 }
 
+/// A profile beside the file that an include names; what was run can be run again from anywhere.
+TEST_F(Commands, FilesCountFromTheFolderOfTheParameterFile)
+{
+  fs::create_directories(folder.path / "scenes");
+  write_text(folder.path / "scenes" / "ground.csv", "x,value\n-5,1\n0,2\n2,1.5\n5,1\n");
+  write_text(folder.path / "scenes" / "rough.prm", in_section("Ground", "set Profile = ground.csv"));
+  ASSERT_EQ(run({"--quiet"}, "include scenes/rough.prm\n" + scene).exit_code, 0);
+  const double displacement = summary_of(results)["displacement"];
+
+  const auto again = run_program(folder.path / "scenes", {"run", "../results/parameters.prm", "--output", "again"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(summary_of(folder.path / "scenes" / "again")["displacement"], displacement);
+
+  const auto here = run({"--quiet", "--overwrite", "--set", "Ground/Profile=scenes/ground.csv"});
+  ASSERT_EQ(here.exit_code, 0) << here.err;
+  EXPECT_EQ(summary_of(results)["displacement"], displacement);
+}
+
+TEST_F(Commands, AByteOrderMarkDoesNotMatter)
+{
+  EXPECT_EQ(run({"--quiet"}, "\xef\xbb\xbf" + scene).exit_code, 0);
+  EXPECT_TRUE(fs::exists(results / "summary.json"));
+}
+
+/// Whoever reads the first line only, as head -1 does.
+TEST_F(Commands, AReaderWhoLeavesDoesNotEndTheRun)
+{
+  write_text(folder.path / "scene.prm", scene);
+  const std::string command =
+    "cd '" + folder.path.string() + "' && '" CRAWLER_PROGRAM "' run scene.prm --output results | true";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(summary_of(results)["status"], "finished");
+  expect_frames(results, {0., 1. / 3., 2. / 3., 1.});
+}
+
+TEST_F(Commands, PetscOptionsAreRecorded)
+{
+  ASSERT_EQ(run({"--", "-ts_type", "bdf"}).exit_code, 0);
+  EXPECT_TRUE(contains(read_text(results / "log.txt"), "-ts_type bdf"));
+  EXPECT_EQ(summary_of(results)["integrator"], "bdf");
+}
+
 TEST_F(Commands, QuietPrintsNothing)
 {
   const ProgramResult result = run({"--quiet"});
