@@ -4,6 +4,7 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/base/petsc_object.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/versions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/parameter_file.h>
@@ -35,7 +36,7 @@ namespace crawler
     report_error(MPI_Comm communicator, const ExitCode code, const std::string &message, const bool on_all_ranks)
     {
       if (!on_all_ranks || rank_of(communicator) == 0)
-        std::cerr << "crawler: " << message << std::endl;
+        std::cerr << "crawler: " << with_plain_numbers(message) << std::endl;
       // A rank that fails alone must not leave the others waiting.
       if (!on_all_ranks && size_of(communicator) > 1)
         MPI_Abort(communicator, static_cast<int>(code));

@@ -73,6 +73,7 @@ namespace crawler
                              "parameters.prm",
                              "log.txt",
                              "summary.json",
+                             "kymograph.png",
                              "results.csv",
                              "results.h5",
                              "results.h5.part",
