@@ -47,7 +47,7 @@ class Atlas:
         self.ratio, self.error = (np.full(self.outcome.shape, math.nan) for _ in range(2))
         for row in self.rows:
             i, j = self.y.index(float(row[self.entries[1]])), self.x.index(float(row[self.entries[0]]))
-            self.outcome[i, j] = row["outcome"]
+            self.outcome[i, j] = row["outcome"] or "not computed"
             measured, promised = number(row["run measured error"]), (number(row["run promised error"])
                                                                      + number(row["refined promised error"]))
             self.error[i, j] = measured

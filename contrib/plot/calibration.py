@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Draws the study of error bars: the error that runs reported over their true error.
+"""Draws the study of error bounds: the error that runs reported over their true error.
 
     contrib/plot/calibration.py TABLE.csv [--output calibration.png]
 

@@ -3,6 +3,7 @@
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/accuracy/graded_choice.h>
 #include <crawler/base/communication.h>
+#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/self_check.h>
 #include <crawler/time/failure.h>
@@ -17,30 +18,7 @@ namespace crawler
 {
   namespace
   {
-    // Calibrated by tests/verification/calibration.cc.
-    constexpr double measured_factor = 1.5, promised_part = 0.2, factor_without_promise = 2.;
-    /// The errors of two adaptive meshes have more in common.
-    constexpr double promised_part_if_adaptive = 0.5;
-    /// On graded meshes each part of the error was measured beforehand.
-    constexpr double promised_part_if_graded = 0.15;
-    /// The finer run: cells and tolerances relative to the run's.
-    constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;
-    /// The same if the run is not by radau 9, which is more accurate for the same tolerance than all others.
-    constexpr double finer_tolerance_than_others = 4.;
-    /// The same if the user chose the numerics: nobody knows whether mesh or steps are the problem.
-    constexpr double more_cells_without_promise = 2., finer_tolerance_without_promise = 0.1;
-    constexpr const char *best_integrator = "radau 9";
-    /// Its first step, relative to the duration, at least: others start with smaller ones.
-    constexpr double first_step = 1e-3;
-    /// Bodies softer than this in natural units have layers at their ends, of a thickness of about that; the finer run
-    /// has cells as small as this times that there, smaller and smaller by this ratio.
-    constexpr double soft = 1e-3, layer_cells = 3., layer_ratio = 0.25, most_layer_levels = 8.;
-    /// A cycle that stands for many others has an error that does not average out: the finer run is more accurate.
-    constexpr double finer_tolerance_of_cycles = 0.25;
-    /// For the next try.
-    constexpr double refined_cells = 1.2, refined_tolerance = 0.1;
-    /// No displacement is more accurate than this part of the body length.
-    constexpr double round_off = 1e-15;
+    using namespace accuracy_rule::finer_run;
 
     /// Is the error known beforehand? The rule of the numerics does not know what a point value of the stretch, seen
     /// from elsewhere, does.

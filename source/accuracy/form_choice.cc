@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/form_choice.h>
+#include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +9,7 @@ namespace crawler
 {
   namespace
   {
-    /// Limits at low accuracy, the Accuracy from which on they fall, and how.
-    constexpr double softest = 1e-3, emptied = 0.06, emptied_if_it_inverts = 3e-3, moderate = 1e-5;
-    constexpr double softness_power = 0.5, stretch_power = 0.35;
-    /// Beyond these an adaptive mesh is the cheaper one.
-    constexpr double most_lengths = 30., least_accuracy = 1e-7;
+    using namespace accuracy_rule::form;
 
     double
     falling(const double limit, const double accuracy, const double power)

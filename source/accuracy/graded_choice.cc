@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/graded_choice.h>
+#include <crawler/run/accuracy_rule.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,18 +9,7 @@ namespace crawler
 {
   namespace
   {
-    // The constants of the rule; doc/numerics.md says how they were found.
-    constexpr unsigned int first_levels = 2;
-    constexpr double coarse_ratio = 0.25, fine_ratio = 0.4;
-    /// A refinement that changes the displacement by less than this part of the wanted error was not needed.
-    constexpr double part = 0.25;
-    /// The search is given up beyond these.
-    constexpr unsigned int most_runs = 40, most_cells = 96, most_cells_of_piece = 12;
-    constexpr double smallest_cell = 1e-7, emptied = 1e-3;
-    /// So often the search begins anew, with twice the cells, if its first mesh loses a stretch.
-    constexpr unsigned int most_beginnings = 3;
-    constexpr double more_cells = 1.5, finer_tolerance = 0.1;
-    constexpr double longest_first_step = 1e-2, shortest_first_step = 1e-16;
+    using namespace accuracy_rule::graded;
 
     /// Relative to the length.
     double

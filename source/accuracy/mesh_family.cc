@@ -2,6 +2,7 @@
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/accuracy/mesh_family.h>
+#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/gait.h>
 #include <crawler/run/gait_efficiency.h>
 
@@ -14,36 +15,8 @@ namespace crawler
 {
   namespace
   {
-    // The constants of the rule; doc/numerics.md says how they were found.
-    /// Cells of the finest mesh, and for a smaller Accuracy than accurate.
-    constexpr unsigned int most_cells = 3200, most_cells_if_accurate = 6400;
-    /// But of bodies that invert: more do not help where the time of that converges slowly, -1 < a < 0.
-    constexpr unsigned int most_cells_if_inverted = 1600, most_cells_if_it_sticks = 400;
-    constexpr double accurate = 2e-6;
-    /// Cells times steps that the next mesh may take, about a second for each 2e6, and how many times as many as the
-    /// last one it does.
-    constexpr double most_work = 2.5e7, most_work_if_accurate = 5e7, more_work = 5.;
-    /// The error in time may be this part of the wanted one, and the time tolerance is made smaller so often for that.
-    constexpr double time_part             = 0.3;
-    constexpr unsigned int most_tolerances = 5;
-    constexpr double finer_tolerance       = 0.1;
-    /// The bound is at least this part of the wanted error: what all runs have in common.
-    constexpr double least_part = 0.5;
-    /// Observed orders between which second order is believed.
-    constexpr double least_order = 1.5, largest_order = 2.7;
-    /// A time tolerance, relative to the strain, that is so many times too large or small is chosen anew.
-    constexpr double too_large = 2., too_small = 0.05;
-    /// An inversion whose time is not known better than this, relative to it, may be none.
-    constexpr double believed = 0.3;
-    /// No displacement is known better than this, in lengths of the body.
-    constexpr double round_off = 4e-15;
-    /// The displacement counts as no smaller than this part of the deformation.
-    constexpr double displacement_floor = 1e-4;
-    /// Extrapolations that settle at least so fast are believed to go on so; and what settles faster than fourth order
-    /// does it by chance.
-    constexpr double fast = 5., credited = 4., fastest = 16.;
-    /// That is believed where the order is as near to 2 as this.
-    constexpr double clean = 0.25;
+    using namespace accuracy_rule::family;
+    using accuracy_rule::displacement_floor;
 
     class Family
     {

@@ -3,6 +3,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/reduced_models/reduced_scene.h>
+#include <crawler/run/accuracy_rule.h>
 
 #include <fmt/format.h>
 
@@ -13,10 +14,7 @@ namespace crawler
 {
   namespace
   {
-    /// Errors below this part of the length are no errors.
-    constexpr double floor = 1e-12;
-    /// The model's share of the error of the kinematic level; the rest is for its quadrature.
-    constexpr double model_share = 0.75;
+    using namespace accuracy_rule::level;
 
     /// A body that starts from rest starts with the stretch 1.
     void

@@ -3,6 +3,7 @@
 #include <crawler/accuracy/graded_choice.h>
 #include <crawler/accuracy/numerics_choice.h>
 #include <crawler/accuracy/stress_scales.h>
+#include <crawler/run/accuracy_rule.h>
 #include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
@@ -17,60 +18,8 @@ namespace crawler
 {
   namespace
   {
-    // The constants of the rule; doc/numerics.md says how they were found.
-    constexpr unsigned int automatic_degree = 6;
-    constexpr unsigned int fewest_cells = 4, most_cells = 4096;
-    /// A pilot that breaks off with a smaller stretch than this has lost it.
-    constexpr double emptied = 0.1;
-    /// Meshes that would need more cells than this are adaptive, with this degree.
-    constexpr unsigned int most_uniform_cells = 256, adaptive_degree = 4;
-    /// The error of the displacement, relative, is below this times the sum of the error indicators over the strain.
-    constexpr double indicator_factor = 8.;
-    /// The coarsest mesh of the stretch form, cells for each length in which the active stress changes, and the part of
-    /// Accuracy that the time tolerance is, relative to the strain, and at most.
-    constexpr unsigned int first_family_cells = 25;
-    constexpr double cells_of_length = 4., family_tolerance = 10., largest_family_tolerance = 1e-3;
-    /// Its layers: of this many lengths k/max|m_s|, at most this part of the body.
-    constexpr double layer_lengths = 1., largest_layer = 0.02;
-    constexpr unsigned int most_pilot_steps = 100000, most_adaptive_pilot_steps = 20000,
-                           most_adaptive_pilot_cells = 1200;
-    /// How well a pilot that ends when its cycles repeat must know the displacement.
-    constexpr double pilot_accuracy = 1e-2;
-    /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
-    constexpr double resolved = 1e-3;
-    /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
-    constexpr double space_factor = 4.;
-    /// Error of the displacement in time is below this times the number of steps times the tolerance.
-    constexpr double time_factor = 0.25;
-    /// The steps of radau 5 and 9 on uniform meshes in the position form end much more accurately than their tolerance
-    /// says: the tolerance is so many times the one of that rule.
-    constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
-    /// On uniform meshes runs for a smaller Accuracy than this are by radau 9, others by radau 5.
-    constexpr double radau_9_accuracy = 1.1e-4;
-    /// A stress that starts or jumps by more than this times the root of Accuracy, relative to the largest, makes
-    /// layers that count. Graded meshes have this degree, the higher one for a smaller Accuracy than that.
-    constexpr double sudden_part         = 0.1;
-    constexpr unsigned int graded_degree = 6, accurate_graded_degree = 8;
-    constexpr double accurate_graded = 1e-5;
-    /// More breaks would make graded meshes too large, or too many starts where nothing happens suddenly.
-    constexpr std::size_t most_graded_places = 200, most_gentle_breaks = 200;
-    /// First tolerances on graded meshes, relative to the wanted error.
-    constexpr double graded_radau_5 = 2., graded_radau_9 = 10., graded_others = 0.1;
-    /// Meshes for jumps that move: from the coarsest, doubled until the displacement settles, which it does like the
-    /// size of a cell, with tolerances that fall like it too; at most so many cells, and cells times steps.
-    constexpr unsigned int moving_degree = 2, first_moving_cells = 64, last_moving_cells = 2048;
-    constexpr double moving_tolerance = 0.1, most_moving_work = 1e7;
-    /// Steps of a period for each cell, at least.
-    constexpr double moving_steps = 4.;
-    /// The remaining error of a method of first order is the last change; a larger part is promised.
-    constexpr double moving_factor = 1.5, moving_factor_of_first = 4.;
-    /// First steps, relative to the duration: methods that start with order 1 need small ones.
-    constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
-    /// On adaptive meshes the error of bodies softer than this, in natural units, may be as large as soft_error,
-    /// relative, whatever Accuracy is: their layers are not seen by the indicators, and not at all on uniform meshes.
-    constexpr double very_soft = 2e-5, soft_error = 3e-3;
-    /// The displacement counts as no smaller than this part of the body's largest deformation.
-    constexpr double displacement_floor = 1e-4;
+    using namespace accuracy_rule::choice;
+    using accuracy_rule::displacement_floor;
 
     /// Is this the linear level, by its own stepper? Where "auto" chooses the level but other entries ask for what that
     /// does not have, the stepper of the nonlinear level computes it.

@@ -124,7 +124,7 @@ namespace crawler
       estimate_errors(communicator, parameters, scene, answer.choice, result, keep_going);
       answer.estimate_seconds += std::chrono::duration<double>(Clock::now() - start).count();
       const double total = result.error->total;
-      // A energy balance that does not close asks for a finer run, too; if that does not help it is the self-check's
+      // An energy balance that does not close asks for a finer run, too; if that does not help it is the self-check's
       // business.
       const bool closes =
         !result.energy_balance || result.energy_balance->residual() <= energy_balance_tolerance(result, parameters);

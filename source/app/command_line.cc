@@ -187,6 +187,7 @@ namespace crawler
         app.add_subcommand("sweep", "Runs all points of section Sweep of a parameter file and makes a table of them");
       common(sweep_command);
       sweep_command->add_flag("--resume", options.resume, "Goes on with a sweep that was stopped or killed");
+      atlas_command->add_flag("--resume", options.resume, "Goes on with an atlas that was stopped or killed");
       sweep_command->add_flag("--strict", options.strict, "Exit code 8 if the row of a point failed");
       for (CLI::App *command : {run_command, sweep_command, atlas_command, tradeoff_command})
       {

@@ -164,6 +164,15 @@ namespace crawler
     return size;
   }
 
+  std::string
+  shortened(const std::string &text, const std::size_t width)
+  {
+    if (text.size() <= width)
+      return text;
+    const std::string dots = "...";
+    return text.substr(0, whole_characters(text, width - dots.size())) + dots;
+  }
+
   void
   RowFile::create(const std::filesystem::path &path,
                   const std::string &group_name,
@@ -235,6 +244,35 @@ namespace crawler
     std::filesystem::rename(temporary, path, error);
     if (error)
       throw FileError("cannot write \"" + path.string() + "\": " + error.message());
+  }
+
+  void
+  write_hdf5(const std::filesystem::path &path,
+             const std::string &group,
+             const Table &table,
+             const std::map<std::string, std::string> &attributes)
+  {
+    using Texts = std::vector<std::string>;
+    std::vector<RowFile::Column> columns;
+    unsigned long n_rows = 0;
+    for (const Column &column : table)
+    {
+      unsigned int width = 0;
+      if (const auto *texts = std::get_if<Texts>(&column.values))
+      {
+        width = 1;
+        for (const std::string &text : *texts)
+          width = std::max(width, static_cast<unsigned int>(text.size()));
+      }
+      columns.push_back({column.name, column.unit, column.description, width});
+      n_rows = std::visit([](const auto &values) { return values.size(); }, column.values);
+    }
+    const auto value = [&](const std::size_t column, const unsigned long row) {
+      return std::visit([row](const auto &values) { return RowFile::Value(values[row]); }, table[column].values);
+    };
+    auto all         = attributes;
+    all["not known"] = "NaN in numbers, an empty text in texts";
+    RowFile::create(path, group, columns, n_rows, all, {columns.size(), value});
   }
 
   struct RowFile::Handles

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/cycle_stop.h>
 #include <crawler/run/run_parameters.h>
 
@@ -11,22 +12,8 @@ namespace crawler
 {
   namespace
   {
-    /// The part of the wanted accuracy that the bound may take.
-    constexpr double part = 0.2;
-    /// The displacement counts as no smaller than this part of the largest deformation (as in numerics_choice.cc).
-    constexpr double displacement_floor = 1e-4;
-    /// A cycle repeats if its strain differs from that of the one before by less than this part.
-    constexpr double same = 1e-3;
-    /// The displacement of a cycle may depend on its start by so much more than has been seen.
-    constexpr double safety = 10.;
-    /// A change of the strain that is smaller than this times the tolerance of the time integration is its noise.
-    constexpr double noise = 10.;
-    /// The drift that is still to come must be smaller than this part of the smallest stretch.
-    constexpr double least_part = 0.1;
-    /// A start closer to the first phase than this part of a cycle is left out.
-    constexpr double short_start = 1e-3;
-    /// So many cycles are watched.
-    constexpr unsigned int most_watched = 200;
+    using namespace accuracy_rule::cycles;
+    using accuracy_rule::displacement_floor;
 
     double
     whole_cycles(const double period)

@@ -118,6 +118,7 @@ namespace crawler
   {
     const auto start = std::chrono::steady_clock::now();
     SimulationResult result;
+    result.model       = model_;
     result.time.status = "finished";
     if (model_ == "perturbation")
       compute_perturbation(result);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/self_check.h>
 
 #include <fmt/format.h>
@@ -7,6 +8,8 @@
 
 namespace crawler
 {
+  using namespace accuracy_rule::identities;
+
   double
   energy_balance_tolerance(const SimulationResult &result, const RunParameters &parameters)
   {
@@ -14,9 +17,12 @@ namespace crawler
                               (parameters.time.integrator != "automatic" && parameters.time.integrator != "bdf") ||
                               parameters.time.order < 4 || parameters.time.step_control == "fixed";
     return parameters.output.energy_balance_tolerance.value_or(
-      result.jumps_move ? 0.2
-      : own_numerics    ? 0.1
-                     : std::max(1e-8, (result.formulation == Formulation::stretch ? 300. : 10.) * parameters.accuracy));
+      result.jumps_move ? residual_of_moving_jumps
+      : own_numerics
+        ? residual_of_users
+        : std::max(least_residual,
+                   (result.formulation == Formulation::stretch ? of_accuracy_in_stretch_form : of_accuracy) *
+                     parameters.accuracy));
   }
 
   void
@@ -24,8 +30,7 @@ namespace crawler
   {
     if (result.time.status != "finished" || !result.energy_balance)
       return;
-    const double tolerance              = energy_balance_tolerance(result, parameters);
-    constexpr double friction_tolerance = 1e-6;
+    const double tolerance = energy_balance_tolerance(result, parameters);
     std::string problem;
     if (!(result.energy_balance->residual() <= tolerance))
     {
@@ -36,13 +41,13 @@ namespace crawler
                     result.energy_balance->residual(),
                     tolerance);
     }
-    else if (result.net_friction > friction_tolerance) // it is not known for a series
+    else if (result.net_friction > net_friction) // it is not known for a series
     {
       result.time.reason = "net_friction";
       result.time.message =
         fmt::format("the friction forces do not balance: {:.3g} of their sum is left over, above {:.3g}",
                     result.net_friction,
-                    friction_tolerance);
+                    net_friction);
     }
     else
       return;

@@ -156,6 +156,7 @@ namespace crawler
     options_              = options;
     has_observers_        = !observers.empty();
     result_               = {};
+    result_.model         = numerics_.linear ? "linear" : "nonlinear";
     quadrature_           = {};
     diagnosis_            = {};
     largest_              = {};

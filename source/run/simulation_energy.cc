@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The part of Simulation that adds up: works and energies, extremes, the past (doc/numerics.md, "Ledger and
+// The part of Simulation that adds up: works and energies, extremes, the past (doc/numerics.md, "Energy balance and
 // self-checks").
 #include <crawler/run/simulation.h>
 

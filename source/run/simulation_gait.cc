@@ -70,7 +70,7 @@ namespace crawler
         see(y_inside_);
       }
     gait_meter_->see_extremes(stretch_.min.value, stretch_.max.value);
-    // With a energy balance or observers the displacement of this state is known already.
+    // With an energy balance or observers the displacement of this state is known already.
     const bool is_known = options_.energy_balance || has_observers_;
     gait_meter_->see_step(step.time,
                           is_known ? result_.displacement : assembler_->integrals(step.time, y, v_).displacement,

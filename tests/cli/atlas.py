@@ -89,7 +89,7 @@ def check_hdf5(folder, rows):
     """The same numbers and texts in atlas.h5."""
     with h5py.File(folder / "atlas.h5") as file:
         group = file["atlas"]
-        names = {dataset.attrs["name"]: dataset for dataset in group.values()}
+        names = {bytes(dataset.attrs["name"]).decode(): dataset for dataset in group.values()}
         check(set(names) == set(rows[0]), "the columns of atlas.h5 are those of atlas.csv")
         good = True
         for name, dataset in names.items():
@@ -98,8 +98,8 @@ def check_hdf5(folder, rows):
             else:
                 good &= all(same(a, number(row[name])) for a, row in zip(dataset[:], rows))
         check(good, "the values of atlas.h5 are those of atlas.csv")
-        check(group["run displacement"].attrs["unit"] == "length" and group["Body.Anchoring exponent"].shape == (6,)
-              and "subsection Atlas" in group.attrs["parameters.prm"] and "version of PETSc" in group.attrs,
+        check(group["run displacement"].attrs["unit"] == b"length" and group["Body.Anchoring exponent"].shape == (6,)
+              and b"subsection Atlas" in group.attrs["parameters.prm"] and "version of PETSc" in group.attrs,
               "atlas.h5 knows units and where it comes from")
 
 
@@ -143,42 +143,78 @@ def check_inverted(program, folder):
               and not row["run displacement"] for row in rows[:2]), "the ends invert at t = k/2, and all runs say so")
 
 
-def check_stop(program, folder, first, command=()):
-    """SIGTERM ends the atlas with the points that there are."""
-    pathlib.Path(folder, "long.prm").write_text(
-        SCENE.replace("0.1, 0.2, 0.3", f"linspace({first}, 0.3, 400)"), encoding="utf-8")
-    with subprocess.Popen([*command, program, "atlas", "long.prm"], cwd=folder, env=ENVIRONMENT, text=True,
-                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
-        started = time.time()
-        while time.time() < started + 60 and not any(
-                path.read_text(encoding="utf-8").count("\n") > 1 for path in pathlib.Path(folder, "output-long", "rows").glob("*.csv")):
-            time.sleep(0.1)
+def columns(folder):
+    """All columns of atlas.h5 but for times."""
+    with h5py.File(folder / "atlas.h5", "r") as file:
+        return {name: list(data.asstr()[:]) if data.dtype.kind == "S" else list(map(float.hex, data[:]))
+                for name, data in file["atlas"].items() if not name.endswith(" seconds")}
+
+
+def computed(folder):
+    """How many points have a row, of an atlas that may be writing."""
+    try:
+        return sum(outcome != "" for outcome in columns(folder)["outcome"])
+    except (OSError, KeyError):
+        return 0
+
+
+LONG = ["--set", f"Atlas/First axis={CHI} : linspace(0.1, 0.3, 60)"]
+
+
+def start(program, folder, output, *more, command=()):
+    """An atlas of 120 points that goes on in the background."""
+    pathlib.Path(folder, "scene.prm").write_text(SCENE, encoding="utf-8")
+    return subprocess.Popen([*command, program, "atlas", "scene.prm", "--output", output, *LONG, *more], cwd=folder,
+                            env=ENVIRONMENT, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE)
+
+
+def wait_for_rows(process, folder, n):
+    """Until so many points have a row, or the atlas has ended."""
+    end = time.time() + 60
+    while process.poll() is None and computed(folder) < n and time.time() < end:
+        time.sleep(0.02)
+
+
+def check_interrupted(program, mpirun, folder):
+    """SIGTERM, and kill -9 at some moments: what is computed is kept, and --resume makes the rest, bit for bit."""
+    whole = call(program, folder, "atlas", "scene.prm", "--output", "whole", *LONG)
+    check(whole.returncode == 0, f"an atlas of 120 points: {whole.stderr}")
+    reference, output = columns(pathlib.Path(folder, "whole")), pathlib.Path(folder, "stopped")
+    with start(program, folder, "stopped") as process:
+        wait_for_rows(process, output, 8)
         process.send_signal(signal.SIGTERM)
         _, errors = process.communicate(timeout=60)
-    summary = json.loads(pathlib.Path(folder, "output-long", "summary.json").read_text(encoding="utf-8"))
-    rows = table(pathlib.Path(folder, "output-long"))
-    check(process.returncode == 5 and "stopped by a signal" in errors and summary["status"] == "stopped"
-          and 0 < len(rows) == summary["computed"] < 800, f"stopped after {len(rows)} points: {errors.strip()}")
-
-
-def check_kill(program, folder):
-    """What a killed atlas has computed is in rows/, and a new one clears it away."""
-    arguments = ["atlas", "scene.prm", "--output", "killed", "--set", f"Atlas/First axis={CHI} : linspace(0.1, 0.3, 400)"]
-    call(program, folder, "parameters")  # writes the scene
-    rows = pathlib.Path(folder, "killed", "rows", "0.csv")
-    with subprocess.Popen([program, *arguments], cwd=folder, env=ENVIRONMENT, stdin=subprocess.DEVNULL,
-                          stdout=subprocess.DEVNULL) as process:
-        end = time.time() + 60
-        while (not rows.exists() or rows.read_bytes().count(b"\n") < 5) and time.time() < end:
-            time.sleep(0.01)
-        process.kill()
-    with open(rows, newline="", encoding="utf-8") as file:
-        kept = list(csv.DictReader(file))
-    check(len(kept) >= 4 and all(row["outcome"] == "finished" and number(row["run displacement"]) for row in kept[:4]),
-          f"{len(kept)} rows outlive kill -9")
-    result = call(program, folder, "atlas", "scene.prm", "--output", "killed", "--overwrite")
-    check(result.returncode == 0 and not rows.parent.exists() and len(table(rows.parents[1])) == 6,
-          "the next atlas replaces them")
+    summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
+    rows = table(output)
+    check(process.returncode == 5 and "stopped by a signal" in errors and "--resume" in errors
+          and summary["status"] == "stopped" and len(rows) == 120
+          and 0 < sum(row["outcome"] != "" for row in rows) == summary["computed"] < 120,
+          f"stopped after {summary['computed']} points: {errors.strip()}")
+    n_before, n_kills = summary["computed"], 0
+    for n, ranks in ((24, 1), (48, 2), (72, 2)):
+        command = [mpirun, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        with start(program, folder, "stopped", "--resume", command=command) as process:
+            wait_for_rows(process, output, n)
+            n_kills += process.poll() is None
+            for child in subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True,
+                                        check=False).stdout.split():
+                os.kill(int(child), signal.SIGKILL)
+            process.kill()
+            process.communicate()
+        time.sleep(1)  # orphans of mpirun end by themselves
+        now = computed(output)
+        check(now >= n_before, f"{now} rows outlive kill -9")
+        n_before = now
+    check(n_kills >= 2, f"{n_kills} were killed under way")
+    changed = call(program, folder, "atlas", "scene.prm", "--output", "stopped", "--resume", *LONG, "--set",
+                   "Body/Length=2")
+    check(changed.returncode == 2 and "Body/Length" in changed.stderr, f"other inputs are refused: {changed.stderr.strip()}")
+    last = call(program, folder, "atlas", "scene.prm", "--output", "stopped", "--resume", *LONG)
+    check(last.returncode == 0 and columns(output) == reference and not (output / "study.lock").exists(),
+          f"the table is that of an atlas in one go {last.stderr}")
+    other = call(program, folder, "atlas", "scene.prm", "--output", "stopped", "--overwrite")
+    check(other.returncode == 0 and len(table(output)) == 6, "the next atlas replaces it")
 
 
 def main():
@@ -213,8 +249,7 @@ def main():
               and str(single["steps"]) == results[1][3]["run steps"], "crawler run gives the same answer")
         check_refused(program, folder)
         check_inverted(program, folder)
-        check_stop(program, folder, 0.1)
-        check_kill(program, folder)
+        check_interrupted(program, mpirun, folder)
     print(f"{failures} checks failed")
     return 1 if failures else 0
 

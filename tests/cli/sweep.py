@@ -71,7 +71,7 @@ def same(one, other, but=("seconds",)):
 
 
 def test_grid(program, mpirun, folder):
-    """Values, order, error bars, CSV, pandas."""
+    """Values, order, error bounds, CSV, pandas."""
     write(folder, f"{P} : 0, 2, 3; {CHI} : 0.1, 0.4")
     result = call(program, folder, "sweep", "sweep.prm", "--output", "grid")
     check(result.returncode == 0, f"a grid finishes with 0 ({result.returncode}) {result.stderr.strip()}")
@@ -98,7 +98,7 @@ def test_grid(program, mpirun, folder):
     summary = json.loads((folder / "single" / "summary.json").read_text(encoding="utf-8"))
     check(single.returncode == 0 and abs(summary["displacement"] - rows["displacement"][5])
           <= summary["displacement_error"]["total"] + rows["displacement_error.total"][5],
-          "a point agrees with crawler run within the error bars")
+          "a point agrees with crawler run within the error bounds")
 
     def in_summary(key):
         value = summary
@@ -276,9 +276,9 @@ def test_begun(program, folder):
     whole = folder / "begun_whole"
     call(program, folder, "sweep", "sweep.prm", "--output", "begun_whole")
     reference = table(whole)
-    check(not (whole / "sweep.lock").exists(), "no lock stays behind")
-    for files in (("sweep.lock",), ("sweep.lock", "original.prm.part"),
-                  ("sweep.lock", "original.prm", "parameters.prm", "log.txt", "results.h5.part")):
+    check(not (whole / "study.lock").exists(), "no lock stays behind")
+    for files in (("study.lock",), ("study.lock", "original.prm.part"),
+                  ("study.lock", "original.prm", "parameters.prm", "log.txt", "results.h5.part")):
         begun = folder / "begun"
         shutil.rmtree(begun, ignore_errors=True)
         begun.mkdir()
@@ -301,10 +301,10 @@ def test_begun(program, folder):
         result = call(program, folder, "sweep", "sweep.prm", "--output", name, "--resume")
         after = {file: file.read_bytes() for file in (folder / name).rglob("*") if file.is_file()}
         check(result.returncode == 2 and before == after, f"--resume leaves {name} alone: {result.stderr.strip()}")
-    with open(whole / "sweep.lock", "wb") as lock:
+    with open(whole / "study.lock", "wb") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         result = call(program, folder, "sweep", "sweep.prm", "--output", "begun_whole", "--resume")
-        check(result.returncode == 2 and "another sweep writes to" in result.stderr,
+        check(result.returncode == 2 and "another study writes to" in result.stderr,
               f"two sweeps at once are refused: {result.stderr.strip()}")
         with subprocess.Popen([program, "sweep", "sweep.prm", "--output", "begun_whole", "--resume"], cwd=folder,
                               env=ENVIRONMENT, stdout=subprocess.DEVNULL) as process:
@@ -365,7 +365,7 @@ def test_kills(program, mpirun, folder):
     error = np.abs(reference["displacement"] - table(folder / "accurate")["displacement"])
     covered = np.mean(error <= reference["displacement_error.total"])
     wanted = np.all(reference["displacement_error.total"] <= 1e-4 * np.abs(reference["displacement"]))
-    check(covered >= 0.99 and wanted, f"{100 * covered:.2f} % of the points are within their error bars, all bars within Accuracy")
+    check(covered >= 0.99 and wanted, f"{100 * covered:.2f} % of the points are within their error bounds, all bars within Accuracy")
     start = time.time()
     call(program, folder, "sweep", "sweep.prm", "--output", "timed", command=(mpirun, "--oversubscribe", "-n", "2"))
     duration = time.time() - start

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Is the error that a run reports larger than its true error, and not much larger? (doc/numerics.md, "Error bars")
+// Is the error that a run reports larger than its true error, and not much larger? (doc/numerics.md, "Error bounds")
 //   [mpirun -n N] calibration SCENES OUTPUT.csv [ACCURACY ...]       (default: 1e-3 1e-5 1e-8)
 // Runs so many random scenes (random_scenes.h), or those from one number to another (300-519; from 10000 on their
 // stresses start or jump suddenly; from 20000 on they are hard to judge), at each accuracy as

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Are the error bars of works, stretches and gait numbers larger than the errors? (doc/numerics.md, "Error bars")
+"""Are the error bounds of works, stretches and gait numbers larger than the errors? (doc/numerics.md, "Error bounds")
 
     python3 number_errors.py PATH_TO_CRAWLER [POINTS] [SEED]
 
@@ -84,7 +84,7 @@ def main():
         print(f"{number:40s} {len(rows):7d} {100 * covered:7.2f} % {ratios[len(ratios) // 2]:10.3g} {ratios[0]:8.2g} "
               f"{largest:23.1e}{'' if covered >= 0.99 else '   FAILED: 99 % are wanted'}")
     if len(judged) < 17:
-        print(f"FAILED: {len(judged)} numbers have error bars, 17 are expected")
+        print(f"FAILED: {len(judged)} numbers have error bounds, 17 are expected")
         failures += 1
     sys.exit(failures > 0)
 

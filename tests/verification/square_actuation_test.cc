@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// Robots switch: square actuation by automatic numerics, with its error bars.
+// Robots switch: square actuation by automatic numerics, with its error bounds.
 #include "../support/lane_runs.h"
 
 #include <crawler/accuracy/error_estimate.h>

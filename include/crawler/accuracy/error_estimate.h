@@ -10,7 +10,7 @@ namespace crawler
 {
   /**
    * Sets the errors of @p result, which a Simulation with @p choice gave and which finished (collective). A second,
-   * finer run tells that of the displacement (doc/numerics.md, "Error bars"): with x the difference of both
+   * finer run tells that of the displacement (doc/numerics.md, "Error bounds"): with x the difference of both
    * displacements and w the error that the choice promises,
    *
    *   total = 1.5 x + w/5   (w/2 on adaptive meshes, 0.15 w on graded ones), and at least 1e-15 L, the error of

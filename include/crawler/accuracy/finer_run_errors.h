@@ -14,7 +14,7 @@ namespace crawler
    *
    * Numbers that are found by looking at N quadrature points along the body, where the sign of the power changes or the
    * stretch is extreme, converge more slowly; theirs is 1.5 factor x + (part + 2/N^2) S (doc/numerics.md, "Error
-   * bars").
+   * bounds").
    */
   NumberErrors
   number_errors(const SimulationResult &result, const SimulationResult &finer, double factor, double part);

@@ -21,6 +21,10 @@ namespace crawler
   std::size_t
   whole_characters(const std::string &text, std::size_t width);
 
+  /// A text that is too long for this width ends with dots.
+  std::string
+  shortened(const std::string &text, std::size_t width);
+
   /**
    * A table in an HDF5 file into which all ranks write rows as they come (parallel HDF5). Its layout is fixed when it
    * is created: a group with a dataset for each column, contiguous and allocated, so later only numbers are written, no
@@ -75,6 +79,13 @@ namespace crawler
     const std::vector<Column> columns_;
     std::unique_ptr<Handles> handles_;
   };
+
+  /// A whole table in such a file. Throws FileError.
+  void
+  write_hdf5(const std::filesystem::path &path,
+             const std::string &group,
+             const Table &table,
+             const std::map<std::string, std::string> &attributes);
 
   /// Reads parts of a table that RowFile has made, so that a large one need not fit into the memory.
   class RowReader

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <filesystem>
-#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -28,15 +26,4 @@ namespace crawler
   csv_names(const Table &table);
   std::string
   csv_rows(const Table &table);
-
-  /**
-   * Writes the table as an HDF5 file: group @p group with a dataset for each column, its unit and description as
-   * attributes; texts are UTF-8, a number that is not known is NaN. In names "/" becomes ".", since HDF5 keeps "/" for
-   * groups; the attribute "name" has the full name. @p attributes are those of the group. Throws FileError.
-   */
-  void
-  write_hdf5(const std::filesystem::path &path,
-             const std::string &group,
-             const Table &table,
-             const std::map<std::string, std::string> &attributes);
 } // namespace crawler

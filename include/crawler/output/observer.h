@@ -18,7 +18,7 @@ namespace crawler
     const Units &units;
     double computed_time;
     std::span<const double> y;      ///< the unknowns (assembler.h), owned values of this rank
-    std::span<const double> v;      ///< velocity at the nodes; without a energy balance of snapshots only
+    std::span<const double> v;      ///< velocity at the nodes; without an energy balance of snapshots only
     const CellIntegrals &integrals; ///< those with v are as old as v
     const StretchRange &stretch;
     const EnergyBalance &energy_balance;

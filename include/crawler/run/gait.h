@@ -23,7 +23,7 @@ namespace crawler
     double n_strides;                                 ///< so many fit into the run
     double displacement;                              ///< of the centre of mass in this stride [length]
     std::optional<StretchWave> wave;                  ///< nothing if the stretch hardly changes, or too fast
-    std::optional<EnergyBalance> energy_balance = {}; ///< works of this stride [energy], if there is a energy balance
+    std::optional<EnergyBalance> energy_balance = {}; ///< works of this stride [energy], if there is an energy balance
 
     /// From natural units to the user's.
     Gait

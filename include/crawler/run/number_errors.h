@@ -7,15 +7,12 @@
 
 namespace crawler
 {
-  /// Error bars of the numbers of a summary besides the displacement; not a number where unknown.
+  /// Error bounds of the numbers of a summary besides the displacement; not a number where unknown.
   struct NumberErrors
   {
     static constexpr std::size_t n = 16;
 
-    /// Their keys in summary.json, dots for nesting.
-    static const std::array<const char *, n> &
-    keys();
-
+    /// In the order of entries_with_errors() (result_table.h).
     std::array<double, n> values;
 
     NumberErrors()

@@ -73,7 +73,7 @@ namespace crawler
     unsigned int n_space_panels_ = 0, n_time_panels_ = 0; ///< of the kinematic level
   };
 
-  /// Works and energies of a level as a energy balance; the initial elastic energy counts as lost before the start.
+  /// Works and energies of a level as an energy balance; the initial elastic energy counts as lost before the start.
   EnergyBalance
   energy_balance_of(const ReducedEnergies &energies);
 } // namespace crawler

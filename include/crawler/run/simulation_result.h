@@ -19,7 +19,8 @@ namespace crawler
   /// What one simulation gives.
   struct SimulationResult
   {
-    TimeOutcome time; ///< its status is "inverted" too
+    TimeOutcome time;                ///< its status is "inverted" too
+    std::string model = "nonlinear"; ///< level of the model hierarchy
 
     /// Of the centre of mass, (1/L) int u ds [length]; not a number if nobody looked before the run broke off.
     double displacement = std::numeric_limits<double>::quiet_NaN();

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/run/run_parameters.h>
-#include <crawler/run/simulation.h>
+#include <crawler/run/simulation_result.h>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -14,16 +13,13 @@ namespace crawler
   /// What summary.json says of a result but for the process that made it (ranks, versions, command line): keys are a
   /// contract (doc/user_guide.md). What is not known is null or not a number, which is written as null.
   nlohmann::ordered_json
-  summary_of(const SimulationResult &result, const RunParameters &parameters);
+  summary_of(const SimulationResult &result);
 
   /// The text of summary.json.
   std::string
-  summary_json(const SimulationResult &result,
-               const RunParameters &parameters,
-               unsigned int n_ranks,
-               const std::string &command_line);
+  summary_json(const SimulationResult &result, unsigned int n_ranks, const std::string &command_line);
 
   /// The same for people, in a few lines.
   std::vector<std::string>
-  summary_lines(const SimulationResult &result, const RunParameters &parameters);
+  summary_lines(const SimulationResult &result);
 } // namespace crawler

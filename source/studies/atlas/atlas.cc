@@ -2,113 +2,63 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/stop_signal.h>
-#include <crawler/base/work_queue.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/atlas/atlas.h>
 #include <crawler/studies/atlas/atlas_results.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/share_work.h>
 #include <crawler/studies/core/study.h>
+#include <crawler/studies/core/table_csv.h>
+#include <crawler/studies/sweep/point_table.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 namespace crawler
 {
   namespace
   {
-    /// The parameter file as a form in which the two entries of the axes can be filled in.
-    class Form
-    {
-    public:
-      explicit Form(const ParameterFile &file)
-      {
-        parameters_.count_terms(file);
-        parameters_.add_parameters(declarations_);
-        file.apply(declarations_);
-      }
-      Form(const Form &) = delete;
-
-      const Parameters &
-      parameters() const
-      {
-        return parameters_;
-      }
-
-      const Parameters &
-      filled(const AtlasAxes &axes, const unsigned long index)
-      {
-        declarations_.set(axes.first.entry, axes.first.values[index / axes.second.values.size()]);
-        declarations_.set(axes.second.entry, axes.second.values[index % axes.second.values.size()]);
-        return parameters_;
-      }
-
-      Declarations &
-      declarations()
-      {
-        return declarations_;
-      }
-
-      std::string
-      text() const
-      {
-        std::ostringstream out;
-        declarations_.print_prm(out);
-        return out.str();
-      }
-
-    private:
-      Parameters parameters_;
-      Declarations declarations_; ///< its entries are the members of parameters_
-    };
-
-    std::string
-    unit_of(const std::string &path, const Declarations &declarations)
-    {
-      for (const EntryInfo &entry : declarations.entries())
-        if (entry.path == path)
-          return entry.unit;
-      return "";
-    }
-
     /// Reads both axes and looks at all their values. Throws InputError.
     AtlasAxes
     read_axes(const ParameterFile &file)
     {
-      Form scratch(file);
+      Parameters parameters;
+      Declarations declarations;
+      parameters.count_terms(file);
+      parameters.add_parameters(declarations);
+      file.apply(declarations);
       const std::string first_name = "Atlas/First axis", second_name = "Atlas/Second axis";
       const auto read = [&](const std::string &text, const std::string &name) {
         const Axis axis = parse_axis(text, name);
-        if (axis.entry.starts_with("Atlas/"))
-          throw InputError(
-            fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", name, axis.entry), name);
-        require_valid(axis, name, scratch.declarations());
+        for (const char *section : {"Sweep/", "Atlas/", "Tradeoff/"})
+          if (axis.entry.starts_with(section))
+            throw InputError(
+              fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", name, axis.entry),
+              name);
+        require_valid(axis, name, declarations);
         numbers_of(axis, name);
         return axis;
       };
       try
       {
-        const AtlasParameters texts = scratch.parameters().atlas;
-        AtlasAxes axes{read(texts.first_axis, first_name), read(texts.second_axis, second_name), "", ""};
+        const AtlasParameters texts = parameters.atlas;
+        AtlasAxes axes{read(texts.first_axis, first_name), read(texts.second_axis, second_name)};
         if (axes.first.entry == axes.second.entry)
           throw InputError(fmt::format("\"{}\" is on both axes; two different entries are expected", axes.first.entry),
                            second_name);
-        if (const std::string &model = scratch.parameters().model; model != "nonlinear")
+        if (const std::string &model = parameters.model; model != "nonlinear")
           throw InputError(
             fmt::format("Model is {}, but an atlas compares formulations of the nonlinear model; Model = "
                         "nonlinear is expected",
                         model),
             "Model");
-        if (scratch.parameters().active_stress.generator == "strain feedback")
+        if (parameters.active_stress.generator == "strain feedback")
           throw InputError("Generator is strain feedback, but an atlas must know the stretch of the ends beforehand; "
                            "another one is expected",
                            "Active stress/Generator");
-        axes.first_unit  = unit_of(axes.first.entry, scratch.declarations());
-        axes.second_unit = unit_of(axes.second.entry, scratch.declarations());
         return axes;
       }
       catch (const InputError &error)
@@ -116,36 +66,6 @@ namespace crawler
         throw file.with_place(error);
       }
     }
-
-    /**
-     * The rows of one rank as they come, in a file of their own (OUTPUT/rows/RANK.csv), so that a job that is killed
-     * loses none. The tables at the end replace it.
-     */
-    class RowWriter
-    {
-    public:
-      RowWriter(const std::filesystem::path &folder, const unsigned int rank, const AtlasAxes &axes)
-        : path_(folder / fmt::format("{}.csv", rank))
-        , axes_(axes)
-        , out_(path_)
-      {
-        out_ << csv(atlas_table({}, axes));
-      }
-
-      void
-      write(const AtlasPoint &point)
-      {
-        const std::string with_names = csv(atlas_table({point}, axes_));
-        out_ << with_names.substr(with_names.find('\n') + 1) << std::flush;
-        if (!out_)
-          throw FileError("cannot write \"" + path_.string() + "\" (is the disk full?)");
-      }
-
-    private:
-      const std::filesystem::path path_;
-      const AtlasAxes &axes_;
-      std::ofstream out_;
-    };
 
     /// So many points are computed together: enough to fill the lanes of the fused engine, unless ranks would wait.
     unsigned long
@@ -155,89 +75,57 @@ namespace crawler
       return std::clamp(n_points / (parts_per_rank * n_ranks), 1ul, most);
     }
 
-    /// This rank's share of the points. A signal ends the work of all ranks; each drops the points it is at.
-    std::vector<AtlasPoint>
-    compute_own_points(MPI_Comm communicator,
-                       const ParameterFile &file,
-                       const AtlasAxes &axes,
-                       const StopSignal &stop_signal,
-                       RowWriter &rows,
-                       Log &log)
+    /// The design of a sweep over both axes.
+    SweepParameters
+    design_of(const AtlasAxes &axes)
     {
-      Form form(file);
-      const std::vector<double> first = numbers_of(axes.first, ""), second = numbers_of(axes.second, "");
-      WorkQueue queue(communicator, axes.n_points());
-      StudyProgress progress(log, axes.n_points(), "points");
-      const auto interrupted = [&]() {
-        queue.serve();
-        return stop_signal.arrived_anywhere(MPI_COMM_SELF);
-      };
-      std::vector<AtlasPoint> points;
-      const unsigned long stride     = golden_stride(axes.n_points());
-      const unsigned long n_together = points_together(axes.n_points(), size_of(communicator));
-      for (;;)
-      {
-        std::vector<unsigned long> indices;
-        std::vector<Parameters> parameters;
-        while (indices.size() < n_together)
-        {
-          const auto number = queue.next();
-          if (!number)
-            break;
-          indices.push_back(*number * stride % axes.n_points());
-          parameters.push_back(form.filled(axes, indices.back()));
-        }
-        if (indices.empty())
-          break;
-        auto some = compute_points(parameters, interrupted);
-        if (!some)
-        {
-          queue.close();
-          break;
-        }
-        for (std::size_t i = 0; i < indices.size(); ++i)
-        {
-          AtlasPoint &point = (*some)[i];
-          point.index       = indices[i];
-          point.first       = first[point.index / second.size()];
-          point.second      = second[point.index % second.size()];
-          rows.write(point);
-          points.push_back(point);
-          queue.done();
-          progress.report(queue.so_far().done);
-        }
-      }
-      return points;
+      SweepParameters design;
+      design.axes = fmt::format("{} : {}; {} : {}",
+                                axes.first.entry,
+                                fmt::join(axes.first.values, ", "),
+                                axes.second.entry,
+                                fmt::join(axes.second.values, ", "));
+      return design;
     }
 
-    /// The points of all ranks in their order, on rank 0.
-    std::vector<AtlasPoint>
-    collect(MPI_Comm communicator, const std::vector<AtlasPoint> &own)
+    /// The rows that are missing, by all ranks. Returns false if some rank was interrupted.
+    bool
+    compute_rows(MPI_Comm communicator,
+                 const std::filesystem::path &folder,
+                 SweepPoints &points,
+                 const PointTable &table,
+                 const std::vector<bool> &done,
+                 const std::function<bool()> &interrupted,
+                 Log &log)
     {
-      std::vector<AtlasPoint> all;
-      for (const std::string &text : gather(pack(own), communicator))
-        for (const AtlasPoint &point : unpack(text))
-          all.push_back(point);
-      std::sort(all.begin(), all.end(), [](const AtlasPoint &a, const AtlasPoint &b) { return a.index < b.index; });
-      return all;
-    }
-
-    /// The points in which something is wrong, the first few.
-    void
-    report_wrong_answers(const std::vector<AtlasPoint> &points, const AtlasAxes &axes, Log &log)
-    {
-      constexpr unsigned int most = 10;
-      unsigned int n              = 0;
-      for (const AtlasPoint &point : points)
-        if (point.verdict.kind == Verdict::silent_wrong_answer && ++n <= most)
-          log.line(fmt::format("Silent wrong answer at {} = {:g}, {} = {:g}: {}",
-                               split_path(axes.first.entry).back(),
-                               point.first,
-                               split_path(axes.second.entry).back(),
-                               point.second,
-                               point.verdict.explanation));
-      if (n > most)
-        log.line(fmt::format("... and {} more (column verdict of atlas.csv)", n - most));
+      std::vector<unsigned long> missing;
+      const unsigned long n = points.design().n_points(), stride = golden_stride(n);
+      for (unsigned long i = 0; i < n; ++i)
+        if (const unsigned long point = i * stride % n; !done[point])
+          missing.push_back(point);
+      const unsigned long together = points_together(missing.size(), size_of(communicator));
+      const auto columns           = table.written_columns();
+      RowFile rows(communicator, folder / table.file, table.group, columns);
+      return share_work(communicator,
+                        {(missing.size() + together - 1) / together,
+                         missing.size(),
+                         "points",
+                         interrupted,
+                         [&](const unsigned long number, const auto &stops, const auto &see) {
+                           const unsigned long first = number * together,
+                                               last  = std::min<unsigned long>(first + together, missing.size());
+                           std::vector<Parameters> parameters;
+                           for (unsigned long i = first; i < last; ++i)
+                             parameters.push_back(points.parameters(missing[i]));
+                           const auto some = compute_points(parameters, stops);
+                           if (!some)
+                             return false;
+                           for (unsigned long i = first; i < last; ++i)
+                             rows.write(missing[i], {{atlas_row(columns, (*some)[i - first])}});
+                           see(some->size(), 0);
+                           return true;
+                         }},
+                        log);
     }
   } // namespace
 
@@ -247,53 +135,49 @@ namespace crawler
     const StopSignal stop_signal; // from here on a signal ends the atlas in order
     const double start = now();
     Log log(rank_of(communicator) == 0, options.quiet);
-    const ParameterFile file    = read_file(communicator, options.file, options.overrides);
-    const AtlasAxes axes        = read_axes(file);
-    const std::string effective = Form(file).text();
-    const auto folder           = output_folder(options.output, options.file);
-    const unsigned int n_ranks  = size_of(communicator);
-
-    on_first_rank(communicator, [&]() {
-      require_usable(folder, options.overwrite);
-      require_no_sweep(folder);
-      prepare(folder);
-      std::filesystem::remove_all(folder / "rows"); // of an atlas that was killed
-      std::filesystem::create_directories(folder / "rows");
-      write_file(folder / "original.prm", file.text());
-      write_file(folder / "parameters.prm", effective);
-      log.open(folder / "log.txt");
-      return "";
-    });
-    log.line(fmt::format("Atlas: {} values of {} times {} of {}, {} points on {} rank{}",
+    const ParameterFile file   = read_file(communicator, options.file, options.overrides);
+    const AtlasAxes axes       = read_axes(file);
+    const auto path            = output_folder(options.output, options.file);
+    const unsigned int n_ranks = size_of(communicator);
+    SweepPoints points(communicator, file, design_of(axes));
+    PointTable table = atlas_table(points);
+    table.time_limit = points.parameters(0).atlas.time_limit;
+    StudyFolder folder({"atlas", {table.file}, {"Atlas/Time limit per run"}}, path, options, log);
+    const std::vector<bool> done =
+      points_done(communicator, [&]() { return begin_or_resume(folder, table, file, points, options.command_line); });
+    const auto n_done = std::count(done.begin(), done.end(), true);
+    log.line(fmt::format("Atlas: {} values of {} times {} of {}, {} points on {} rank{}{}",
                          axes.first.values.size(),
                          axes.first.entry,
                          axes.second.values.size(),
                          axes.second.entry,
                          axes.n_points(),
                          n_ranks,
-                         n_ranks == 1 ? "" : "s"));
+                         n_ranks == 1 ? "" : "s",
+                         n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
 
-    RowWriter rows(folder / "rows", rank_of(communicator), axes);
-    const auto points    = collect(communicator, compute_own_points(communicator, file, axes, stop_signal, rows, log));
-    const auto summary   = summarize(points, axes);
-    const double seconds = now() - start;
+    const bool is_whole = compute_rows(
+      communicator, path, points, table, done, [&]() { return stop_signal.arrived_anywhere(MPI_COMM_SELF); }, log);
+    write_table_csv(communicator, path / table.file, table.group, path / "atlas.csv", [](const Table &) {});
     on_first_rank(communicator, [&]() {
-      const Table table = atlas_table(points, axes);
-      write_file(folder / "atlas.csv", csv(table));
-      write_hdf5(folder / "atlas.h5", "atlas", table, provenance(effective, options.command_line));
-      std::filesystem::remove_all(folder / "rows");
-      const std::string status = summary.computed() == summary.points ? "finished" : "stopped";
-      write_file(folder / "summary.json", atlas_json(summary, axes, status, seconds, n_ranks, options.command_line));
-      report_wrong_answers(points, axes, log);
+      const AtlasSummary summary = summarize(path, axes);
+      const double seconds       = now() - start;
+      const std::string status   = is_whole ? "finished" : "stopped";
+      write_file(path / "summary.json", atlas_json(summary, axes, status, seconds, n_ranks, options.command_line));
+      for (const std::string &answer : summary.wrong_answers)
+        log.line("Silent wrong answer at " + answer);
+      if (summary.silent_wrong_answers > summary.wrong_answers.size())
+        log.line(fmt::format("... and {} more (column verdict of atlas.csv)",
+                             summary.silent_wrong_answers - summary.wrong_answers.size()));
       log.line(in_words(summary, axes, seconds, n_ranks));
-      if (status == "stopped")
-        log.warn(fmt::format("stopped by a signal after {} of {} points", summary.computed(), summary.points));
-      draw("atlas.py", folder, log);
-      log.line(fmt::format("Results are in {}/.", folder.string()));
+      if (!is_whole)
+        log.warn(fmt::format(
+          "stopped by a signal after {} of {} points; --resume goes on", summary.computed(), summary.points));
+      draw("atlas.py", path, log);
+      log.line(fmt::format("Results are in {}/.", path.string()));
+      folder.leave();
       return "";
     });
-    int code = static_cast<int>(summary.computed() == summary.points ? ExitCode::finished : ExitCode::stopped);
-    MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
-    return static_cast<ExitCode>(code);
+    return is_whole ? ExitCode::finished : ExitCode::stopped;
   }
 } // namespace crawler

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/versions.h>
+#include <crawler/parameters/declarations.h>
 #include <crawler/studies/atlas/atlas_results.h>
 
 #include <fmt/format.h>
@@ -13,13 +14,6 @@ namespace crawler
   namespace
   {
     using Json = nlohmann::ordered_json;
-
-    /// JSON has no number for what is not known; null stands for it.
-    double
-    number(const Json &json)
-    {
-      return json.is_null() ? AtlasRun::unknown : json.get<double>();
-    }
 
     /// A column of AtlasRun: its name behind that of the run.
     struct RunNumber
@@ -43,26 +37,32 @@ namespace crawler
       {"steps", "1", "accepted time steps", &AtlasRun::steps},
       {"seconds", "s", "wall time, choice of the numerics included", &AtlasRun::seconds}};
 
-    /// The column whose value at each point @p value tells.
-    template <typename Function>
-    Column
-    column(const std::string &name,
-           const std::string &unit,
-           const std::string &description,
-           const std::vector<AtlasPoint> &points,
-           const Function &value)
+    /// Another column: texts of at most `width` bytes.
+    struct PointText
     {
-      std::vector<std::decay_t<decltype(value(points[0]))>> values;
-      for (const AtlasPoint &point : points)
-        values.push_back(value(point));
-      return {name, unit, description, std::move(values)};
-    }
+      const char *name, *description;
+      unsigned int width;
+      std::string (*value)(const AtlasPoint &);
+    };
 
     std::string
     explanation(const AtlasPoint &point)
     {
       return point.verdict.explanation.empty() ? point.runs[AtlasPoint::automatic].message : point.verdict.explanation;
     }
+
+    const PointText point_texts[] = {
+      {"outcome",
+       "name of the point in the picture; empty: not computed yet",
+       48,
+       [](const AtlasPoint &point) { return point.outcome; }},
+      {"verdict",
+       "agree, unchecked or silent wrong answer",
+       24,
+       [](const AtlasPoint &point) { return point.verdict.in_words(); }},
+      {"explanation", "of a wrong answer, or of what \"crawler run\" says if it does not finish", 256, explanation}};
+    constexpr std::pair<const char *, std::string AtlasRun::*> run_texts[] = {{"status", &AtlasRun::status},
+                                                                              {"reason", &AtlasRun::reason}};
 
     std::string
     axis_in_words(const Axis &axis)
@@ -72,117 +72,95 @@ namespace crawler
     }
   } // namespace
 
-  std::string
-  pack(const std::vector<AtlasPoint> &points)
+  PointTable
+  atlas_table(const SweepPoints &points)
   {
-    Json list = Json::array();
-    for (const AtlasPoint &point : points)
+    PointTable table = {"atlas.h5",
+                        "atlas",
+                        axis_columns(points.design(), points.declarations(), "axis of the atlas"),
+                        3,
+                        point_texts[0].name,
+                        {},
+                        0.};
+    for (const PointText &text : point_texts)
+      table.columns.push_back({text.name, "", text.description, text.width});
+    for (const char *name : AtlasPoint::run_names)
     {
-      Json runs = Json::array();
-      for (const AtlasRun &run : point.runs)
-      {
-        Json one = {run.status, run.reason, run.message};
-        for (const RunNumber &entry : run_numbers)
-          one.push_back(run.*entry.member);
-        runs.push_back(one);
-      }
-      list.push_back({point.index,
-                      point.first,
-                      point.second,
-                      point.outcome,
-                      static_cast<int>(point.verdict.kind),
-                      point.verdict.explanation,
-                      runs});
-    }
-    return list.dump(-1, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace);
-  }
-
-  std::vector<AtlasPoint>
-  unpack(const std::string &text)
-  {
-    std::vector<AtlasPoint> points;
-    for (const Json &json : Json::parse(text))
-    {
-      AtlasPoint point;
-      point.index   = json[0];
-      point.first   = json[1];
-      point.second  = json[2];
-      point.outcome = json[3];
-      point.verdict = {static_cast<Verdict::Kind>(json[4].get<int>()), json[5]};
-      for (std::size_t i = 0; i < point.runs.size(); ++i)
-      {
-        AtlasRun &run = point.runs[i];
-        std::size_t j = 0;
-        for (std::string *word : {&run.status, &run.reason, &run.message})
-          *word = json[6][i][j++];
-        for (const RunNumber &entry : run_numbers)
-          run.*entry.member = number(json[6][i][j++]);
-      }
-      points.push_back(point);
-    }
-    return points;
-  }
-
-  Table
-  atlas_table(const std::vector<AtlasPoint> &points, const AtlasAxes &axes)
-  {
-    Table table;
-    const auto add =
-      [&](const std::string &name, const std::string &unit, const std::string &description, const auto &value) {
-        table.push_back(column(name, unit, description, points, value));
-      };
-    add("index", "1", "number of the point; the second axis varies fastest", [](const AtlasPoint &point) {
-      return static_cast<double>(point.index);
-    });
-    add(axes.first.entry, axes.first_unit, "value on the first axis", [](const AtlasPoint &point) {
-      return point.first;
-    });
-    add(axes.second.entry, axes.second_unit, "value on the second axis", [](const AtlasPoint &point) {
-      return point.second;
-    });
-    add("outcome", "", "name of the point in the picture", [](const AtlasPoint &point) { return point.outcome; });
-    add("verdict", "", "agree, unchecked or silent wrong answer", [](const AtlasPoint &point) {
-      return point.verdict.in_words();
-    });
-    add("explanation", "", "of a wrong answer, or of what \"crawler run\" says if it does not finish", explanation);
-    for (std::size_t i = 0; i < AtlasPoint::n_runs; ++i)
-    {
-      const std::string run = std::string(AtlasPoint::run_names[i]) + " ";
-      add(run + "status",
-          "",
-          "finished, inverted, failed, stopped or refused; empty if this run was not asked for",
-          [i](const AtlasPoint &point) { return point.runs[i].status; });
-      add(run + "reason", "", "name of what went wrong", [i](const AtlasPoint &point) { return point.runs[i].reason; });
+      const std::string run = std::string(name) + " ";
+      table.columns.push_back({run + "status",
+                               "",
+                               "finished, inverted, failed, stopped or refused; empty if this run was not asked for",
+                               24});
+      table.columns.push_back({run + "reason", "", "name of what went wrong", 32});
       for (const RunNumber &entry : run_numbers)
-        add(run + entry.name, entry.unit, entry.description, [i, &entry](const AtlasPoint &point) {
-          return point.runs[i].*entry.member;
-        });
+        table.columns.push_back({run + entry.name, entry.unit, entry.description, 0});
+      table.reasons_and_seconds.emplace_back(run + "reason", run + "seconds");
     }
     return table;
   }
 
-  AtlasSummary
-  summarize(const std::vector<AtlasPoint> &points, const AtlasAxes &axes)
+  RowFile::Row
+  atlas_row(const std::vector<RowFile::Column> &columns, const AtlasPoint &point)
   {
+    std::map<std::string, RowFile::Value> values;
+    for (const PointText &text : point_texts)
+      values.emplace(text.name, shortened(text.value(point), text.width));
+    for (std::size_t i = 0; i < AtlasPoint::n_runs; ++i)
+    {
+      const std::string run = std::string(AtlasPoint::run_names[i]) + " ";
+      for (const auto &[name, member] : run_texts)
+        values.emplace(run + name, point.runs[i].*member);
+      for (const RunNumber &entry : run_numbers)
+        values.emplace(run + entry.name, point.runs[i].*entry.member);
+    }
+    RowFile::Row row;
+    for (const RowFile::Column &column : columns)
+      row.push_back(values.at(column.name));
+    return row;
+  }
+
+  AtlasSummary
+  summarize(const std::filesystem::path &folder, const AtlasAxes &axes)
+  {
+    constexpr std::size_t most_wrong_answers = 10;
+    using Texts                              = std::vector<std::string>;
+    using Numbers                            = std::vector<double>;
+    const RowReader rows(MPI_COMM_SELF, folder / "atlas.h5", "atlas");
+    const auto column = [&](const std::string &name) {
+      return rows.read(rows.index_of(name), 0, rows.n_rows()).values;
+    };
+    const auto texts    = [&](const std::string &name) { return std::get<Texts>(column(name)); };
+    const auto numbers  = [&](const std::string &name) { return std::get<Numbers>(column(name)); };
+    const Texts outcome = texts("outcome"), status = texts("run status"), reason = texts("run reason"),
+                verdict = texts("verdict"), explanation = texts("explanation");
+    const Numbers first = numbers(axes.first.entry), second = numbers(axes.second.entry),
+                  promised = numbers("refined promised error");
     AtlasSummary summary;
     summary.points = axes.n_points();
-    for (const AtlasPoint &point : points)
+    for (std::size_t i = 0; i < outcome.size(); ++i)
     {
-      const AtlasRun &run = point.runs[AtlasPoint::automatic];
-      summary.finished += run.status == "finished";
-      summary.inverted += run.status == "inverted";
-      summary.failed += run.status == "failed";
-      summary.stopped += run.status == "stopped";
-      summary.refused += run.status == "refused";
-      if (!run.reason.empty())
-        ++summary.reasons[run.reason];
-      summary.checked += point.verdict.kind != Verdict::unchecked;
-      summary.silent_wrong_answers += point.verdict.kind == Verdict::silent_wrong_answer;
-      for (const AtlasRun &one : point.runs)
-      {
-        const double ratio = one.measured_error / (one.promised_error + point.runs[AtlasPoint::refined].promised_error);
-        summary.largest_error_ratio = std::fmax(summary.largest_error_ratio, ratio); // passes over what is not known
-      }
+      if (outcome[i].empty())
+        continue;
+      ++summary.statuses[status[i]];
+      if (!reason[i].empty())
+        ++summary.reasons[reason[i]];
+      const bool is_wrong = verdict[i] == Verdict{Verdict::silent_wrong_answer, ""}.in_words();
+      summary.checked += verdict[i] != Verdict{}.in_words();
+      summary.silent_wrong_answers += is_wrong;
+      if (is_wrong && summary.wrong_answers.size() < most_wrong_answers)
+        summary.wrong_answers.push_back(fmt::format("{} = {:g}, {} = {:g}: {}",
+                                                    split_path(axes.first.entry).back(),
+                                                    first[i],
+                                                    split_path(axes.second.entry).back(),
+                                                    second[i],
+                                                    explanation[i]));
+    }
+    for (const char *name : AtlasPoint::run_names)
+    {
+      const std::string run  = std::string(name) + " ";
+      const Numbers measured = numbers(run + "measured error"), own = numbers(run + "promised error");
+      for (std::size_t i = 0; i < outcome.size(); ++i) // fmax passes over what is not known
+        summary.largest_error_ratio = std::fmax(summary.largest_error_ratio, measured[i] / (own[i] + promised[i]));
     }
     return summary;
   }
@@ -202,11 +180,11 @@ namespace crawler
       axis_in_words(axes.second),
       summary.points,
       summary.computed() == summary.points ? "" : fmt::format(" ({} computed)", summary.computed()),
-      summary.finished,
-      summary.inverted,
-      summary.failed,
-      summary.stopped,
-      summary.refused,
+      summary.number("finished"),
+      summary.number("inverted"),
+      summary.number("failed"),
+      summary.number("stopped"),
+      summary.number("refused"),
       reasons.empty() ? "" : fmt::format(" ({})", fmt::join(reasons, ", ")),
       summary.checked,
       summary.silent_wrong_answers,
@@ -231,11 +209,11 @@ namespace crawler
                        {"second_axis", {{"entry", axes.second.entry}, {"values", axes.second.values.size()}}},
                        {"points", summary.points},
                        {"computed", summary.computed()},
-                       {"finished", summary.finished},
-                       {"inverted", summary.inverted},
-                       {"failed", summary.failed},
-                       {"stopped", summary.stopped},
-                       {"refused", summary.refused},
+                       {"finished", summary.number("finished")},
+                       {"inverted", summary.number("inverted")},
+                       {"failed", summary.number("failed")},
+                       {"stopped", summary.number("stopped")},
+                       {"refused", summary.number("refused")},
                        {"reasons", summary.reasons},
                        {"checked", summary.checked},
                        {"silent_wrong_answers", summary.silent_wrong_answers},

@@ -48,18 +48,18 @@ namespace crawler
                        "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
   }
 
-  const std::string sweep_lock_name = "sweep.lock";
+  const std::string study_lock_name = "study.lock";
 
   void
-  require_no_sweep(const fs::path &folder)
+  require_no_study(const fs::path &folder)
   {
     std::error_code error;
-    if (!fs::exists(folder / sweep_lock_name, error))
+    if (!fs::exists(folder / study_lock_name, error))
       return;
-    FileLock lock(folder / sweep_lock_name);
+    FileLock lock(folder / study_lock_name);
     if (lock.lock() == FileLock::State::of_another_process)
-      throw InputError("a sweep writes to \"" + folder.string() +
-                       "\"; another folder is expected for --output, or that the sweep has ended");
+      throw InputError("a study writes to \"" + folder.string() +
+                       "\"; another folder is expected for --output, or that the study has ended");
   }
 
   void
@@ -70,10 +70,10 @@ namespace crawler
     if (error)
       throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
     for (const char *name :
-         {"original.prm", "parameters.prm", "log.txt",         "summary.json",        "kymograph.png",
-          "results.csv",  "results.h5",     "results.h5.part", "results.png",         "results.svg",
-          "atlas.csv",    "atlas.h5",       "atlas.png",       "atlas.svg",           "tradeoff.csv",
-          "tradeoff.h5",  "tradeoff.png",   "tradeoff.svg",    "recommendations.prm", "reference.json"})
+         {"original.prm",  "parameters.prm",      "log.txt",       "summary.json", "kymograph.png", "results.csv",
+          "results.h5",    "results.h5.part",     "results.png",   "results.svg",  "atlas.csv",     "atlas.h5",
+          "atlas.h5.part", "atlas.png",           "atlas.svg",     "tradeoff.csv", "tradeoff.h5",   "tradeoff.png",
+          "tradeoff.svg",  "recommendations.prm", "reference.json"})
       fs::remove(folder / name, error);
     remove_fields(folder);
   }

@@ -115,15 +115,15 @@ namespace crawler
     const auto folder              = output_folder(options.output, options.file);
     on_first_rank(communicator, [&]() {
       require_usable(folder, options.overwrite);
-      require_no_sweep(folder);
+      require_no_study(folder);
       return "";
     });
 
     SimulationResult result;
     bool shared              = false; // the cells, by all ranks
     const auto write_summary = [&]() {
-      write_file(folder / "summary.json",
-                 summary_json(result, parameters, size_of(communicator), options.command_line));
+      result.model = parameters.model;
+      write_file(folder / "summary.json", summary_json(result, size_of(communicator), options.command_line));
     };
     // What a part of the work throws is how the run ends, with all that an end has.
     const auto guarded = [&](const auto &work) {
@@ -252,7 +252,7 @@ namespace crawler
       write_summary();
       return "";
     });
-    for (const std::string &line : summary_lines(result, parameters))
+    for (const std::string &line : summary_lines(result))
       log.line(line);
     if (result.time.status != "finished")
       log.warn(result.time.reason + ": " + result.time.message);

@@ -133,6 +133,7 @@ namespace crawler
       parameters.model      = choice.model;
       const double setup    = seconds_from(start);
       SimulationResult result;
+      result.model = choice.model;
       try
       {
         ReducedModel level(input.scene, choice.model);
@@ -159,9 +160,8 @@ namespace crawler
         result.time.reason  = "signal";
         result.time.message = "stopped by a signal";
       }
-      write_file(folder / "summary.json",
-                 summary_json(result, parameters, size_of(communicator), options.command_line));
-      for (const std::string &line : summary_lines(result, parameters))
+      write_file(folder / "summary.json", summary_json(result, size_of(communicator), options.command_line));
+      for (const std::string &line : summary_lines(result))
         log.line(line);
       if (result.time.status != "finished")
         log.warn(result.time.reason + ": " + result.time.message);

@@ -3,14 +3,16 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/base/stop_signal.h>
-#include <crawler/base/work_queue.h>
+#include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/share_work.h>
 #include <crawler/studies/core/study.h>
+#include <crawler/studies/run/run.h>
+#include <crawler/studies/sweep/point_table.h>
 #include <crawler/studies/sweep/sweep.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_check.h>
-#include <crawler/studies/sweep/sweep_folder.h>
 #include <crawler/studies/sweep/sweep_results.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 #include <crawler/studies/sweep/sweep_worker.h>
@@ -18,6 +20,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace crawler
@@ -26,43 +29,24 @@ namespace crawler
   {
     namespace fs = std::filesystem;
 
-    std::string
-    packed(const std::vector<bool> &flags)
-    {
-      std::string text(flags.size(), '0');
-      for (std::size_t i = 0; i < flags.size(); ++i)
-        text[i] = flags[i] ? '1' : '0';
-      return text;
-    }
-
-    std::vector<bool>
-    unpacked(const std::string &text)
-    {
-      std::vector<bool> flags(text.size());
-      for (std::size_t i = 0; i < flags.size(); ++i)
-        flags[i] = text[i] == '1';
-      return flags;
-    }
-
-    bool
-    on_all_ranks(MPI_Comm communicator, const bool here)
-    {
-      int all = here;
-      MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, communicator);
-      return all != 0;
-    }
-
-    /// What went wrong with the files of any rank is a FileError on all of them.
+    /// The folders of points, but for files that are not the program's.
     void
-    throw_on_all_ranks(MPI_Comm communicator, const std::string &problem)
+    remove_kept_fields(const fs::path &points)
     {
-      const auto problems = gather(problem, communicator);
-      on_first_rank(communicator, [&]() {
-        for (const std::string &one : problems)
-          if (!one.empty())
-            throw FileError(one + "; the rows that were written are there, and --resume makes the rest");
-        return "";
-      });
+      std::error_code error;
+      if (!fs::is_directory(points, error))
+        return;
+      std::vector<fs::path> folders;
+      for (const auto &entry : fs::directory_iterator(points))
+        if (entry.is_directory() && to_number(entry.path().filename().string()))
+          folders.push_back(entry.path());
+      for (const fs::path &folder : folders)
+      {
+        prepare(folder);
+        fs::remove(folder / "solution", error); // these if they are empty
+        fs::remove(folder, error);
+      }
+      fs::remove(points, error);
     }
 
     /// The folders points/NUMBER of the points whose fields are kept, by `crawler run` with their values. Points that
@@ -77,7 +61,7 @@ namespace crawler
     {
       bool all = true;
       std::string problem;
-      const RowReader table(MPI_COMM_SELF, folder / "results.h5", sweep_group);
+      const RowReader table(MPI_COMM_SELF, folder / sweep_file, sweep_group);
       const std::size_t reason = table.index_of("reason");
       for (std::size_t i = rank_of(communicator); i < kept.size(); i += size_of(communicator))
       {
@@ -112,62 +96,28 @@ namespace crawler
       return on_all_ranks(communicator, all);
     }
 
-    /// The rows that are missing, by all ranks. Returns false if some rank was interrupted. A file that one rank cannot
-    /// write ends the work of all: FileError on all ranks.
+    /// The rows that are missing, by all ranks. Returns false if some rank was interrupted.
     bool
     compute_rows(MPI_Comm communicator,
                  const fs::path &folder,
                  SweepPoints &points,
-                 const std::vector<RowFile::Column> &columns,
+                 const PointTable &table,
                  const std::vector<bool> &done,
                  const std::function<bool()> &interrupted,
                  Log &log)
     {
-      bool is_whole = true;
-      std::string problem;
-      {
-        const SweepBlocks blocks(points.design());
-        const SweepOrder order(blocks, points);
-        const auto n_known = static_cast<std::ptrdiff_t>(known_columns(columns, points.design()).n_columns);
-        const std::vector<RowFile::Column> written(columns.begin() + n_known, columns.end());
-        RowFile results(communicator, folder / "results.h5", sweep_group, written);
-        WorkQueue queue(communicator, blocks.size());
-        StudyProgress progress(log, static_cast<unsigned long>(std::count(done.begin(), done.end(), false)), "points");
-        const auto show_progress = [&]() {
-          if (rank_of(communicator) != 0 || !progress.is_due())
-            return;
-          const auto all = queue.so_far();
-          progress.report(all.done, all.failed > 0 ? fmt::format(", {} not finished", all.failed) : "");
-        };
-        const std::function<bool()> stops = [&]() // asked at every step of a run
-        {
-          queue.serve();
-          show_progress();
-          return interrupted();
-        };
-        SweepWorker worker(points, written, done, results, stops);
-        const auto see = [&](const unsigned long n, const unsigned long failed) {
-          queue.done(n, failed);
-          show_progress();
-        };
-        try
-        {
-          while (const auto number = queue.next())
-            if (!worker.compute(blocks[order[*number]], see))
-            {
-              is_whole = false;
-              break;
-            }
-        }
-        catch (const FileError &error)
-        {
-          problem = error.what();
-        }
-        if (!is_whole || !problem.empty())
-          queue.close();
-      }
-      throw_on_all_ranks(communicator, problem);
-      return on_all_ranks(communicator, is_whole);
+      const SweepBlocks blocks(points.design());
+      const SweepOrder order(blocks, points);
+      RowFile results(communicator, folder / table.file, table.group, table.written_columns());
+      return share_work(communicator,
+                        {blocks.size(),
+                         static_cast<unsigned long>(std::count(done.begin(), done.end(), false)),
+                         "points",
+                         interrupted,
+                         [&](const unsigned long number, const auto &stops, const auto &see) {
+                           return SweepWorker(points, done, results, stops).compute(blocks[order[number]], see);
+                         }},
+                        log);
     }
 
     /// What stands in the log at the end.
@@ -199,19 +149,30 @@ namespace crawler
     const double start         = now();
     const unsigned int n_ranks = size_of(communicator);
     Log log(rank_of(communicator) == 0, options.quiet);
-    if (options.resume && options.overwrite)
-      throw InputError("--resume and --overwrite contradict each other; one of them is expected");
     const ParameterFile file = read_file(communicator, options.file, options.overrides);
     SweepPoints points(communicator, file);
     const SweepDesign &design  = points.design();
     const SweepParameters &own = points.sweep();
     const auto kept            = points.kept_points();
-    const auto columns         = sweep_columns(design, points.declarations());
     const fs::path path        = output_folder(options.output, options.file);
-    SweepFolder folder(path, options, log);
-    const std::vector<bool> done =
-      unpacked(on_first_rank(communicator, [&]() { return packed(folder.begin_or_resume(file, points, columns)); }));
-    const auto n_done = static_cast<unsigned long>(std::count(done.begin(), done.end(), true));
+    const PointTable table     = {sweep_file,
+                                  sweep_group,
+                                  sweep_columns(design, points.declarations()),
+                                  1 + design.axes().size(),
+                                  "status",
+                                  {{"reason", "seconds"}},
+                                  own.point_time_limit.value_or(HUGE_VAL)};
+    StudyFolder folder({"sweep", {sweep_file}, {"Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"}},
+                       path,
+                       options,
+                       log);
+    const std::vector<bool> done = points_done(communicator, [&]() {
+      const auto list = begin_or_resume(folder, table, file, points, options.command_line);
+      if (std::count(list.begin(), list.end(), true) == 0)
+        remove_kept_fields(path / "points"); // of an earlier sweep
+      return list;
+    });
+    const auto n_done            = static_cast<unsigned long>(std::count(done.begin(), done.end(), true));
     log.line(fmt::format("Sweep: {}, on {} rank{}{}",
                          in_words(design, own.design),
                          n_ranks,
@@ -221,7 +182,7 @@ namespace crawler
     const std::function<bool()> interrupted = [&]() {
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - start > *own.time_limit);
     };
-    bool is_whole      = compute_rows(communicator, path, points, columns, done, interrupted, log);
+    bool is_whole      = compute_rows(communicator, path, points, table, done, interrupted, log);
     std::string reason = is_whole ? "" : stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
     if (is_whole && !kept.empty() && !keep_fields(communicator, options, path, design, points, kept))
     {

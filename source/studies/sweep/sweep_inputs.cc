@@ -12,9 +12,6 @@
 
 namespace crawler
 {
-  const std::vector<std::string> free_sweep_entries = {
-    "Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"};
-
   namespace
   {
     using Texts = std::map<std::string, std::string>;
@@ -104,18 +101,17 @@ namespace crawler
   }
 
   std::vector<std::string>
-  differences(const SweepInputs &before, const SweepInputs &now)
+  differences(const SweepInputs &before, const SweepInputs &now, const std::vector<std::string> &free_entries)
   {
     std::vector<std::string> list;
     try
     {
-      list = differences(before.effective, now.effective, free_sweep_entries);
+      list = differences(before.effective, now.effective, free_entries);
     }
     catch (const InputError &) // what it says may be bytes that no terminal can show
     {
-      throw InputError(
-        "the parameters that are kept in results.h5 cannot be read: it is damaged, or of another version "
-        "of crawler; a whole one is expected");
+      throw InputError("the parameters that are kept in the table cannot be read: it is damaged, or of another version "
+                       "of crawler; a whole one is expected");
     }
     const auto scene_in = [](const SweepInputs &inputs, const std::string &name) {
       const auto found = inputs.scenes.find(name);

@@ -53,6 +53,19 @@ namespace crawler
   {
     auto base = std::make_unique<Form>(file, nullptr);
     sweep_    = base->parameters.sweep;
+    build(communicator, std::move(base));
+  }
+
+  SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file, const SweepParameters &design)
+    : file_(file)
+    , sweep_(design)
+  {
+    build(communicator, std::make_unique<Form>(file, nullptr));
+  }
+
+  void
+  SweepPoints::build(MPI_Comm communicator, std::unique_ptr<Form> base)
+  {
     std::ostringstream text;
     base->declarations.print_prm(text);
     effective_ = text.str();
@@ -75,8 +88,8 @@ namespace crawler
             throw InputError(fmt::format("{}: \"{}\" stands in a file of a sweep, but section Sweep belongs to {}",
                                          assignment.place,
                                          assignment.path,
-                                         file.name()));
-        forms_[name] = std::make_unique<Form>(file, &scene);
+                                         file_.name()));
+        forms_[name] = std::make_unique<Form>(file_, &scene);
       }
       require_admissible_values();
       require_words();
@@ -85,7 +98,7 @@ namespace crawler
     }
     catch (const InputError &error)
     {
-      throw file.with_place(error);
+      throw file_.with_place(error);
     }
   }
 

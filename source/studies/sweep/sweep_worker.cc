@@ -10,12 +10,10 @@
 namespace crawler
 {
   SweepWorker::SweepWorker(SweepPoints &points,
-                           const std::vector<RowFile::Column> &columns,
                            const std::vector<bool> &done,
                            RowFile &file,
                            const std::function<bool()> &interrupted)
     : points_(points)
-    , columns_(columns)
     , done_(done)
     , file_(file)
     , interrupted_(interrupted)
@@ -91,7 +89,7 @@ namespace crawler
     {
       if (i < block.size && ready[i])
       {
-        rows.push_back(sweep_row(columns_, tasks[i]));
+        rows.push_back(sweep_row(tasks[i]));
         ++n;
         failed += status_of(tasks[i]).status != "finished";
         continue;

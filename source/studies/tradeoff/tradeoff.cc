@@ -2,6 +2,7 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
+#include <crawler/base/row_file.h>
 #include <crawler/base/stop_signal.h>
 #include <crawler/base/work_queue.h>
 #include <crawler/parameters/declarations.h>
@@ -9,6 +10,7 @@
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/study.h>
+#include <crawler/studies/core/study_folder.h>
 #include <crawler/studies/tradeoff/tradeoff.h>
 #include <crawler/studies/tradeoff/tradeoff_measurement.h>
 #include <crawler/studies/tradeoff/tradeoff_reference.h>
@@ -26,42 +28,6 @@ namespace crawler
   namespace
   {
     namespace fs = std::filesystem;
-
-    enum class Start
-    {
-      anew,
-      resumed,
-      nothing_left
-    };
-
-    /// Whether the folder has a study that can go on. Throws InputError if it has something else.
-    Start
-    how_to_start(const fs::path &folder, const CommandOptions &options, const std::string &effective)
-    {
-      if (options.resume && options.overwrite)
-        throw InputError("--resume and --overwrite contradict each other; one of them is expected");
-      std::error_code error;
-      if (!options.resume || !fs::exists(folder, error) || fs::is_empty(folder, error))
-      {
-        require_usable(folder, options.overwrite);
-        require_no_sweep(folder);
-        return Start::anew;
-      }
-      require_usable(folder, /*overwrite=*/true);
-      const bool finished = fs::exists(folder / "tradeoff.csv", error) && !fs::exists(folder / "rows", error);
-      if (!fs::exists(folder / "parameters.prm", error) || !(finished || fs::is_directory(folder / "rows", error)))
-        throw InputError("\"" + folder.string() +
-                         "\" has no tradeoff that could be resumed; another folder is expected "
-                         "for --output, or --overwrite");
-      const auto changes = differences(read_whole_file(folder / "parameters.prm"), effective, {"Tradeoff/Time limit"});
-      if (!changes.empty())
-        throw InputError(
-          fmt::format("the tradeoff in \"{}\" was made with other parameters: {}; it can be resumed with "
-                      "the same ones only (but for Tradeoff/Time limit)",
-                      folder.string(),
-                      fmt::join(changes, ", ")));
-      return finished ? Start::nothing_left : Start::resumed;
-    }
 
     /// What all parts of the study need.
     struct Study
@@ -273,29 +239,26 @@ namespace crawler
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || is_out_of_time();
     };
 
-    Start how = Start::anew;
+    StudyFolder study_folder({"tradeoff", {"rows", "tradeoff.csv"}, {"Tradeoff/Time limit"}}, folder, options, log);
     std::map<unsigned long, TradeoffRow> kept;
     std::string known = on_first_rank(communicator, [&]() -> std::string {
-      how = how_to_start(folder, options, input.effective);
-      if (how == Start::nothing_left)
-        return "done";
-      if (how == Start::resumed)
+      if (!study_folder.begin(input.file.text(), input.effective))
       {
-        log.open(folder / "log.txt", /*append=*/true);
-        kept = recover_rows(folder);
-        return fs::exists(reference_file) ? read_whole_file(reference_file) : "";
+        fs::remove_all(folder / "rows"); // of an earlier study
+        fs::create_directories(folder / "rows");
+        return "";
       }
-      prepare(folder);
-      fs::remove_all(folder / "rows"); // of a study that was killed
-      fs::create_directories(folder / "rows");
-      write_file(folder / "original.prm", input.file.text());
-      write_file(folder / "parameters.prm", input.effective);
-      log.open(folder / "log.txt");
-      return "";
+      study_folder.resume(
+        differences(read_whole_file(folder / "parameters.prm"), input.effective, study_folder.kind().free_entries));
+      if (!fs::exists(folder / "rows"))
+        return "done";
+      kept = recover_rows(folder);
+      return fs::exists(reference_file) ? read_whole_file(reference_file) : "";
     });
     if (known == "done")
     {
       log.line(fmt::format("The tradeoff in {} is finished; nothing is left to do.", folder.string()));
+      study_folder.leave();
       return ExitCode::finished;
     }
     // All ranks know the rows that are kept.
@@ -324,7 +287,10 @@ namespace crawler
     }
     const TradeoffReference reference = unpack_reference(known);
     if (reference.status != "finished")
+    {
+      study_folder.leave();
       return no_reference(reference, log);
+    }
     report_reference(reference, parameters, log);
     const auto all_families = families(lists, parameters, input.scene, reference.meshes);
     const Study study{parameters, input.scene, reference, all_families, interrupted};
@@ -360,6 +326,7 @@ namespace crawler
         log.warn(fmt::format("stopped by {} after {} settings; --resume goes on",
                              course.reason == "signal" ? "a signal" : "Tradeoff/Time limit",
                              kept.size() + own.size()));
+      study_folder.leave();
       return "";
     });
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/numerics_choice.h>
+#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/tradeoff/tradeoff_reference.h>
@@ -26,7 +27,7 @@ namespace crawler
     /// Changes below this that grow again are round-off.
     constexpr double near_round_off = 1e-9;
     /// The displacement counts as no smaller than this part of the body's deformation, as in numerics_choice.cc.
-    constexpr double displacement_floor = 1e-4;
+    using accuracy_rule::displacement_floor;
     /// Meshes are looked at from this error on, up to so many times as many cells, with this tolerance.
     constexpr double poor                  = 0.03;
     constexpr unsigned int most_refinement = 32, most_cells = 4096, most_meshes = 5;

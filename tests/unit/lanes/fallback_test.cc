@@ -120,7 +120,7 @@ TEST(Fallback, AnEndInvertsWhenItsStressReachesTheModulus)
 }
 
 /// A stiff body follows its stress at once, w = 1 - m/k, and in the middle one of three stages this is 0.01; the end of
-/// the only step is far from that. With a energy balance the stages are looked at.
+/// the only step is far from that. With an energy balance the stages are looked at.
 TEST(Fallback, ABatchGivesUpWhatIsNearlyInvertedWithinItsLastStep)
 {
   const LaneRun run(expression(-1., "990*sin(pi*t/1.29)", 1., 1000.),

@@ -42,8 +42,6 @@ namespace crawler
     };
     static constexpr std::array<const char *, n_runs> run_names = {{"run", "position", "stretch", "refined"}};
 
-    unsigned long index = 0;
-    double first = 0., second = 0.; ///< values on the axes
     std::array<AtlasRun, n_runs> runs;
     std::string outcome; ///< finished, inverted inside, inverted at end, failed: REASON, stopped: REASON, refused,
                          ///< silent wrong answer

@@ -4,24 +4,21 @@
 #include <crawler/base/table.h>
 #include <crawler/parameters/axis.h>
 #include <crawler/studies/atlas/atlas_point.h>
+#include <crawler/studies/sweep/point_table.h>
 
+#include <mpi.h>
+
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace crawler
 {
-  /// Points as a text that another rank can read, and back.
-  std::string
-  pack(const std::vector<AtlasPoint> &points);
-  std::vector<AtlasPoint>
-  unpack(const std::string &text);
-
-  /// Two axes, and the entries' units.
+  /// Two axes.
   struct AtlasAxes
   {
     Axis first, second;
-    std::string first_unit, second_unit;
 
     unsigned long
     n_points() const
@@ -30,31 +27,46 @@ namespace crawler
     }
   };
 
-  /// A row for each point; the columns are a contract (doc/user_guide.md, "Atlas").
-  Table
-  atlas_table(const std::vector<AtlasPoint> &points, const AtlasAxes &axes);
+  /// atlas.h5: a row for each point; the columns are a contract (doc/user_guide.md, "Atlas").
+  PointTable
+  atlas_table(const SweepPoints &points);
+
+  /// The row of a point, in @p columns.
+  RowFile::Row
+  atlas_row(const std::vector<RowFile::Column> &columns, const AtlasPoint &point);
 
   /// The whole atlas in numbers.
   struct AtlasSummary
   {
     unsigned long points = 0; ///< asked for
-    /// By what `crawler run` answers; they add up to the computed points.
-    unsigned long finished = 0, inverted = 0, failed = 0, stopped = 0, refused = 0;
+    /// By what `crawler run` answers: finished, inverted, failed, stopped, refused.
+    std::map<std::string, unsigned long> statuses;
     unsigned long checked              = 0; ///< points with two answers at least
     unsigned long silent_wrong_answers = 0;
     std::map<std::string, unsigned long> reasons; ///< of the answers that are not finished
     /// Measured error over the sum of the promised ones, largest over points and runs; not a number if none is known.
     double largest_error_ratio = AtlasRun::unknown;
+    std::vector<std::string> wrong_answers; ///< in words, the first few
 
+    unsigned long
+    number(const std::string &status) const
+    {
+      const auto found = statuses.find(status);
+      return found == statuses.end() ? 0 : found->second;
+    }
     unsigned long
     computed() const
     {
-      return finished + inverted + failed + stopped + refused;
+      unsigned long n = 0;
+      for (const auto &[status, count] : statuses)
+        n += count;
+      return n;
     }
   };
 
+  /// Reads the table of the folder (one process).
   AtlasSummary
-  summarize(const std::vector<AtlasPoint> &points, const AtlasAxes &axes);
+  summarize(const std::filesystem::path &folder, const AtlasAxes &axes);
 
   /// The summary as a paragraph.
   std::string

@@ -14,12 +14,12 @@ namespace crawler
   void
   require_usable(const std::filesystem::path &folder, bool overwrite);
 
-  /// Locked (base/file_lock.h) as long as a sweep writes to the folder.
-  extern const std::string sweep_lock_name;
+  /// Locked (base/file_lock.h) as long as a study of many runs writes to the folder.
+  extern const std::string study_lock_name;
 
-  /// Throws InputError if a sweep of another process writes to the folder.
+  /// Throws InputError if a study of another process writes to the folder.
   void
-  require_no_sweep(const std::filesystem::path &folder);
+  require_no_study(const std::filesystem::path &folder);
 
   /// Makes the folder, without the results of an earlier run (only files that this program writes are removed).
   void

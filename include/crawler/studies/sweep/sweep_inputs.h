@@ -31,9 +31,7 @@ namespace crawler
   sweep_inputs(const SweepPoints &points);
 
   /// What has changed, each in a few words, but for the entries that say how much is computed and not what
-  /// (free_sweep_entries).
+  /// (@p free_entries).
   std::vector<std::string>
-  differences(const SweepInputs &before, const SweepInputs &now);
-
-  extern const std::vector<std::string> free_sweep_entries;
+  differences(const SweepInputs &before, const SweepInputs &now, const std::vector<std::string> &free_entries);
 } // namespace crawler

@@ -24,6 +24,8 @@ namespace crawler
     /// Reads the design and looks at all names and values (collective: rank 0 reads the files of a file axis). Throws
     /// InputError, with the place in the file.
     SweepPoints(MPI_Comm communicator, const ParameterFile &file);
+    /// Another study's design; its axes come from another entry.
+    SweepPoints(MPI_Comm communicator, const ParameterFile &file, const SweepParameters &design);
     ~SweepPoints();
 
     const SweepDesign &
@@ -66,6 +68,9 @@ namespace crawler
 
   private:
     struct Form;
+
+    void
+    build(MPI_Comm communicator, std::unique_ptr<Form> base);
 
     void
     require_admissible_values();

@@ -17,16 +17,11 @@ namespace crawler
   std::vector<RowFile::Column>
   sweep_columns(const SweepDesign &design, const Declarations &declarations);
 
-  /// Of these columns the index and the axes, which are known before anything is computed.
-  RowFile::Known
-  known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design);
+  extern const std::string sweep_file, sweep_group; ///< results.h5, and the group in it
 
-  /// The row of a point that has been computed, in @p columns, those after the known ones.
+  /// The row of a point that has been computed, in the columns after the known ones.
   RowFile::Row
-  sweep_row(const std::vector<RowFile::Column> &columns, const Task &task);
-
-  /// The reason of a point that took longer than the time limit.
-  extern const std::string time_limit_reason;
+  sweep_row(const Task &task);
 
   /// What has become of a point, in a word, and why.
   struct PointStatus

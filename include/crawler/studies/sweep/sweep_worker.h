@@ -14,9 +14,8 @@ namespace crawler
   class SweepWorker
   {
   public:
-    /// @p done: which points have a row already. @p columns: those of @p file.
+    /// @p done: which points have a row already.
     SweepWorker(SweepPoints &points,
-                const std::vector<RowFile::Column> &columns,
                 const std::vector<bool> &done,
                 RowFile &file,
                 const std::function<bool()> &interrupted);
@@ -35,7 +34,6 @@ namespace crawler
           const std::function<void(unsigned long n, unsigned long failed)> &see);
 
     SweepPoints &points_;
-    const std::vector<RowFile::Column> &columns_;
     const std::vector<bool> &done_;
     RowFile &file_;
     const std::function<bool()> &interrupted_;

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/run/result_table.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    using Result = SimulationResult;
+    using Scale  = ResultEntry::Scale;
+
+    const std::string length = "length", time = "time", energy = "force length", force = "force", one = "1";
+
+    ResultValue
+    known(const std::optional<double> &value)
+    {
+      return value && std::isfinite(*value) ? ResultValue(*value) : ResultValue();
+    }
+
+    ResultEntry
+    number(const std::string &key,
+           const std::string &unit,
+           const std::string &meaning,
+           ResultValue (*value)(const Result &),
+           const Scale scale     = Scale::none,
+           const bool is_sampled = false)
+    {
+      return {.key = key, .unit = unit, .meaning = meaning, .value = value, .scale = scale, .is_sampled = is_sampled};
+    }
+
+    ResultEntry
+    word(const std::string &key, const std::string &meaning, ResultValue (*value)(const Result &))
+    {
+      return {.key = key, .unit = "", .meaning = meaning, .value = value, .is_word = true};
+    }
+
+    ResultEntry
+    of_process(ResultEntry entry)
+    {
+      entry.of_process = true;
+      return entry;
+    }
+
+    /// Values of parts of a result that may not be there: an expression of the part, and nothing without it.
+#define CRAWLER_PART(member, expression)           \
+  [](const Result &r) -> ResultValue {             \
+    if (!r.member)                                 \
+      return {};                                   \
+    [[maybe_unused]] const auto &part = *r.member; \
+    return ResultValue(expression);                \
+  }
+#define CRAWLER_VALUE(expression) [](const Result &r) -> ResultValue { return ResultValue(expression); }
+    /// Energy per distance of the last stride.
+#define CRAWLER_COST(expression)                         \
+  [](const Result &r) -> ResultValue {                   \
+    if (!r.gait || !r.gait->energy_balance)              \
+      return {};                                         \
+    const EnergyBalance &part = *r.gait->energy_balance; \
+    return known(r.gait->cost_of_transport(expression)); \
+  }
+
+    std::vector<ResultEntry>
+    numbers_and_words()
+    {
+      std::vector<ResultEntry> list = {
+        of_process(word("status", "how the run ended", CRAWLER_VALUE(r.time.status))),
+        of_process(word("reason",
+                        "name of what went wrong",
+                        CRAWLER_VALUE(r.time.status == "finished" ? std::string() : r.time.reason))),
+        of_process(word("message",
+                        "what went wrong, in a sentence",
+                        CRAWLER_VALUE(r.time.status == "finished" ? std::string() : r.time.message))),
+        number("displacement", length, "of the centre of mass", CRAWLER_VALUE(r.displacement)),
+        number("displacement_error.total", length, "bound of its error", CRAWLER_PART(error, part.total)),
+        number("displacement_error.space", length, "its part in space", CRAWLER_PART(error, part.space)),
+        number("displacement_error.time", length, "its part in time", CRAWLER_PART(error, part.time)),
+        number("displacement_error.model", length, "its part of the model", CRAWLER_PART(error, part.model)),
+        number("end_time", time, "time that was reached", CRAWLER_VALUE(r.time.time)),
+        number("cycles.period", time, "of the cycles that repeat", CRAWLER_PART(cycles, part.period)),
+        number("cycles.computed", one, "cycles that were computed", CRAWLER_PART(cycles, (unsigned long)part.computed)),
+        number("cycles.extrapolated",
+               one,
+               "cycles that were extrapolated",
+               CRAWLER_PART(cycles, (unsigned long)part.extrapolated)),
+        number("cycles.error", length, "bound of the error by extrapolation", CRAWLER_PART(cycles, part.bound)),
+        word("model", "level of the model hierarchy", CRAWLER_VALUE(r.model)),
+        number("stress_power",
+               energy,
+               "work of the active stress",
+               CRAWLER_PART(energy_balance, part.stress_power),
+               Scale::exchanged_work),
+        number("dissipation",
+               energy,
+               "work against the friction",
+               CRAWLER_PART(energy_balance, part.dissipation),
+               Scale::exchanged_work),
+        number("elastic_energy",
+               energy,
+               "of the last state",
+               CRAWLER_PART(energy_balance, part.elastic_energy),
+               Scale::exchanged_work),
+        number("ledger_residual",
+               one,
+               "what the energy balance lacks, relative to the exchanged work",
+               CRAWLER_PART(energy_balance, part.residual())),
+        number("paper_energy",
+               energy,
+               "energy of the paper",
+               CRAWLER_PART(energy_balance, part.paper_energy()),
+               Scale::exchanged_work),
+        number("positive_power",
+               energy,
+               "work of the active stress where it is positive",
+               CRAWLER_PART(energy_balance, part.positive_power),
+               Scale::exchanged_work,
+               true),
+        number("net_friction",
+               one,
+               "largest net friction, relative to the absolute friction",
+               CRAWLER_PART(energy_balance, r.net_friction)),
+        number("min_stretch.value",
+               one,
+               "smallest stretch over body and time",
+               CRAWLER_VALUE(r.min_stretch.value),
+               Scale::strain,
+               true),
+        number("min_stretch.s", length, "where", CRAWLER_VALUE(r.min_stretch.s)),
+        number("min_stretch.t", time, "when", CRAWLER_VALUE(r.min_stretch.t)),
+        number("max_stretch.value",
+               one,
+               "largest stretch over body and time",
+               CRAWLER_VALUE(r.max_stretch.value),
+               Scale::strain,
+               true),
+        number("max_stretch.s", length, "where", CRAWLER_VALUE(r.max_stretch.s)),
+        number("max_stretch.t", time, "when", CRAWLER_VALUE(r.max_stretch.t)),
+        number("gait.period", time, "of the last stride", CRAWLER_PART(gait, part.period)),
+        number("gait.frequency", "1/time", "of the last stride", CRAWLER_PART(gait, 1. / part.period)),
+        word("gait.period_from",
+             "who knows the period",
+             CRAWLER_PART(gait, std::string(part.is_declared ? "active stress" : "stretch"))),
+        number("gait.strides", one, "that fit into the run", CRAWLER_PART(gait, part.n_strides)),
+        number("gait.displacement", length, "in the last stride", CRAWLER_PART(gait, part.displacement), Scale::itself),
+        number("gait.body_lengths", one, "in the last stride", CRAWLER_PART(gait, part.body_lengths())),
+        number("gait.speed", "length/time", "in the last stride", CRAWLER_PART(gait, part.speed()), Scale::itself),
+        number("gait.cost_of_transport.stress_power",
+               force,
+               "work of the active stress per distance",
+               CRAWLER_COST(part.stress_power),
+               Scale::cost),
+        number("gait.cost_of_transport.positive_power",
+               force,
+               "the same if work cannot be recovered",
+               CRAWLER_COST(part.positive_power),
+               Scale::cost,
+               true),
+        number("gait.cost_of_transport.paper_energy",
+               force,
+               "energy of the paper per distance",
+               CRAWLER_COST(part.paper_energy()),
+               Scale::cost),
+        number("gait.cost_of_transport.dissipation",
+               force,
+               "work against the friction per distance",
+               CRAWLER_COST(part.dissipation),
+               Scale::cost),
+        number("gait.slip",
+               one,
+               "1 - speed of the body/speed of the wave",
+               CRAWLER_PART(gait, known(part.slip())),
+               Scale::itself),
+        word("gait.wave.direction", "of the wave of stretch", CRAWLER_PART(gait, std::string(part.direction()))),
+        number("gait.wave.speed",
+               "length/time",
+               "of the wave of stretch",
+               CRAWLER_PART(gait, known(part.wave_speed())),
+               Scale::itself),
+        number("gait.wave.coherence",
+               one,
+               "1 for a pure wave",
+               [](const Result &r) -> ResultValue {
+                 return r.gait && r.gait->wave ? ResultValue(r.gait->wave->coherence) : ResultValue();
+               }),
+        number("gait.efficiency",
+               one,
+               "part of the largest displacement that any gait can reach",
+               CRAWLER_VALUE(known(r.gait_efficiency)),
+               Scale::itself,
+               true)};
+      const std::string value = ".value";
+      int n_errors            = 0;
+      for (std::size_t i = 0, n = list.size(); i < n; ++i)
+        if (list[i].scale != Scale::none)
+        {
+          const ResultEntry &entry = list[i];
+          const std::string key =
+            entry.key.ends_with(value) ? entry.key.substr(0, entry.key.size() - value.size()) : entry.key;
+          ResultEntry error = number("errors." + key, entry.unit, "bound of its error", nullptr);
+          error.error       = n_errors++;
+          list.push_back(std::move(error));
+        }
+      for (ResultEntry &entry : std::vector<ResultEntry>{
+             word("formulation",
+                  "position or stretch",
+                  CRAWLER_VALUE(std::string(r.formulation == Formulation::stretch ? "stretch" : "position"))),
+             number("mesh_changes", one, "of an adaptive mesh", CRAWLER_VALUE((unsigned long)r.mesh_changes)),
+             number("most_cells",
+                    one,
+                    "of all meshes",
+                    CRAWLER_VALUE((unsigned long)std::max(r.most_cells, r.mesh ? r.mesh->n_cells : 0))),
+             number("inversion.value", one, "stretch where the body inverted", CRAWLER_PART(inversion, part.value)),
+             number("inversion.s", length, "where the body inverted", CRAWLER_PART(inversion, part.s)),
+             number("inversion.t", time, "when the body inverted", CRAWLER_PART(inversion, part.t)),
+             number(
+               "inversion.error", time, "bound of the error of that time", CRAWLER_VALUE(known(r.inversion_error))),
+             number("inversion.s_first",
+                    length,
+                    "first place that was lost",
+                    CRAWLER_PART(inversion, r.inverted_places ? r.inverted_places->first : part.s)),
+             number("inversion.s_last",
+                    length,
+                    "last place that was lost",
+                    CRAWLER_PART(inversion, r.inverted_places ? r.inverted_places->second : part.s)),
+             number("cells", one, "of the last mesh", CRAWLER_VALUE((unsigned long)(r.mesh ? r.mesh->n_cells : 0))),
+             number("degree", one, "of the elements", CRAWLER_PART(mesh, (unsigned long)part.degree)),
+             number("degrees_of_freedom",
+                    one,
+                    "of the last mesh",
+                    CRAWLER_VALUE((unsigned long)(r.mesh ? r.mesh->n_unknowns : 0))),
+             number("steps", one, "accepted time steps", CRAWLER_VALUE((unsigned long)r.time.steps)),
+             number("rejected_steps", one, "rejected time steps", CRAWLER_VALUE((unsigned long)r.time.rejected_steps)),
+             number("newton_iterations", one, "of all steps", CRAWLER_VALUE((unsigned long)r.time.newton_iterations)),
+             of_process(number("cells_shared", "", "by several ranks", CRAWLER_VALUE(r.mesh && r.mesh->is_shared))),
+             number("refinements", one, "tries before this one", CRAWLER_VALUE((unsigned long)r.refinements)),
+             word("integrator", "in time", CRAWLER_VALUE(r.integrator)),
+             word("engine", "who integrated", CRAWLER_VALUE(r.engine)),
+             of_process(number("seconds.setup", "s", "wall time to begin", CRAWLER_VALUE(r.setup_seconds))),
+             of_process(number("seconds.solve", "s", "wall time to compute", CRAWLER_VALUE(r.solve_seconds))),
+             of_process(number("seconds.output", "s", "wall time to write", CRAWLER_VALUE(r.output_seconds))),
+             of_process(
+               number("seconds.error", "s", "wall time for the error bounds", CRAWLER_VALUE(r.estimate_seconds)))})
+        list.push_back(std::move(entry));
+      return list;
+    }
+#undef CRAWLER_PART
+#undef CRAWLER_VALUE
+#undef CRAWLER_COST
+  } // namespace
+
+  ResultValue
+  ResultEntry::value_in(const SimulationResult &result) const
+  {
+    if (error < 0)
+      return value(result);
+    return result.errors ? known(result.errors->values[static_cast<std::size_t>(error)]) : ResultValue();
+  }
+
+  const std::vector<ResultEntry> &
+  result_table()
+  {
+    static const std::vector<ResultEntry> table = numbers_and_words();
+    return table;
+  }
+
+  const std::vector<const ResultEntry *> &
+  entries_with_errors()
+  {
+    static const std::vector<const ResultEntry *> list = []() {
+      std::vector<const ResultEntry *> entries;
+      for (const ResultEntry &entry : result_table())
+        if (entry.scale != Scale::none)
+          entries.push_back(&entry);
+      return entries;
+    }();
+    return list;
+  }
+
+  std::string
+  error_bound_in_words(const SimulationResult &result, const std::string &key)
+  {
+    const auto &entries = entries_with_errors();
+    for (std::size_t i = 0; result.errors && i < entries.size(); ++i)
+      if (entries[i]->key == key && std::isfinite(result.errors->values[i]))
+        return fmt::format(" +- {:.2g}", result.errors->values[i]);
+    return "";
+  }
+} // namespace crawler

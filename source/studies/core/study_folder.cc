@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+#include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/study_folder.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <thread>
+
+namespace crawler
+{
+  namespace fs = std::filesystem;
+
+  StudyFolder::StudyFolder(StudyKind kind, fs::path path, const CommandOptions &options, Log &log)
+    : kind_(std::move(kind))
+    , path_(std::move(path))
+    , options_(options)
+    , log_(log)
+  {
+    if (options_.resume && options_.overwrite)
+      throw InputError("--resume and --overwrite contradict each other; one of them is expected");
+  }
+
+  StudyFolder::State
+  StudyFolder::state() const
+  {
+    std::set<std::string> early = {
+      study_lock_name, "original.prm", "original.prm.part", "parameters.prm", "parameters.prm.part", "log.txt"};
+    for (const std::string &name : kind_.results)
+      early.insert(name + ".part");
+    std::error_code error;
+    if (!fs::is_directory(path_, error) || fs::is_empty(path_, error))
+      return State::empty;
+    const auto is_there = [&](const std::string &name) { return fs::exists(path_ / name, error); };
+    if (std::any_of(kind_.results.begin(), kind_.results.end(), is_there))
+      return State::computed;
+    bool is_begun = is_there(study_lock_name);
+    for (const auto &file : fs::directory_iterator(path_))
+      is_begun = is_begun && early.contains(file.path().filename().string());
+    return is_begun ? State::begun : State::foreign;
+  }
+
+  void
+  StudyFolder::lock()
+  {
+    constexpr std::chrono::milliseconds longest_wait(5000), pause(100);
+    lock_.emplace(path_ / study_lock_name);
+    FileLock::State state = lock_->lock();
+    if (state == FileLock::State::of_another_process)
+      log_.line(fmt::format("Another study writes to \"{}\"; it may be about to end: waiting for {} s at most",
+                            path_.string(),
+                            longest_wait.count() / 1000));
+    for (auto waited = pause; state == FileLock::State::of_another_process && waited < longest_wait; waited += pause)
+    {
+      std::this_thread::sleep_for(pause);
+      state = lock_->lock();
+    }
+    if (state == FileLock::State::of_another_process)
+      throw InputError(fmt::format("another study writes to \"{}\"; another folder is expected for --output, or that "
+                                   "the other one has ended",
+                                   path_.string()));
+    if (state == FileLock::State::not_offered)
+      log_.warn(fmt::format("warning: this file system has no locks, so nothing keeps another study from writing to "
+                            "\"{}\"",
+                            path_.string()));
+  }
+
+  bool
+  StudyFolder::begin(const std::string &original, const std::string &effective)
+  {
+    const auto require_own = [&]() {
+      if (options_.resume && state() == State::foreign)
+        throw InputError(fmt::format("\"{}\" has no {} that could be resumed; another folder is expected for --output, "
+                                     "or --overwrite",
+                                     path_.string(),
+                                     kind_.name));
+    };
+    require_own();
+    require_usable(path_, options_.resume || options_.overwrite);
+    std::error_code error;
+    fs::create_directories(path_, error);
+    if (error)
+      throw FileError("cannot make the output folder \"" + path_.string() + "\": " + error.message());
+    lock();
+    require_own(); // the one that had the lock may have changed it
+    if (options_.resume && state() == State::computed)
+      return true;
+    prepare(path_);
+    write_file(path_ / "original.prm", original);
+    write_file(path_ / "parameters.prm", effective);
+    log_.open(path_ / "log.txt");
+    return false;
+  }
+
+  void
+  StudyFolder::resume(const std::vector<std::string> &changes)
+  {
+    if (!changes.empty())
+    {
+      leave();
+      throw InputError(fmt::format("the {} in \"{}\" was made with other parameters: {}; it can be resumed with the "
+                                   "same ones only (but for {})",
+                                   kind_.name,
+                                   path_.string(),
+                                   fmt::join(changes, ", "),
+                                   fmt::join(kind_.free_entries, " and ")));
+    }
+    log_.open(path_ / "log.txt", /*append=*/true);
+  }
+
+  void
+  StudyFolder::leave()
+  {
+    if (lock_)
+      lock_->remove();
+  }
+} // namespace crawler

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/study.h>
+#include <crawler/studies/sweep/point_table.h>
+#include <crawler/studies/sweep/sweep_inputs.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  const std::string time_limit_reason = "time_limit";
+
+  namespace
+  {
+    constexpr unsigned long rows_together = 1 << 16;
+
+    /// How a value of the table is shown.
+    std::string
+    text_of(const Column &column, const unsigned long row)
+    {
+      if (const auto *texts = std::get_if<std::vector<std::string>>(&column.values))
+        return (*texts)[row];
+      return to_text(std::get<std::vector<double>>(column.values)[row]);
+    }
+
+    /// The first point whose value on an axis is not that of the table, in words; nothing if there is none.
+    std::string
+    changed_value(const RowReader &table, const std::vector<RowFile::Column> &columns, const SweepDesign &design)
+    {
+      const RowFile::Known known = known_columns(columns, design);
+      for (std::size_t i = 1; i < known.n_columns; ++i)
+        for (unsigned long first = 0; first < table.n_rows(); first += rows_together)
+        {
+          const unsigned long n = std::min(rows_together, table.n_rows() - first);
+          const Column column   = table.read(table.index_of(columns[i].name), first, n);
+          for (unsigned long row = 0; row < n; ++row)
+          {
+            const std::string was = text_of(column, row);
+            std::string is        = design.value(i - 1, first + row);
+            if (columns[i].width == 0)
+              is = to_text(*to_number(is));
+            // A text that is longer than its column was cut.
+            if (was != is && !(columns[i].width > 0 && is.size() > columns[i].width && is.starts_with(was)))
+              return fmt::format("{} of point {} was \"{}\" and is \"{}\"", columns[i].name, first + row, was, is);
+          }
+        }
+      return "";
+    }
+
+    /// Of the rows of @p table.
+    std::vector<bool>
+    rows_that_are_there(const RowReader &rows, const PointTable &table)
+    {
+      constexpr double larger = 1.2;
+      std::vector<bool> done;
+      for (unsigned long first = 0; first < rows.n_rows(); first += rows_together)
+      {
+        const unsigned long n = std::min(rows_together, rows.n_rows() - first);
+        const auto column     = [&](const std::string &name) { return rows.read(rows.index_of(name), first, n); };
+        const Column is_done  = column(table.done);
+        for (unsigned long i = 0; i < n; ++i)
+          done.push_back(!text_of(is_done, i).empty());
+        for (const auto &[reason_name, seconds_name] : table.reasons_and_seconds)
+        {
+          const Column reason = column(reason_name), seconds = column(seconds_name);
+          for (unsigned long i = 0; i < n; ++i)
+            if (text_of(reason, i) == time_limit_reason &&
+                table.time_limit > larger * std::get<std::vector<double>>(seconds.values)[i])
+              done[first + i] = false;
+        }
+      }
+      return done;
+    }
+  } // namespace
+
+  std::vector<RowFile::Column>
+  PointTable::written_columns() const
+  {
+    std::vector<RowFile::Column> list(columns.begin() + static_cast<std::ptrdiff_t>(n_known), columns.end());
+    std::stable_partition(list.begin(), list.end(), [&](const RowFile::Column &column) { return column.name != done; });
+    return list;
+  }
+
+  std::vector<RowFile::Column>
+  axis_columns(const SweepDesign &design, const Declarations &declarations, const std::string &description)
+  {
+    constexpr unsigned int most_axis_width = 256;
+    std::vector<RowFile::Column> columns   = {{"index", "1", "number of the point", 0}};
+    for (const SweepAxis &axis : design.axes())
+    {
+      std::string unit;
+      for (const EntryInfo &entry : declarations.entries())
+        if (entry.path == axis.entry)
+          unit = entry.unit;
+      bool is_number     = true;
+      std::size_t widest = 1;
+      for (const std::string &value : axis.values)
+      {
+        is_number = is_number && to_number(value).has_value();
+        widest    = std::max(widest, value.size());
+      }
+      columns.push_back(
+        {axis.entry, unit, description, is_number ? 0 : std::min(static_cast<unsigned int>(widest), most_axis_width)});
+    }
+    return columns;
+  }
+
+  RowFile::Known
+  known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design)
+  {
+    return {1 + design.axes().size(), [&](const std::size_t column, const unsigned long point) -> RowFile::Value {
+              if (column == 0)
+                return static_cast<double>(point);
+              const std::string text = design.value(column - 1, point);
+              if (columns[column].width > 0)
+                return text;
+              return *to_number(text);
+            }};
+  }
+
+  std::vector<bool>
+  begin_or_resume(StudyFolder &folder,
+                  const PointTable &table,
+                  const ParameterFile &file,
+                  const SweepPoints &points,
+                  const std::string &command_line)
+  {
+    const SweepInputs inputs = sweep_inputs(points); // before a file is touched
+    const auto path          = folder.path() / table.file;
+    const unsigned long n    = points.design().n_points();
+    if (!folder.begin(file.text(), points.effective()))
+    {
+      auto attributes = provenance(points.effective(), command_line);
+      attributes["not known"] =
+        fmt::format("NaN in numbers, an empty text in texts; an empty {}: not computed yet", table.done);
+      attributes.merge(inputs.attributes());
+      RowFile::create(path, table.group, table.columns, n, attributes, known_columns(table.columns, points.design()));
+      return std::vector<bool>(n, false);
+    }
+    std::map<std::string, std::string> attributes;
+    for (const auto &[name, text] : inputs.attributes())
+      attributes.emplace(name, read_attribute(path, table.group, name));
+    auto changes = differences(SweepInputs::from_attributes(attributes), inputs, folder.kind().free_entries);
+    const RowReader rows(MPI_COMM_SELF, path, table.group);
+    if (changes.empty() && rows.n_rows() != n)
+      changes.push_back(fmt::format("the number of points was {} and is {}", rows.n_rows(), n));
+    if (changes.empty())
+      if (const std::string changed = changed_value(rows, table.columns, points.design()); !changed.empty())
+        changes.push_back(changed);
+    folder.resume(changes);
+    for (const auto &[name, version] : provenance(points.effective(), ""))
+      if (name.starts_with("version of "))
+        if (const std::string was = read_attribute(path, table.group, name); was != version)
+          folder.log().warn(fmt::format("warning: the {} was {} when the {} began and is {}: new rows may differ from "
+                                        "old ones by round-off or more",
+                                        name,
+                                        was,
+                                        folder.kind().name,
+                                        version));
+    return rows_that_are_there(rows, table);
+  }
+
+  std::vector<bool>
+  points_done(MPI_Comm communicator, const std::function<std::vector<bool>()> &list)
+  {
+    const std::string text = on_first_rank(communicator, [&]() {
+      std::string flags;
+      for (const bool flag : list())
+        flags.push_back(flag ? '1' : '0');
+      return flags;
+    });
+    std::vector<bool> flags;
+    for (const char flag : text)
+      flags.push_back(flag == '1');
+    return flags;
+  }
+} // namespace crawler
