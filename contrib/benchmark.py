@@ -17,7 +17,7 @@ import subprocess
 import sys
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
-FILTER = "^(run|case|sweep|scale/newton_step/500000)"
+FILTER = "^(run/|case/|sweep/|scale/newton_step/500000)"  # with a slash: not every name that begins so
 SECONDS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 # Runs per second and core: the paths of a row that must reach them. One run to 1e-6 also has limits of time.
 TARGETS = {
@@ -117,7 +117,7 @@ def print_settings(found):
     for name, entry in found.items():
         if "error" in entry:
             back = f", {entry['given_back']:.0f} runs given back" if "given_back" in entry else ""
-            print(f"| {name} | {entry['error']:.1e} | {entry['rate']:.0f} | {entry['label']}{back} |")
+            print(f"| {name} | {entry['error']:.1e} | {entry['rate']:.0f} | {entry.get('label', '')}{back} |")
     print("\n| scenes of the sweep | peak of memory before the batches [MiB] | growth by them [MiB] |\n|---|---|---|")
     for name, entry in found.items():
         if name.startswith("memory/"):

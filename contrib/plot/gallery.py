@@ -4,6 +4,7 @@
 
     contrib/plot/gallery.py PATH_TO_CRAWLER [--examples prm/examples] [--output doc/images/gallery.png]
 
+Of an installed program (share/crawler/plot/gallery.py) the examples beside it, to gallery.png in the current folder.
 Needs matplotlib (Debian: python3-matplotlib). Each panel has its own colours, from the smallest stretch (dark) to the
 largest (bright), which stand in its title with the displacement.
 """
@@ -50,11 +51,13 @@ def draw_body(axes, name, folder):
 
 def main():
     """Command line."""
-    root = pathlib.Path(__file__).resolve().parents[2]
+    here = pathlib.Path(__file__).resolve()
+    root = next((folder for folder in here.parents if (folder / "prm" / "examples").is_dir()), here.parents[2])
+    pictures = root / "doc" / "images"
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path, help="the program crawler")
     parser.add_argument("--examples", type=pathlib.Path, default=root / "prm" / "examples")
-    parser.add_argument("--output", type=pathlib.Path, default=root / "doc" / "images" / "gallery.png")
+    parser.add_argument("--output", type=pathlib.Path, default=(pictures if pictures.is_dir() else pathlib.Path()) / "gallery.png")
     options = parser.parse_args()
     try:
         import matplotlib

@@ -4,6 +4,7 @@
 
     contrib/plot/kymograph.py OUTPUT_FOLDER [--output picture.png] [--stress]
 
+The picture is kymograph.png in the folder, unless --output names another one.
 With --stress the active stress over s and t comes first.
 
 Reads kymograph.vts, statistics.csv and parameters.prm of the folder; needs matplotlib (Debian: python3-matplotlib).
@@ -128,17 +129,18 @@ def main():
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path, help="output folder of crawler run")
-    parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("kymograph.png"),
-                        help="the picture (.png, .pdf, .svg)")
+    parser.add_argument("--output", type=pathlib.Path,
+                        help="the picture (.png, .pdf, .svg); kymograph.png in the folder if it is not given")
     parser.add_argument("--stress", action="store_true", help="draw the active stress as well")
     options = parser.parse_args()
+    picture = options.output or options.folder / "kymograph.png"
     try:
         if not options.folder.is_dir():
             raise Problem(f"{options.folder} is not a folder; the output folder of a run is expected")
-        draw(options.folder, options.output, options.stress)
+        draw(options.folder, picture, options.stress)
     except (Problem, OSError) as problem:
         sys.exit(f"kymograph.py: {problem}")
-    print(f"wrote {options.output}")
+    print(f"wrote {picture}")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/base/petsc_object.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/versions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/parameter_file.h>
@@ -20,6 +21,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
@@ -34,7 +36,7 @@ namespace crawler
     report_error(MPI_Comm communicator, const ExitCode code, const std::string &message, const bool on_all_ranks)
     {
       if (!on_all_ranks || rank_of(communicator) == 0)
-        std::cerr << "crawler: " << message << std::endl;
+        std::cerr << "crawler: " << with_plain_numbers(message) << std::endl;
       // A rank that fails alone must not leave the others waiting.
       if (!on_all_ranks && size_of(communicator) > 1)
         MPI_Abort(communicator, static_cast<int>(code));
@@ -53,6 +55,9 @@ namespace crawler
     int
     print_parameters(const std::string &format)
     {
+      const std::vector<std::string> formats = {"prm", "json", "markdown"};
+      if (std::find(formats.begin(), formats.end(), format) == formats.end())
+        throw InputError(fmt::format("\"--format\" is \"{}\", but {} is expected", format, quoted_list(formats)));
       Parameters parameters;
       Declarations declarations;
       parameters.count_terms(ParameterFile::from_text("subsection Active stress\nsubsection Sum\nsubsection Term 1\n"
@@ -68,29 +73,57 @@ namespace crawler
       return 0;
     }
 
-    /// The first option that the command does not know, with the nearest that it does.
+    /// What is wrong with the arguments, of which CLI11 knows less.
     std::string
-    unknown_argument(const CLI::App &app, const std::vector<std::string> &arguments)
+    in_words(const CLI::ParseError &error, const CLI::App &app, const std::vector<std::string> &arguments)
     {
-      const CLI::App *command = &app;
+      const bool has_command  = !app.get_subcommands().empty();
+      const CLI::App *command = has_command ? app.get_subcommands().front() : &app;
       std::vector<std::string> known;
-      if (!app.get_subcommands().empty())
-        command = app.get_subcommands().front();
       for (const CLI::Option *option : command->get_options())
         for (const std::string &name : option->get_lnames())
           known.push_back("--" + name);
       known.push_back("-h");
-      for (const std::string &argument : arguments)
+      std::vector<std::string> words; // without the values of options
+      for (std::size_t i = 0; i < arguments.size(); ++i)
       {
-        const std::string name = argument.substr(0, argument.find('='));
-        if (name.starts_with("-") && name != "-" && std::find(known.begin(), known.end(), name) == known.end())
+        const std::string name = arguments[i].substr(0, arguments[i].find('='));
+        if (!name.starts_with("-") || name == "-")
+        {
+          words.push_back(name);
+          continue;
+        }
+        const CLI::Option *option = name == "-h" ? nullptr : command->get_option_no_throw(name);
+        if (option == nullptr && name != "-h")
         {
           const auto near = nearest_names(name, known, 1);
-          return fmt::format(
-            "unknown option \"{}\"{}", name, near.empty() ? "" : "; the nearest is " + quoted_list(near));
+          return fmt::format("unknown option \"{}\"{}{}",
+                             name,
+                             has_command ? fmt::format(" of the command \"{}\"", command->get_name()) : "",
+                             near.empty() ? "" : "; the nearest is " + quoted_list(near));
         }
+        const bool has_value = option != nullptr && option->get_items_expected_max() > 0;
+        if (has_command && words.empty())
+          return fmt::format(
+            "\"{}\" stands before the command \"{}\", but behind it is expected", name, command->get_name());
+        if (has_value && arguments[i] == name + "=")
+          return fmt::format("found \"{}\", but a value is expected behind it", arguments[i]);
+        if (!has_value && name != arguments[i])
+          return fmt::format("found \"{}\", but \"{}\" without a value is expected", arguments[i], name);
+        if (has_value && name == arguments[i] && ++i == arguments.size())
+          return fmt::format("\"{}\" is the last word, but a value is expected behind it", name);
+        if (has_value && name != "--set" && option->count() > 1)
+          return fmt::format("\"{}\" is there {} times, but once is expected", name, option->count());
       }
-      return "";
+      const std::size_t wanted = command->get_option_no_throw("FILE") == nullptr ? 1 : 2;
+      if (has_command && words.size() < wanted)
+        return fmt::format("the parameter file is missing; \"crawler {} FILE.prm\" is expected", command->get_name());
+      if (has_command && words.size() > wanted)
+        return fmt::format("found \"{}\" behind \"{}\", but {} is expected",
+                           words[wanted],
+                           words[wanted - 1],
+                           wanted == 1 ? "nothing" : "one parameter file");
+      return error.what();
     }
 
     /// Throws InputError unless the first argument is a command or an option.
@@ -104,6 +137,9 @@ namespace crawler
         throw InputError("the command is missing; " + quoted_list(names) + " is expected (see crawler --help)");
       if (arguments[0].starts_with("-") || std::find(names.begin(), names.end(), arguments[0]) != names.end())
         return;
+      if (arguments[0].ends_with(".prm"))
+        throw InputError(
+          fmt::format("the command is missing before \"{0}\"; did you mean \"crawler run {0}\"?", arguments[0]));
       const auto near = nearest_names(arguments[0], names, 1);
       throw InputError(fmt::format("unknown command \"{}\"; {} is expected{}",
                                    arguments[0],
@@ -124,9 +160,10 @@ namespace crawler
       app.footer("Options for PETSc go behind a lone \"--\", e.g. crawler run FILE.prm -- -ts_monitor");
 
       CommandOptions options;
-      options.command_line = fmt::format("crawler {}", fmt::join(arguments, " "));
+      options.command_line  = fmt::format("crawler {}", fmt::join(arguments, " "));
+      options.petsc_options = fmt::format("{}", fmt::join(petsc_options, " "));
       if (!petsc_options.empty())
-        options.command_line += fmt::format(" -- {}", fmt::join(petsc_options, " "));
+        options.command_line += " -- " + options.petsc_options;
       const auto common = [&](CLI::App *command) {
         command->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();
         command->add_option("--set", options.overrides, "Sets an entry: \"Section/Entry=value\" (repeatable)")
@@ -159,8 +196,7 @@ namespace crawler
       }
       std::string format          = "prm";
       CLI::App *parameter_command = app.add_subcommand("parameters", "Prints every entry of the parameter file");
-      parameter_command->add_option("--format", format, "prm, json or markdown")
-        ->check(CLI::IsMember({"prm", "json", "markdown"}));
+      parameter_command->add_option("--format", format, "prm, json or markdown");
 
       require_command(app, arguments);
       if (!petsc_options.empty() && !petsc_options[0].starts_with("-"))
@@ -178,10 +214,15 @@ namespace crawler
       }
       catch (const CLI::ParseError &error)
       {
-        const std::string unknown = unknown_argument(app, arguments);
-        throw InputError((unknown.empty() ? error.what() : unknown) +
-                         " (crawler --help tells the commands and options)");
+        throw InputError(in_words(error, app, arguments) + " (crawler --help tells the commands and options)");
       }
+      const CLI::App *const command = app.get_subcommands().front();
+      if (command != parameter_command && command->count("--output") > 0 && options.output.empty())
+        throw InputError("behind \"--output\" stands \"\", but the name of a folder is expected");
+      if (!petsc_options.empty() && (*parameter_command || *atlas_command || *tradeoff_command))
+        throw InputError(fmt::format("behind \"--\" stands \"{}\", but the command \"{}\" has no use for PETSc options",
+                                     petsc_options[0],
+                                     command->get_name()));
       if (!petsc_options.empty()) // they are for PETSc's objects, unless the user wants something else
         options.overrides.insert(options.overrides.begin(), "Time/Engine=petsc");
       if (*parameter_command)
@@ -199,6 +240,7 @@ namespace crawler
   int
   run_command_line(int argc, char **argv)
   {
+    std::signal(SIGPIPE, SIG_IGN); // a run goes on when nobody reads any more what it prints
     // What stands behind "--" is for PETSc, everything before it for us.
     char **separator = std::find_if(argv, argv + argc, [](const char *text) { return std::strcmp(text, "--") == 0; });
     const std::vector<std::string> arguments(argv + 1, separator);

@@ -56,4 +56,20 @@ namespace crawler
       throw FileError("cannot read \"" + path.string() + "\"");
     return fmt::format("{} bytes, CRC-32 {:08x}", n, checksum.checksum());
   }
+
+  std::string_view
+  without_byte_order_mark(const std::string_view text)
+  {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    return text.starts_with(mark) ? text.substr(mark.size()) : text;
+  }
+
+  std::string
+  foreign_format(const std::string_view text)
+  {
+    if (text.starts_with("PK\x03\x04"))
+      return "a zip archive, as .xlsx, .ods and .docx files are";
+    const bool has_zeros = text.size() > 3 && ((text[0] == 0 && text[2] == 0) || (text[1] == 0 && text[3] == 0));
+    return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") || has_zeros ? "text in UTF-16" : "";
+  }
 } // namespace crawler

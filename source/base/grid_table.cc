@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/csv_numbers.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/grid_table.h>
 #include <crawler/base/hdf5_handle.h>
@@ -6,13 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
-#include <optional>
 #include <sstream>
-#include <string_view>
 
 namespace crawler
 {
@@ -31,134 +28,6 @@ namespace crawler
         throw InputError(message, entry);
       }
     };
-
-    std::string_view
-    without_blanks(std::string_view text)
-    {
-      constexpr const char *blanks = " \t\r\n";
-      const auto first             = text.find_first_not_of(blanks);
-      return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-    }
-
-    /// A finite number if the whole text is one.
-    std::optional<double>
-    number_in(std::string_view text)
-    {
-      text = without_blanks(text);
-      if (text.size() > 1 && text[0] == '+' && text[1] != '-')
-        text.remove_prefix(1);
-      double value             = 0.;
-      const auto [end, result] = std::from_chars(text.data(), text.data() + text.size(), value);
-      if (result == std::errc::invalid_argument || end != text.data() + text.size())
-        return std::nullopt;
-      if (result == std::errc::result_out_of_range) // smaller or larger than any double
-        value = std::strtod(std::string(text).c_str(), nullptr);
-      return std::isfinite(value) ? std::optional(value) : std::nullopt;
-    }
-
-    /// The next part of @p text before @p separator, which is taken away from it.
-    std::string_view
-    next_part(std::string_view &text, const char separator)
-    {
-      const auto end  = text.find(separator);
-      const auto part = text.substr(0, end);
-      text            = end == text.npos ? std::string_view() : text.substr(end + 1);
-      return part;
-    }
-
-    /// Mistakes of one kind: the sentence about the first, and the rows of the others.
-    class Mistakes
-    {
-    public:
-      bool
-      is_first()
-      {
-        return n_++ == 0;
-      }
-      void
-      say(const std::string &sentence)
-      {
-        sentence_ = sentence;
-      }
-      void
-      add_row(const std::size_t row)
-      {
-        constexpr std::size_t most = 4;
-        if (rows_.size() < most)
-          rows_.push_back(row);
-      }
-      /// Throws InputError if there are any.
-      void
-      refuse(const Source &source) const
-      {
-        if (n_ == 0)
-          return;
-        const std::size_t others = n_ - 1, unnamed = others - rows_.size();
-        if (others == 0)
-          source.refuse(sentence_);
-        source.refuse(fmt::format("{}; {} more {} like it: {}{}",
-                                  sentence_,
-                                  others,
-                                  others == 1 ? "row is" : "rows are",
-                                  fmt::join(rows_, ", "),
-                                  unnamed > 0 ? ", ..." : ""));
-      }
-
-    private:
-      std::size_t n_ = 0;
-      std::string sentence_;
-      std::vector<std::size_t> rows_;
-    };
-
-    struct Rows
-    {
-      std::vector<double> s, t, values;
-      std::vector<std::size_t> number; ///< in the file, the header being row 1
-    };
-
-    Rows
-    read_rows(std::string_view text, const Source &source)
-    {
-      const std::string header = "s,t," + source.name;
-      if (text.starts_with("\xEF\xBB\xBF")) // the byte order mark of UTF-8
-        text.remove_prefix(3);
-      const std::string_view first = without_blanks(next_part(text, '\n'));
-      std::string words;
-      for (std::string_view rest = first; !rest.empty();)
-        words += (words.empty() ? "" : ",") + std::string(without_blanks(next_part(rest, ',')));
-      if (words != header)
-        source.refuse(fmt::format("the first row of \"{}\" is \"{}\", but the header {} is expected",
-                                  source.file,
-                                  first.substr(0, 80),
-                                  header));
-      Rows rows;
-      Mistakes mistakes;
-      for (std::size_t number = 2; !text.empty(); ++number)
-      {
-        const std::string_view line = without_blanks(next_part(text, '\n'));
-        if (line.empty())
-          continue;
-        std::string_view rest = line;
-        const auto s = number_in(next_part(rest, ',')), t = number_in(next_part(rest, ',')), value = number_in(rest);
-        if (s && t && value)
-        {
-          rows.s.push_back(*s);
-          rows.t.push_back(*t);
-          rows.values.push_back(*value);
-          rows.number.push_back(number);
-        }
-        else if (mistakes.is_first())
-          mistakes.say(fmt::format("row {} of \"{}\" is \"{}\", but three numbers {} are expected",
-                                   number,
-                                   source.file,
-                                   line.substr(0, 80),
-                                   header));
-        else
-          mistakes.add_row(number);
-      }
-      mistakes.refuse(source);
-      return rows;
-    }
 
     /// The different values, sorted; values that differ by round-off only are the same.
     std::vector<double>
@@ -191,11 +60,12 @@ namespace crawler
     GridTable
     read_csv(const std::string &text, const Source &source)
     {
-      const Rows rows = read_rows(text, source);
+      const CsvNumbers numbers = csv_numbers(text, {"s", "t", source.name}, source.file, source.entry);
+      const auto &s = numbers.columns[0], &t = numbers.columns[1], &values = numbers.columns[2];
       GridTable grid;
-      grid.s                = distinct(rows.s);
-      grid.t                = distinct(rows.t);
-      const std::size_t n_s = grid.s.size(), n_t = grid.t.size(), n = rows.values.size();
+      grid.s                = distinct(s);
+      grid.t                = distinct(t);
+      const std::size_t n_s = grid.s.size(), n_t = grid.t.size(), n = values.size();
       constexpr std::size_t most_gaps = 100; // points for each row: rather no grid than one with gaps
       if (n_s * n_t > most_gaps * n)
         source.refuse(
@@ -211,25 +81,25 @@ namespace crawler
       for (std::size_t r = 0, i = 0, j = 0; r < n; ++r)
       {
         // Next to the one before, in a file that is sorted by t, or by s.
-        j                       = index_of(grid.t, rows.t[r], i + 1 < n_s ? j : j + 1);
-        i                       = index_of(grid.s, rows.s[r], i + 1 < n_s ? i + 1 : 0);
+        j                       = index_of(grid.t, t[r], i + 1 < n_s ? j : j + 1);
+        i                       = index_of(grid.s, s[r], i + 1 < n_s ? i + 1 : 0);
         const std::size_t point = j * n_s + i;
         if (seen[point] == 0)
         {
-          seen[point]        = rows.number[r];
-          grid.values[point] = rows.values[r];
+          seen[point]        = numbers.rows[r];
+          grid.values[point] = values[r];
         }
         else if (repetitions.is_first())
           repetitions.say(fmt::format("row {} of \"{}\" gives s = {:g}, t = {:g} a second time, after row {}",
-                                      rows.number[r],
+                                      numbers.rows[r],
                                       source.file,
-                                      rows.s[r],
-                                      rows.t[r],
+                                      s[r],
+                                      t[r],
                                       seen[point]));
         else
-          repetitions.add_row(rows.number[r]);
+          repetitions.add_row(numbers.rows[r]);
       }
-      repetitions.refuse(source);
+      repetitions.refuse(source.entry);
       const auto n_gaps = std::count(seen.begin(), seen.end(), 0u);
       if (n_gaps > 0)
       {

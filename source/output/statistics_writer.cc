@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/output/statistics_writer.h>
 
 #include <fmt/format.h>
@@ -59,19 +60,19 @@ namespace crawler
   void
   StatisticsWriter::write(const Row &row)
   {
-    out_ << fmt::format("{},{:.16g},{:.6g},{:.16g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}",
-                        row.step.number,
-                        row.step.time,
-                        row.step.size,
-                        row.displacement,
-                        row.stretch.min.value,
-                        row.stretch.min.s,
-                        row.stretch.max.value,
-                        row.stretch.max.s,
-                        row.step.rejected,
-                        row.step.newton_iterations);
+    std::string line = fmt::format("{},{:.16g},{:.6g},{:.16g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}",
+                                   row.step.number,
+                                   row.step.time,
+                                   row.step.size,
+                                   row.displacement,
+                                   row.stretch.min.value,
+                                   row.stretch.min.s,
+                                   row.stretch.max.value,
+                                   row.stretch.max.s,
+                                   row.step.rejected,
+                                   row.step.newton_iterations);
     if (with_energy_balance_)
-      out_ << fmt::format(",{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{},{:.3g},{}",
+      line += fmt::format(",{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{},{:.3g},{}",
                           row.velocity,
                           row.energy_balance.stress_power,
                           row.energy_balance.dissipation,
@@ -80,7 +81,7 @@ namespace crawler
                           text("{:.12g}", row.energy_balance.positive_power),
                           row.energy_balance.residual(),
                           text("{:.3g}", row.net_friction));
-    out_ << '\n';
+    out_ << with_plain_numbers(line) << '\n';
     if (!out_)
       throw FileError("cannot write \"" + path_.string() + "\" (is the disk full?)");
   }

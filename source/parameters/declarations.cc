@@ -69,6 +69,28 @@ namespace crawler
       return values;
     }
 
+    /// What is perhaps wrong with a number: "0,4" or "10 cm".
+    std::string
+    number_hint(const std::string &text)
+    {
+      if (const auto comma = text.find(','); comma != std::string::npos)
+        if (const std::string other = std::string(text).replace(comma, 1, "."); to_number(other))
+          return fmt::format("; decimals are written with a point: {}", other);
+      const std::string first = text.substr(0, text.find_first_not_of("0123456789.+-"));
+      const std::string unit  = trimmed(text.substr(first.size()));
+      if (first.size() < text.size() && to_number(first) && std::isalpha(static_cast<unsigned char>(unit[0])))
+        return fmt::format("; a number stands alone, without its unit: {}", first);
+      return "";
+    }
+
+    /// The shorter name of a file in the current folder or below it.
+    std::string
+    seen_from_here(const std::string &file)
+    {
+      const auto near = std::filesystem::path(file).lexically_relative(std::filesystem::current_path());
+      return near.empty() || *near.begin() == ".." ? file : near.string();
+    }
+
     std::string
     count_range(const unsigned int lower, const unsigned int upper)
     {
@@ -324,14 +346,23 @@ namespace crawler
                      std::string &value,
                      const std::string &expected,
                      const std::string &documentation,
-                     const std::string &unit)
+                     const std::string &unit,
+                     const std::string &ending)
   {
-    text(name, value, expected, documentation, unit);
-    entries_.back().names_file = true;
+    declare(
+      name,
+      value,
+      expected,
+      [](const std::string &) { return true; },
+      [&value, ending](const std::string &text) { value = text.ends_with(ending) ? seen_from_here(text) : text; },
+      documentation + " A file counts from the folder of this parameter file (with --set, from the current one).",
+      unit);
+    entries_.back().names_file  = true;
+    entries_.back().file_ending = ending;
   }
 
   void
-  Declarations::set(const std::string &path, const std::string &value)
+  Declarations::set(const std::string &path, const std::string &value, const std::filesystem::path &folder)
   {
     const std::vector<std::string> words = split_path(path);
     const std::string full               = fmt::format("{}", fmt::join(words, "/"));
@@ -373,11 +404,16 @@ namespace crawler
     std::string problem;
     try
     {
-      handler_->set(words.back(), trimmed(value));
+      std::string text = trimmed(value);
+      if (entry->names_file && !text.empty() && text.ends_with(entry->file_ending))
+        text = std::filesystem::absolute(folder / text).lexically_normal().string();
+      handler_->set(words.back(), text);
     }
     catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
     {
       problem = fmt::format("\"{}\" is \"{}\", but {} is expected", full, value, entry->expected);
+      if (entry->expected.find("number") != std::string::npos)
+        problem += number_hint(trimmed(value));
       // A choice of words: name the nearest one.
       if (!value.empty() && entry->expected.front() == '"')
       {

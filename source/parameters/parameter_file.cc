@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/parameter_file.h>
 
@@ -73,9 +74,12 @@ namespace crawler
   void
   ParameterFile::parse(const std::string &text, const std::string &name, const unsigned int depth)
   {
+    if (const std::string found = foreign_format(text); !found.empty())
+      throw InputError(fmt::format("{}: this is {}, but a text file of parameters in UTF-8 is expected", name, found));
     if (std::any_of(text.begin(), text.end(), [](const char c) { return static_cast<unsigned char>(c) < 9; }))
       throw InputError(fmt::format("{}: this is a binary file; a text file of parameters is expected", name));
 
+    const auto folder = std::filesystem::path(name).parent_path();
     std::vector<std::pair<std::string, unsigned int>> open; // sections, and the lines that opened them
     const auto path = [&open](const std::string &last) {
       std::string result;
@@ -84,7 +88,7 @@ namespace crawler
       return normal_path(result + last);
     };
 
-    std::istringstream in(text);
+    std::istringstream in{std::string(without_byte_order_mark(text))};
     std::string raw, line;
     unsigned int number = 0, first = 0;
     while (std::getline(in, raw))
@@ -127,7 +131,7 @@ namespace crawler
         if (equals == std::string::npos || trimmed(rest.substr(0, equals)).empty())
           throw InputError(fmt::format("{}: found \"{}\", but \"set Entry = value\" is expected", place, statement));
         const Assignment assignment{
-          path(trimmed(rest.substr(0, equals))), trimmed(rest.substr(equals + 1)), place, false};
+          path(trimmed(rest.substr(0, equals))), trimmed(rest.substr(equals + 1)), place, false, folder};
         if (const Assignment *const other = assignment_of(assignment.path))
           throw InputError(fmt::format(
             "{}: \"{}\" is set a second time (first in {}); once is expected", place, assignment.path, other->place));
@@ -139,7 +143,7 @@ namespace crawler
           throw InputError(fmt::format("{}: files include each other more than 10 deep", place));
         if (rest.empty())
           throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
-        const auto file = (std::filesystem::path(name).parent_path() / rest).string();
+        const auto file = (folder / rest).string();
         std::string included;
         try
         {
@@ -174,7 +178,8 @@ namespace crawler
     assignments_.push_back({normal_path(assignment.substr(0, equals)),
                             trimmed(assignment.substr(equals + 1)),
                             fmt::format("--set \"{}\"", assignment),
-                            true});
+                            true,
+                            ""});
   }
 
   void
@@ -192,7 +197,7 @@ namespace crawler
     for (const Assignment &assignment : assignments_)
       try
       {
-        declarations.set(assignment.path, assignment.value);
+        declarations.set(assignment.path, assignment.value, assignment.folder);
       }
       catch (const InputError &error)
       {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/petsc_object.h>
 #include <crawler/base/versions.h>
 #include <crawler/run/result_table.h>
 #include <crawler/run/summary.h>
@@ -90,7 +91,9 @@ namespace crawler
   std::string
   summary_json(const SimulationResult &result, const unsigned int n_ranks, const std::string &command_line)
   {
-    Json json            = summary_of(result);
+    Json json = summary_of(result);
+    if (result.engine == "petsc")
+      json["integrator"] = integrator_of_petsc(result.integrator);
     json["ranks"]        = n_ranks;
     json["versions"]     = versions();
     json["command_line"] = command_line;

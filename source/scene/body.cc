@@ -29,18 +29,21 @@ namespace crawler
                       elastic_modulus_profile,
                       expected,
                       "Factor of the elastic modulus along the body; s is the material coordinate, L the body length.",
-                      "1");
+                      "1",
+                      ".csv");
     declarations.file("Friction profile",
                       friction_profile,
                       expected,
                       "Factor of the friction coefficient along the body, for example of a belly with scales.",
-                      "1");
+                      "1",
+                      ".csv");
     declarations.file("Initial stretch",
                       initial_stretch,
                       expected,
                       "Stretch of the body at t = 0; its centre of mass starts where that of the unstretched body "
                       "would.",
-                      "1");
+                      "1",
+                      ".csv");
     declarations.choice("Profile interpolation",
                         profile_interpolation,
                         {"cubic", "linear"},

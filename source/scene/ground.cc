@@ -86,7 +86,8 @@ namespace crawler
                       "a formula of x, or a CSV file (a name that ends in .csv) with the header x,value",
                       "Factor of the friction along the ground; x is the place on the ground, where the body lies from "
                       "0 to L before it is stretched.",
-                      "1");
+                      "1",
+                      ".csv");
     declarations.choice(
       "Profile interpolation", interpolation, {"cubic", "linear"}, "Between the rows of the CSV file.");
     declarations.choice("Outside",

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/csv_numbers.h>
 #include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/formula/formula_gradient.h>
@@ -10,9 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 namespace crawler
 {
@@ -162,54 +161,29 @@ namespace crawler
     std::shared_ptr<const Profile>
     read_table(const ProfileInput &input)
     {
-      std::ifstream in(input.text);
       const std::string header = input.variable + ",value";
-      if (!in)
-        throw InputError(
-          fmt::format("cannot read \"{}\"; a formula of {}, or the name of a CSV file with the header {} "
-                      "is expected",
-                      input.text,
-                      input.variable,
-                      header),
-          input.entry);
-      std::vector<double> x, y;
-      std::string line;
-      for (unsigned int row = 1; std::getline(in, line); ++row)
+      CsvNumbers numbers       = read_csv_numbers(
+        input.text,
+        {input.variable, "value"},
+        fmt::format("a formula of {}, or the name of a CSV file with the header {}", input.variable, header),
+        input.entry);
+      std::vector<double> &x = numbers.columns[0], &y = numbers.columns[1];
+      for (std::size_t i = 0; i < x.size(); ++i)
       {
-        line = trimmed(line); // of a carriage return, too
-        if (line.empty())
-          continue;
-        const auto comma = line.find(',');
-        if (row == 1)
-        {
-          if (comma == std::string::npos ||
-              trimmed(line.substr(0, comma)) + "," + trimmed(line.substr(comma + 1)) != header)
-            throw InputError(
-              fmt::format("the first row of \"{}\" is \"{}\", but the header {} is expected", input.text, line, header),
-              input.entry);
-          continue;
-        }
-        const auto first  = comma == std::string::npos ? std::nullopt : to_number(trimmed(line.substr(0, comma)));
-        const auto second = comma == std::string::npos ? std::nullopt : to_number(trimmed(line.substr(comma + 1)));
-        if (!first || !second)
-          throw InputError(
-            fmt::format("row {} of \"{}\" is \"{}\", but two numbers {} are expected", row, input.text, line, header),
-            input.entry);
-        if (!(*second > 0.))
-          throw InputError(
-            fmt::format(
-              "row {} of \"{}\" has the value {:g}, but a positive number is expected", row, input.text, *second),
-            input.entry);
-        if (!x.empty() && !(*first > x.back()))
+        if (!(y[i] > 0.))
+          throw InputError(fmt::format("row {} of \"{}\" has the value {:g}, but a positive number is expected",
+                                       numbers.rows[i],
+                                       input.text,
+                                       y[i]),
+                           input.entry);
+        if (i > 0 && !(x[i] > x[i - 1]))
           throw InputError(fmt::format("row {} of \"{}\" has {} = {:g} after {:g}, but increasing numbers are expected",
-                                       row,
+                                       numbers.rows[i],
                                        input.text,
                                        input.variable,
-                                       *first,
-                                       x.back()),
+                                       x[i],
+                                       x[i - 1]),
                            input.entry);
-        x.push_back(*first);
-        y.push_back(*second);
       }
       const bool cubic        = input.interpolation == "cubic";
       const std::size_t least = cubic ? 4 : 2;

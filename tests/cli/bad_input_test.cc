@@ -111,6 +111,12 @@ namespace
       {"TableHeader",
        in_section("Active stress", "set Generator = table") + in_section("Active stress/Table", "set File = bad.prm"),
        {"the first row of \"bad.prm\" is \"subsection Active stress\"", "header s,t,m is expected"}},
+      {"TableWithSemicolons",
+       in_section("Active stress", "set Generator = table") + in_section("Active stress/Table", "set File = semi.csv"),
+       {"\"s;t;m\"", "header s,t,m is expected", "separated by commas"}},
+      {"ProfileOfASpreadsheet",
+       in_section("Ground", "set Profile = zip.csv"),
+       {"bad.prm, line 2", "\"zip.csv\" is a zip archive, as .xlsx", "a CSV file in UTF-8 with the header x,value"}},
     };
   }
 
@@ -194,7 +200,12 @@ namespace
       {"TextForNumber",
        in_section("Time", "set End time = soon"),
        {"line 2", "\"Time/End time\" is \"soon\"", positive}},
-      {"UnitBehindNumber", in_section("Time", "set End time = 1 s"), {"line 2", "\"1 s\"", positive}},
+      {"UnitBehindNumber",
+       in_section("Time", "set End time = 1 s"),
+       {"line 2", "\"1 s\"", positive, "without its unit: 1"}},
+      {"DecimalComma",
+       in_section("Time", "set End time = 0,4"),
+       {"line 2", "\"0,4\"", positive, "written with a point: 0.4"}},
       {"Hexadecimal", in_section("Body", "set Length = 0x10"), {"line 2", "\"0x10\"", positive}},
       {"EmptyValue", in_section("Body", "set Length ="), {"line 2", "\"Body/Length\" is \"\"", positive}},
       {"DegreeTooHigh", in_section("Discretization", "set Degree = 9"), {"\"9\"", "from 1 to 8", "\"automatic\""}},
@@ -255,7 +266,11 @@ namespace
                   "2*sine(s)",
                   "",
                   {"bad.prm, line 4", "position 3", "\"sine\"", "nearest name is \"sin\""}),
-      bad_formula("FormulaUnknownVariable", "A*s", "B = 1", {"bad.prm, line 4", "position 1", "\"A\""}),
+      bad_formula("FormulaUnknownVariable",
+                  "A*s",
+                  "B = 1",
+                  {"bad.prm, line 4", "position 1", "\"A\"", "\"Active stress/Expression/Constants\", as A=1"}),
+      bad_formula("FormulaPowerOfPython", "1+s**2", "", {"bad.prm, line 4", "position 4", "\"^\" is expected"}),
       bad_formula(
         "FormulaArguments", "sin(s, t)", "", {"bad.prm, line 4", "position", "Too many parameters", "\"sin\""}),
       bad_formula("FormulaEmpty", "", "", {"bad.prm, line 4", "empty", "expression of s and t is expected"}),
@@ -322,7 +337,12 @@ namespace
   BadInput
   bad_atlas(const std::string &name, const std::string &lines, const Words &message)
   {
-    return {name, in_section("Atlas", lines), message, 2, {"atlas", "bad.prm", "--output", "results"}};
+    std::string both = lines;
+    if (lines.find("First axis") == lines.npos)
+      both += "\nset First axis = Active stress/Optimal wave/Perturbation parameter : 0.1, 0.2";
+    if (lines.find("Second axis") == lines.npos)
+      both += "\nset Second axis = Body/Anchoring exponent : 1, 2";
+    return {name, in_section("Atlas", both), message, 2, {"atlas", "bad.prm", "--output", "results"}};
   }
 
   /// A sum with the lines @p first in its first term.
@@ -414,8 +434,20 @@ namespace
                 "set First axis = Body/Anchoring exponent : 1, 2",
                 {"bad.prm", "\"Body/Anchoring exponent\" is on both axes"}),
       bad_atlas("RefinementThatIsNone", "set Refinement = 0.1", {"bad.prm, line 2", "a number from 1"}),
-      bad_arguments("AtlasWithoutFile", {"atlas"}, {"FILE is required"}),
-      bad_arguments("AtlasInFullFolder", {"atlas", "good.prm", "--output", "full"}, {"\"full\" is not empty"}),
+      bad_arguments("AtlasWithoutFile", {"atlas"}, {"the parameter file is missing", "crawler atlas FILE.prm"}),
+      bad_arguments("AtlasWithoutAxes",
+                    {"atlas", "good.prm", "--output", "results"},
+                    {"good.prm", "\"Atlas/First axis\" is \"\"", "linspace(first, last, count)", "is expected"}),
+      bad_arguments("AtlasInFullFolder",
+                    {"atlas",
+                     "good.prm",
+                     "--set",
+                     "Atlas/First axis=Body/Length : 1, 2",
+                     "--set",
+                     "Atlas/Second axis=Body/Elastic modulus : 1, 2",
+                     "--output",
+                     "full"},
+                    {"\"full\" is not empty"}),
     };
   }
 
@@ -477,6 +509,12 @@ namespace
                    "ELF\x01\x00\x02",
                    7),
        {"bad.prm: ", "binary file", "text file"}},
+      {"Utf16",
+       std::string("\xff\xfe"
+                   "s\0e\0t\0",
+                   8),
+       {"bad.prm: ", "text in UTF-16", "UTF-8 is expected"}},
+      {"ZipArchive", "PK\x03\x04", {"bad.prm: ", "a zip archive", "text file of parameters"}},
       {"MissingEnd",
        "# c\nsubsection Body\nset Length = 1\n",
        {"bad.prm, line 2", "\"subsection Body\" has no \"end\""}},
@@ -519,13 +557,27 @@ namespace
     return {
       bad_arguments("NoCommand", {}, {"command is missing", "\"run\", \"check\""}),
       bad_arguments("UnknownCommand", {"chekc", "good.prm"}, {"unknown command \"chekc\"", "the nearest is \"check\""}),
-      bad_arguments("MissingFileName", {"run"}, {"FILE is required"}),
-      bad_arguments("TwoFiles", {"run", "good.prm", "more.prm"}, {"not expected: more.prm"}),
+      bad_arguments("FileWithoutCommand", {"good.prm"}, {"command is missing", "mean \"crawler run good.prm\""}),
+      bad_arguments("MissingFileName", {"run"}, {"the parameter file is missing", "\"crawler run FILE.prm\""}),
+      bad_arguments("TwoFiles", {"run", "good.prm", "more.prm"}, {"found \"more.prm\"", "one parameter file"}),
+      bad_arguments("FileForParameters", {"parameters", "good.prm"}, {"found \"good.prm\"", "nothing is expected"}),
       bad_arguments("UnknownOption",
                     {"run", "good.prm", "--ouptut", "results"},
                     {"unknown option \"--ouptut\"", "the nearest is \"--output\""}),
-      bad_arguments("OptionWithoutValue", {"run", "good.prm", "--output"}, {"--output", "required"}),
-      bad_arguments("UnknownFormat", {"parameters", "--format", "xml"}, {"xml", "prm,json,markdown"}),
+      bad_arguments("OptionOfAnotherCommand",
+                    {"run", "good.prm", "--resume"},
+                    {"unknown option \"--resume\" of the command \"run\""}),
+      bad_arguments(
+        "OptionBeforeCommand", {"--quiet", "run", "good.prm"}, {"\"--quiet\" stands before the command \"run\""}),
+      bad_arguments("OptionWithoutValue", {"run", "good.prm", "--output"}, {"\"--output\"", "a value is expected"}),
+      bad_arguments("OptionTwice",
+                    {"run", "good.prm", "--output", "results", "--output", "more"},
+                    {"\"--output\" is there 2 times", "once is expected"}),
+      bad_arguments("EmptyOutput", {"run", "good.prm", "--output", ""}, {"\"--output\"", "name of a folder"}),
+      bad_arguments("UnknownFormat", {"parameters", "--format", "xml"}, {"\"xml\"", "\"json\" or \"markdown\""}),
+      bad_arguments("PetscOptionsForParameters",
+                    {"parameters", "--", "-ts_type", "bdf"},
+                    {"\"-ts_type\"", "\"parameters\" has no use for PETSc options"}),
       bad_arguments(
         "FileThatDoesNotExist", {"run", "missing.prm", "--output", "results"}, {"\"missing.prm\"", "no such file"}, 6),
       bad_arguments(
@@ -577,6 +629,8 @@ namespace
     write_text(folder / "wrong.prm", "subsection Body\n  set Length = x\nend\n");
     write_text(folder / "circle.prm", "include bad.prm\n");
     write_text(folder / "occupied", "a file\n");
+    write_text(folder / "semi.csv", "s;t;m\n0;0;1,5\n");
+    write_text(folder / "zip.csv", "PK\x03\x04");
     std::filesystem::create_directory(folder / "full");
     write_text(folder / "full" / "summary.json", "older results\n");
     std::filesystem::create_directory(folder / "odd");

@@ -332,6 +332,75 @@ TEST_F(Commands, OverridesBeatTheFileAndStandardInputIsRead)
   EXPECT_EQ(lines_of(result.out).back(), "Results are in output-stdin/.");
 }
 
+/// A profile beside the file that an include names; what was run can be run again from anywhere.
+TEST_F(Commands, FilesCountFromTheFolderOfTheParameterFile)
+{
+  fs::create_directories(folder.path / "scenes");
+  write_text(folder.path / "scenes" / "ground.csv", "x,value\n-5,1\n0,2\n2,1.5\n5,1\n");
+  write_text(folder.path / "scenes" / "rough.prm", in_section("Ground", "set Profile = ground.csv"));
+  ASSERT_EQ(run({"--quiet"}, "include scenes/rough.prm\n" + scene).exit_code, 0);
+  const double displacement = summary_of(results)["displacement"];
+
+  const auto again = run_program(folder.path / "scenes", {"run", "../results/parameters.prm", "--output", "again"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(summary_of(folder.path / "scenes" / "again")["displacement"], displacement);
+
+  const auto here = run({"--quiet", "--overwrite", "--set", "Ground/Profile=scenes/ground.csv"});
+  ASSERT_EQ(here.exit_code, 0) << here.err;
+  EXPECT_EQ(summary_of(results)["displacement"], displacement);
+}
+
+TEST_F(Commands, AByteOrderMarkDoesNotMatter)
+{
+  EXPECT_EQ(run({"--quiet"}, "\xef\xbb\xbf" + scene).exit_code, 0);
+  EXPECT_TRUE(fs::exists(results / "summary.json"));
+}
+
+/// Whoever reads the first line only, as head -1 does.
+TEST_F(Commands, AReaderWhoLeavesDoesNotEndTheRun)
+{
+  write_text(folder.path / "scene.prm", scene);
+  const std::string command =
+    "cd '" + folder.path.string() + "' && '" CRAWLER_PROGRAM "' run scene.prm --output results | true";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(summary_of(results)["status"], "finished");
+  expect_frames(results, {0., 1. / 3., 2. / 3., 1.});
+}
+
+/// Waves at p = 1 move nothing, by 0 and not by -0.
+TEST_F(Commands, NothingIsMinusZero)
+{
+  const auto result = run({"--set", "Body/Anchoring exponent=1"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, "leading-order displacement 0,")) << result.out;
+  const std::regex minus("(^|[^a-z0-9.])-(0|0[.]0*|nan)([^0-9.]|$)");
+  for (const std::string &text : {result.out, read_text(results / "log.txt"), read_text(results / "statistics.csv")})
+    EXPECT_FALSE(std::regex_search(text, minus)) << text;
+}
+
+/// Millimetres instead of metres, most likely.
+TEST_F(Commands, ATableBeyondTheBodyIsNoted)
+{
+  write_text(folder.path / "skin.csv", "s,value\n0,1\n1,2\n3,2\n4,1\n");
+  write_text(folder.path / "m.csv", "s,t,m\n0,0,0\n0,1,0.1\n4,0,0\n4,1,0.2\n");
+  const std::string lines = in_section("Body", "set Friction profile = skin.csv") +
+                            in_section("Active stress", "set Generator = table") +
+                            in_section("Active stress/Table", "set File = m.csv\nset Interpolation = linear");
+  const auto result = run({}, scene + lines);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string log = read_text(results / "log.txt");
+  EXPECT_TRUE(contains(log, "Note: the table of \"Body/Friction profile\" reaches to s = 4, but the body ends at 1"));
+  EXPECT_TRUE(
+    contains(log, "Note: the table reaches to s = 4, but the body ends at 1; check \"Active stress/Table/Unit"));
+}
+
+TEST_F(Commands, PetscOptionsAreRecorded)
+{
+  ASSERT_EQ(run({"--", "-ts_type", "bdf"}).exit_code, 0);
+  EXPECT_TRUE(contains(read_text(results / "log.txt"), "-ts_type bdf"));
+  EXPECT_EQ(summary_of(results)["integrator"], "bdf");
+}
+
 TEST_F(Commands, QuietPrintsNothing)
 {
   const ProgramResult result = run({"--quiet"});

@@ -181,6 +181,9 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         serial = check_run("one rank", run(folder, "one", [sys.argv[1]]))
+        script = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "plot" / "kymograph.py"
+        subprocess.run([sys.executable, script, folder / "one"], cwd=folder, stdout=subprocess.DEVNULL, check=True)
+        check((folder / "one" / "kymograph.png").is_file(), "the picture of a run is beside its files")
         two = check_run("two ranks", run(folder, "two", ["mpirun", "--oversubscribe", "-n", "2", sys.argv[1]]))
     # The same to 1e-9, but where a number may have been rounded to another last digit in the file.
     for i, (a, b) in enumerate(zip(serial[0], two[0])):

@@ -267,7 +267,7 @@ def test_changed_inputs(program, folder):
     first = call(program, folder, "sweep", "sweep.prm", "--output", "data")
     resumes("data", "a data file that is the same")
     (folder / "ground.csv").write_text("x,value\n-5,1\n0,3\n2,1.5\n5,1\n", encoding="utf-8")
-    refused(program, folder, "data", ('the file "ground.csv" was', "CRC-32"), f"a changed data file ({first.returncode})")
+    refused(program, folder, "data", ('/ground.csv" was', "CRC-32"), f"a changed data file ({first.returncode})")
 
 
 def test_begun(program, folder):

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace crawler
 {
@@ -19,4 +20,12 @@ namespace crawler
   /// Throws FileError.
   std::string
   fingerprint(const std::filesystem::path &path);
+
+  /// A text without the mark that some editors put before UTF-8.
+  std::string_view
+  without_byte_order_mark(std::string_view text);
+
+  /// What other programs make instead of text in UTF-8, in words ("text in UTF-16"); empty if @p text is none of them.
+  std::string
+  foreign_format(std::string_view text);
 } // namespace crawler

@@ -34,6 +34,16 @@ namespace crawler
     throw PetscFailure(code, text != nullptr ? text : "without a message");
   }
 
+  /// The integrator of the option -ts_type behind "--", else @p otherwise.
+  inline std::string
+  integrator_of_petsc(const std::string &otherwise)
+  {
+    char type[64]   = "";
+    PetscBool found = PETSC_FALSE;
+    petsc(PetscOptionsGetString(nullptr, nullptr, "-ts_type", type, sizeof(type), &found));
+    return found ? type : otherwise;
+  }
+
   /// Keeps the words of PETSc's errors instead of printing them with their stack, as long as this lives.
   class PetscErrorWords
   {

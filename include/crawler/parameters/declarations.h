@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <iosfwd>
 #include <limits>
@@ -45,7 +46,8 @@ namespace crawler
     std::string expected; ///< the admissible values in words
     std::string unit;     ///< empty for words and counts
     std::string documentation;
-    bool names_file = false; ///< its value is, or may be, the name of a file that is read
+    bool names_file         = false; ///< its value is, or may be, the name of a file that is read
+    std::string file_ending = "";    ///< without it a value is not the name of a file
   };
 
   /**
@@ -108,18 +110,20 @@ namespace crawler
          const std::string &expected,
          const std::string &documentation,
          const std::string &unit = "");
-    /// A text that is, or may be, the name of a file, from the folder in which the program is started.
+    /// A text that is the name of a file, or may be one if its ending is @p ending.
     void
     file(const std::string &name,
          std::string &value,
          const std::string &expected,
          const std::string &documentation,
-         const std::string &unit = "");
+         const std::string &unit   = "",
+         const std::string &ending = "");
 
     /// Sets the entry with the full name @p path. Throws InputError (naming the entry, what was found and
-    /// what was expected, with the nearest names) if there is no such entry or the value does not fit.
+    /// what was expected, with the nearest names) if there is no such entry or the value does not fit. The name of a
+    /// file counts from @p folder; it is kept, and printed, as an absolute one.
     void
-    set(const std::string &path, const std::string &value);
+    set(const std::string &path, const std::string &value, const std::filesystem::path &folder = "");
 
     /// Throws InputError with the nearest names unless @p path is a declared section.
     void

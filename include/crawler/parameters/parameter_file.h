@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,10 +14,11 @@ namespace crawler
   /// One line "set Entry = value" of a file or one --set of the command line, with its place.
   struct Assignment
   {
-    std::string path;  ///< "Section/Entry", as normal_path() writes it
-    std::string value; ///< without blanks around it and without the comment
-    std::string place; ///< for messages: "fig_2.prm, line 12" or "--set ..."
-    bool is_override;  ///< of --set, which is stronger than all files
+    std::string path;             ///< "Section/Entry", as normal_path() writes it
+    std::string value;            ///< without blanks around it and without the comment
+    std::string place;            ///< for messages: "fig_2.prm, line 12" or "--set ..."
+    bool is_override;             ///< of --set, which is stronger than all files
+    std::filesystem::path folder; ///< from which the name of a file in the value counts
   };
 
   /**

@@ -18,9 +18,10 @@ namespace crawler
   {
     /// What muParser has against a formula, as one sentence with a position that counts from 1.
     std::string
-    in_words(const mu::ParserError &error, const std::string &formula, const std::vector<std::string> &variables)
+    in_words(const mu::ParserError &error, const FormulaInput &input)
     {
-      std::string problem = error.GetMsg();
+      const std::string &formula = input.formula;
+      std::string problem        = error.GetMsg();
       if (error.GetCode() == mu::ecINTERNAL_ERROR)
         problem = "the formula is not complete";
       // muParser's own positions count from 0.
@@ -32,12 +33,16 @@ namespace crawler
       if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty() &&
           std::isalpha(static_cast<unsigned char>(token[0])))
       {
-        std::vector<std::string> names = variables;
+        std::vector<std::string> names = input.variables;
         names.insert(names.end(), {"L",    "T",    "pi",   "sin",   "cos",  "tan",  "asin", "acos", "atan",
                                    "sinh", "cosh", "tanh", "exp",   "log",  "sqrt", "abs",  "sign", "min",
                                    "max",  "pow",  "mod",  "floor", "ceil", "erf",  "erfc"});
         const auto near = nearest_names(token, names, 1);
         problem += near.empty() ? "" : "; the nearest name is " + quoted_list(near);
+        const bool is_called =
+          trimmed(formula.substr(std::min(error.GetPos() + token.size(), formula.size()))).starts_with("(");
+        if (!is_called && input.constants_entry != input.formula_entry)
+          problem += fmt::format("; a constant is expected in \"{}\", as {}=1", input.constants_entry, token);
       }
       return fmt::format("error in the formula \"{}\" at position {}: {}",
                          formula,
@@ -55,6 +60,13 @@ namespace crawler
         const char c = formula[i], before = i > 0 ? formula[i - 1] : ' ',
                    after = i + 1 < formula.size() ? formula[i + 1] : ' ';
         depth += (c == '(') - (c == ')');
+        if (c == '*' && after == '*')
+          throw InputError(
+            fmt::format(
+              "error in the formula \"{}\" at position {}: \"**\" is found, but \"^\" is expected for a power",
+              formula,
+              i + 1),
+            formula_entry);
         if (c == ',' && depth == 0)
           throw InputError(
             fmt::format("error in the formula \"{}\" at position {}: one formula is expected, but there are "
@@ -125,7 +137,7 @@ namespace crawler
     }
     catch (const mu::ParserError &error)
     {
-      throw InputError(in_words(error, input.formula, input.variables), input.formula_entry);
+      throw InputError(in_words(error, input), input.formula_entry);
     }
   }
 } // namespace crawler

@@ -343,12 +343,8 @@ namespace crawler
     {
       std::error_code ignored;
       if (!std::filesystem::exists(file, ignored))
-        throw InputError(
-          fmt::format("there is no file \"{}\" (\"{}\" in the folder in which crawler was started); a shared "
-                      "object is expected",
-                      file.string(),
-                      name),
-          file_entry);
+        throw InputError(fmt::format("there is no file \"{}\"; a shared object is expected", file.string()),
+                         file_entry);
       const auto header = std::filesystem::is_regular_file(file, ignored) ? read_header(file) : std::nullopt;
       if (!header || header->e_type != ET_DYN)
         throw InputError(fmt::format("\"{}\" is not a shared object; a file that the compiler has made with -shared is "
@@ -445,12 +441,10 @@ namespace crawler
   LibraryParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Library");
-    declarations.file(
-      "File",
-      file,
-      "the name of a shared object",
-      "Shared object with the active stress as a plug-in (doc/generators/library.md). A name that does not "
-      "begin with / counts from the folder in which crawler is started.");
+    declarations.file("File",
+                      file,
+                      "the name of a shared object",
+                      "Shared object with the active stress as a plug-in (doc/generators/library.md).");
     declarations.text("Parameters",
                       parameters,
                       "a list name=value, name=value",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/csv_numbers.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/gauss_panels.h>
-#include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/active_stress/shaped_wave.h>
 #include <crawler/scene/period.h>
@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <ostream>
 
 namespace crawler
@@ -130,40 +129,17 @@ namespace crawler
     shape_from_table(const std::string &name, const double from, const double to)
     {
       const std::string entry = section + "Shape file";
-      std::ifstream in(name);
-      if (!in)
-        throw InputError("cannot read \"" + name + "\"; the name of a CSV file with the header x,f is expected", entry);
-      std::vector<double> x, f;
-      std::string line;
-      for (unsigned int number = 1; std::getline(in, line); ++number)
-      {
-        line = trimmed(line); // of a carriage return, too
-        if (line.empty())
-          continue;
-        const auto comma        = line.find(',');
-        const std::string first = trimmed(line.substr(0, comma)),
-                          last  = comma == std::string::npos ? "" : trimmed(line.substr(comma + 1));
-        if (number == 1)
-        {
-          if (first != "x" || last != "f")
-            throw InputError(
-              fmt::format("the first row of \"{}\" is \"{}\", but the header x,f is expected", name, line), entry);
-          continue;
-        }
-        const auto place = to_number(first), value = to_number(last);
-        if (!place || !value)
-          throw InputError(
-            fmt::format("row {} of \"{}\" is \"{}\", but two numbers x,f are expected", number, name, line), entry);
-        if (!x.empty() && *place <= x.back())
+      const CsvNumbers numbers =
+        read_csv_numbers(name, {"x", "f"}, "the name of a CSV file with the header x,f", entry);
+      const std::vector<double> &x = numbers.columns[0], &f = numbers.columns[1];
+      for (std::size_t i = 1; i < x.size(); ++i)
+        if (x[i] <= x[i - 1])
           throw InputError(fmt::format("row {} of \"{}\" has x = {:g} after x = {:g}, but increasing x are expected",
-                                       number,
+                                       numbers.rows[i],
                                        name,
-                                       *place,
-                                       x.back()),
+                                       x[i],
+                                       x[i - 1]),
                            entry);
-        x.push_back(*place);
-        f.push_back(*value);
-      }
       if (x.size() < 4)
         throw InputError(
           fmt::format("\"{}\" has {} rows after the header, but at least 4 are expected", name, x.size()), entry);

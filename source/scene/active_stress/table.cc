@@ -321,5 +321,10 @@ namespace crawler
       *least,
       *greatest,
       parameters_.interpolation);
+    if (grid.s.back() > 1.001 * length_)
+      out << fmt::format("Note: the table reaches to s = {:g}, but the body ends at {:g}; check \"{}Unit of s\"\n",
+                         grid.s.back(),
+                         length_,
+                         section);
   }
 } // namespace crawler

@@ -113,6 +113,25 @@ namespace crawler
       }
       return notes;
     }
+
+    /// Of a table that goes on behind the end of the body most likely the unit is another one.
+    std::vector<std::string>
+    profiles_beyond_the_body(const Scene &scene)
+    {
+      std::vector<std::string> notes;
+      for (const auto &[entry, profile] : {std::pair("Body/Elastic modulus profile", scene.profiles.elastic_modulus),
+                                           std::pair("Body/Friction profile", scene.profiles.friction),
+                                           std::pair("Body/Initial stretch", scene.profiles.initial_stretch)})
+      {
+        const auto places = profile ? profile->breaks() : std::vector<double>();
+        if (!places.empty() && places.back() > 1.001 * scene.body.length)
+          notes.push_back(fmt::format("Note: the table of \"{}\" reaches to s = {:g}, but the body ends at {:g}",
+                                      entry,
+                                      places.back(),
+                                      scene.body.length));
+      }
+      return notes;
+    }
   } // namespace
 
   ParameterFile
@@ -144,8 +163,10 @@ namespace crawler
     try
     {
       Scene scene = parameters.create_scene();
-      auto unused = settings_without_effect(file, parameters, declarations);
-      return {std::move(file), parameters, effective.str(), std::move(scene), std::move(unused)};
+      auto notes  = settings_without_effect(file, parameters, declarations);
+      for (const std::string &note : profiles_beyond_the_body(scene))
+        notes.push_back(note);
+      return {std::move(file), parameters, effective.str(), std::move(scene), std::move(notes)};
     }
     catch (const InputError &error)
     {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/studies/core/log.h>
 
 #include <iostream>
@@ -13,20 +14,22 @@ namespace crawler
   }
 
   void
-  Log::line(const std::string &text)
+  Log::line(const std::string &raw)
   {
     if (!active_)
       return;
+    const std::string text = with_plain_numbers(raw);
     if (!quiet_)
       std::cout << text << std::endl;
     keep(text);
   }
 
   void
-  Log::warn(const std::string &text)
+  Log::warn(const std::string &raw)
   {
     if (!active_)
       return;
+    const std::string text = with_plain_numbers(raw);
     std::cerr << "crawler: " << text << std::endl;
     keep(text);
   }

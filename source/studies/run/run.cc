@@ -181,6 +181,8 @@ namespace crawler
     });
     if (chosen)
       report_plan(log, input, *model, *chosen);
+    if (!options.petsc_options.empty())
+      log.line("PETSc options, stronger than these settings: " + options.petsc_options);
 
     const bool writes           = shared || first;
     const auto create_observers = [&]() {

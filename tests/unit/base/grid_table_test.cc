@@ -160,7 +160,9 @@ TEST(GridTable, SaysWhatIsWrongInCsv)
   const std::string three = "but three numbers s,t,m are expected";
   EXPECT_EQ(complaint("s,t,strain\n"), "the first row of FILE is \"s,t,strain\", but the header s,t,m is expected");
   EXPECT_EQ(complaint("0,0,1\n"), "the first row of FILE is \"0,0,1\", but the header s,t,m is expected");
-  EXPECT_EQ(complaint("s;t;m\n0;0;1\n"), "the first row of FILE is \"s;t;m\", but the header s,t,m is expected");
+  EXPECT_EQ(complaint("s;t;m\n0;0;1\n"),
+            "the first row of FILE is \"s;t;m\", but the header s,t,m is expected (columns are separated by commas, "
+            "and decimals written with a point)");
   EXPECT_EQ(complaint("s,t,m\n0,0,1\n0,1,\n"), "row 3 of FILE is \"0,1,\", " + three);
   EXPECT_EQ(complaint("s,t,m\n0,0,1\n\n0,1,nan\n"), "row 4 of FILE is \"0,1,nan\", " + three);
   EXPECT_EQ(complaint("s,t,m\n0,0,-inf\n"), "row 2 of FILE is \"0,0,-inf\", " + three);

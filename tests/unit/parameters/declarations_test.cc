@@ -109,3 +109,20 @@ TEST(ToText, RoundTrips)
   for (const double value : {0., 1. / 3., 1e-300, -2.5e17, 0.1})
     EXPECT_EQ(*to_number(to_text(value)), value);
 }
+
+/// The name of a file counts from a folder, is kept as an absolute one, and is short in the current folder.
+TEST(Declarations, FilesCountFromAFolder)
+{
+  Declarations declarations;
+  std::string file = "none.csv", profile = "1";
+  declarations.file("File", file, "a file", "Documentation.");
+  declarations.file("Profile", profile, "a formula or a file", "Documentation.", "1", ".csv");
+  EXPECT_EQ(file, "none.csv");
+  declarations.set("File", "a.csv", "/folder/inner/..");
+  declarations.set("Profile", "2/s", "/folder");
+  EXPECT_EQ(file, "/folder/a.csv");
+  EXPECT_EQ(profile, "2/s");
+  declarations.set("Profile", "p.csv", "inner");
+  EXPECT_EQ(profile, "inner/p.csv");
+  EXPECT_EQ(declarations.value(1), (std::filesystem::current_path() / "inner/p.csv").string());
+}

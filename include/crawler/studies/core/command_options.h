@@ -17,5 +17,6 @@ namespace crawler
     bool strict    = false;
     bool quiet     = false;
     std::string command_line;
+    std::string petsc_options; ///< behind "--"
   };
 } // namespace crawler

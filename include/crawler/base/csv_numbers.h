@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace crawler
+{
+  /// Mistakes of one kind in a file: the sentence about the first, and the rows of the others.
+  class Mistakes
+  {
+  public:
+    bool
+    is_first()
+    {
+      return n_++ == 0;
+    }
+    void
+    say(const std::string &sentence)
+    {
+      sentence_ = sentence;
+    }
+    void
+    add_row(std::size_t row);
+    /// Throws InputError for @p entry if there are any.
+    void
+    refuse(const std::string &entry) const;
+
+  private:
+    std::size_t n_ = 0;
+    std::string sentence_;
+    std::vector<std::size_t> rows_;
+  };
+
+  /// Columns of finite numbers.
+  struct CsvNumbers
+  {
+    std::vector<std::vector<double>> columns;
+    std::vector<std::size_t> rows; ///< their numbers in the file, the header being row 1
+  };
+
+  /**
+   * Reads a CSV file whose header is @p names. A byte order mark, carriage returns, blanks and empty rows do not
+   * matter. Throws InputError for @p entry if something is not a number; messages call the file @p file.
+   */
+  CsvNumbers
+  csv_numbers(std::string_view text,
+              const std::vector<std::string> &names,
+              const std::string &file,
+              const std::string &entry);
+
+  /// The same of the file @p file; @p expected says in messages what belongs there.
+  CsvNumbers
+  read_csv_numbers(const std::string &file,
+                   const std::vector<std::string> &names,
+                   const std::string &expected,
+                   const std::string &entry);
+} // namespace crawler

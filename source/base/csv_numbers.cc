@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/csv_numbers.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    std::string_view
+    without_blanks(std::string_view text)
+    {
+      constexpr const char *blanks = " \t\r\n";
+      const auto first             = text.find_first_not_of(blanks);
+      return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+    }
+
+    /// A finite number if the whole text is one.
+    std::optional<double>
+    number_in(std::string_view text)
+    {
+      text = without_blanks(text);
+      if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+        text.remove_prefix(1);
+      double value             = 0.;
+      const auto [end, result] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (result == std::errc::invalid_argument || end != text.data() + text.size())
+        return std::nullopt;
+      if (result == std::errc::result_out_of_range) // smaller or larger than any double
+        value = std::strtod(std::string(text).c_str(), nullptr);
+      return std::isfinite(value) ? std::optional(value) : std::nullopt;
+    }
+
+    /// The next part of @p text before @p separator, which is taken away from it.
+    std::string_view
+    next_part(std::string_view &text, const char separator)
+    {
+      const auto end  = text.find(separator);
+      const auto part = text.substr(0, end);
+      text            = end == text.npos ? std::string_view() : text.substr(end + 1);
+      return part;
+    }
+
+    /// What a spreadsheet of another country writes.
+    std::string
+    hint(const std::string_view line)
+    {
+      return line.find(';') != line.npos ? " (columns are separated by commas, and decimals written with a point)" : "";
+    }
+  } // namespace
+
+  void
+  Mistakes::add_row(const std::size_t row)
+  {
+    constexpr std::size_t most = 4;
+    if (rows_.size() < most)
+      rows_.push_back(row);
+  }
+
+  void
+  Mistakes::refuse(const std::string &entry) const
+  {
+    if (n_ == 0)
+      return;
+    const std::size_t others = n_ - 1, unnamed = others - rows_.size();
+    if (others == 0)
+      throw InputError(sentence_, entry);
+    throw InputError(fmt::format("{}; {} more {} like it: {}{}",
+                                 sentence_,
+                                 others,
+                                 others == 1 ? "row is" : "rows are",
+                                 fmt::join(rows_, ", "),
+                                 unnamed > 0 ? ", ..." : ""),
+                     entry);
+  }
+
+  CsvNumbers
+  csv_numbers(std::string_view text,
+              const std::vector<std::string> &names,
+              const std::string &file,
+              const std::string &entry)
+  {
+    const std::string header = fmt::format("{}", fmt::join(names, ","));
+    if (const std::string found = foreign_format(text); !found.empty())
+      throw InputError(
+        fmt::format("\"{}\" is {}, but a CSV file in UTF-8 with the header {} is expected", file, found, header),
+        entry);
+    text                         = without_byte_order_mark(text);
+    const std::string_view first = without_blanks(next_part(text, '\n'));
+    std::string words;
+    for (std::string_view rest = first; !rest.empty();)
+      words += (words.empty() ? "" : ",") + std::string(without_blanks(next_part(rest, ',')));
+    if (words != header)
+      throw InputError(fmt::format("the first row of \"{}\" is \"{}\", but the header {} is expected{}",
+                                   file,
+                                   first.substr(0, 80),
+                                   header,
+                                   hint(first)),
+                       entry);
+    CsvNumbers numbers;
+    numbers.columns.resize(names.size());
+    Mistakes mistakes;
+    std::vector<std::optional<double>> row(names.size());
+    for (std::size_t number = 2; !text.empty(); ++number)
+    {
+      const std::string_view line = without_blanks(next_part(text, '\n'));
+      if (line.empty())
+        continue;
+      std::string_view rest = line;
+      for (std::size_t i = 0; i < names.size(); ++i)
+        row[i] = number_in(i + 1 < names.size() ? next_part(rest, ',') : rest);
+      if (std::all_of(row.begin(), row.end(), [](const auto &value) { return value.has_value(); }))
+      {
+        for (std::size_t i = 0; i < names.size(); ++i)
+          numbers.columns[i].push_back(*row[i]);
+        numbers.rows.push_back(number);
+      }
+      else if (mistakes.is_first())
+        mistakes.say(fmt::format("row {} of \"{}\" is \"{}\", but {} numbers {} are expected{}",
+                                 number,
+                                 file,
+                                 line.substr(0, 80),
+                                 names.size() == 2 ? "two" : "three",
+                                 header,
+                                 hint(line)));
+      else
+        mistakes.add_row(number);
+    }
+    mistakes.refuse(entry);
+    return numbers;
+  }
+
+  CsvNumbers
+  read_csv_numbers(const std::string &file,
+                   const std::vector<std::string> &names,
+                   const std::string &expected,
+                   const std::string &entry)
+  {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    if (!in || !(text << in.rdbuf()))
+      throw InputError("cannot read \"" + file + "\", or it is empty; " + expected + " is expected", entry);
+    return csv_numbers(text.str(), names, file, entry);
+  }
+} // namespace crawler
