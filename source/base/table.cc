@@ -38,7 +38,7 @@ namespace crawler
       if (const auto *texts = std::get_if<Texts>(&column.values))
         append((*texts)[row], out);
       else if (const double value = std::get<Numbers>(column.values)[row]; !std::isnan(value))
-        fmt::format_to(std::back_inserter(out), "{}", value);
+        fmt::format_to(std::back_inserter(out), "{}", value + 0.); // no -0
     }
 
     std::size_t

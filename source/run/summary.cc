@@ -36,6 +36,8 @@ namespace crawler
         [](const auto &one) -> Json {
           if constexpr (std::is_same_v<std::decay_t<decltype(one)>, std::monostate>)
             return nullptr;
+          else if constexpr (std::is_same_v<std::decay_t<decltype(one)>, double>)
+            return one + 0.; // no -0
           else
             return one;
         },

@@ -32,7 +32,7 @@ namespace crawler
       for (const Assignment &assignment : scene != nullptr ? scene->assignments() : std::vector<Assignment>())
         try
         {
-          declarations.set(assignment.path, assignment.value);
+          declarations.set(assignment.path, assignment.value, assignment.folder);
         }
         catch (const InputError &error)
         {
@@ -40,7 +40,7 @@ namespace crawler
         }
       for (const Assignment &assignment : file.assignments())
         if (assignment.is_override) // stronger than all files
-          declarations.set(assignment.path, assignment.value);
+          declarations.set(assignment.path, assignment.value, assignment.folder);
     }
     Form(const Form &) = delete;
 
