@@ -409,7 +409,7 @@ namespace crawler
     if (!simulate || answer.result.time.status == "stopped")
       return answer;
     const SimulationResult files = simulate(answer.choice);
-    // Its frames make its steps a little different; the numbers are those that the bounds are for.
+    // Its output times make its steps a little different; the numbers are those that the bounds are for.
     if (files.time.status == "stopped")
       answer.result = files;
     answer.result.output_seconds = files.output_seconds;

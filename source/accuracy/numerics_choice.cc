@@ -36,7 +36,7 @@ namespace crawler
 
   namespace
   {
-    /// Somebody does not want the pilots to go on.
+    /// A stop was requested during the pilots.
     struct Interrupted
     {
     };

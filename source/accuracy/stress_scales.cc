@@ -298,7 +298,7 @@ namespace crawler
         for (std::size_t i = 0; i < in_space.size(); ++i)
           now[2 + i] = m[3 + 2 * i] - m[2 + 2 * i];
       };
-      TimePieces pieces(*scene.active_stress, T);
+      TimeSegments pieces(*scene.active_stress, T);
       for (double start = 0.;; pieces.go_on())
       {
         look(pieces.inside(start));
@@ -325,7 +325,7 @@ namespace crawler
     const double L = scene.body.length, T = scene.end_time;
     // One period shows all.
     const double P                     = std::min(stress.period().value_or(T), T);
-    const std::vector<double> in_space = breaks_in_space(stress, L), in_time = TimePieces(stress, T).breaks();
+    const std::vector<double> in_space = breaks_in_space(stress, L), in_time = TimeSegments(stress, T).breaks();
     std::vector<double> in_period;
     for (const double t : in_time)
       if (t * T < P)

@@ -64,7 +64,7 @@ namespace crawler
   {
     const unsigned long both[2] = {n, failed};
     MPI_Accumulate(both, 2, MPI_UNSIGNED_LONG, owner, completed, 2, MPI_UNSIGNED_LONG, MPI_SUM, window_);
-    MPI_Win_flush_local(owner, window_); // nobody waits until it has arrived
+    MPI_Win_flush_local(owner, window_); // without waiting until it has arrived
   }
 
   WorkQueue::Done

@@ -35,16 +35,16 @@ namespace crawler
 
   TimeOutcome
   LaneStepper::solve(std::vector<double> &y,
-                     const std::vector<double> &frames,
+                     const std::vector<double> &output_times,
                      const double tolerance,
                      const double initial_step,
                      const std::span<const StepLimit> limits,
                      const double start_time)
   {
     constexpr double end_time = 1.;
-    frames_                   = frames;
-    if (frames_.empty() || frames_.back() < end_time)
-      frames_.push_back(end_time);
+    output_times_             = output_times;
+    if (output_times_.empty() || output_times_.back() < end_time)
+      output_times_.push_back(end_time);
     job_     = {.k         = scene_.body.elastic_modulus,
                 .a         = scene_.body.friction_exponent(),
                 .tolerance = tolerance,
@@ -59,8 +59,8 @@ namespace crawler
                 .is_last_resort = setup_.is_stretch,
                 .start_time     = start_time,
                 .start          = y.data(),
-                .frames         = frames_.data(),
-                .n_frames       = static_cast<unsigned int>(frames_.size()),
+                .output_times   = output_times_.data(),
+                .n_output_times = static_cast<unsigned int>(output_times_.size()),
                 .restarts       = nullptr}; // a solve for each piece
     started_ = false;
     bad_friction_.reset();
@@ -125,7 +125,7 @@ namespace crawler
     if (self.stage_rates)
       self.show_rates();
     return !self.monitor ||
-           self.monitor({step.time, step.size, step.number, step.is_frame, step.rejected, step.newton_iterations},
+           self.monitor({step.time, step.size, step.number, step.is_output_time, step.rejected, step.newton_iterations},
                         *self.y_);
   }
 

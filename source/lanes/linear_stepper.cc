@@ -230,13 +230,13 @@ namespace crawler
 
   TimeOutcome
   LinearStepper::solve(std::vector<double> &y,
-                       const std::vector<double> &frames,
+                       const std::vector<double> &output_times,
                        const double tolerance,
                        const double initial_step,
                        const std::span<const StepLimit> limits,
                        const double start_time)
   {
-    std::vector<double> ends = frames;
+    std::vector<double> ends = output_times;
     if (ends.empty() || ends.back() < 1.)
       ends.push_back(1.);
     TimeOutcome outcome;
@@ -310,10 +310,10 @@ namespace crawler
           if (next != h)
             left = 0;
         }
-        const bool is_frame = outcome.time == end;
+        const bool is_output_time = outcome.time == end;
         if (stage_rates)
           show_rates();
-        if (monitor && !monitor({outcome.time, h, steps_, is_frame, outcome.rejected_steps, 0}, y))
+        if (monitor && !monitor({outcome.time, h, steps_, is_output_time, outcome.rejected_steps, 0}, y))
         {
           outcome.status    = "stopped";
           outcome.step_size = next;

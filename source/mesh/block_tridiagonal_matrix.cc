@@ -83,7 +83,7 @@ namespace crawler
       std::copy(own, own + 4, reduced_.begin());
       return ok && is_finite(own[0]) && is_finite(own[3]);
     }
-    // Ranks without cells send numbers that nobody reads.
+    // Ranks without cells send numbers that are not read.
     Number sent[5] = {own[0], own[1], own[2], own[3], ok ? Number(1.) : Number(0.)};
     std::vector<Number> all(5 * d.n_ranks());
     MPI_Allgather(

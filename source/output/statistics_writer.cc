@@ -53,7 +53,7 @@ namespace crawler
            snapshot.integrals.velocity / length_,
            snapshot.energy_balance,
            snapshot.integrals.net_friction});
-    if (snapshot.is_frame)
+    if (snapshot.is_output_time)
       out_.flush();
   }
 

@@ -90,8 +90,8 @@ namespace crawler
         double largest_friction = 0., largest_net_friction = 0.;
         double k = 0.; ///< in natural units
         Units units;
-        TimePieces pieces;
-        std::vector<double> frames;          ///< ends of the pieces, and where the last stride starts
+        TimeSegments pieces;
+        std::vector<double> output_times;    ///< ends of the pieces, and where the last stride starts
         std::vector<unsigned char> restarts; ///< which of them are where a new piece starts
         std::vector<StepLimit> limits;
         std::optional<GaitMeter> gait;
@@ -128,10 +128,10 @@ namespace crawler
         const Numerics &numerics = *runs_[lane.run].numerics;
         const Scene &scene       = *runs_[lane.run].scene;
         lane.units               = natural_units(scene);
-        lane.pieces              = TimePieces(*scene.active_stress, scene.end_time);
-        lane.frames              = lane.pieces.breaks();
-        lane.restarts.assign(lane.frames.size(), 1);
-        lane.frames.push_back(1.);
+        lane.pieces              = TimeSegments(*scene.active_stress, scene.end_time);
+        lane.output_times        = lane.pieces.breaks();
+        lane.restarts.assign(lane.output_times.size(), 1);
+        lane.output_times.push_back(1.);
         lane.restarts.push_back(0);
         lane.limits = in_units(numerics, lane.units).step_limits;
         start_gait(lane, scene);
@@ -166,8 +166,8 @@ namespace crawler
                .is_last_resort = false,
                .start_time     = 0.,
                .start          = nullptr,
-               .frames         = lane.frames.data(),
-               .n_frames       = static_cast<unsigned int>(lane.frames.size()),
+               .output_times   = lane.output_times.data(),
+               .n_output_times = static_cast<unsigned int>(lane.output_times.size()),
                .restarts       = lane.restarts.data()};
       }
 
@@ -184,11 +184,11 @@ namespace crawler
         lane.gait.emplace(period, /*ends_early=*/false);
         if (const auto start = lane.gait->stride_start())
         {
-          const auto place = std::lower_bound(lane.frames.begin(), lane.frames.end(), *start - 1e-12);
+          const auto place = std::lower_bound(lane.output_times.begin(), lane.output_times.end(), *start - 1e-12);
           if (*place > *start + 1e-12)
           {
-            lane.restarts.insert(lane.restarts.begin() + (place - lane.frames.begin()), 0);
-            lane.frames.insert(place, *start);
+            lane.restarts.insert(lane.restarts.begin() + (place - lane.output_times.begin()), 0);
+            lane.output_times.insert(place, *start);
           }
         }
         const EnergyBalance none;
@@ -210,7 +210,7 @@ namespace crawler
         }
         const LaneStage &end = step.stages[tableau_.n - 1];
         lane.gait->see_extremes(end.min_stretch, end.max_stretch);
-        if (!step.is_frame)
+        if (!step.is_output_time)
           return;
         sampler_.sample(step, step.time);
         lane.gait->see_step(
@@ -293,7 +293,7 @@ namespace crawler
           lane.result.energy_balance->elastic_energy = step.elastic_energy;
         if (lane.gait)
           watch_gait(lane, step);
-        if (step.is_frame && !lane.pieces.is_last() && step.time == lane.pieces.end())
+        if (step.is_output_time && !lane.pieces.is_last() && step.time == lane.pieces.end())
         {
           lane.pieces.go_on();
           lane.watch->restart();

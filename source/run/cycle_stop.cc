@@ -23,10 +23,10 @@ namespace crawler
   } // namespace
 
   std::optional<CycleWish>
-  cycle_wish(const RunParameters &parameters, const Scene &scene, const unsigned int n_frames)
+  cycle_wish(const RunParameters &parameters, const Scene &scene, const unsigned int n_output_times)
   {
     const std::string &entry = parameters.time.cycle_stop;
-    if (entry == "off" || (entry == "automatic" && (n_frames > 0 || parameters.time.step_control != "adaptive")))
+    if (entry == "off" || (entry == "automatic" && (n_output_times > 0 || parameters.time.step_control != "adaptive")))
       return std::nullopt;
     if (!scene.is_plain()) // its cycles need not repeat
       return std::nullopt;

@@ -143,7 +143,7 @@ namespace crawler
   }
 
   SimulationResult
-  Simulation::run(const std::vector<double> &frames,
+  Simulation::run(const std::vector<double> &output_times,
                   const Options &options,
                   const std::vector<std::unique_ptr<Observer>> &observers,
                   const std::function<bool()> &keep_going)
@@ -162,8 +162,8 @@ namespace crawler
     largest_              = {};
     before_               = {};
     latest_               = {};
-    frames_               = frames;
-    next_frame_           = 0;
+    output_times_         = output_times;
+    next_output_time_     = 0;
     tiny_steps_           = 0;
     started_              = false;
     n_failures_           = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0;
@@ -193,16 +193,16 @@ namespace crawler
     cycle_stop_.reset();
     if (options.cycles && CycleStop::fits(options.cycles->period / units_.time))
     {
-      if (!frames.empty())
+      if (!output_times.empty())
         throw std::logic_error("a run that may end when its cycles repeat has no frames");
       cycle_stop_.emplace(CycleWish{options.cycles->period / units_.time, options.cycles->accuracy},
                           numerics_.tolerance);
       for (const double time : cycle_stop_->ends())
-        frames_.push_back(time * units_.time);
+        output_times_.push_back(time * units_.time);
     }
 
     gait_meter_.reset();
-    hidden_frame_.reset();
+    hidden_output_time_.reset();
     if (options.gait != GaitWish::none)
       prepare_gait();
 
@@ -274,11 +274,11 @@ namespace crawler
       bool resumed = started_;
       choose_stepper();
       if (!pieces_.is_last() && accepted_time_ >= pieces_.end())
-        begin_piece();
+        begin_segment();
       if (diagnosis_)
         return before_;
-      const std::vector<double> ends = frames_of_piece();
-      const bool ends_at_frame       = ends_at_frame_;
+      const std::vector<double> ends = output_times_of_segment();
+      const bool ends_at_output_time = ends_at_output_time_;
       stepper_->monitor              = [&](const Step &part, const std::span<const double> y) {
         if (resumed) // the state from which this part starts has been seen already
         {
@@ -291,14 +291,14 @@ namespace crawler
         step.newton_iterations += before_.newton_iterations;
         latest_             = step;
         const bool at_break = !pieces_.is_last() && part.time == pieces_.end();
-        step.is_frame       = part.is_frame && (!at_break || ends_at_frame);
+        step.is_output_time = part.is_output_time && (!at_break || ends_at_output_time);
         if (!examine(step, y))
           return false; // an inverted state is not shown to anybody
         const double before = now();
         show(step, y, observers);
         result_.output_seconds += now() - before;
-        if (step.is_frame && next_frame_ < frames_.size())
-          ++next_frame_;
+        if (step.is_output_time && next_output_time_ < output_times_.size())
+          ++next_output_time_;
         if (keep_going && !keep_going())
           return false;
         if (gait_meter_)
@@ -376,19 +376,21 @@ namespace crawler
     return outcome;
   }
 
-  /// The frames from now to the end of the present piece, which is the last of them if another piece follows.
+  /// The output times from now to the end of the present piece, which is the last of them if another piece follows.
   std::vector<double>
-  Simulation::frames_of_piece()
+  Simulation::output_times_of_segment()
   {
     const double reach = pieces_.is_last() ? HUGE_VAL : pieces_.end() - least_time_between_breaks;
     std::vector<double> result;
-    std::size_t i         = next_frame_;
-    const auto frame_time = [&]() {
-      return i + 1 == frames_.size() && frames_[i] == physical_scene_.end_time ? 1. : frames_[i] / units_.time;
+    std::size_t i          = next_output_time_;
+    const auto output_time = [&]() {
+      return i + 1 == output_times_.size() && output_times_[i] == physical_scene_.end_time
+               ? 1.
+               : output_times_[i] / units_.time;
     };
-    for (; i < frames_.size() && frame_time() < reach; ++i)
-      result.push_back(frame_time());
-    ends_at_frame_ = i < frames_.size() && frame_time() <= pieces_.end() + least_time_between_breaks;
+    for (; i < output_times_.size() && output_time() < reach; ++i)
+      result.push_back(output_time());
+    ends_at_output_time_ = i < output_times_.size() && output_time() <= pieces_.end() + least_time_between_breaks;
     if (!pieces_.is_last())
       result.push_back(pieces_.end());
     return result;
@@ -397,7 +399,7 @@ namespace crawler
   /// The active stress has jumped, so velocities and all derivatives jump: from the last accepted state starts a run of
   /// its own.
   void
-  Simulation::begin_piece()
+  Simulation::begin_segment()
   {
     pieces_.go_on();
     if (watch_)
@@ -468,10 +470,11 @@ namespace crawler
     const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
     const double t                          = accepted_time_ + size;
     // Nobody sees this step, so it must not pass a time at which somebody wants to see a state.
-    const double next_frame  = next_frame_ < frames_.size() ? frames_[next_frame_] / units_.time : 1.;
+    const double next_output_time =
+      next_output_time_ < output_times_.size() ? output_times_[next_output_time_] / units_.time : 1.;
     const double next_stride = gait_meter_ ? gait_meter_->next_time() : HUGE_VAL,
                  next_cycle  = cycle_stop_ ? cycle_stop_->next_time() : HUGE_VAL;
-    if (t > std::min({next_frame, pieces_.end(), next_stride, next_cycle}) - size)
+    if (t > std::min({next_output_time, pieces_.end(), next_stride, next_cycle}) - size)
       return;
     std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
     for (unsigned int i = 0; i < most_corrections; ++i)
@@ -526,8 +529,8 @@ namespace crawler
         locate_inversion(step);
       return false;
     }
-    // Pictures need the velocity at frames only, the energy balance and adaptive meshes always.
-    if (options_.energy_balance || adaptive || (has_observers_ && (step.is_frame || step.number == 0)))
+    // Pictures need the velocity at output times only, the energy balance and adaptive meshes always.
+    if (options_.energy_balance || adaptive || (has_observers_ && (step.is_output_time || step.number == 0)))
       if (!velocity(step.time, step.size, y, v_))
       {
         if (law_failed() || stress_failed())
@@ -691,12 +694,12 @@ namespace crawler
       request_ = Request::mesh;
   }
 
-  /// Frames have the times that were asked for, exactly.
+  /// Output times have the times that were asked for, exactly.
   double
   Simulation::physical_time(const Step &step) const
   {
-    if (step.is_frame && next_frame_ < frames_.size())
-      return frames_[next_frame_];
+    if (step.is_output_time && next_output_time_ < output_times_.size())
+      return output_times_[next_output_time_];
     return step.time * units_.time;
   }
 
@@ -725,7 +728,7 @@ namespace crawler
       result_.energy_balance ? result_.energy_balance->scaled(energy) : EnergyBalance();
     for (const auto &observer : observers)
       observer->observe({physical,
-                         step.number == 0 || (step.is_frame && physical.time != hidden_frame_),
+                         step.number == 0 || (step.is_output_time && physical.time != hidden_output_time_),
                          *assembler_,
                          mesh_number_,
                          units_,

@@ -49,7 +49,7 @@ namespace crawler
     return sum;
   }
 
-  /// Where somebody asks for the past: the stretch within the step, from the integrator's dense output.
+  /// Where the feedback sees the past: the stretch within the step, from the integrator's dense output.
   void
   Simulation::keep_history(const Step &step, const std::span<const double> y)
   {
@@ -98,7 +98,7 @@ namespace crawler
       return true;
     integrals_           = assembler_->integrals(step.time, y, v_);
     result_.displacement = integrals_.displacement;
-    if (!options_.energy_balance && !step.is_frame && step.number != 0)
+    if (!options_.energy_balance && !step.is_output_time && step.number != 0)
       return true;
     if (!std::isfinite(integrals_.dissipation))
     {

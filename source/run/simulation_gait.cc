@@ -25,8 +25,8 @@ namespace crawler
     y_inside_.resize(y_.size());
     for (; !cycle_stop_->next_is_end() && cycle_stop_->next_time() <= step.time; see(y_inside_))
       stepper_->interpolate(cycle_stop_->next_time(), y_inside_);
-    const bool is_end =
-      step.is_frame && cycle_stop_->next_is_end() && std::abs(cycle_stop_->next_time() - step.time) < 1e-6 * step.size;
+    const bool is_end = step.is_output_time && cycle_stop_->next_is_end() &&
+                        std::abs(cycle_stop_->next_time() - step.time) < 1e-6 * step.size;
     return is_end && see(y);
   }
 
@@ -44,11 +44,11 @@ namespace crawler
     if (!start)
       return;
     const double time = *start * units_.time;
-    const auto place  = std::lower_bound(frames_.begin(), frames_.end(), time - 1e-12 * units_.time);
-    if (place != frames_.end() && *place <= time + 1e-12 * units_.time)
+    const auto place  = std::lower_bound(output_times_.begin(), output_times_.end(), time - 1e-12 * units_.time);
+    if (place != output_times_.end() && *place <= time + 1e-12 * units_.time)
       return;
-    hidden_frame_ = time;
-    frames_.insert(place, time);
+    hidden_output_time_ = time;
+    output_times_.insert(place, time);
   }
 
   /// Shows the gait's samples that a step has passed.

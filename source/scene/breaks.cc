@@ -37,7 +37,7 @@ namespace crawler
     return breaks;
   }
 
-  TimePieces::TimePieces(const ActiveStress &stress, const double end_time)
+  TimeSegments::TimeSegments(const ActiveStress &stress, const double end_time)
   {
     std::vector<double> breaks = stress.breaks_in_time();
     clamps_                    = !breaks.empty();
@@ -46,14 +46,14 @@ namespace crawler
   }
 
   void
-  TimePieces::restart()
+  TimeSegments::restart()
   {
     piece_ = 0;
     set_limits();
   }
 
   void
-  TimePieces::go_on()
+  TimeSegments::go_on()
   {
     ++piece_;
     set_limits();
@@ -61,7 +61,7 @@ namespace crawler
 
   /// Breaks that count as one with those kept are at most d later.
   void
-  TimePieces::set_limits()
+  TimeSegments::set_limits()
   {
     if (!clamps_)
       return;

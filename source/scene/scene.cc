@@ -22,7 +22,7 @@ namespace crawler
       ScaledAtPoints(std::unique_ptr<ActiveStressAtPoints> stress,
                      const double time_unit,
                      const double unit,
-                     const TimePieces *pieces)
+                     const TimeSegments *pieces)
         : stress_(std::move(stress))
         , time_unit_(time_unit)
         , unit_(unit)
@@ -41,7 +41,7 @@ namespace crawler
     private:
       const std::unique_ptr<ActiveStressAtPoints> stress_;
       const double time_unit_, unit_;
-      const TimePieces *pieces_;
+      const TimeSegments *pieces_;
     };
 
     class ScaledStrainAtPoints : public StrainAtPoints
@@ -103,7 +103,7 @@ namespace crawler
     class ScaledFeedbackAtPoints : public FeedbackAtPoints
     {
     public:
-      ScaledFeedbackAtPoints(std::unique_ptr<FeedbackAtPoints> feedback, const Units &units, const TimePieces *pieces)
+      ScaledFeedbackAtPoints(std::unique_ptr<FeedbackAtPoints> feedback, const Units &units, const TimeSegments *pieces)
         : feedback_(std::move(feedback))
         , units_(units)
         , pieces_(pieces)
@@ -129,14 +129,14 @@ namespace crawler
     private:
       const std::unique_ptr<FeedbackAtPoints> feedback_;
       const Units units_;
-      const TimePieces *pieces_;
+      const TimeSegments *pieces_;
       std::vector<double> rate_;
     };
 
     class ScaledFeedback : public StretchFeedback
     {
     public:
-      ScaledFeedback(const StretchFeedback &feedback, const Units &units, const TimePieces *pieces)
+      ScaledFeedback(const StretchFeedback &feedback, const Units &units, const TimeSegments *pieces)
         : feedback_(feedback)
         , units_(units)
         , pieces_(pieces)
@@ -172,14 +172,14 @@ namespace crawler
     private:
       const StretchFeedback &feedback_;
       const Units units_;
-      const TimePieces *pieces_;
+      const TimeSegments *pieces_;
     };
 
     /// An active stress in other units.
     class ScaledActiveStress : public ActiveStress
     {
     public:
-      ScaledActiveStress(const ActiveStress &stress, const Units &units, const TimePieces *pieces)
+      ScaledActiveStress(const ActiveStress &stress, const Units &units, const TimeSegments *pieces)
         : stress_(stress)
         , units_(units)
         , pieces_(pieces)
@@ -259,7 +259,7 @@ namespace crawler
     private:
       const ActiveStress &stress_;
       const Units units_;
-      const TimePieces *pieces_;
+      const TimeSegments *pieces_;
       std::optional<ScaledStrainHistory> strain_;
       std::optional<ScaledFeedback> feedback_;
     };
@@ -393,7 +393,7 @@ namespace crawler
     constexpr double weakest = 1e-20, strongest = 1e20;
     const Units units = natural_units(scene);
     const double unit = std::max(scene.body.elastic_modulus, units.force);
-    double strain     = largest_active_stress(scene, 37) / unit; // not a number of waves that somebody would choose
+    double strain     = largest_active_stress(scene, 37) / unit; // no usual number of waves
     if (strain < weakest)                                        // it may be a short event
       strain = largest_active_stress(scene, 8191) / unit;
     if (strain != 0. && !(strain >= weakest && strain <= strongest))
@@ -406,7 +406,7 @@ namespace crawler
   }
 
   Scene
-  in_units(const Scene &scene, const Units &units, const TimePieces *pieces)
+  in_units(const Scene &scene, const Units &units, const TimeSegments *pieces)
   {
     Scene scaled;
     const double friction            = units.force * units.time / units.length / units.length;

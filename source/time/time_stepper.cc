@@ -55,14 +55,14 @@ namespace crawler
     PetscOwner<TS> ts;
 
     // The state of one solve().
-    std::vector<double> frames;
-    std::size_t next_frame = 0;
-    double tolerance       = 0.;
-    double fixed_step      = 0.;
-    bool stopped           = false;
-    bool jacobian_ok       = true;
-    double refused_at      = -1.; ///< time of the last state that implicit_function refused
-    double nonfinite_at    = -1.; ///< time of the last residual that was not a finite number
+    std::vector<double> output_times;
+    std::size_t next_output_time = 0;
+    double tolerance             = 0.;
+    double fixed_step            = 0.;
+    bool stopped                 = false;
+    bool jacobian_ok             = true;
+    double refused_at            = -1.; ///< time of the last state that implicit_function refused
+    double nonfinite_at          = -1.; ///< time of the last residual that was not a finite number
     std::span<const StepLimit> limits;
     unsigned int limit = 0;                          ///< the present one
     bool underflow     = false;                      ///< a step is below the resolution of the time
@@ -440,7 +440,7 @@ namespace crawler
     return 0;
   }
 
-  /// Shortens the step such that it, or the one after it, ends on the next frame.
+  /// Shortens the step such that it, or the one after it, ends on the next output time.
   PetscErrorCode
   TimeStepper::Implementation::before_step(TS ts)
   {
@@ -454,7 +454,7 @@ namespace crawler
       size = self.fixed_step;
     else
       size = admitted_step(self.limits.data(), static_cast<unsigned int>(self.limits.size()), self.limit, time, size);
-    const double remaining = self.frames[self.next_frame] - time;
+    const double remaining = self.output_times[self.next_output_time] - time;
     if (size >= remaining * (1. - 1e-9))
       size = remaining;
     else if (self.fixed_step == 0. && size > 0.5 * remaining)
@@ -475,25 +475,25 @@ namespace crawler
     PetscReal time = 0., previous = 0.;
     TSGetTime(ts, &time);
     TSGetPrevTime(ts, &previous);
-    const double frame = self.frames[self.next_frame];
-    if (std::abs(time - frame) <= 1e-13 * std::max(frame - previous, std::abs(frame)))
+    const double output_time = self.output_times[self.next_output_time];
+    if (std::abs(time - output_time) <= 1e-13 * std::max(output_time - previous, std::abs(output_time)))
     {
-      time = frame;
-      TSSetTime(ts, frame);
+      time = output_time;
+      TSSetTime(ts, output_time);
     }
     const double size = time - previous;
     if (!(size > 4. * std::numeric_limits<double>::epsilon() * time))
     {
-      self.underflow = true; // nothing can be gained, and nobody should divide by this
+      self.underflow = true; // nothing can be gained, and this is no divisor
       return TSSetConvergedReason(ts, TS_DIVERGED_STEP_REJECTED);
     }
     bool go_on                = true;
     const PetscErrorCode code = self.guarded([&]() { go_on = self.report(time, size); });
     if (code != 0)
       return code;
-    if (time == frame)
-      ++self.next_frame;
-    if (self.next_frame == self.frames.size())
+    if (time == output_time)
+      ++self.next_output_time;
+    if (self.next_output_time == self.output_times.size())
       return TSSetConvergedReason(ts, TS_CONVERGED_TIME);
     if (!go_on)
     {
@@ -513,11 +513,11 @@ namespace crawler
     TSGetStepRejections(ts.get(), &rejected);
     TSGetSNESIterations(ts.get(), &newton);
     const ReadAccess y(solution.get());
-    const bool is_frame = size > 0. && time == frames[next_frame];
+    const bool is_output_time = size > 0. && time == output_times[next_output_time];
     return owner.monitor({time,
                           size,
                           static_cast<unsigned int>(steps),
-                          is_frame,
+                          is_output_time,
                           static_cast<unsigned int>(rejected),
                           static_cast<unsigned long>(newton)},
                          y.span);
@@ -615,7 +615,7 @@ namespace crawler
 
   TimeOutcome
   TimeStepper::solve(std::vector<double> &y,
-                     const std::vector<double> &frames,
+                     const std::vector<double> &output_times,
                      const double tolerance,
                      const double initial_step,
                      const std::span<const StepLimit> limits,
@@ -623,10 +623,10 @@ namespace crawler
   {
     Implementation &self = *implementation_;
     TS ts                = self.ts.get();
-    self.frames          = frames;
-    if (self.frames.empty() || self.frames.back() < self.parameters.end_time)
-      self.frames.push_back(self.parameters.end_time);
-    self.next_frame           = 0;
+    self.output_times    = output_times;
+    if (self.output_times.empty() || self.output_times.back() < self.parameters.end_time)
+      self.output_times.push_back(self.parameters.end_time);
+    self.next_output_time     = 0;
     self.stopped              = false;
     self.exception            = nullptr;
     self.refused_at           = -1.;

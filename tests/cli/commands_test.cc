@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace
 {
-  /// A cheap run: the default wave, a few frames.
+  /// A cheap run: the default wave, a few output times.
   const std::string scene = "# the default wave\n"
                             "set Accuracy = 1e-3\n"
                             "subsection Output\n"
@@ -55,7 +55,7 @@ namespace
 
   /// The times that solution.pvd lists; every file that it lists must be well-formed VTK.
   std::vector<double>
-  frames_of(const fs::path &folder)
+  output_times_of(const fs::path &folder)
   {
     std::vector<double> times;
     const auto tree = xml(folder / "solution.pvd");
@@ -70,9 +70,9 @@ namespace
   }
 
   void
-  expect_frames(const fs::path &folder, const std::vector<double> &wanted)
+  expect_output_times(const fs::path &folder, const std::vector<double> &wanted)
   {
-    const std::vector<double> times = frames_of(folder);
+    const std::vector<double> times = output_times_of(folder);
     ASSERT_EQ(times.size(), wanted.size());
     for (std::size_t i = 0; i < times.size(); ++i)
       EXPECT_NEAR(times[i], wanted[i], 1e-11) << i;
@@ -262,7 +262,7 @@ TEST_F(Commands, RunWritesEveryFile)
   EXPECT_EQ(rows.back()[1], 1.);
   EXPECT_EQ(rows.back()[3], summary.at("displacement").get<double>());
 
-  expect_frames(results, {0., 1. / 3., 2. / 3., 1.});
+  expect_output_times(results, {0., 1. / 3., 2. / 3., 1.});
   const auto kymograph = xml(results / "kymograph.vts");
   EXPECT_EQ(kymograph.get<std::string>("VTKFile.<xmlattr>.type"), "StructuredGrid");
   for (const char *field : {"stretch", "velocity", "active_stress", "friction_force"})
@@ -295,7 +295,7 @@ TEST_F(Commands, RunsWithoutAMeshWriteEveryFile)
   EXPECT_EQ(summary.at("cells"), 0);
   for (const char *part : {"total", "space", "time", "model"})
     EXPECT_TRUE(summary.at("displacement_error").at(part).is_number()) << part;
-  expect_frames(results, {0., 1. / 3., 2. / 3., 1.});
+  expect_output_times(results, {0., 1. / 3., 2. / 3., 1.});
   const auto rows = statistics_of(results);
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_NEAR(rows.back()[3], summary.at("displacement"), 1e-10);
@@ -364,7 +364,7 @@ TEST_F(Commands, AReaderWhoLeavesDoesNotEndTheRun)
     "cd '" + folder.path.string() + "' && '" CRAWLER_PROGRAM "' run scene.prm --output results | true";
   ASSERT_EQ(std::system(command.c_str()), 0);
   EXPECT_EQ(summary_of(results)["status"], "finished");
-  expect_frames(results, {0., 1. / 3., 2. / 3., 1.});
+  expect_output_times(results, {0., 1. / 3., 2. / 3., 1.});
 }
 
 /// Waves at p = 1 move nothing, by 0 and not by -0.
@@ -420,7 +420,7 @@ TEST_F(Commands, OverwriteReplacesOwnFilesOnly)
             0);
   EXPECT_EQ(read_text(results / "notes.txt"), "mine\n");
   EXPECT_EQ(read_text(results / "solution" / "figure.png"), "mine too\n");
-  EXPECT_EQ(frames_of(results), (std::vector<double>{0., 1.}));
+  EXPECT_EQ(output_times_of(results), (std::vector<double>{0., 1.}));
   EXPECT_FALSE(fs::exists(results / "solution" / "000002.vtu"));
   EXPECT_FALSE(fs::exists(results / "statistics.csv"));
 }
@@ -553,7 +553,7 @@ TEST_F(Commands, InversionInsideIsNamed)
   EXPECT_GT(summary.at("min_stretch").at("value"), 0.); // no inverted state is counted
   for (const auto &row : statistics_of(results))
     EXPECT_GT(row[4], 0.);
-  expect_frames(results, {0., 0.1, 0.2, 0.3});
+  expect_output_times(results, {0., 0.1, 0.2, 0.3});
   xml(results / "kymograph.vts");
 }
 
@@ -579,7 +579,7 @@ TEST_F(Commands, InversionOfAnEndIsNamed)
   EXPECT_TRUE(s == 0. || s == 1.) << s;
   EXPECT_GT(summary.at("min_stretch").at("value"), 0.);
   statistics_of(results);
-  expect_frames(results, {0., 0.1, 0.2, 0.3, 0.4});
+  expect_output_times(results, {0., 0.1, 0.2, 0.3, 0.4});
 }
 
 TEST_F(Commands, ExitCodesAndStatusAgree)
@@ -643,9 +643,9 @@ TEST_F(Commands, SignalsStopARunInOrder)
     const auto rows = statistics_of(results);
     EXPECT_EQ(rows.size(), summary.at("steps").get<std::size_t>() + 1);
     EXPECT_DOUBLE_EQ(rows.back()[1], summary.at("end_time").get<double>());
-    const std::vector<double> frames = frames_of(results);
-    EXPECT_GE(frames.size(), 6u);
-    EXPECT_LE(frames.back(), summary.at("end_time").get<double>() + 1e-11);
+    const std::vector<double> output_times = output_times_of(results);
+    EXPECT_GE(output_times.size(), 6u);
+    EXPECT_LE(output_times.back(), summary.at("end_time").get<double>() + 1e-11);
     xml(results / "kymograph.vts");
     EXPECT_TRUE(contains(read_text(results / "log.txt"), "Stopped at t = "));
   }

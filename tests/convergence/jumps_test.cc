@@ -33,21 +33,21 @@ namespace
   class Times : public Observer
   {
   public:
-    explicit Times(std::vector<double> &steps, std::vector<double> &frames)
+    explicit Times(std::vector<double> &steps, std::vector<double> &output_times)
       : steps_(steps)
-      , frames_(frames)
+      , output_times_(output_times)
     {
     }
     void
     observe(const Snapshot &snapshot) override
     {
       steps_.push_back(snapshot.step.time);
-      if (snapshot.is_frame)
-        frames_.push_back(snapshot.step.time);
+      if (snapshot.is_output_time)
+        output_times_.push_back(snapshot.step.time);
     }
 
   private:
-    std::vector<double> &steps_, &frames_;
+    std::vector<double> &steps_, &output_times_;
   };
 
   double
@@ -213,7 +213,7 @@ TEST(Jumps, AreTheSameForAllMethods)
           1e-4);
 }
 
-/// A thousand switchings: steps end at each of them, frames are frames and nothing else is.
+/// A thousand switchings: steps end at each of them, output times are output times and nothing else is.
 TEST(Jumps, ManyInTime)
 {
   constexpr unsigned int n = 1000;
@@ -232,18 +232,18 @@ TEST(Jumps, ManyInTime)
     TimeParameters time = run->parameters.time;
     time.engine         = engine;
     Simulation simulation(MPI_COMM_WORLD, run->scene, time, run->numerics);
-    std::vector<double> steps, frames;
+    std::vector<double> steps, output_times;
     std::vector<std::unique_ptr<Observer>> observers;
-    observers.push_back(std::make_unique<Times>(steps, frames));
+    observers.push_back(std::make_unique<Times>(steps, output_times));
     const SimulationResult result = simulation.run(wanted, {.energy_balance = true}, observers);
     ASSERT_EQ(result.time.status, "finished") << result.time.message;
     EXPECT_EQ(result.time.steps + 1, steps.size());
     EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end()));
     for (const double t : switches)
       EXPECT_LT(distance(steps, t), 1e-14 + 1e-15 * t);
-    ASSERT_EQ(frames.size(), wanted.size() + 1);
+    ASSERT_EQ(output_times.size(), wanted.size() + 1);
     for (std::size_t i = 0; i < wanted.size(); ++i)
-      EXPECT_EQ(frames[i + 1], wanted[i]);
+      EXPECT_EQ(output_times[i + 1], wanted[i]);
     EXPECT_LT(result.energy_balance->residual(), 1e-5);
     displacements.push_back(result.displacement);
     fmt::print("{}: {} steps, {:.3f} s\n", engine, result.time.steps, result.solve_seconds);
@@ -251,7 +251,7 @@ TEST(Jumps, ManyInTime)
   const auto batch = test::run_alone(*run);
   ASSERT_TRUE(batch);
   EXPECT_NEAR(run->simulate("automatic").displacement / batch->displacement, 1., 1e-12);
-  for (const double displacement : displacements) // frames make other steps
+  for (const double displacement : displacements) // output times make other steps
     EXPECT_NEAR(displacement / batch->displacement, 1., 1e-5);
 }
 

@@ -202,14 +202,14 @@ TEST(CycleStop, DriftOfTheStretchIsSeen)
 
 TEST(CycleStop, WhenItIsWished)
 {
-  const auto wish = [](const test::Settings &settings, const unsigned int n_frames) {
+  const auto wish = [](const test::Settings &settings, const unsigned int n_output_times) {
     const auto parameters = test::parameters_with(settings);
     const Scene scene     = parameters.create_scene();
-    return cycle_wish(parameters, scene, n_frames).has_value();
+    return cycle_wish(parameters, scene, n_output_times).has_value();
   };
   auto settings = test::wave(-1., 0.1, 1., 20.);
   EXPECT_TRUE(wish(settings, 0));
-  EXPECT_FALSE(wish(settings, 50)); // every frame is wanted
+  EXPECT_FALSE(wish(settings, 50)); // every output time is wanted
   EXPECT_FALSE(wish(test::wave(-1., 0.1, 1., 2.5), 0));
   settings.emplace_back("Time/Cycle stop", "off");
   EXPECT_FALSE(wish(settings, 0));

@@ -44,7 +44,7 @@ namespace crawler
     void
     serve();
 
-    /// Nobody gets a number any more.
+    /// No number is given any more.
     void
     close();
 

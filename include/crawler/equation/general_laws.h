@@ -57,7 +57,7 @@ namespace crawler
     BodyForceAtPoints(const Scene &scene, const std::vector<double> &points);
 
     /// @p e is the strain; @p seen what the feedback sees (without effect if there is none); @p known_m is m where it
-    /// depends on time and place only and somebody knows it.
+    /// depends on time and place only and is known.
     void
     evaluate(double t, std::span<const double> e, const StretchSeen &seen, const double *known_m = nullptr);
 

@@ -35,15 +35,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     double t = 0., h = 1., next = 1., old_h = 1.;
     double error = 0.; ///< of the step, relative to the tolerance
     double rate = 0., known_rate = 1., last_correction = 0.;
-    unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, frame = 0, limit = 0;
+    unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, output_time = 0, limit = 0;
     unsigned int first_step = 0; ///< steps before the last start
     unsigned long newton    = 0;
 
-    /// The size wanted, but steps end at frames.
+    /// The size wanted, but steps end at output times.
     void
     choose_step()
     {
-      const double left = job.frames[frame] - t;
+      const double left = job.output_times[output_time] - t;
       h                 = admitted_step(job.limits, job.n_limits, limit, t, next);
       if (h >= left * (1. - 1e-9))
         h = left;
@@ -54,7 +54,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     double
     end_of_step() const
     {
-      return h == job.frames[frame] - t ? job.frames[frame] : t + h;
+      return h == job.output_times[output_time] - t ? job.output_times[output_time] : t + h;
     }
 
     void
@@ -167,18 +167,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       first_step    = steps;
     }
 
-    /// Goes to the end of the step; is it a frame?
+    /// Goes to the end of the step; is it a output time?
     bool
     arrive()
     {
-      t                   = end_of_step();
-      old_h               = h;
-      has_old             = true;
-      const bool is_frame = t == job.frames[frame];
+      t                         = end_of_step();
+      old_h                     = h;
+      has_old                   = true;
+      const bool is_output_time = t == job.output_times[output_time];
       ++steps;
-      if (is_frame)
-        ++frame;
-      return is_frame;
+      if (is_output_time)
+        ++output_time;
+      return is_output_time;
     }
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

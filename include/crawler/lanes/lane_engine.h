@@ -50,12 +50,13 @@ namespace crawler
     unsigned int n_limits;
     unsigned int most_steps;
     double least_stretch; ///< a state with a smaller one is given up; the full path must tell what it means
-    bool is_last_resort;  ///< is there nobody else who would go on where Newton's method often fails?
+    bool is_last_resort;  ///< is there no other engine to go on where Newton's method often fails?
     double start_time;
-    const double *start;  ///< [unknowns] displacement at start_time; null: rest
-    const double *frames; ///< ascending times after start_time where steps must end; the run ends with the last
-    unsigned int n_frames;
-    /// [n_frames] is the frame a time when the active stress jumps, so the body starts anew there? Null: none is.
+    const double *start;        ///< [unknowns] displacement at start_time; null: rest
+    const double *output_times; ///< ascending times after start_time where steps must end; the run ends with the last
+    unsigned int n_output_times;
+    /// [n_output_times] is the output time a time when the active stress jumps, so the body starts anew there? Null:
+    /// none is.
     const unsigned char *restarts;
   };
 
@@ -76,7 +77,7 @@ namespace crawler
     double next_size;
     unsigned int number, rejected;
     unsigned long newton_iterations;
-    bool is_frame;
+    bool is_output_time;
     std::size_t stride;
     const double *y;         ///< [unknowns] displacement
     const double *z;         ///< [stages][unknowns] displacements in the stages relative to the start of the step

@@ -22,7 +22,7 @@ namespace crawler
 
     TimeOutcome
     solve(std::vector<double> &y,
-          const std::vector<double> &frames,
+          const std::vector<double> &output_times,
           double tolerance,
           double initial_step,
           std::span<const StepLimit> limits,
@@ -76,6 +76,6 @@ namespace crawler
     std::vector<double> *y_ = nullptr;
     LaneStep step_;
     TimeOutcome outcome_;
-    std::vector<double> frames_, weights_, rate_;
+    std::vector<double> output_times_, weights_, rate_;
   };
 } // namespace crawler

@@ -17,8 +17,8 @@ namespace crawler
    *   M u' + K u + f(t) = 0,   M_ij = int gamma phi_j phi_i,   K_ij = int k phi_j,s phi_i,s,   f_i = int m phi_i,s,
    *
    * by the Radau IIA methods (radau_tableau.h). The stages are solved exactly, by one real and (s-1)/2 complex chain
-   * eliminations: no Newton iteration. The time to the next frame is divided into equal steps, and again when the error
-   * asks for other ones; each size needs one factorization. Error control as in time/radau.h.
+   * eliminations: no Newton iteration. The time to the next output time is divided into equal steps, and again when the
+   * error asks for other ones; each size needs one factorization. Error control as in time/radau.h.
    */
   class LinearStepper : public TimeIntegration
   {
@@ -30,7 +30,7 @@ namespace crawler
     /// The end time is 1.
     TimeOutcome
     solve(std::vector<double> &y,
-          const std::vector<double> &frames,
+          const std::vector<double> &output_times,
           double tolerance,
           double initial_step,
           std::span<const StepLimit> limits,

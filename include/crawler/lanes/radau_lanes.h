@@ -333,8 +333,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     arrive(const int l)
     {
-      Lane &lane          = lanes_[l];
-      const bool is_frame = lane.arrive();
+      Lane &lane                = lanes_[l];
+      const bool is_output_time = lane.arrive();
       if (!(stages_[l][s - 1].min_stretch > lane.job.least_stretch))
       {
         end(l, LaneOutcome::gave_up);
@@ -350,17 +350,17 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                 lane.steps,
                                 lane.rejected,
                                 lane.newton,
-                                is_frame,
+                                is_output_time,
                                 lanes,
                                 reinterpret_cast<const double *>(states_.y) + l,
                                 reinterpret_cast<const double *>(states_.old_z) + l,
                                 stages_[l],
                                 get_lane(elastic_energy_, l)});
-      if (lane.frame == lane.job.n_frames)
+      if (lane.output_time == lane.job.n_output_times)
         end(l, LaneOutcome::finished);
       else if (!go_on || lane.steps >= lane.job.most_steps)
         end(l, LaneOutcome::stopped);
-      else if (is_frame && lane.job.restarts != nullptr && lane.job.restarts[lane.frame - 1] != 0)
+      else if (is_output_time && lane.job.restarts != nullptr && lane.job.restarts[lane.output_time - 1] != 0)
       {
         lane.start_anew();
         stress(l, lane.t, m_start_);

@@ -12,7 +12,7 @@ namespace crawler
   struct Snapshot
   {
     const Step &step;
-    bool is_frame;              ///< one of the snapshots that were asked for, the initial state included
+    bool is_output_time;        ///< one of the snapshots that were asked for, the initial state included
     const Assembler &assembler; ///< mesh and formulation; may be another one in the next snapshot ...
     unsigned int mesh_number;   ///< ... and then this number is another one
     const Units &units;

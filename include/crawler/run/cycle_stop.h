@@ -28,10 +28,10 @@ namespace crawler
   struct RunParameters;
   struct Scene;
 
-  /// What the entry Time/Cycle stop means for a run with so many frames; nothing if it shall not end early or if the
-  /// active stress has no period of which there are enough.
+  /// What the entry Time/Cycle stop means for a run with so many output times; nothing if it shall not end early or if
+  /// the active stress has no period of which there are enough.
   std::optional<CycleWish>
-  cycle_wish(const RunParameters &parameters, const Scene &scene, unsigned int n_frames);
+  cycle_wish(const RunParameters &parameters, const Scene &scene, unsigned int n_output_times);
 
   /**
    * Watches a run with periodic actuation, from rest over (0, 1], and says when a cycle repeats the one before it

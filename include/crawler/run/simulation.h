@@ -46,7 +46,7 @@ namespace crawler
     {
       bool energy_balance             = false; ///< works, energies, net friction
       bool resolution                 = false; ///< SimulationResult::unresolved
-      std::optional<CycleWish> cycles = {};    ///< end the run when its cycles repeat; not with frames
+      std::optional<CycleWish> cycles = {};    ///< end the run when its cycles repeat; not with output times
       GaitWish gait                   = GaitWish::none;
     };
 
@@ -54,9 +54,10 @@ namespace crawler
     ~Simulation();
 
     /// Runs from rest. If that is wished it ends when its cycles repeat (cycle_stop.h); the result is that of the end
-    /// time all the same. @p frames are times in (0, T] where steps must end. @p keep_going is asked after every step.
+    /// time all the same. @p output_times are times in (0, T] where steps must end. @p keep_going is asked after every
+    /// step.
     SimulationResult
-    run(const std::vector<double> &frames,
+    run(const std::vector<double> &output_times,
         const Options &options,
         const std::vector<std::unique_ptr<Observer>> &observers = {},
         const std::function<bool()> &keep_going                 = {});
@@ -102,9 +103,9 @@ namespace crawler
     void
     count_part(const TimeOutcome &outcome);
     void
-    begin_piece();
+    begin_segment();
     std::vector<double>
-    frames_of_piece();
+    output_times_of_segment();
     void
     change();
     void
@@ -172,7 +173,7 @@ namespace crawler
 
     const Scene &physical_scene_;
     const Units units_;
-    TimePieces pieces_;
+    TimeSegments pieces_;
     const Scene scene_;                  ///< in natural units
     const Numerics numerics_;            ///< in natural units
     TimeParameters time_;                ///< in natural units
@@ -220,21 +221,21 @@ namespace crawler
     };
     std::vector<Rate> rates_;           ///< of the latest residuals, where they are kept
     double relaxation_time_ = HUGE_VAL; ///< of the present mesh, at least
-    double delay_           = 0.;       ///< of the feedback [natural units]; 0: nobody asks for the past
+    double delay_           = 0.;       ///< of the feedback [natural units]; 0: it does not see the past
     StretchHistory history_;
     std::shared_ptr<const std::vector<Cell>> history_cells_; ///< of the present mesh
     // The last state that was accepted, to which a change of mesh may go back.
     std::vector<double> accepted_;
     double accepted_time_ = 0., next_step_ = 0.;
-    TimeOutcome before_;         ///< counts of the parts of the run before the last change of mesh
-    Step latest_{};              ///< that was tried, with the counts of the whole run
-    std::vector<double> frames_; ///< in physical units
-    std::size_t next_frame_ = 0;
-    bool ends_at_frame_     = false; ///< does the present piece?
+    TimeOutcome before_;               ///< counts of the parts of the run before the last change of mesh
+    Step latest_{};                    ///< that was tried, with the counts of the whole run
+    std::vector<double> output_times_; ///< in physical units
+    std::size_t next_output_time_ = 0;
+    bool ends_at_output_time_     = false; ///< does the present piece?
     std::optional<CycleStop> cycle_stop_;
     std::optional<GaitMeter> gait_meter_;
     std::optional<StressWatch> watch_;
-    std::optional<double> hidden_frame_; ///< one of frames_ that nobody has asked for
+    std::optional<double> hidden_output_time_; ///< one of output_times_ that nobody has asked for
     unsigned int mesh_number_ = 0, tiny_steps_ = 0;
     unsigned long n_failures_ = 0;     ///< of the active stress before this run
     bool started_             = false; ///< a state has been accepted

@@ -22,7 +22,7 @@ namespace crawler
     TimeOutcome time;                ///< its status is "inverted" too
     std::string model = "nonlinear"; ///< level of the model hierarchy
 
-    /// Of the centre of mass, (1/L) int u ds [length]; not a number if nobody looked before the run broke off.
+    /// Of the centre of mass, (1/L) int u ds [length]; not a number if it was not looked at before the run broke off.
     double displacement = std::numeric_limits<double>::quiet_NaN();
     /// How: an integrator of time/integrators.h; petsc, fused, or "fused, petsc" where the fused engine gave up.
     std::string integrator, engine;

@@ -24,14 +24,14 @@ namespace crawler
    * t_b to t_c it is evaluated at times in [t_b + 2 d, t_c - d], d = 1e-12 T: what a generator answers at the very time
    * of a break does not matter. Time here is in units of T.
    */
-  class TimePieces
+  class TimeSegments
   {
   public:
     /// One piece, without breaks: any time is as good as another.
-    TimePieces() = default;
+    TimeSegments() = default;
 
     /// @p end_time is T [time]. Breaks at 0 and T, or beyond, may be among those of the stress.
-    TimePieces(const ActiveStress &stress, double end_time);
+    TimeSegments(const ActiveStress &stress, double end_time);
 
     /// The times in (0, 1) where pieces meet.
     const std::vector<double> &

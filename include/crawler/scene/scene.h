@@ -64,5 +64,5 @@ namespace crawler
   /// The same problem in other units. It refers to @p scene, which must outlive it. If @p pieces are given, which must
   /// outlive it too, the active stress is that of the piece that is the present one when it is evaluated.
   Scene
-  in_units(const Scene &scene, const Units &units, const TimePieces *pieces = nullptr);
+  in_units(const Scene &scene, const Units &units, const TimeSegments *pieces = nullptr);
 } // namespace crawler

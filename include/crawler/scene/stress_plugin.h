@@ -58,7 +58,7 @@ namespace crawler
       return values_;
     }
 
-    /// The names that somebody has asked for: any other that is set is a slip of the user's.
+    /// The names that were asked for: any other that is set is a slip of the user's.
     const std::set<std::string> &
     known() const
     {

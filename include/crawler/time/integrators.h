@@ -21,7 +21,7 @@ namespace crawler
   const std::vector<Integrator> &
   integrators();
 
-  /// "automatic" is bdf unless somebody chooses (accuracy/numerics_choice.h). Throws std::logic_error if there is none
+  /// "automatic" is bdf unless one is chosen (accuracy/numerics_choice.h). Throws std::logic_error if there is none
   /// of that name.
   const Integrator &
   integrator(const std::string &name);

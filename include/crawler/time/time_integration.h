@@ -16,7 +16,7 @@ namespace crawler
     double time;
     double size; ///< 0 for the initial state
     unsigned int number;
-    bool is_frame;         ///< the time is one of the times that were asked for, exactly
+    bool is_output_time;   ///< the time is one of the times that were asked for, exactly
     unsigned int rejected; ///< rejected steps so far
     unsigned long newton_iterations;
   };
@@ -49,13 +49,13 @@ namespace crawler
 
     /**
      * Integrates from @p start_time to the end time. @p y is the first state on entry and the last accepted
-     * state on return. Steps end exactly on @p frames (ascending, within (start_time, end_time]) and on the end time.
-     * The same object can solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p
+     * state on return. Steps end exactly on @p output_times (ascending, within (start_time, end_time]) and on the end
+     * time. The same object can solve again and again; that costs microseconds. @p tolerance [the unit of y] and @p
      * initial_step [time] replace the parameters' automatic values. Adaptive steps keep the @p limits.
      */
     virtual TimeOutcome
     solve(std::vector<double> &y,
-          const std::vector<double> &frames,
+          const std::vector<double> &output_times,
           double tolerance,
           double initial_step,
           std::span<const StepLimit> limits,

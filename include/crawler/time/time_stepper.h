@@ -54,7 +54,7 @@ namespace crawler
     bool exact_elimination = true;
     TimeOutcome
     solve(std::vector<double> &y,
-          const std::vector<double> &frames,
+          const std::vector<double> &output_times,
           double tolerance,
           double initial_step,
           std::span<const StepLimit> limits,

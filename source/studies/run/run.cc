@@ -35,7 +35,7 @@ namespace crawler
   {
     /// n equal parts of (0, end_time].
     std::vector<double>
-    frame_times(const unsigned int n, const double end_time)
+    equal_times(const unsigned int n, const double end_time)
     {
       std::vector<double> times;
       for (unsigned int i = 1; i <= n; ++i)
@@ -80,7 +80,7 @@ namespace crawler
       outcome.message         = text.substr(split + 1);
     }
 
-    /// PETSc options that nobody has looked at are most likely misspelt.
+    /// PETSc options that were not read are most likely misspelt.
     void
     report_unused_options(Log &log)
     {
@@ -224,7 +224,7 @@ namespace crawler
         log.line(describe(choice.numerics, input));
       }
       SimulationResult run = simulation->run(
-        frame_times(output.n_snapshots, parameters.time.end_time), run_options, create_observers(), keep_going);
+        equal_times(output.n_snapshots, parameters.time.end_time), run_options, create_observers(), keep_going);
       latest = run.time;
       return run;
     };

@@ -59,7 +59,7 @@ namespace crawler
       return points;
     }
 
-    /// Writes the frames of a level as a run with a mesh does, at equidistant points: one cell, the whole body.
+    /// Writes the output times of a level as a run with a mesh does, at equidistant points: one cell, the whole body.
     bool
     write_pictures(const ReducedModel &level,
                    const Input &input,

@@ -100,11 +100,11 @@ TEST_P(LaneStepperTest, GivesWhatPetscGives)
 
 namespace
 {
-  /// Keeps what an observer sees in frames.
+  /// Keeps what an observer sees in output times.
   struct Seen
   {
     std::vector<double> times, computed_times, numbers;
-    std::vector<double> y; ///< of all frames
+    std::vector<double> y; ///< of all output times
     unsigned int steps = 0;
   };
 
@@ -120,7 +120,7 @@ namespace
     observe(const Snapshot &snapshot) override
     {
       seen_.steps = snapshot.step.number;
-      if (!snapshot.step.is_frame)
+      if (!snapshot.step.is_output_time)
         return;
       seen_.times.push_back(snapshot.step.time);
       seen_.computed_times.push_back(snapshot.computed_time);
@@ -140,7 +140,7 @@ namespace
   };
 
   Seen
-  watch(const LaneRun &run, const std::string &engine, const std::vector<double> &frames)
+  watch(const LaneRun &run, const std::string &engine, const std::vector<double> &output_times)
   {
     TimeParameters time = run.parameters.time;
     time.engine         = engine;
@@ -148,30 +148,30 @@ namespace
     std::vector<std::unique_ptr<Observer>> observers;
     observers.push_back(std::make_unique<Recorder>(seen));
     const auto result =
-      Simulation(MPI_COMM_WORLD, run.scene, time, run.numerics).run(frames, {.energy_balance = true}, observers);
+      Simulation(MPI_COMM_WORLD, run.scene, time, run.numerics).run(output_times, {.energy_balance = true}, observers);
     EXPECT_EQ(result.time.status, "finished");
     return seen;
   }
 } // namespace
 
-TEST(LaneStepper, ObserversSeeTheFramesOfPetsc)
+TEST(LaneStepper, ObserversSeeTheOutputTimesOfPetsc)
 {
   constexpr double tolerance = 1e-7, end_time = 1.7;
-  std::vector<double> frames = {1e-9, 0.1, 0.1 + 1e-9, 0.7 / 3.};
+  std::vector<double> output_times = {1e-9, 0.1, 0.1 + 1e-9, 0.7 / 3.};
   for (unsigned int i = 1; i < 17; ++i)
-    frames.push_back(0.3 + i * (end_time - 0.3) / 17.);
-  frames.push_back(end_time);
+    output_times.push_back(0.3 + i * (end_time - 0.3) / 17.);
+  output_times.push_back(end_time);
   for (const std::string integrator : {"radau 5", "radau 9"})
     for (const double a : {-1., 1.})
     {
       const LaneRun run(in_other_units(test::wave(a, 0.25)),
                         integrator,
                         {.degree = 5, .n_cells = 6, .tolerance = tolerance, .initial_step = 1e-4});
-      const Seen petsc = watch(run, "petsc", frames), fused = watch(run, "automatic", frames);
-      EXPECT_EQ(fused.times, frames); // exactly
-      ASSERT_EQ(fused.computed_times.size(), frames.size());
-      for (std::size_t i = 0; i + 1 < frames.size(); ++i)
-        EXPECT_EQ(fused.computed_times[i], frames[i] / end_time);
+      const Seen petsc = watch(run, "petsc", output_times), fused = watch(run, "automatic", output_times);
+      EXPECT_EQ(fused.times, output_times); // exactly
+      ASSERT_EQ(fused.computed_times.size(), output_times.size());
+      for (std::size_t i = 0; i + 1 < output_times.size(); ++i)
+        EXPECT_EQ(fused.computed_times[i], output_times[i] / end_time);
       EXPECT_EQ(fused.computed_times.back(), 1.);
       EXPECT_NEAR(fused.steps, petsc.steps, 0.1 * petsc.steps);
       ASSERT_EQ(fused.y.size(), petsc.y.size());
@@ -183,7 +183,7 @@ TEST(LaneStepper, ObserversSeeTheFramesOfPetsc)
     }
 }
 
-/// Frames do not depend on who computes the run; without observers they are steps all the same.
+/// Output times do not depend on who computes the run; without observers they are steps all the same.
 TEST(LaneStepper, ARunStopsAtOnce)
 {
   const LaneRun run(

@@ -109,14 +109,14 @@ TEST(LinearStepper, AdaptiveStepsHaveFewSizes)
   LinearStepper stepper(scene, mesh, 5, /*adaptive=*/true);
   std::vector<double> u(mesh.n_owned(), 0.), times;
   stepper.monitor = [&](const Step &step, const auto) {
-    if (step.is_frame)
+    if (step.is_output_time)
       times.push_back(step.time);
     return true;
   };
-  const std::vector<double> frames = {0.2, 0.4, 0.6, 0.8, 1.};
-  const auto outcome               = stepper.solve(u, frames, 1e-10, 0.01, {}, 0.);
+  const std::vector<double> output_times = {0.2, 0.4, 0.6, 0.8, 1.};
+  const auto outcome                     = stepper.solve(u, output_times, 1e-10, 0.01, {}, 0.);
   EXPECT_EQ(outcome.status, "finished");
-  EXPECT_EQ(times, frames);
+  EXPECT_EQ(times, output_times);
   fmt::print("{} steps, {} factorizations\n", outcome.steps, stepper.n_factorizations());
   EXPECT_LE(2 * stepper.n_factorizations(), outcome.steps);
 }
@@ -175,7 +175,7 @@ TEST(LinearLevel, EqualsTheNonlinearLevel)
   EXPECT_LT(result.energy_balance->residual(), 1e-7);
 }
 
-/// Other units, several frames, and cycles that repeat.
+/// Other units, several output times, and cycles that repeat.
 TEST(LinearLevel, CyclesRepeat)
 {
   const auto parameters = linear("0.3*sin(2*pi*t)*sin(pi*s)", 30., 1., {{"Accuracy", "1e-7"}});

@@ -40,8 +40,8 @@ TEST(Breaks, AreSortedDistinctAndInside)
 {
   using List = std::vector<double>;
   EXPECT_EQ(breaks_in_space(with({1.5, 0.5, 0., 2., 0.5 + 1e-10, -3., 7.}, {}), 2.), (List{0.5, 1.5}));
-  EXPECT_EQ(TimePieces(with({}, {3., 1., 4., 0., 1. + 1e-13, 9.}), 4.).breaks(), (List{0.25, 0.75}));
-  EXPECT_TRUE(TimePieces(with({}, {}), 4.).breaks().empty());
+  EXPECT_EQ(TimeSegments(with({}, {3., 1., 4., 0., 1. + 1e-13, 9.}), 4.).breaks(), (List{0.25, 0.75}));
+  EXPECT_TRUE(TimeSegments(with({}, {}), 4.).breaks().empty());
 }
 
 /// Within a piece no time of another is used, and none at its ends; without breaks times are what they are.
@@ -52,7 +52,7 @@ TEST(Breaks, PiecesAreEvaluatedInside)
   scene.end_time = 2.;
   scene.active_stress =
     std::make_unique<test::WithBreaks>(std::make_unique<Clock>(), std::vector<double>(), std::vector<double>{0.5, 1.});
-  TimePieces pieces(*scene.active_stress, 2.);
+  TimeSegments pieces(*scene.active_stress, 2.);
   const Units units{1., 2., 1.};
   const Scene scaled = in_units(scene, units, &pieces);
   const auto stress  = scaled.active_stress->at({0.5});

@@ -44,12 +44,12 @@ namespace
     }
 
     TimeOutcome
-    solve(const double tolerance, const double step, const std::vector<double> &frames = {})
+    solve(const double tolerance, const double step, const std::vector<double> &output_times = {})
     {
       steps.clear();
       states.clear();
       y = {0.};
-      return stepper.solve(y, frames, tolerance, step, /*limits=*/{}, /*start_time=*/0.);
+      return stepper.solve(y, output_times, tolerance, step, /*limits=*/{}, /*start_time=*/0.);
     }
 
     TimeStepper stepper;
@@ -91,18 +91,18 @@ TEST(TimeStepper, EveryIntegratorReachesItsOrder)
   }
 }
 
-TEST(TimeStepper, StepsEndExactlyOnFrames)
+TEST(TimeStepper, StepsEndExactlyAtOutputTimes)
 {
   for (const std::string control : {"adaptive", "fixed"})
   {
     ScalarEquation equation(parameters_for("bdf", control));
-    const std::vector<double> frames = {0.1, 1. / 3., 0.7, 0.7000001, 1.5};
-    ASSERT_EQ(equation.solve(1e-9, 1e-3, frames).status, "finished");
+    const std::vector<double> output_times = {0.1, 1. / 3., 0.7, 0.7000001, 1.5};
+    ASSERT_EQ(equation.solve(1e-9, 1e-3, output_times).status, "finished");
     std::vector<double> found;
     for (const Step &step : equation.steps)
-      if (step.is_frame)
+      if (step.is_output_time)
         found.push_back(step.time);
-    EXPECT_EQ(found, frames); // exactly
+    EXPECT_EQ(found, output_times); // exactly
     EXPECT_EQ(equation.steps.back().time, 1.5);
     EXPECT_EQ(equation.steps.front().number, 0u);
     EXPECT_NEAR(equation.y[0], std::sin(1.5), control == "fixed" ? 1e-4 : 1e-7);

@@ -57,6 +57,6 @@ namespace crawler
     std::string formula_;
     std::shared_ptr<const Formula> compiled_;
     mutable FormulaBound bound_;
-    mutable std::optional<std::optional<double>> period_; ///< once somebody has asked
+    mutable std::optional<std::optional<double>> period_; ///< once it was asked for
   };
 } // namespace crawler

@@ -63,7 +63,7 @@ namespace crawler
     const double end_time_;
     const std::string shape_;
     const Settings settings_;
-    mutable std::optional<std::optional<double>> period_; ///< once somebody has asked
+    mutable std::optional<std::optional<double>> period_; ///< once it was asked for
   };
 
   /// OptimalWave or ShapedWave, as the entry Shape says.

@@ -86,7 +86,7 @@ namespace crawler
     const std::vector<SumTerm> terms_;
     const double length_, end_time_;
     std::unique_ptr<const Feedback> feedback_;
-    mutable std::optional<std::optional<double>> period_; ///< once somebody has asked
+    mutable std::optional<std::optional<double>> period_; ///< once it was asked for
     mutable StressFailures failures_;                     ///< of all terms
   };
 } // namespace crawler
