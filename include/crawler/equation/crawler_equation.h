@@ -39,14 +39,6 @@ namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET
     return g * v;
   }
 
-  /// Power lost to friction per reference length [force/time].
-  template <typename Number>
-  inline Number
-  dissipation(const Number g, const Number v)
-  {
-    return g * v * v;
-  }
-
   /// Power of the active stress per reference length [force/time], for the stretch rate v_s.
   template <typename Number>
   inline Number

@@ -12,7 +12,7 @@ namespace crawler
    *
    * The parts, each used by those below it: sweep_design.h, which values the axes take; sweep_points.h, the parameters
    * of a point; sweep_blocks.h, what is computed together and in which order; sweep_rows.h, columns and rows of the
-   * table; sweep_inputs.h, what the answers depend on; sweep_folder.h, to begin or to resume; sweep_worker.h, one
+   * table; sweep_inputs.h, what the answers depend on; point_table.h, to begin or to resume; sweep_worker.h, one
    * rank's work; sweep_results.h, results.csv and summary.json.
    */
   ExitCode
