@@ -100,7 +100,7 @@ namespace crawler
   void
   GeneralPositionForm::add_far(const Far &far, const ConstVector x, const Vector result) const
   {
-    if (scene_.active_stress->feedback() == nullptr || !scene_.active_stress->feedback()->sees_near())
+    if (solves_exactly())
       return;
     const ReferenceElement &element = discretization_.element();
     const unsigned int n = element.n, q = element.degree;
@@ -122,6 +122,12 @@ namespace crawler
     const bool ok = PositionForm::setup_jacobian(t, u, v, sigma);
     jacobian_far_ = far();
     return ok;
+  }
+
+  bool
+  GeneralPositionForm::solves_exactly() const
+  {
+    return scene_.active_stress->feedback() == nullptr || !scene_.active_stress->feedback()->sees_near();
   }
 
   void

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/lanes/lane_stepper.h>
+#include <crawler/time/radau_loops.h>
 #include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
@@ -147,14 +148,16 @@ namespace crawler
   void
   LaneStepper::show_rates()
   {
-    const std::size_t n = y_->size();
-    rate_.resize(n);
+    rate_.resize(y_->size());
     for (unsigned int i = 0; i < tableau_.n; ++i)
     {
-      std::fill(rate_.begin(), rate_.end(), 0.);
-      for (unsigned int j = 0; j < tableau_.n; ++j)
-        for (std::size_t d = 0; d < n; ++d)
-          rate_[d] += tableau_.inverse[i * tableau_.n + j] / step_.size * step_.z[j * n + d];
+      radau::stage_rate(static_cast<int>(tableau_.n),
+                        tableau_.inverse.data(),
+                        static_cast<int>(i),
+                        1. / step_.size,
+                        step_.z,
+                        static_cast<int>(rate_.size()),
+                        rate_.data());
       stage_rates(step_.time - (1. - tableau_.c[i]) * step_.size, rate_);
     }
   }
@@ -162,14 +165,6 @@ namespace crawler
   void
   LaneStepper::interpolate(const double time, const Vector y)
   {
-    const std::size_t n = y.size(), s = tableau_.n;
-    tableau_.collocation_weights(1. - (step_.time - time) / step_.size, weights_);
-    for (std::size_t d = 0; d < n; ++d)
-    {
-      double sum = step_.y[d] - step_.z[(s - 1) * n + d];
-      for (std::size_t j = 0; j < s; ++j)
-        sum += weights_[j] * step_.z[j * n + d];
-      y[d] = sum;
-    }
+    state_within(step_, setup_, time, y);
   }
 } // namespace crawler

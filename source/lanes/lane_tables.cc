@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/lanes/lane_tables.h>
+#include <crawler/time/radau_loops.h>
 #include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
@@ -10,21 +11,6 @@
 
 namespace crawler
 {
-  namespace
-  {
-    std::vector<double>
-    interleaved(const std::vector<std::complex<double>> &values)
-    {
-      std::vector<double> result;
-      for (const auto &value : values)
-      {
-        result.push_back(value.real());
-        result.push_back(value.imag());
-      }
-      return result;
-    }
-  } // namespace
-
   LaneTables::LaneTables(const LaneMethod &method)
     : method_(method)
     , element_(method.degree)
@@ -37,9 +23,6 @@ namespace crawler
     }
     samples_                    = interpolation_matrix(element_.nodes, sample_places_, 1);
     const RadauTableau &tableau = radau_tableau(method.n_stages);
-    eigenvalues_                = interleaved(tableau.eigenvalues);
-    vectors_                    = interleaved(tableau.vectors);
-    rows_                       = interleaved(tableau.rows);
     const bool uniform          = method.cell_ends.empty();
     for (unsigned int c = 0; c < method.n_cells; ++c)
     {
@@ -62,9 +45,9 @@ namespace crawler
                         tableau.error_weights.data(),
                         tableau.newton_fraction,
                         tableau.real_eigenvalue,
-                        eigenvalues_.data(),
-                        vectors_.data(),
-                        rows_.data()};
+                        parts(tableau.eigenvalues),
+                        parts(tableau.vectors),
+                        parts(tableau.rows)};
     setup.is_stretch = method.is_stretch;
   }
 
@@ -75,6 +58,23 @@ namespace crawler
     const double place      = sample_places_[number % setup.n_samples];
     return method_.cell_ends.empty() ? (cell + place) / method_.n_cells
                                      : method_.cell_ends[cell] + place * sizes_[cell];
+  }
+
+  void
+  state_within(const LaneStep &step, const LaneSetup &setup, const double time, const std::span<double> y)
+  {
+    const int s = static_cast<int>(setup.n_stages);
+    double weights[radau::most_stages];
+    radau::collocation_weights(s, setup.c, 1. - (step.time - time) / step.size, weights);
+    weights[s - 1] -= 1.; // y is that of the end
+    const std::size_t n = y.size();
+    for (std::size_t d = 0; d < n; ++d)
+    {
+      double sum = step.y[d * step.stride];
+      for (int j = 0; j < s; ++j)
+        sum += weights[j] * step.z[(static_cast<std::size_t>(j) * n + d) * step.stride];
+      y[d] = sum;
+    }
   }
 
   std::shared_ptr<const LaneTables>

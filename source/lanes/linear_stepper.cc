@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/lanes/linear_stepper.h>
+#include <crawler/time/radau_loops.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +9,11 @@ namespace crawler
 {
   namespace
   {
-    /// Step control as in time/radau.cc; the next step is at most safety * (1/error)^(1/(stages+1)) of this one.
-    constexpr double safety       = 0.9;
-    constexpr double least_factor = 0.1, most_growth = 10.;
+    /// There is no Newton's method that a long step could hurt.
+    constexpr double most_growth = 10.;
     /// Steps are not made longer for less than this: a new size must be factorized.
     constexpr double least_growth = 1.5;
     constexpr double least_step   = 1e-14;
-    /// A start disturbs stiff components; traces are left after so many steps.
-    constexpr unsigned int settling_steps = 3;
     /// So many step sizes are kept.
     constexpr std::size_t most_factors = 24;
     /// Step sizes are the same if they differ by less than this part.
@@ -120,7 +118,7 @@ namespace crawler
   LinearStepper::make_step(const double t, const double h, const ConstVector y)
   {
     const std::size_t size = y.size();
-    const unsigned int n = tableau_.n, columns = 1 + tableau_.n_pairs();
+    const unsigned int n   = tableau_.n;
     const Factors &systems = factors(h);
     std::copy(y.begin(), y.end(), start_.begin());
     stiffness_.multiply(y, stiff_);
@@ -134,31 +132,19 @@ namespace crawler
         right[d] = -right[d] - stiff_[d];
     }
 
-    std::fill(work_.begin(), work_.end(), 0.);
-    for (unsigned int j = 0; j < n; ++j)
-      for (std::size_t d = 0; d < size; ++d)
-        work_[d] += tableau_.rows[j].real() * right_[j * size + d];
+    const int s = static_cast<int>(n), unknowns = static_cast<int>(size);
+    complex_work_.resize(tableau_.n_pairs() * size);
+    radau::to_eigenbasis(s, parts(tableau_.rows), right_.data(), unknowns, work_.data(), complex_work_.data());
     systems.real.solve(work_, work_);
-    for (unsigned int i = 0; i < n; ++i)
-      for (std::size_t d = 0; d < size; ++d)
-        z_[i * size + d] = tableau_.vectors[i * columns].real() * work_[d];
-    for (unsigned int p = 1; p < columns; ++p)
+    for (unsigned int p = 0; p < tableau_.n_pairs(); ++p)
     {
-      complex_work_.assign(size, 0.);
-      for (unsigned int j = 0; j < n; ++j)
-      {
-        const std::complex<double> row = tableau_.rows[p * n + j];
-        for (std::size_t d = 0; d < size; ++d)
-          complex_work_[d] += row * right_[j * size + d];
-      }
-      systems.complex[p - 1].solve(complex_work_, complex_work_);
-      for (unsigned int i = 0; i < n; ++i)
-      {
-        const std::complex<double> vector = 2. * tableau_.vectors[i * columns + p];
-        for (std::size_t d = 0; d < size; ++d)
-          z_[i * size + d] += vector.real() * complex_work_[d].real() - vector.imag() * complex_work_[d].imag();
-      }
+      const std::span<std::complex<double>> own(complex_work_.data() + p * size, size);
+      systems.complex[p].solve(own, own);
     }
+    for (int i = 0; i < s; ++i)
+      for (int d = 0; d < unknowns; ++d)
+        z_[static_cast<std::size_t>(i * unknowns + d)] =
+          radau::from_eigenbasis(s, parts(tableau_.vectors), i, d, unknowns, work_.data(), complex_work_.data());
     // The centre of mass stays where it is, the sum of all equations says; so it does to round-off of one step.
     for (unsigned int i = 0; i < n; ++i)
     {
@@ -176,11 +162,13 @@ namespace crawler
   double
   LinearStepper::error_of_step(const double t, const double h, const ConstVector y)
   {
-    const double sigma = tableau_.real_eigenvalue / h;
-    std::fill(rate_.begin(), rate_.end(), 0.);
-    for (unsigned int j = 0; j < tableau_.n; ++j)
-      for (std::size_t d = 0; d < y.size(); ++d)
-        rate_[d] -= sigma * tableau_.error_weights[j] * z_[j * y.size() + d];
+    radau::error_rate(static_cast<int>(tableau_.n),
+                      tableau_.error_weights.data(),
+                      tableau_.real_eigenvalue,
+                      1. / h,
+                      z_.data(),
+                      static_cast<int>(y.size()),
+                      rate_.data());
     if (t != f_time_) // else it is known from the step before
       load(t, f_start_);
     f_time_ = t;
@@ -188,7 +176,7 @@ namespace crawler
     for (std::size_t d = 0; d < y.size(); ++d)
       f_[d] = f_start_[d] + work_[d];
     double error = 0.;
-    for (unsigned int round = 0; round < (steps_ < settling_steps ? 2 : 1); ++round)
+    for (unsigned int round = 0; round < (steps_ < radau::settling_steps ? 2 : 1); ++round)
     {
       for (std::size_t d = 0; d < y.size(); ++d)
         work_[d] = y[d] + (round > 0 ? error_[d] : 0.);
@@ -198,7 +186,7 @@ namespace crawler
       factors(h).real.solve(work_, error_);
       error = root_mean_square(error_) / tolerance_;
       if (round > 0) // filtered twice: the step must not grow
-        error = std::max(error, std::pow(safety, tableau_.n + 1.));
+        error = std::max(error, radau::error_without_growth(static_cast<int>(tableau_.n)));
       if (error < 1.)
         break;
     }
@@ -277,7 +265,7 @@ namespace crawler
         outcome.step_size   = h;
         const bool finite   = make_step(t, h, y);
         const double error  = finite && adaptive_ ? error_of_step(t, h, y) : 0.;
-        const double factor = error > 0. ? safety * std::pow(error, -1. / (tableau_.n + 1.)) : most_growth;
+        const double factor = error > 0. ? radau::safety * std::pow(error, -1. / (tableau_.n + 1.)) : most_growth;
         if (!finite || h < least_step)
         {
           outcome.status  = "failed";
@@ -289,7 +277,7 @@ namespace crawler
         if (!(error <= 1.))
         {
           ++outcome.rejected_steps;
-          next = std::max(factor, least_factor) * h;
+          next = std::max(factor, radau::least_change) * h;
           left = 0;
           continue;
         }
@@ -328,13 +316,15 @@ namespace crawler
   void
   LinearStepper::show_rates()
   {
-    const std::size_t size = start_.size();
     for (unsigned int i = 0; i < tableau_.n; ++i)
     {
-      std::fill(rate_.begin(), rate_.end(), 0.);
-      for (unsigned int j = 0; j < tableau_.n; ++j)
-        for (std::size_t d = 0; d < size; ++d)
-          rate_[d] += tableau_.inverse[i * tableau_.n + j] / size_ * z_[j * size + d];
+      radau::stage_rate(static_cast<int>(tableau_.n),
+                        tableau_.inverse.data(),
+                        static_cast<int>(i),
+                        1. / size_,
+                        z_.data(),
+                        static_cast<int>(rate_.size()),
+                        rate_.data());
       stage_rates(end_ - (1. - tableau_.c[i]) * size_, rate_);
     }
   }
@@ -342,12 +332,11 @@ namespace crawler
   void
   LinearStepper::interpolate(const double time, const Vector y)
   {
-    tableau_.collocation_weights(1. - (end_ - time) / size_, weights_);
+    const int s = static_cast<int>(tableau_.n);
+    double weights[radau::most_stages];
+    radau::collocation_weights(s, tableau_.c.data(), 1. - (end_ - time) / size_, weights);
+    radau::combine(s, weights, z_.data(), static_cast<int>(y.size()), y.data());
     for (std::size_t d = 0; d < y.size(); ++d)
-    {
-      y[d] = start_[d];
-      for (unsigned int j = 0; j < tableau_.n; ++j)
-        y[d] += weights_[j] * z_[j * y.size() + d];
-    }
+      y[d] += start_[d];
   }
 } // namespace crawler

@@ -66,7 +66,7 @@ namespace crawler
         , options_(options)
         , keep_going_(keep_going)
         , results_(results)
-        , sampler_(tables_.setup, tableau_, GaitMeter::n_pieces)
+        , sampler_(tables_.setup, GaitMeter::n_pieces)
       {
       }
 

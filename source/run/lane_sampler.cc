@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/mesh/reference_element.h>
 #include <crawler/run/lane_sampler.h>
-#include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
 
 namespace crawler
 {
-  LaneSampler::LaneSampler(const LaneSetup &setup, const RadauTableau &tableau, const unsigned int n_pieces)
+  LaneSampler::LaneSampler(const LaneSetup &setup, const unsigned int n_pieces)
     : setup_(setup)
-    , tableau_(tableau)
     , integral_(setup.n_cells * setup.degree + 1, 0.)
     , u_(integral_.size())
     , at_ends_(n_pieces + 1)
@@ -38,17 +36,10 @@ namespace crawler
   void
   LaneSampler::sample(const LaneStep &step, const double time)
   {
-    const std::size_t n = u_.size(), stages = tableau_.n;
-    tableau_.collocation_weights(1. - (step.time - time) / step.size, weights_);
+    state_within(step, setup_, time, u_);
     mean_ = 0.;
-    for (std::size_t d = 0; d < n; ++d)
-    {
-      double sum = step.y[d * step.stride] - step.z[((stages - 1) * n + d) * step.stride];
-      for (std::size_t j = 0; j < stages; ++j)
-        sum += weights_[j] * step.z[(j * n + d) * step.stride];
-      u_[d] = sum;
-      mean_ += integral_[d] * sum;
-    }
+    for (std::size_t d = 0; d < u_.size(); ++d)
+      mean_ += integral_[d] * u_[d];
     const unsigned int nodes = setup_.degree + 1;
     for (std::size_t e = 0; e < at_ends_.size(); ++e)
     {

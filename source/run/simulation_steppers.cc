@@ -27,20 +27,23 @@ namespace crawler
       if (!linear_stepper_)
         build_linear_stepper();
       stepper_ = linear_stepper_.get();
-      return;
     }
-    if (!lanes_gave_up_ && lanes_fit())
+    else if (!lanes_gave_up_ && lanes_fit())
     {
       if (!lane_stepper_)
-        build_lane_stepper();
+        lane_stepper_ = std::make_unique<LaneStepper>(scene_, *lane_method(scene_, time_, numerics_));
       stepper_ = lane_stepper_.get();
-      return;
     }
-    if (position_ == nullptr)
-      throw std::logic_error("the stretch form is for the fused engine");
-    if (!petsc_stepper_)
-      build_petsc_stepper();
-    stepper_ = petsc_stepper_.get();
+    else
+    {
+      if (position_ == nullptr)
+        throw std::logic_error("the stretch form is for the fused engine");
+      if (!petsc_stepper_)
+        petsc_stepper_ = std::make_unique<TimeStepper>(communicator_, *position_, time_);
+      stepper_ = petsc_stepper_.get();
+    }
+    if (keeps_rate())
+      stepper_->stage_rates = [this](const double t, const std::span<const double> y_dot) { keep_rate(t, y_dot); };
   }
 
   /// PETSc takes the last accepted state, with a step that is as small as the first one, or as the engine wanted it.
@@ -62,54 +65,6 @@ namespace crawler
       throw std::logic_error("the linear model is for a = 0, the position form, uniform meshes and radau");
     linear_stepper_ = std::make_unique<LinearStepper>(
       scene_, *discretization_, integrator(time_.integrator).n_stages, time_.step_control == "adaptive");
-    linear_stepper_->stage_rates = [this](const double t, const std::span<const double> v) { keep_rate(t, v); };
-  }
-
-  void
-  Simulation::build_lane_stepper()
-  {
-    lane_stepper_ = std::make_unique<LaneStepper>(scene_, *lane_method(scene_, time_, numerics_));
-    if (keeps_rate())
-      lane_stepper_->stage_rates = [this](const double t, const std::span<const double> v) { keep_rate(t, v); };
-  }
-
-  void
-  Simulation::build_petsc_stepper()
-  {
-    using Vector         = TimeStepper::Vector;
-    using ConstVector    = TimeStepper::ConstVector;
-    using Complex        = TimeStepper::Complex;
-    petsc_stepper_       = std::make_unique<TimeStepper>(communicator_, position_->n_owned(), time_);
-    TimeStepper &stepper = *petsc_stepper_;
-    stepper.exact_elimination =
-      scene_.active_stress->feedback() == nullptr || !scene_.active_stress->feedback()->sees_near();
-
-    stepper.implicit_function = [this](const double t, const ConstVector y, const ConstVector y_dot, const Vector F) {
-      if (keeps_rate())
-        keep_rate(t, y_dot);
-      return position_->residual(t, y, y_dot, F);
-    };
-    stepper.setup_jacobian = [this](const double t, const ConstVector y, const ConstVector y_dot, const double shift) {
-      return position_->setup_jacobian(t, y, y_dot, shift);
-    };
-    stepper.solve_with_jacobian = [this](const ConstVector b, const Vector x) { position_->solve_with_jacobian(b, x); };
-    stepper.setup_complex_jacobians =
-      [this](const double t, const ConstVector y, const ConstVector y_dot, const std::span<const Complex> sigma) {
-        return position_->setup_complex_jacobians(t, y, y_dot, sigma);
-      };
-    stepper.solve_with_complex_jacobian =
-      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x) {
-        position_->solve_with_complex_jacobian(i, b, x);
-      };
-    stepper.setup_stage =
-      [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot) {
-        position_->setup_stage(stage, t, y, y_dot);
-      };
-    stepper.stage_vmult =
-      [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector y) {
-        position_->stage_vmult(stage, x, x_dot, y);
-      };
-    stepper.jacobian_vmult = [this](const ConstVector x, const Vector y) { position_->jacobian_vmult(x, y); };
   }
 
   /// The limit of steps at this time.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/petsc_object.h>
 #include <crawler/time/radau.h>
+#include <crawler/time/radau_loops.h>
 #include <crawler/time/radau_tableau.h>
 #include <crawler/time/vec_access.h>
 
@@ -14,8 +15,6 @@ namespace crawler
 {
   namespace
   {
-    /// The same where the Jacobian jumps with the state: there nothing is gained by more.
-    constexpr double rough_fraction = 0.01;
     /// Slower convergence than this factor per iteration asks for new factors.
     constexpr double slow = 0.1;
     /// So many steps are done with the Krylov method after the simplified Newton method failed.
@@ -23,16 +22,12 @@ namespace crawler
     /// Relative tolerance of the Krylov method then.
     constexpr double krylov_tolerance = 0.01;
     constexpr int krylov_iterations   = 30;
-    /// The polynomial of the last step is a good guess up to this multiple of the step.
-    constexpr double longest_extrapolation = 3.;
-    /// A start, or a state that comes from another mesh, disturbs stiff components; traces are left after so many
-    /// steps.
-    constexpr unsigned int settling_steps = 3;
 
     struct Radau
     {
       const RadauTableau *tableau = &radau_tableau(3);
-      const RadauSystems *systems = nullptr;
+      ImplicitSystem *system      = nullptr;
+      PetscGuard *guard           = nullptr;
 
       // Vectors of the size of y, and of all stages: on each rank its part of stage 1, then that of stage 2, ...
       PetscOwner<Vec> y, y_dot, f, start;
@@ -49,7 +44,7 @@ namespace crawler
       double error       = 0.; ///< its error in units of the tolerance
       unsigned int steps = 0;  ///< accepted since the last start
       // The last accepted step, for interpolation and the next guess.
-      std::vector<double> old_start, old_z, weights;
+      std::vector<double> old_start, old_z;
       double old_h = 0., old_t = 0.;
 
       // Newton's method.
@@ -75,18 +70,23 @@ namespace crawler
         derivative_of_stage(z, i, y_dot_access.span);
       }
 
-      /// (1/h) sum_j (A^-1)_ij z_j
       void
       derivative_of_stage(const std::span<const double> z, const unsigned int i, const std::span<double> result) const
       {
-        std::fill(result.begin(), result.end(), 0.);
-        for (unsigned int j = 0; j < tableau->n; ++j)
-        {
-          const double factor = tableau->inverse[i * tableau->n + j] / h;
-          const double *zj    = z.data() + j * n_owned;
-          for (std::size_t k = 0; k < n_owned; ++k)
-            result[k] += factor * zj[k];
-        }
+        radau::stage_rate(
+          n_stages(), tableau->inverse.data(), static_cast<int>(i), 1. / h, z.data(), n(), result.data());
+      }
+
+      // As the loops want them.
+      int
+      n_stages() const
+      {
+        return static_cast<int>(tableau->n);
+      }
+      int
+      n() const
+      {
+        return static_cast<int>(n_owned);
       }
     };
 
@@ -94,17 +94,6 @@ namespace crawler
     data(TS ts)
     {
       return *static_cast<Radau *>(ts->data);
-    }
-
-    /// The value of the collocation polynomial of the last step at x (0: its start, 1: its end), relative to its start.
-    void
-    old_polynomial(Radau &radau, const double x, const std::span<double> result)
-    {
-      radau.tableau->collocation_weights(x, radau.weights);
-      std::fill(result.begin(), result.end(), 0.);
-      for (unsigned int j = 0; j < radau.tableau->n; ++j)
-        for (std::size_t k = 0; k < radau.n_owned; ++k)
-          result[k] += radau.weights[j] * radau.old_z[j * radau.n_owned + k];
     }
 
     /// From the last step if there is one, or from rest; returns false for the latter.
@@ -116,23 +105,12 @@ namespace crawler
       std::fill(z.span.begin(), z.span.end(), 0.);
       if (ts->steprestart || radau.old_h == 0.)
         return false;
-      const unsigned int n = radau.tableau->n;
-      const double ratio   = radau.h / radau.old_h;
-      const double *end    = &radau.old_z[(n - 1) * radau.n_owned];
-      for (unsigned int i = 0; i < n; ++i)
+      double weights[radau::most_stages];
+      for (int i = 0; i < radau.n_stages(); ++i)
       {
-        const auto zi = z.span.subspan(i * radau.n_owned, radau.n_owned);
-        if (ratio <= longest_extrapolation)
-        {
-          old_polynomial(radau, 1. + radau.tableau->c[i] * ratio, zi);
-          for (std::size_t k = 0; k < radau.n_owned; ++k)
-            zi[k] -= end[k];
-        }
-        else // along the tangent
-          for (unsigned int j = 0; j < n; ++j)
-            for (std::size_t k = 0; k < radau.n_owned; ++k)
-              zi[k] += radau.tableau->c[i] * ratio * radau.tableau->inverse[(n - 1) * n + j] *
-                       radau.old_z[j * radau.n_owned + k];
+        radau::guess_weights(
+          radau.n_stages(), radau.tableau->c.data(), radau.tableau->inverse.data(), i, radau.h / radau.old_h, weights);
+        radau::combine(radau.n_stages(), weights, radau.old_z.data(), radau.n(), &z.span[i * radau.n_owned]);
       }
       return true;
     }
@@ -218,12 +196,12 @@ namespace crawler
         value /= radau.h;
       const ReadAccess y(radau.y.get()), y_dot(radau.y_dot.get());
       radau.factors_h = radau.h;
-      return radau.systems->setup(radau.t + radau.tableau->c[middle] * radau.h,
-                                  y.span,
-                                  y_dot.span,
-                                  radau.tableau->real_eigenvalue / radau.h,
-                                  sigma,
-                                  radau.factors_ok);
+      const double t  = radau.t + radau.tableau->c[middle] * radau.h;
+      return (*radau.guard)([&]() {
+        radau.factors_ok =
+          radau.system->setup_jacobian(t, y.span, y_dot.span, radau.tableau->real_eigenvalue / radau.h) &&
+          radau.system->setup_complex_jacobians(t, y.span, y_dot.span, sigma);
+      });
     }
 
     /// Products with the exact Jacobian of all stages, at the present state of Newton's method.
@@ -239,7 +217,8 @@ namespace crawler
       {
         radau.state_of_stage(z.span, i);
         const ReadAccess y(radau.y.get()), y_dot(radau.y_dot.get());
-        code = radau.systems->setup_stage(i, radau.t + radau.tableau->c[i] * radau.h, y.span, y_dot.span);
+        const double t = radau.t + radau.tableau->c[i] * radau.h;
+        code           = (*radau.guard)([&]() { radau.system->setup_stage(i, t, y.span, y_dot.span); });
       }
       radau.products_ready = true;
       return code;
@@ -276,8 +255,10 @@ namespace crawler
       for (unsigned int i = 0; code == 0 && i < radau.tableau->n; ++i)
       {
         radau.derivative_of_stage(x.span, i, radau.x_dot);
-        code = radau.systems->multiply_stage(
-          i, radau.stage(x.span, i), radau.x_dot, y.span.subspan(i * radau.n_owned, radau.n_owned));
+        code = (*radau.guard)([&]() {
+          radau.system->stage_vmult(
+            i, radau.stage(x.span, i), radau.x_dot, y.span.subspan(i * radau.n_owned, radau.n_owned));
+        });
       }
       return code;
     }
@@ -299,35 +280,25 @@ namespace crawler
       PCShellGetContext(pc, &context);
       Radau &radau                = data(static_cast<TS>(context));
       const RadauTableau &tableau = *radau.tableau;
-      const unsigned int n = tableau.n, columns = 1 + tableau.n_pairs();
-      const std::size_t size = radau.n_owned;
+      const std::size_t size      = radau.n_owned;
       const ReadAccess b(B);
       const WriteAccess x(X);
-
-      radau.work.assign(size, 0.);
-      for (unsigned int j = 0; j < n; ++j)
-        for (std::size_t k = 0; k < size; ++k)
-          radau.work[k] += tableau.rows[j].real() * b.span[j * size + k];
-      PetscErrorCode code = radau.systems->solve_real(radau.work, radau.work);
-      for (unsigned int i = 0; i < n; ++i)
-        for (std::size_t k = 0; k < size; ++k)
-          x.span[i * size + k] = tableau.vectors[i * columns].real() * radau.work[k];
-
-      for (unsigned int p = 1; code == 0 && p < columns; ++p)
-      {
-        radau.complex_work.assign(size, 0.);
-        for (unsigned int j = 0; j < n; ++j)
-          for (std::size_t k = 0; k < size; ++k)
-            radau.complex_work[k] += tableau.rows[p * n + j] * b.span[j * size + k];
-        code = radau.systems->solve_complex(p - 1, radau.complex_work, radau.complex_work);
-        for (unsigned int i = 0; i < n; ++i)
+      const int s = radau.n_stages(), n = radau.n();
+      radau.work.resize(size);
+      radau.complex_work.resize(tableau.n_pairs() * size);
+      radau::to_eigenbasis(s, parts(tableau.rows), b.span.data(), n, radau.work.data(), radau.complex_work.data());
+      const PetscErrorCode code = (*radau.guard)([&]() {
+        radau.system->solve_with_jacobian(radau.work, radau.work);
+        for (unsigned int p = 0; p < tableau.n_pairs(); ++p)
         {
-          const std::complex<double> vector = 2. * tableau.vectors[i * columns + p];
-          for (std::size_t k = 0; k < size; ++k)
-            x.span[i * size + k] +=
-              vector.real() * radau.complex_work[k].real() - vector.imag() * radau.complex_work[k].imag();
+          const std::span<std::complex<double>> own(radau.complex_work.data() + p * size, size);
+          radau.system->solve_with_complex_jacobian(p, own, own);
         }
-      }
+      });
+      for (int i = 0; i < s; ++i)
+        for (int d = 0; d < n; ++d)
+          x.span[i * size + d] =
+            radau::from_eigenbasis(s, parts(tableau.vectors), i, d, n, radau.work.data(), radau.complex_work.data());
       return code;
     }
 
@@ -400,16 +371,18 @@ namespace crawler
     estimate_error(TS ts)
     {
       Radau &radau        = data(ts);
-      const double sigma  = radau.tableau->real_eigenvalue / radau.h;
-      const bool settling = radau.steps < settling_steps;
+      const bool settling = radau.steps < radau::settling_steps;
       PetscErrorCode code = 0;
       {
         const ReadAccess z(radau.z.get());
         const WriteAccess y_dot(radau.y_dot.get());
-        std::fill(y_dot.span.begin(), y_dot.span.end(), 0.);
-        for (unsigned int j = 0; j < radau.tableau->n; ++j)
-          for (std::size_t k = 0; k < radau.n_owned; ++k)
-            y_dot.span[k] -= sigma * radau.tableau->error_weights[j] * z.span[j * radau.n_owned + k];
+        radau::error_rate(radau.n_stages(),
+                          radau.tableau->error_weights.data(),
+                          radau.tableau->real_eigenvalue,
+                          1. / radau.h,
+                          z.span.data(),
+                          radau.n(),
+                          y_dot.span.data());
       }
       VecCopy(radau.start.get(), radau.y.get());
       for (int round = 0; round < (settling ? 2 : 1); ++round)
@@ -421,7 +394,7 @@ namespace crawler
           const WriteAccess f(radau.f.get());
           for (double &value : f.span)
             value = -value;
-          code = radau.systems->solve_real(f.span, f.span);
+          code = (*radau.guard)([&]() { radau.system->solve_with_jacobian(f.span, f.span); });
         }
         if (code != 0)
           return code;
@@ -432,7 +405,7 @@ namespace crawler
         if (radau.error >= 1.)
           continue;
         if (round > 0)
-          radau.error = std::max(radau.error, std::pow(ts->adapt->safety, radau.tableau->n + 1.));
+          radau.error = std::max(radau.error, radau::error_without_growth(radau.n_stages()));
         break;
       }
       return 0;
@@ -521,7 +494,9 @@ namespace crawler
     {
       Radau &radau = data(ts);
       const WriteAccess x(X);
-      old_polynomial(radau, (t - radau.old_t) / radau.old_h, x.span);
+      double weights[radau::most_stages];
+      radau::collocation_weights(radau.n_stages(), radau.tableau->c.data(), (t - radau.old_t) / radau.old_h, weights);
+      radau::combine(radau.n_stages(), weights, radau.old_z.data(), radau.n(), x.span.data());
       for (std::size_t k = 0; k < radau.n_owned; ++k)
         x.span[k] += radau.old_start[k];
       return 0;
@@ -662,9 +637,10 @@ namespace crawler
   }
 
   PetscErrorCode
-  radau_set_systems(TS ts, const RadauSystems *systems)
+  radau_set_system(TS ts, ImplicitSystem *system, PetscGuard *guard)
   {
-    data(ts).systems = systems;
+    data(ts).system = system;
+    data(ts).guard  = guard;
     return 0;
   }
 

@@ -145,19 +145,6 @@ namespace crawler
         error_weights[l] -= gamma_0 * lagrange_polynomial(c, j)[0] * inverse[j * n + l];
   }
 
-  void
-  RadauTableau::collocation_weights(const double x, std::vector<double> &weights) const
-  {
-    weights.resize(n);
-    for (unsigned int j = 0; j < n; ++j)
-    {
-      weights[j] = x / c[j];
-      for (unsigned int k = 0; k < n; ++k)
-        if (k != j)
-          weights[j] *= (x - c[k]) / (c[j] - c[k]);
-    }
-  }
-
   const RadauTableau &
   radau_tableau(const unsigned int n_stages)
   {

@@ -3,13 +3,13 @@
 #include <crawler/base/petsc_object.h>
 #include <crawler/time/integrators.h>
 #include <crawler/time/radau.h>
+#include <crawler/time/radau_loops.h>
 #include <crawler/time/radau_tableau.h>
 #include <crawler/time/time_stepper.h>
 #include <crawler/time/vec_access.h>
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <optional>
 #include <set>
@@ -20,9 +20,6 @@ namespace crawler
   {
     /// Remaining error of Newton's method, relative to the admissible error of a step.
     constexpr double newton_fraction = 0.01;
-    /// An estimated error can be small by chance; the next step of a radau method must not be too long for that. More
-    /// than the reverse of what a failure of Newton's method does to a step, or these would shrink to nothing.
-    constexpr double radau_largest_growth = 5.;
     /// The same if it is only predicted, with the constant of an earlier step.
     constexpr double predicted_fraction = 0.1 * newton_fraction;
 
@@ -42,16 +39,15 @@ namespace crawler
 
   struct TimeStepper::Implementation
   {
-    Implementation(TimeStepper &owner, MPI_Comm communicator, std::size_t n_owned, const TimeParameters &parameters);
+    Implementation(TimeStepper &owner, MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters);
 
     TimeStepper &owner;
+    ImplicitSystem &system;
     const TimeParameters parameters;
 
     PetscOwner<Vec> solution, residual;
     PetscOwner<Vec> interpolated;
     PetscOwner<Mat> jacobian;
-    RadauSystems radau_systems;
-    std::vector<QuadraturePoint> quadrature;
     PetscOwner<TS> ts;
 
     // The state of one solve().
@@ -61,7 +57,7 @@ namespace crawler
     double fixed_step            = 0.;
     bool stopped                 = false;
     bool jacobian_ok             = true;
-    double refused_at            = -1.; ///< time of the last state that implicit_function refused
+    double refused_at            = -1.; ///< time of the last state that was refused
     double nonfinite_at          = -1.; ///< time of the last residual that was not a finite number
     std::span<const StepLimit> limits;
     unsigned int limit = 0;                          ///< the present one
@@ -71,35 +67,16 @@ namespace crawler
     double convergence_constant = std::numeric_limits<double>::infinity();
     double last_correction      = 0.;
     std::size_t n_unknowns      = 0;
-    std::exception_ptr exception;
+    PetscGuard guarded;
 
     void
     set_options();
     void
     use_krylov_method();
-    void
-    connect_radau();
     bool
     report(double time, double size);
     TimeOutcome
     outcome(PetscErrorCode code);
-
-    /// Runs a callback; an exception is kept for later, since it must not pass through PETSc.
-    template <typename Callback>
-    PetscErrorCode
-    guarded(const Callback &callback)
-    {
-      try
-      {
-        callback();
-        return 0;
-      }
-      catch (...)
-      {
-        exception = std::current_exception();
-        return PETSC_ERR_USER;
-      }
-    }
 
     static PetscErrorCode
     function(TS ts, PetscReal t, Vec y, Vec y_dot, Vec F, void *context);
@@ -127,16 +104,17 @@ namespace crawler
 
   TimeStepper::Implementation::Implementation(TimeStepper &owner,
                                               MPI_Comm communicator,
-                                              const std::size_t n_owned,
+                                              ImplicitSystem &system,
                                               const TimeParameters &parameters)
     : owner(owner)
+    , system(system)
     , parameters(parameters)
   {
     keep_duplicate(communicator);
     Vec vec = nullptr;
     petsc(VecCreate(communicator, &vec));
     solution.reset(vec);
-    petsc(VecSetSizes(vec, static_cast<PetscInt>(n_owned), PETSC_DECIDE));
+    petsc(VecSetSizes(vec, static_cast<PetscInt>(system.n_owned()), PETSC_DECIDE));
     petsc(VecSetType(vec, VECSTANDARD));
     PetscInt n = 0;
     petsc(VecGetSize(vec, &n));
@@ -144,7 +122,7 @@ namespace crawler
     petsc(VecDuplicate(solution.get(), &vec));
     residual.reset(vec);
     Mat mat          = nullptr;
-    const auto local = static_cast<PetscInt>(n_owned);
+    const auto local = static_cast<PetscInt>(system.n_owned());
     petsc(MatCreateShell(communicator, local, local, PETSC_DECIDE, PETSC_DECIDE, this, &mat));
     jacobian.reset(mat);
     petsc(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
@@ -189,7 +167,7 @@ namespace crawler
     petsc(TSGetAdapt(stepper, &adapt));
     petsc(TSAdaptSetType(adapt, parameters.step_control == "fixed" ? TSADAPTNONE : TSADAPTBASIC));
     if (method.petsc_type == radau_type)
-      petsc(TSAdaptSetClip(adapt, /*low=*/0.1, radau_largest_growth));
+      petsc(TSAdaptSetClip(adapt, radau::least_change, radau::most_change));
     petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // before_step() makes steps end where they must
     petsc(TSSetMaxSNESFailures(stepper, -1));
     petsc(TSSetMaxStepRejections(stepper, 30));
@@ -254,10 +232,10 @@ namespace crawler
       unsigned int n_stages = 0;
       radau_get_stages(stepper, &n_stages);
       name += " " + std::to_string(2 * n_stages - 1);
-      connect_radau();
+      petsc(radau_set_system(stepper, &system, &guarded));
       const RadauTableau &tableau = radau_tableau(n_stages);
       for (unsigned int i = 0; i < n_stages; ++i)
-        quadrature.push_back({tableau.c[i], tableau.b[i]});
+        owner.quadrature_.push_back({tableau.c[i], tableau.b[i]});
     }
     if (name == "theta")
     {
@@ -292,39 +270,6 @@ namespace crawler
     petsc(KSPSetTolerances(ksp, relative_tolerance_of_krylov, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   }
 
-  /// Gives the Radau methods the callbacks of the owner.
-  void
-  TimeStepper::Implementation::connect_radau()
-  {
-    using Complex       = std::complex<double>;
-    radau_systems.setup = [this](const double t,
-                                 const ConstVector y,
-                                 const ConstVector y_dot,
-                                 const double real_sigma,
-                                 const std::span<const Complex> sigma,
-                                 bool &ok) {
-      return guarded([&]() {
-        ok = owner.setup_jacobian(t, y, y_dot, real_sigma) && owner.setup_complex_jacobians(t, y, y_dot, sigma);
-      });
-    };
-    radau_systems.solve_real = [this](const ConstVector b, const Vector x) {
-      return guarded([&]() { owner.solve_with_jacobian(b, x); });
-    };
-    radau_systems.solve_complex =
-      [this](const unsigned int i, const std::span<const Complex> b, const std::span<Complex> x) {
-        return guarded([&]() { owner.solve_with_complex_jacobian(i, b, x); });
-      };
-    radau_systems.setup_stage =
-      [this](const unsigned int stage, const double t, const ConstVector y, const ConstVector y_dot) {
-        return guarded([&]() { owner.setup_stage(stage, t, y, y_dot); });
-      };
-    radau_systems.multiply_stage =
-      [this](const unsigned int stage, const ConstVector x, const ConstVector x_dot, const Vector result) {
-        return guarded([&]() { owner.stage_vmult(stage, x, x_dot, result); });
-      };
-    petsc(radau_set_systems(ts.get(), &radau_systems));
-  }
-
   PetscErrorCode
   TimeStepper::Implementation::function(TS ts, const PetscReal t, Vec y, Vec y_dot, Vec F, void *context)
   {
@@ -333,7 +278,9 @@ namespace crawler
     const PetscErrorCode code = self.guarded([&]() {
       const ReadAccess y_access(y), y_dot_access(y_dot);
       const WriteAccess F_access(F);
-      accepted   = self.owner.implicit_function(t, y_access.span, y_dot_access.span, F_access.span);
+      if (self.owner.stage_rates)
+        self.owner.stage_rates(t, y_dot_access.span);
+      accepted   = self.system.residual(t, y_access.span, y_dot_access.span, F_access.span);
       double sum = 0.;
       for (const double value : F_access.span)
         sum += value;
@@ -357,7 +304,7 @@ namespace crawler
     auto &self                = *static_cast<Implementation *>(context);
     const PetscErrorCode code = self.guarded([&]() {
       const ReadAccess y_access(y), y_dot_access(y_dot);
-      self.jacobian_ok = self.owner.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
+      self.jacobian_ok = self.system.setup_jacobian(t, y_access.span, y_dot_access.span, shift);
     });
     if (code != 0)
       return code;
@@ -374,7 +321,7 @@ namespace crawler
     return self.guarded([&]() {
       const ReadAccess x_access(x);
       const WriteAccess y_access(y);
-      self.owner.jacobian_vmult(x_access.span, y_access.span);
+      self.system.jacobian_vmult(x_access.span, y_access.span);
     });
   }
 
@@ -396,7 +343,7 @@ namespace crawler
     return self.guarded([&]() {
       const ReadAccess x_access(x);
       const WriteAccess y_access(y);
-      self.owner.solve_with_jacobian(x_access.span, y_access.span);
+      self.system.solve_with_jacobian(x_access.span, y_access.span);
     });
   }
 
@@ -606,8 +553,8 @@ namespace crawler
   }
 
 
-  TimeStepper::TimeStepper(MPI_Comm communicator, const std::size_t n_owned, const TimeParameters &parameters)
-    : implementation_(std::make_unique<Implementation>(*this, communicator, n_owned, parameters))
+  TimeStepper::TimeStepper(MPI_Comm communicator, ImplicitSystem &system, const TimeParameters &parameters)
+    : implementation_(std::make_unique<Implementation>(*this, communicator, system, parameters))
   {
   }
 
@@ -628,7 +575,6 @@ namespace crawler
       self.output_times.push_back(self.parameters.end_time);
     self.next_output_time     = 0;
     self.stopped              = false;
-    self.exception            = nullptr;
     self.refused_at           = -1.;
     self.nonfinite_at         = -1.;
     self.limits               = limits;
@@ -643,7 +589,7 @@ namespace crawler
       const WriteAccess access(self.solution.get());
       std::copy(y.begin(), y.end(), access.span.begin());
     }
-    if (!exact_elimination)
+    if (!self.system.solves_exactly())
       self.use_krylov_method();
     petsc(TSSetTolerances(ts, self.tolerance, nullptr, self.relative_tolerance, nullptr));
     petsc(TSSetTime(ts, start_time));
@@ -666,8 +612,7 @@ namespace crawler
       const ReadAccess access(self.solution.get());
       std::copy(access.span.begin(), access.span.end(), y.begin());
     }
-    if (self.exception)
-      std::rethrow_exception(self.exception);
+    self.guarded.rethrow();
     TimeOutcome result = self.outcome(code);
     if (!go_on)
       result.status = "stopped";
@@ -693,11 +638,5 @@ namespace crawler
     petsc(TSInterpolate(ts, is_there ? inside : time, implementation_->interpolated.get()));
     const ReadAccess access(implementation_->interpolated.get());
     std::copy(access.span.begin(), access.span.end(), y.begin());
-  }
-
-  const std::vector<TimeStepper::QuadraturePoint> &
-  TimeStepper::quadrature() const
-  {
-    return implementation_->quadrature;
   }
 } // namespace crawler

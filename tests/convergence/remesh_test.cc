@@ -26,28 +26,9 @@ namespace
     OnMesh(const Scene &scene, const TimeParameters &time, std::unique_ptr<Discretization> discretization)
       : mesh(std::move(discretization))
       , form(create_position_form(scene, *mesh))
-      , stepper(MPI_COMM_WORLD, form->n_owned(), time)
+      , stepper(MPI_COMM_WORLD, *form, time)
     {
       form->keep_stresses(integrator(time.integrator).n_stages);
-      stepper.implicit_function = [this](double t, auto y, auto y_dot, auto F) {
-        return form->residual(t, y, y_dot, F);
-      };
-      stepper.setup_jacobian = [this](double t, auto y, auto y_dot, double shift) {
-        return form->setup_jacobian(t, y, y_dot, shift);
-      };
-      stepper.solve_with_jacobian     = [this](auto b, auto x) { form->solve_with_jacobian(b, x); };
-      stepper.setup_complex_jacobians = [this](double t, auto y, auto y_dot, auto sigma) {
-        return form->setup_complex_jacobians(t, y, y_dot, sigma);
-      };
-      stepper.solve_with_complex_jacobian = [this](unsigned int i, auto b, auto x) {
-        form->solve_with_complex_jacobian(i, b, x);
-      };
-      stepper.setup_stage = [this](unsigned int stage, double t, auto y, auto y_dot) {
-        form->setup_stage(stage, t, y, y_dot);
-      };
-      stepper.stage_vmult = [this](unsigned int stage, auto x, auto x_dot, auto y) {
-        form->stage_vmult(stage, x, x_dot, y);
-      };
     }
 
     std::unique_ptr<Discretization> mesh;

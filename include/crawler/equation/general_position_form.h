@@ -22,6 +22,8 @@ namespace crawler
     setup_jacobian(double t, ConstVector u, ConstVector v, double sigma) override;
     void
     jacobian_vmult(ConstVector x, Vector y) override;
+    bool
+    solves_exactly() const override; ///< not what the stretch at another place adds
     void
     setup_stage(unsigned int stage, double t, ConstVector u, ConstVector v) override;
     void

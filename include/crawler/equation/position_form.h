@@ -3,8 +3,8 @@
 
 #include <crawler/equation/assembler.h>
 #include <crawler/mesh/block_tridiagonal_matrix.h>
+#include <crawler/time/implicit_system.h>
 
-#include <complex>
 #include <limits>
 
 namespace crawler
@@ -20,10 +20,11 @@ namespace crawler
 
   /// The position form F(t, u, u') = M(u) u' + K u + m = 0 of a plain body (crawler_equation.h; doc/numerics.md, "The
   /// semi-discrete system"). The unknowns of a rank are the displacements of its nodes [length].
-  class PositionForm : public Assembler
+  class PositionForm : public Assembler, public ImplicitSystem
   {
   public:
-    using Complex = std::complex<double>;
+    using Vector      = Assembler::Vector;
+    using ConstVector = Assembler::ConstVector;
 
     PositionForm(const Scene &scene, const Discretization &discretization);
     ~PositionForm() override;
@@ -57,27 +58,22 @@ namespace crawler
     /// F(t, u, u'). Returns false (on all ranks) if the stretch is not positive at a quadrature point; bad_stretch()
     /// then tells where.
     bool
-    residual(double t, ConstVector u, ConstVector v, Vector F);
+    residual(double t, ConstVector u, ConstVector v, Vector F) override;
 
-    /// Prepares dF/du + sigma dF/du' for the two functions below. Returns false if it is singular.
-    virtual bool
-    setup_jacobian(double t, ConstVector u, ConstVector v, double sigma);
-    void
-    solve_with_jacobian(ConstVector b, Vector x);
-    virtual void
-    jacobian_vmult(ConstVector x, Vector y);
-
-    /// The same for complex sigma_0, sigma_1, ..., as implicit Runge-Kutta methods need.
     bool
-    setup_complex_jacobians(double t, ConstVector y, ConstVector y_dot, std::span<const Complex> sigma);
+    setup_jacobian(double t, ConstVector u, ConstVector v, double sigma) override;
     void
-    solve_with_complex_jacobian(unsigned int i, std::span<const Complex> b, std::span<Complex> x);
-
-    /// Keeps dF/du and dF/du' at the state of a stage, for stage_vmult: result = dF/du x + dF/du' x_dot.
-    virtual void
-    setup_stage(unsigned int stage, double t, ConstVector y, ConstVector y_dot);
-    virtual void
-    stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result);
+    solve_with_jacobian(ConstVector b, Vector x) override;
+    void
+    jacobian_vmult(ConstVector x, Vector y) override;
+    bool
+    setup_complex_jacobians(double t, ConstVector y, ConstVector y_dot, std::span<const Complex> sigma) override;
+    void
+    solve_with_complex_jacobian(unsigned int i, std::span<const Complex> b, std::span<Complex> x) override;
+    void
+    setup_stage(unsigned int stage, double t, ConstVector y, ConstVector y_dot) override;
+    void
+    stage_vmult(unsigned int stage, ConstVector x, ConstVector x_dot, Vector result) override;
     bool
     velocity(double t, ConstVector u, Vector v) override;
     CellIntegrals

@@ -3,6 +3,7 @@
 
 #include <crawler/base/instruction_set.h>
 #include <crawler/lanes/lane_engine.h>
+#include <crawler/time/radau_loops.h>
 
 #include <cmath>
 
@@ -20,11 +21,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   /// A body for which it has failed so often, and in so large a part of the steps, is left to who can do more.
   constexpr unsigned int many_failures = 1000;
   constexpr double large_part          = 0.5;
-  /// Step control: the next step is safety * (1/error)^(1/(stages+1)) of this one, within these factors.
-  constexpr double safety = 0.9, after_rejection = 0.5, least_change = 0.1, most_change = 5.;
-  constexpr double least_step = 1e-18; // a sudden start needs short ones
-  /// A start disturbs stiff components; traces are left after so many steps.
-  constexpr unsigned int settling_steps = 3;
+  /// A step after one that was rejected is so much shorter.
+  constexpr double after_rejection = 0.5;
+  constexpr double least_step      = 1e-18; // a sudden start needs short ones
 
   /// A body and its step.
   struct Lane
@@ -108,17 +107,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     bool
     is_settling() const
     {
-      return error >= 1. && steps - first_step < settling_steps;
+      return error >= 1. && steps - first_step < radau::settling_steps;
     }
 
     /// An error that had to be filtered twice: the step must not grow.
     void
     settle(const double filtered, const int n_stages)
     {
-      double least = safety;
-      for (int i = 0; i < n_stages; ++i)
-        least *= safety;
-      error = filtered < least ? least : filtered;
+      const double least = radau::error_without_growth(n_stages);
+      error              = filtered < least ? least : filtered;
     }
 
     /// Accepts or rejects the step, and finds the size of the next one.
@@ -135,9 +132,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         ++rejected;
         return;
       }
-      double factor = accepted || !just_rejected ? safety : safety * after_rejection;
+      double factor = accepted || !just_rejected ? radau::safety : radau::safety * after_rejection;
       factor *= error > 0. ? ::pow(error, -1. / (n_stages + 1)) : HUGE_VAL;
-      factor = factor < least_change ? least_change : factor > most_change ? most_change : factor;
+      factor = factor < radau::least_change  ? radau::least_change
+               : factor > radau::most_change ? radau::most_change
+                                             : factor;
       // Newton's method converges the more slowly the longer the step is, about in proportion.
       if (rate > 0. && factor * rate > wanted_rate)
         factor = rate > wanted_rate ? 1. : wanted_rate / rate;
@@ -167,7 +166,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       first_step    = steps;
     }
 
-    /// Goes to the end of the step; is it a output time?
+    /// Goes to the end of the step; is it an output time?
     bool
     arrive()
     {

@@ -4,15 +4,13 @@
 #include <crawler/lanes/lane_engine.h>
 #include <crawler/lanes/lane_memory.h>
 #include <crawler/lanes/pack.h>
+#include <crawler/time/radau_loops.h>
 
 #include <cstddef>
 
 /// The states in one step of a pack of bodies (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// The polynomial of the last step is a good guess up to this multiple of the step.
-  constexpr double longest_extrapolation = 3.;
-
   /// A sum, or the larger one. What is not a number stays one.
   template <bool largest, typename Pack>
   inline Pack
@@ -27,6 +25,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   template <typename Pack, int s>
   struct LaneStates
   {
+    static constexpr radau::Stages<s> stages{};
     const LaneSetup &setup;
     const int n;                         ///< unknowns
     Pack *y = nullptr;                   ///< at the start of the step
@@ -58,31 +57,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     guess(const Pack &ratio, const Pack &use)
     {
-      const double *c    = setup.c;
-      const auto is_near = ratio <= broadcast<Pack>(longest_extrapolation);
       for (int i = 0; i < s; ++i)
       {
         Pack weights[s];
-        const Pack x = 1. + c[i] * ratio;
+        radau::guess_weights(stages, setup.c, setup.inverse, i, ratio, weights);
         for (int j = 0; j < s; ++j)
-        {
-          Pack weight = x * (1. / c[j]); // of the polynomial through (0, 0) and (c_k, z_k), less its value at 1
-          for (int k = 0; k < s; ++k)
-            if (k != j)
-              weight *= (x - c[k]) * (1. / (c[j] - c[k]));
-          if (j == s - 1)
-            weight -= 1.;
-          const Pack tangent = c[i] * ratio * setup.inverse[(s - 1) * s + j];
-          weights[j]         = use * (is_near ? weight : tangent);
-        }
-        Pack *result = z + i * n;
-        for (int d = 0; d < n; ++d)
-        {
-          Pack sum = weights[0] * old_z[d];
-          for (int j = 1; j < s; ++j)
-            sum += weights[j] * old_z[j * n + d];
-          result[d] = sum;
-        }
+          weights[j] = use * weights[j];
+        radau::combine(stages, weights, old_z, n, z + i * n);
       }
     }
 
@@ -90,17 +71,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     go_to_stage(const int i, const Pack &inverse_h)
     {
-      Pack weights[s];
-      for (int j = 0; j < s; ++j)
-        weights[j] = inverse_h * setup.inverse[i * s + j];
       for (int d = 0; d < n; ++d)
-      {
-        u[d]     = y[d] + z[i * n + d];
-        Pack sum = weights[0] * z[d];
-        for (int j = 1; j < s; ++j)
-          sum += weights[j] * z[j * n + d];
-        v[d] = sum;
-      }
+        u[d] = y[d] + z[i * n + d];
+      radau::stage_rate(stages, setup.inverse, i, inverse_h, z, n, v);
     }
 
     /// Takes a correction in the basis of the eigenvectors of A^-1 from z where @p moves; returns the sum of its
@@ -109,21 +82,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack
     correct(const Pack *real, const Complex<Pack> *complex, const typename PackTraits<Pack>::Mask &moves)
     {
-      constexpr int pairs = (s - 1) / 2, columns = 1 + pairs;
       Pack square{};
       for (int d = 0; d < n; ++d)
         for (int i = 0; i < s; ++i)
         {
-          Pack change = setup.vectors[2 * i * columns] * real[d];
-          for (int p = 0; p < pairs; ++p)
-          {
-            const double *vector   = setup.vectors + 2 * (i * columns + p + 1);
-            const Complex<Pack> &x = complex[p * n + d];
-            change += 2. * vector[0] * x.re - 2. * vector[1] * x.im;
-          }
-          square      = added<largest>(square, change * change);
-          Pack &moved = z[i * n + d];
-          moved       = moves ? moved - change : moved;
+          const Pack change = radau::from_eigenbasis(stages, setup.vectors, i, d, n, real, complex);
+          square            = added<largest>(square, change * change);
+          Pack &moved       = z[i * n + d];
+          moved             = moves ? moved - change : moved;
         }
       return square;
     }
@@ -132,15 +98,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     go_to_start(const Pack &inverse_h)
     {
-      const Pack sigma = -setup.real_eigenvalue * inverse_h;
+      radau::error_rate(stages, setup.error_weights, setup.real_eigenvalue, inverse_h, z, n, v);
       for (int d = 0; d < n; ++d)
-      {
-        Pack sum = setup.error_weights[0] * z[d];
-        for (int j = 1; j < s; ++j)
-          sum += setup.error_weights[j] * z[j * n + d];
-        v[d] = sigma * sum;
         u[d] = y[d];
-      }
     }
 
     void

@@ -29,14 +29,6 @@ namespace crawler
           double start_time) override;
     void
     interpolate(double time, Vector y) override;
-    const std::vector<QuadraturePoint> &
-    quadrature() const override
-    {
-      return quadrature_;
-    }
-
-    /// If set: sees the velocities in the stages of each accepted step, before the monitor sees the step.
-    std::function<void(double time, ConstVector v)> stage_rates;
 
     /// Stretch and friction where a friction law was not positive, of the last solve(), if one was not.
     const std::optional<std::pair<double, double>> &
@@ -66,7 +58,6 @@ namespace crawler
     std::optional<StretchLaws> laws_; ///< of a general body in the stretch form
     const RadauTableau &tableau_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;
-    std::vector<QuadraturePoint> quadrature_;
     LaneStorage memory_;
 
     // The state of one solve().
@@ -76,6 +67,6 @@ namespace crawler
     std::vector<double> *y_ = nullptr;
     LaneStep step_;
     TimeOutcome outcome_;
-    std::vector<double> output_times_, weights_, rate_;
+    std::vector<double> output_times_, rate_;
   };
 } // namespace crawler

@@ -6,6 +6,7 @@
 #include <crawler/scene/scene.h>
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace crawler
@@ -42,8 +43,12 @@ namespace crawler
   private:
     const LaneMethod method_;
     const ReferenceElement element_;
-    std::vector<double> sizes_, sample_places_, samples_, eigenvalues_, vectors_, rows_;
+    std::vector<double> sizes_, sample_places_, samples_;
   };
+
+  /// Dense output: the state at a time of the step, [unknowns] (in natural units).
+  void
+  state_within(const LaneStep &step, const LaneSetup &setup, double time, std::span<double> y);
 
   /// The latest are kept from call to call.
   std::shared_ptr<const LaneTables>

@@ -16,9 +16,9 @@ namespace crawler
    *
    *   M u' + K u + f(t) = 0,   M_ij = int gamma phi_j phi_i,   K_ij = int k phi_j,s phi_i,s,   f_i = int m phi_i,s,
    *
-   * by the Radau IIA methods (radau_tableau.h). The stages are solved exactly, by one real and (s-1)/2 complex chain
-   * eliminations: no Newton iteration. The time to the next output time is divided into equal steps, and again when the
-   * error asks for other ones; each size needs one factorization. Error control as in time/radau.h.
+   * by the Radau IIA methods (radau_tableau.h). The stages are solved exactly, by one real and (s-1)/2 complex
+   * block-tridiagonal eliminations: no Newton iteration. The time to the next output time is divided into equal steps,
+   * and again when the error asks for other ones; each size needs one factorization. Error control as in time/radau.h.
    */
   class LinearStepper : public TimeIntegration
   {
@@ -37,14 +37,6 @@ namespace crawler
           double start_time) override;
     void
     interpolate(double time, Vector y) override;
-    const std::vector<QuadraturePoint> &
-    quadrature() const override
-    {
-      return quadrature_;
-    }
-
-    /// If set: sees the velocities in the stages of each accepted step, before the monitor sees the step.
-    std::function<void(double time, ConstVector v)> stage_rates;
 
     /// How often the systems of a step size have been factorized so far.
     unsigned int
@@ -85,7 +77,6 @@ namespace crawler
     const RadauTableau &tableau_;
     const bool adaptive_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;
-    std::vector<QuadraturePoint> quadrature_;
     BlockTridiagonalMatrix<double> mass_, stiffness_;
     std::vector<double> row_sums_; ///< M 1
     std::list<Factors> factors_;   ///< latest first
@@ -96,7 +87,7 @@ namespace crawler
     // The step that was made last.
     double end_ = 0., size_ = 0.;
     std::vector<double> start_, z_; ///< [unknowns], [stages][unknowns] increments
-    std::vector<double> m_, local_, f_, f_start_, f_end_, stiff_, right_, work_, rate_, error_, weights_;
+    std::vector<double> m_, local_, f_, f_start_, f_end_, stiff_, right_, work_, rate_, error_;
     double f_time_ = -1.; ///< that f_start_ is known for
     std::vector<std::complex<double>> complex_work_;
   };

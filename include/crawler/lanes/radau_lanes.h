@@ -204,27 +204,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       Pack mask{};
       for (int l = 0; l < lanes; ++l)
         set_lane(mask, l, lanes_[l].iterating);
-      for (int d = 0; d < n_; ++d)
-      {
-        Pack f[s], sum = Pack{};
-        for (int j = 0; j < s; ++j)
-        {
-          f[j] = F_[j * n_ + d];
-          sum += setup_.rows[2 * j] * f[j];
-        }
-        real_[d] = sum;
-        for (int p = 0; p < pairs; ++p)
-        {
-          const double *row = setup_.rows + 2 * (p + 1) * s;
-          Number r{Pack{}, Pack{}};
-          for (int j = 0; j < s; ++j)
-          {
-            r.re += row[2 * j] * f[j];
-            r.im += row[2 * j + 1] * f[j];
-          }
-          complex_[p * n_ + d] = r;
-        }
-      }
+      radau::to_eigenbasis(radau::Stages<s>{}, setup_.rows, F_, n_, real_, complex_);
       system_.solve_all(real_, complex_);
       const Pack square = states_.template correct<System<Pack, pairs>::largest>(real_, complex_, mask > 0.);
       return relative(square, s * n_);

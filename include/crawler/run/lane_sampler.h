@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/lanes/lane_engine.h>
+#include <crawler/lanes/lane_tables.h>
 
 #include <span>
 #include <vector>
 
 namespace crawler
 {
-  struct RadauTableau;
-
   /// The displacement of a body in a lane of the fused engine at the ends of equal pieces of it, at any time within a
   /// step (the collocation polynomial of the stages); natural units.
   class LaneSampler
   {
   public:
-    /// @p setup and @p tableau are kept as references.
-    LaneSampler(const LaneSetup &setup, const RadauTableau &tableau, unsigned int n_pieces);
+    /// @p setup is kept as a reference.
+    LaneSampler(const LaneSetup &setup, unsigned int n_pieces);
 
     /// Looks at a time in [step.time - step.size, step.time].
     void
@@ -36,11 +34,10 @@ namespace crawler
 
   private:
     const LaneSetup &setup_;
-    const RadauTableau &tableau_;
     std::vector<unsigned int> cells_; ///< [n_pieces + 1] in which the ends are
     std::vector<double> shape_;       ///< [n_pieces + 1][degree + 1] shape functions there
     std::vector<double> integral_;    ///< [unknowns] of each shape function
-    std::vector<double> weights_, u_, at_ends_;
+    std::vector<double> u_, at_ends_;
     double mean_ = 0.;
   };
 } // namespace crawler

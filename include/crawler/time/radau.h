@@ -1,35 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <petscts.h>
+#include <crawler/time/implicit_system.h>
+#include <crawler/time/petsc_guard.h>
 
-#include <complex>
-#include <functional>
-#include <span>
+#include <petscts.h>
 
 namespace crawler
 {
-  /**
-   * What the Radau IIA methods need besides TSSetIFunction: systems with K + sigma M, K = dF/dy and M = dF/dy', on
-   * owned values, and products with K and M. All return PETSc error codes.
-   */
-  struct RadauSystems
-  {
-    using Complex     = std::complex<double>;
-    using ConstVector = std::span<const double>;
-
-    /// Factorizes K + real_sigma M and K + sigma_i M at a state; @p ok tells whether none of them is singular.
-    std::function<PetscErrorCode(
-      double t, ConstVector y, ConstVector y_dot, double real_sigma, std::span<const Complex> sigma, bool &ok)>
-      setup;
-    std::function<PetscErrorCode(ConstVector b, std::span<double> x)> solve_real;
-    std::function<PetscErrorCode(unsigned int i, std::span<const Complex> b, std::span<Complex> x)> solve_complex;
-    /// Keeps K and M at the state of a stage, and result = K x + M x_dot with them.
-    std::function<PetscErrorCode(unsigned int stage, double t, ConstVector y, ConstVector y_dot)> setup_stage;
-    std::function<PetscErrorCode(unsigned int stage, ConstVector x, ConstVector x_dot, std::span<double> result)>
-      multiply_stage;
-  };
-
   /// The TSType of the Radau IIA methods, known to PETSc after register_radau().
   constexpr const char *radau_type = "radau";
 
@@ -44,9 +22,9 @@ namespace crawler
   PetscErrorCode
   register_radau();
 
-  /// @p systems must outlive the stepper.
+  /// Its residual is that of TSSetIFunction. @p system and @p guard must outlive the stepper.
   PetscErrorCode
-  radau_set_systems(TS ts, const RadauSystems *systems);
+  radau_set_system(TS ts, ImplicitSystem *system, PetscGuard *guard);
   PetscErrorCode
   radau_set_stages(TS ts, unsigned int n_stages);
   PetscErrorCode

@@ -36,11 +36,14 @@ namespace crawler
     {
       return (n - 1) / 2;
     }
-
-    /// The collocation polynomial through (0, 0) and (c_j, z_j): its value at @p x is sum_j weights_j z_j.
-    void
-    collocation_weights(double x, std::vector<double> &weights) const;
   };
+
+  /// Real and imaginary parts one after the other, as the C++ standard lays them out.
+  inline const double *
+  parts(const std::vector<std::complex<double>> &values)
+  {
+    return reinterpret_cast<const double *>(values.data());
+  }
 
   /// Throws std::logic_error unless @p n_stages is 3 or 5.
   const RadauTableau &

@@ -47,6 +47,10 @@ namespace crawler
     /// Sees the initial state and each accepted one; false stops the integration.
     std::function<bool(const Step &step, ConstVector y)> monitor;
 
+    /// If set: sees the rates y' in the stages of each step before the monitor sees the step. PETSc shows those of
+    /// every residual; the last one of a time counts.
+    std::function<void(double time, ConstVector y_dot)> stage_rates;
+
     /**
      * Integrates from @p start_time to the end time. @p y is the first state on entry and the last accepted
      * state on return. Steps end exactly on @p output_times (ascending, within (start_time, end_time]) and on the end
@@ -72,7 +76,13 @@ namespace crawler
     {
       double place, weight;
     };
-    virtual const std::vector<QuadraturePoint> &
-    quadrature() const = 0;
+    const std::vector<QuadraturePoint> &
+    quadrature() const
+    {
+      return quadrature_;
+    }
+
+  protected:
+    std::vector<QuadraturePoint> quadrature_;
   };
 } // namespace crawler

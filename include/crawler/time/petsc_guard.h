@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <petscsys.h>
+
+#include <exception>
+#include <utility>
+
+namespace crawler
+{
+  /// Runs callbacks of PETSc; an exception is kept for later, since it must not pass through PETSc.
+  class PetscGuard
+  {
+  public:
+    template <typename Callback>
+    PetscErrorCode
+    operator()(const Callback &callback)
+    {
+      try
+      {
+        callback();
+        return 0;
+      }
+      catch (...)
+      {
+        exception_ = std::current_exception();
+        return PETSC_ERR_USER;
+      }
+    }
+
+    void
+    rethrow()
+    {
+      if (const std::exception_ptr kept = std::exchange(exception_, nullptr))
+        std::rethrow_exception(kept);
+    }
+
+  private:
+    std::exception_ptr exception_;
+  };
+} // namespace crawler
