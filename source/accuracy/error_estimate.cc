@@ -104,13 +104,11 @@ namespace crawler
               const std::function<bool()> &keep_going)
     {
       const TimeParameters time = time_of_finer_run(parameters.time);
-      Numerics numerics         = numerics_of_finer_run(choice, parameters.time, scene);
-      if (result.cycles)
-        numerics.tolerance *= finer_tolerance_of_cycles;
-      const auto cycles  = cycle_wish(parameters, scene, 0);
-      const auto options = options_of_finer_run(result, cycles);
+      const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene, result.cycles.has_value());
+      const auto cycles         = cycle_wish(parameters, scene, 0);
+      const auto options        = options_of_finer_run(result, cycles);
       // Most runs fit the fused engine; then nothing else has to be built.
-      if (!cycles && size_of(communicator) == 1 && batch_method(scene, time, numerics))
+      if (size_of(communicator) == 1 && batch_method(scene, time, numerics))
       {
         const BatchRun run = {&scene, &time, &numerics};
         if (auto finer = run_batch({&run, 1}, options, keep_going, single_engine()).front())
@@ -150,9 +148,16 @@ namespace crawler
   }
 
   Numerics
-  numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, const Scene &scene)
+  numerics_of_finer_run(const NumericsChoice &choice,
+                        const TimeParameters &time,
+                        const Scene &scene,
+                        const bool cycles_repeat)
   {
-    return finer(choice, time.integrator == "automatic" ? choice.numerics.integrator : time.integrator, scene);
+    Numerics numerics =
+      finer(choice, time.integrator == "automatic" ? choice.numerics.integrator : time.integrator, scene);
+    if (cycles_repeat)
+      numerics.tolerance *= finer_tolerance_of_cycles;
+    return numerics;
   }
 
   Simulation::Options

@@ -26,14 +26,14 @@ namespace crawler
       switch (entry.scale)
       {
         case ResultEntry::Scale::exchanged_work:
-          return result.energy_balance ? result.energy_balance->exchanged : 0.;
+          return result.energy_balance ? result.energy_balance->exchanged_work : 0.;
         case ResultEntry::Scale::strain:
           return std::max(1. - result.min_stretch.value, result.max_stretch.value - 1.);
         case ResultEntry::Scale::itself:
           return std::abs(number(entry, result));
         case ResultEntry::Scale::cost:
           return result.gait && result.gait->energy_balance
-                   ? result.gait->energy_balance->exchanged / std::abs(result.gait->displacement)
+                   ? result.gait->energy_balance->exchanged_work / std::abs(result.gait->displacement)
                    : 0.;
         case ResultEntry::Scale::none:
           break;

@@ -36,7 +36,7 @@ namespace crawler
       std::string found;
       for (unsigned int i = 0; i < most_runs; ++i)
       {
-        finer.numerics = numerics_of_finer_run(finer, time, scene);
+        finer.numerics = numerics_of_finer_run(finer, time, scene, /*cycles_repeat=*/false);
         const SimulationResult check =
           Simulation(communicator, scene, time, finer.numerics).run({}, {}, {}, keep_going);
         if (check.time.status == "stopped")

@@ -141,6 +141,15 @@ namespace crawler
       }
 
       static void
+      forces(const CellInput &in, double *N, double *f)
+      {
+        for_cells(in, [&](const auto &laws, const unsigned int c) {
+          cell_forces<n>(
+            tables_of(*in.element), in.cell_size[c], laws, in.u + c * q, in.v + c * q, N + c * n, f + c * n);
+        });
+      }
+
+      static void
       states(const CellInput &in, double *u, double *v, double *e, double *rate)
       {
         const ElementTables tables = tables_of(*in.element);
@@ -162,7 +171,7 @@ namespace crawler
         }
       }
 
-      static constexpr CellKernels table = {residual, blocks, integrals, states};
+      static constexpr CellKernels table = {residual, blocks, integrals, forces, states};
     };
   } // namespace
 

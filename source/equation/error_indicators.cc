@@ -2,8 +2,6 @@
 //
 // The part of PositionForm that says how well the mesh resolves a state (doc/numerics.md, "Error indicator" and
 // "Accuracy").
-#include <crawler/equation/crawler_equation.h>
-#include <crawler/equation/general_sampler.h>
 #include <crawler/equation/position_form.h>
 
 #include <algorithm>
@@ -55,22 +53,18 @@ namespace crawler
     const auto &element   = discretization_.element();
     const auto &to_points = element.integrate_points; // [quadrature point][friction point]
     const unsigned int n = element.n, n_cells = discretization_.n_local_cells();
-    const bool is_plain = scene_.is_plain();
-    if (!is_plain)
-    {
-      if (!quadrature_sampler_)
-        quadrature_sampler_ = std::make_unique<GeneralSampler>(*this, element.points);
-      quadrature_sampler_->sample(t, y, v);
-    }
-    const std::vector<double> &m = is_plain ? stress_at(t) : quadrature_sampler_->force().m;
-    friction(t, y, v, friction_at_);
+    CellInput in = input(t, y, v);
+    evaluate_laws(t, y, in);
+    for (std::vector<double> *field : {&force_, &friction_})
+      field->resize(static_cast<std::size_t>(n_cells) * n);
+    kernels_.forces(in, force_.data(), friction_.data());
     const std::vector<double> &weights = element.weights;
 
     // N* at the left end of the own cells.
     double own = 0., balance = 0.;
     for (unsigned int c = 0; c < n_cells; ++c)
       for (unsigned int i = 0; i < n; ++i)
-        own += discretization_.cell_size()[c] * weights[i] * friction_at_[c * n + i];
+        own += discretization_.cell_size()[c] * weights[i] * friction_[c * n + i];
     if (discretization_.n_ranks() > 1)
     {
       MPI_Exscan(&own, &balance, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
@@ -78,20 +72,20 @@ namespace crawler
         balance = 0.;
     }
 
-    const auto local = discretization_.to_local<double>(displacement(y), u_local_);
+    const std::span<const double> local(in.u, discretization_.n_local());
     std::vector<double> indicators(n_cells, 0.);
     for (unsigned int c = 0; c < n_cells; ++c)
     {
       const double h    = discretization_.cell_size()[c];
-      const double *g_v = &friction_at_[c * n];
+      const double *g_v = &friction_[c * n];
       for (unsigned int p = 0; p < n; ++p)
       {
         double N = balance;
         for (unsigned int i = 0; i < n; ++i)
           N += h * to_points[p * n + i] * g_v[i];
         const double e = sampler_.strain(local, c, h, p + 1);
-        const double k = is_plain ? scene_.body.elastic_modulus : quadrature_sampler_->force().k[c * n + p];
-        const double d = (N - equation::body_force(e, m[c * n + p], k)) / k;
+        const double k = in.laws != nullptr ? in.laws->k[c * n + p] : in.k;
+        const double d = (N - force_[c * n + p]) / k;
         const double w = std::max(1. + e, smallest_scale);
         // An error of the stretch changes the friction by w g'/g times as much.
         double g = 0., w_dg = 0.;
@@ -114,31 +108,5 @@ namespace crawler
     if (discretization_.n_ranks() > 1)
       MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
     return std::sqrt(sum / static_cast<double>(discretization_.n_unknowns()));
-  }
-
-  void
-  PositionForm::friction(const double t, const ConstVector u, const ConstVector v, std::vector<double> &g_v)
-  {
-    const CellInput in = input(t, u, v);
-    const auto &e      = discretization_.element();
-    std::vector<double> w(e.n), g(e.n);
-    g_v.resize(static_cast<std::size_t>(in.n_cells) * e.n);
-    for (unsigned int c = 0; c < in.n_cells; ++c)
-    {
-      for (unsigned int p = 0; p < e.n; ++p)
-      {
-        w[p] = 1.;
-        for (unsigned int i = 0; i < e.n; ++i)
-          w[p] += e.derivatives[p * e.n + i] / in.cell_size[c] * in.u[c * e.degree + i];
-      }
-      scene_.friction->values(w, g);
-      for (unsigned int p = 0; p < e.n; ++p)
-      {
-        double velocity = 0.;
-        for (unsigned int i = 0; i < e.n; ++i)
-          velocity += e.values[p * e.n + i] * in.v[c * e.degree + i];
-        g_v[c * e.n + p] = g[p] * velocity;
-      }
-    }
   }
 } // namespace crawler

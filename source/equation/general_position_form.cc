@@ -20,7 +20,7 @@ namespace crawler
   }
 
   long
-  GeneralPositionForm::evaluate(const double t, const ConstVector u, const CellInput &in)
+  GeneralPositionForm::evaluate_laws(const double t, const ConstVector u, CellInput &in)
   {
     kernels_.states(in, u_.data(), v_.data(), e_.data(), rate_.data());
     long bad = -1;
@@ -47,48 +47,17 @@ namespace crawler
       f_v_[i]   = g_[i] * sliding_.by_v[i];
       w_f_w_[i] = w_dg_[i] * sliding_.force[i];
     }
-    return bad;
-  }
-
-  CellInput
-  GeneralPositionForm::with_laws(const CellInput &in)
-  {
-    laws_             = {force_.N.data(),
-                         f_.data(),
-                         f_u_.data(),
-                         f_v_.data(),
-                         w_f_w_.data(),
-                         force_.by_w.data(),
+    laws_   = {force_.N.data(),
+               f_.data(),
+               f_u_.data(),
+               f_v_.data(),
+               w_f_w_.data(),
+               force_.by_w.data(),
              force_.by_rate.empty() ? nullptr : force_.by_rate.data(),
-                         force_.k.data(),
-                         force_.m.data()};
-    CellInput general = in;
-    general.laws      = &laws_;
-    return general;
-  }
-
-  long
-  GeneralPositionForm::add_residual(const double t, const ConstVector u, const CellInput &in, double *F)
-  {
-    const long bad = evaluate(t, u, in);
-    if (bad >= 0)
-      return bad;
-    return kernels_.residual(with_laws(in), F);
-  }
-
-  void
-  GeneralPositionForm::jacobian_blocks(
-    const double t, const ConstVector u, const CellInput &in, const double sigma, double *blocks)
-  {
-    evaluate(t, u, in);
-    kernels_.blocks(with_laws(in), 1., sigma, blocks);
-  }
-
-  void
-  GeneralPositionForm::mass_blocks(const double t, const ConstVector u, const CellInput &in, double *blocks)
-  {
-    evaluate(t, u, in);
-    kernels_.blocks(with_laws(in), 0., 1., blocks);
+               force_.k.data(),
+               force_.m.data()};
+    in.laws = &laws_;
+    return bad;
   }
 
   GeneralPositionForm::Far
@@ -167,30 +136,12 @@ namespace crawler
       v,
       [&](const ConstVector at, const Vector F) { return residual(t, u, at, F); },
       [&](const ConstVector at, const Vector change) {
-        mass_blocks(t, u, input(t, u, at), mass_->blocks().data());
+        mass(t, u, at, *mass_);
         if (!mass_->factorize())
           return false;
         mass_->solve(change, change);
         return true;
       });
-  }
-
-  CellIntegrals
-  GeneralPositionForm::integrals(const double t, const ConstVector u, const ConstVector v)
-  {
-    const CellInput in = input(t, u, v);
-    evaluate(t, u, in);
-    CellIntegrals sum;
-    kernels_.integrals(with_laws(in), sum);
-    sum_over_ranks(sum);
-    return sum;
-  }
-
-  void
-  GeneralPositionForm::friction(const double t, const ConstVector u, const ConstVector v, std::vector<double> &g_v)
-  {
-    evaluate(t, u, input(t, u, v));
-    g_v = f_;
   }
 
   std::unique_ptr<PositionForm>

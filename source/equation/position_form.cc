@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/parabola.h>
-#include <crawler/equation/general_sampler.h>
 #include <crawler/equation/position_form.h>
 
 #include <algorithm>
@@ -66,11 +65,14 @@ namespace crawler
   CellInput
   PositionForm::input(const double t, const ConstVector u, const ConstVector v)
   {
-    CellInput in = geometry();
-    in.u         = discretization_.to_local<double>(u, u_local_).data();
-    in.v         = v.data() == nullptr ? nullptr : discretization_.to_local<double>(v, v_local_).data();
-    in.m         = stress_at(t).data();
-    return in;
+    return {discretization_.n_local_cells(),
+            discretization_.cell_size().data(),
+            &discretization_.element(),
+            scene_.friction.get(),
+            scene_.body.elastic_modulus,
+            discretization_.to_local<double>(u, u_local_).data(),
+            v.data() == nullptr ? nullptr : discretization_.to_local<double>(v, v_local_).data(),
+            stress_at(t).data()};
   }
 
   const std::vector<double> &
@@ -101,19 +103,6 @@ namespace crawler
   {
     for (StressAtTime &stress : stresses_)
       stress.time = std::numeric_limits<double>::quiet_NaN();
-  }
-
-  CellInput
-  PositionForm::geometry() const
-  {
-    return {discretization_.n_local_cells(),
-            discretization_.cell_size().data(),
-            &discretization_.element(),
-            scene_.friction.get(),
-            scene_.body.elastic_modulus,
-            nullptr,
-            nullptr,
-            nullptr};
   }
 
   StretchAt
@@ -215,29 +204,17 @@ namespace crawler
   }
 
   long
-  PositionForm::add_residual(double, ConstVector, const CellInput &in, double *F)
+  PositionForm::evaluate_laws(double, ConstVector, CellInput &)
   {
-    return kernels_.residual(in, F);
-  }
-
-  void
-  PositionForm::jacobian_blocks(double, ConstVector, const CellInput &in, const double sigma, double *blocks)
-  {
-    kernels_.blocks(in, 1., sigma, blocks);
-  }
-
-  void
-  PositionForm::mass_blocks(double, ConstVector, const CellInput &in, double *blocks)
-  {
-    kernels_.blocks(in, 0., 1., blocks);
+    return -1;
   }
 
   bool
   PositionForm::residual(const double t, const ConstVector u, const ConstVector v, const Vector F)
   {
-    const CellInput in = input(t, u, v);
-    const bool one     = discretization_.n_active_ranks() == 1;
-    double *data       = F.data();
+    CellInput in   = input(t, u, v);
+    const bool one = discretization_.n_active_ranks() == 1;
+    double *data   = F.data();
     if (one)
       std::fill(F.begin(), F.end(), 0.);
     else
@@ -245,7 +222,9 @@ namespace crawler
       F_local_.assign(discretization_.n_local(), 0.);
       data = F_local_.data();
     }
-    const long bad = add_residual(t, u, in, data);
+    long bad = evaluate_laws(t, u, in);
+    if (bad < 0)
+      bad = kernels_.residual(in, data);
     if (!one)
       discretization_.add_to_owned<double>(F_local_, F);
 
@@ -274,7 +253,17 @@ namespace crawler
   PositionForm::jacobian(
     const double t, const ConstVector u, const ConstVector v, const double sigma, BlockTridiagonalMatrix<double> &A)
   {
-    jacobian_blocks(t, u, input(t, u, v), sigma, A.blocks().data());
+    CellInput in = input(t, u, v);
+    evaluate_laws(t, u, in);
+    kernels_.blocks(in, 1., sigma, A.blocks().data());
+  }
+
+  void
+  PositionForm::mass(const double t, const ConstVector u, const ConstVector v, BlockTridiagonalMatrix<double> &M)
+  {
+    CellInput in = input(t, u, v);
+    evaluate_laws(t, u, in);
+    kernels_.blocks(in, 0., 1., M.blocks().data());
   }
 
   bool
@@ -331,9 +320,8 @@ namespace crawler
     while (stages_.size() <= stage)
       stages_.push_back(
         {BlockTridiagonalMatrix<double>(discretization_), BlockTridiagonalMatrix<double>(discretization_)});
-    const CellInput in = input(t, u, v);
-    jacobian_blocks(t, u, in, 0., stages_[stage].by_u.blocks().data());
-    mass_blocks(t, u, in, stages_[stage].by_v.blocks().data());
+    jacobian(t, u, v, 0., stages_[stage].by_u);
+    mass(t, u, v, stages_[stage].by_v);
   }
 
   void
@@ -355,7 +343,7 @@ namespace crawler
       return false;
     for (double &value : v)
       value = -value;
-    mass_blocks(t, u, input(t, u, {}), mass_->blocks().data());
+    mass(t, u, {}, *mass_);
     if (!mass_->factorize())
       return false;
     mass_->solve(v, v);
@@ -366,7 +354,9 @@ namespace crawler
   PositionForm::integrals(const double t, const ConstVector u, const ConstVector v)
   {
     CellIntegrals sum;
-    kernels_.integrals(input(t, u, v), sum);
+    CellInput in = input(t, u, v);
+    evaluate_laws(t, u, in);
+    kernels_.integrals(in, sum);
     sum_over_ranks(sum);
     return sum;
   }

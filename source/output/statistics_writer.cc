@@ -74,11 +74,11 @@ namespace crawler
     if (with_energy_balance_)
       line += fmt::format(",{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{},{:.3g},{}",
                           row.velocity,
-                          row.energy_balance.stress_power,
+                          row.energy_balance.stress_work,
                           row.energy_balance.dissipation,
                           row.energy_balance.elastic_energy,
                           row.energy_balance.paper_energy(),
-                          text("{:.12g}", row.energy_balance.positive_power),
+                          text("{:.12g}", row.energy_balance.positive_work),
                           row.energy_balance.residual(),
                           text("{:.3g}", row.net_friction));
     out_ << with_plain_numbers(line) << '\n';

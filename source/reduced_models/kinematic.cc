@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/equation/cell_loops.h>
+#include <crawler/equation/crawler_equation.h>
 #include <crawler/reduced_models/kinematic.h>
 
 #include <algorithm>
@@ -7,6 +9,8 @@
 
 namespace crawler
 {
+  using namespace CRAWLER_INSTRUCTION_SET;
+
   namespace
   {
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -23,7 +27,7 @@ namespace crawler
     struct Sums
     {
       double displacement = 0., largest_friction = 0., largest_net_friction = 0.;
-      ReducedEnergies energies;
+      EnergyBalance energies;
       StrainExtreme smallest{HUGE_VAL, 0., 0.}, largest{-HUGE_VAL, 0., 0.};
       bool stopped = false;
     };
@@ -31,8 +35,8 @@ namespace crawler
     void
     add(Sums &sums, const KinematicBody::Integrals &now)
     {
-      sums.largest_friction     = std::max(sums.largest_friction, now.abs_friction);
-      sums.largest_net_friction = std::max(sums.largest_net_friction, std::abs(now.net_friction));
+      sums.largest_friction     = std::max(sums.largest_friction, now.sums.abs_friction);
+      sums.largest_net_friction = std::max(sums.largest_net_friction, std::abs(now.sums.net_friction));
       if (now.smallest.strain < sums.smallest.strain)
         sums.smallest = now.smallest;
       if (now.largest.strain > sums.largest.strain)
@@ -40,13 +44,12 @@ namespace crawler
     }
 
     void
-    add(ReducedEnergies &energies, const KinematicBody::Integrals &now, const double weight)
+    add(EnergyBalance &energies, const KinematicBody::Integrals &now, const double weight)
     {
-      energies.dissipation += weight * now.dissipation;
-      energies.stress_power += weight * now.stress_power;
-      energies.positive_power += weight * now.positive_power;
-      energies.exchanged += weight * now.absolute_power;
-      energies.end_work += weight * now.end_power;
+      Rates works = now.rates();
+      for (double &work : works)
+        work *= weight;
+      energies.add_works(works);
     }
 
     Sums
@@ -60,13 +63,13 @@ namespace crawler
       KinematicBody body(scene, strain, n_space);
       Sums sums;
       add(sums, body.evaluate(0.));
-      sums.energies.elastic_start = body.evaluate(0.).elastic_energy;
+      sums.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
       for (std::size_t i = 0; i < time.points().size(); ++i)
       {
         const auto &now     = body.evaluate(time.points()[i]);
         const double weight = time.weights()[i];
         add(sums, now);
-        sums.displacement += weight * now.velocity;
+        sums.displacement += weight * now.sums.velocity;
         add(sums.energies, now, weight);
         if (i % GaussPanels::n_points == 0 && keep_going && !keep_going())
         {
@@ -75,7 +78,7 @@ namespace crawler
         }
       }
       const auto &end              = body.evaluate(1.);
-      sums.energies.elastic_energy = end.elastic_energy;
+      sums.energies.elastic_energy = end.sums.elastic_energy;
       add(sums, end);
       return sums;
     }
@@ -117,7 +120,7 @@ namespace crawler
     integrals_.largest       = {*most, inside_[static_cast<std::size_t>(most - e_.begin())], t};
     if (!(1. + *least > 0.) || !std::isfinite(*most))
     {
-      integrals_.velocity = integrals_.dissipation = integrals_.stress_power = unknown;
+      integrals_.sums.velocity = integrals_.sums.dissipation = integrals_.sums.stress_power = unknown;
       return integrals_;
     }
     panels_.running_integral({e_t_.data(), n}, B_t_);
@@ -135,23 +138,21 @@ namespace crawler
     double covariance = 0.;
     for (std::size_t i = 0; i < n; ++i)
       covariance += weights[i] * (g_[i] - g_mean_) * (B_t_[i] - B_t_mean);
-    integrals_.velocity = -covariance / g_mean_;
-    drift_              = integrals_.velocity - B_t_mean; // v = B_t + drift
+    const double velocity = -covariance / g_mean_;
+    drift_                = velocity - B_t_mean; // v = B_t + drift
     for (std::size_t i = 0; i < n; ++i)
-      gv_[i] = g_[i] * (B_t_[i] + drift_);
+      gv_[i] = equation::friction_force(g_[i], B_t_[i] + drift_);
     panels_.running_integral(gv_, m_);
     const double k = scene_.body.elastic_modulus;
     for (std::size_t i = 0; i < n; ++i)
     {
-      const double v = B_t_[i] + drift_, m = m_[i] - k * e_[i], power = -m * e_t_[i];
-      integrals_.dissipation += weights[i] * gv_[i] * v;
-      integrals_.stress_power += weights[i] * power;
-      integrals_.positive_power += weights[i] * std::max(power, 0.);
-      integrals_.absolute_power += weights[i] * std::abs(power);
-      integrals_.elastic_energy += weights[i] * 0.5 * k * e_[i] * e_[i];
-      integrals_.net_friction += weights[i] * gv_[i];
-      integrals_.abs_friction += weights[i] * std::abs(gv_[i]);
+      const double m = equation::active_stress(m_[i], e_[i], k);
+      add_densities<double>(weights[i],
+                            {equation::elastic_energy(e_[i], k), equation::stress_power(m, e_t_[i]), gv_[i]},
+                            B_t_[i] + drift_,
+                            integrals_.sums);
     }
+    integrals_.sums.velocity = velocity; // without the round-off of the sum
     // m = -k e at the ends, where no force acts.
     integrals_.end_power = -k * (e_[n + 1] * (end_B_t + drift_) - e_[n] * drift_);
     return integrals_;
@@ -176,13 +177,14 @@ namespace crawler
     {
       fields.displacement[i] += displacement - B_mean;
       fields.velocity[i] += drift_;
-      fields.active_stress[i] -= scene_.body.elastic_modulus * fields.strain[i];
+      fields.active_stress[i] =
+        equation::active_stress(fields.active_stress[i], fields.strain[i], scene_.body.elastic_modulus);
     }
     return fields;
   }
 
   double
-  advance(KinematicBody &body, const double start, const double end, ReducedEnergies &energies)
+  advance(KinematicBody &body, const double start, const double end, EnergyBalance &energies)
   {
     const GaussPanels time(start, end, 1);
     double displacement = 0.;
@@ -190,10 +192,10 @@ namespace crawler
     {
       const auto &now     = body.evaluate(time.points()[i]);
       const double weight = time.weights()[i];
-      displacement += weight * now.velocity;
+      displacement += weight * now.sums.velocity;
       add(energies, now, weight);
     }
-    energies.elastic_energy = body.evaluate(end).elastic_energy;
+    energies.elastic_energy = body.evaluate(end).sums.elastic_energy;
     return displacement;
   }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace crawler
@@ -34,19 +35,19 @@ namespace crawler
     return 0.5 * wave_.friction_exponent * wave_.speed * sum + 0.; // never -0
   }
 
-  ReducedEnergies
+  EnergyBalance
   Perturbation::energies(const double t) const
   {
-    ReducedEnergies energies;
-    energies.positive_power = ReducedEnergies::unknown;
+    EnergyBalance energies;
+    energies.positive_work = std::numeric_limits<double>::quiet_NaN();
     for (const auto &h : wave_.harmonics)
     {
       const double half = std::sin(0.5 * h.q * wave_.speed * t);
       energies.dissipation += 0.5 * wave_.speed * wave_.speed * power(h) * t;
       energies.elastic_energy += wave_.stiffness * power(h) * half * half;
     }
-    energies.stress_power = energies.dissipation + energies.elastic_energy;
-    energies.exchanged    = energies.stress_power; // the least that it can be
+    energies.stress_work    = energies.dissipation + energies.elastic_energy;
+    energies.exchanged_work = energies.stress_work; // the least that it can be
     return energies;
   }
 

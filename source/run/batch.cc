@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/extreme_history.h>
 #include <crawler/run/batch.h>
-#include <crawler/run/gait.h>
-#include <crawler/run/gait_efficiency.h>
 #include <crawler/run/lane_sampler.h>
+#include <crawler/run/recorder.h>
 #include <crawler/time/integrators.h>
 #include <crawler/time/radau_tableau.h>
 
@@ -66,7 +64,7 @@ namespace crawler
         , options_(options)
         , keep_going_(keep_going)
         , results_(results)
-        , sampler_(tables_.setup, GaitMeter::n_pieces)
+        , sampler_(tables_.setup, Recorder::n_pieces)
       {
       }
 
@@ -87,21 +85,18 @@ namespace crawler
         std::size_t run         = 0;
         bool given_up           = false;
         double stretch_at_start = 1.; ///< of the ends
-        double largest_friction = 0., largest_net_friction = 0.;
-        double k = 0.; ///< in natural units
+        double k                = 0.; ///< in natural units
         Units units;
-        TimeSegments pieces;
-        std::vector<double> output_times;    ///< ends of the pieces, and where the last stride starts
-        std::vector<unsigned char> restarts; ///< which of them are where a new piece starts
+        TimeSegments segments;
+        std::vector<double> output_times;    ///< ends of the segments, and those that the record needs
+        std::vector<unsigned char> restarts; ///< which of them are where a new segment starts
         std::vector<StepLimit> limits;
-        std::optional<GaitMeter> gait;
+        std::optional<Recorder> recorder;
         std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
         std::optional<StressWatch> watch;
         std::vector<double> m;
         std::vector<std::array<double, 2>> end_stress; ///< m at the ends, in the stages of the step that is tried
         std::size_t n_stress_calls = 0;
-        SimulationResult result;
-        ExtremeHistory least{ExtremeHistory::smallest}, most{ExtremeHistory::largest};
       };
 
       static Batch &
@@ -128,13 +123,9 @@ namespace crawler
         const Numerics &numerics = *runs_[lane.run].numerics;
         const Scene &scene       = *runs_[lane.run].scene;
         lane.units               = natural_units(scene);
-        lane.pieces              = TimeSegments(*scene.active_stress, scene.end_time);
-        lane.output_times        = lane.pieces.breaks();
-        lane.restarts.assign(lane.output_times.size(), 1);
-        lane.output_times.push_back(1.);
-        lane.restarts.push_back(0);
-        lane.limits = in_units(numerics, lane.units).step_limits;
-        start_gait(lane, scene);
+        lane.segments            = TimeSegments(*scene.active_stress, scene.end_time);
+        lane.limits              = in_units(numerics, lane.units).step_limits;
+        start_record(lane, scene, numerics.tolerance / lane.units.length);
         std::vector<double> points = tables_.points;
         for (double &s : points)
           s *= lane.units.length;
@@ -145,86 +136,60 @@ namespace crawler
           *scene.active_stress, lane.units.length, numerics.least_event > 0. ? numerics.least_event : HUGE_VAL);
         lane.m.resize(points.size());
         lane.end_stress.resize(tableau_.n);
-        lane.n_stress_calls   = 0;
-        lane.given_up         = false;
-        lane.largest_friction = lane.largest_net_friction = 0.;
-        lane.k                                            = scene.body.elastic_modulus / lane.units.force;
-        lane.result                                       = {};
-        lane.least.start({});
-        lane.most.start({});
-        if (options_.energy_balance)
-          lane.result.energy_balance.emplace();
-        job = {.k              = lane.k,
-               .a              = scene.body.friction_exponent(),
-               .tolerance      = numerics.tolerance / lane.units.length,
-               .newton_factor  = 1.,
-               .initial_step   = numerics.initial_step / lane.units.time,
-               .limits         = lane.limits.data(),
-               .n_limits       = static_cast<unsigned int>(lane.limits.size()),
-               .most_steps     = runs_[lane.run].time->max_steps,
-               .least_stretch  = small_stretch,
-               .is_last_resort = false,
-               .start_time     = 0.,
-               .start          = nullptr,
-               .output_times   = lane.output_times.data(),
-               .n_output_times = static_cast<unsigned int>(lane.output_times.size()),
-               .restarts       = lane.restarts.data()};
+        lane.n_stress_calls = 0;
+        lane.given_up       = false;
+        lane.k              = scene.body.elastic_modulus / lane.units.force;
+        job                 = {.k              = lane.k,
+                               .a              = scene.body.friction_exponent(),
+                               .tolerance      = numerics.tolerance / lane.units.length,
+                               .newton_factor  = 1.,
+                               .initial_step   = numerics.initial_step / lane.units.time,
+                               .limits         = lane.limits.data(),
+                               .n_limits       = static_cast<unsigned int>(lane.limits.size()),
+                               .most_steps     = runs_[lane.run].time->max_steps,
+                               .least_stretch  = small_stretch,
+                               .is_last_resort = false,
+                               .start_time     = 0.,
+                               .start          = nullptr,
+                               .output_times   = lane.output_times.data(),
+                               .n_output_times = static_cast<unsigned int>(lane.output_times.size()),
+                               .restarts       = lane.restarts.data()};
       }
 
-      /// The run starts from rest, which may be where the last stride starts, too.
+      /// The run starts from rest.
       void
-      start_gait(Lane &lane, const Scene &scene) const
+      start_record(Lane &lane, const Scene &scene, const double tolerance) const
       {
-        lane.gait.reset();
-        if (options_.gait == Simulation::GaitWish::none)
-          return;
-        const auto period = stride_of(*scene.active_stress, lane.units.length, lane.units.time);
-        if (!period)
-          return;
-        lane.gait.emplace(period, /*ends_early=*/false);
-        if (const auto start = lane.gait->stride_start())
+        Simulation::Options options = options_;
+        if (runs_[lane.run].cycles)
+          options.cycles = runs_[lane.run].cycles;
+        lane.recorder.emplace(scene, lane.units, options, tolerance, /*may_search=*/false);
+        lane.output_times = lane.segments.breaks();
+        lane.output_times.push_back(1.);
+        lane.restarts.assign(lane.output_times.size(), 1);
+        lane.restarts.back() = 0;
+        for (const double time : lane.recorder->step_ends())
         {
-          const auto place = std::lower_bound(lane.output_times.begin(), lane.output_times.end(), *start - 1e-12);
-          if (*place > *start + 1e-12)
+          const auto place = std::lower_bound(lane.output_times.begin(), lane.output_times.end(), time - 1e-12);
+          if (*place > time + 1e-12)
           {
             lane.restarts.insert(lane.restarts.begin() + (place - lane.output_times.begin()), 0);
-            lane.output_times.insert(place, *start);
+            lane.output_times.insert(place, time);
           }
         }
-        const EnergyBalance none;
-        const std::vector<double> rest(GaitMeter::n_pieces + 1, 0.);
-        if (lane.gait->next_time() == 0.)
-          lane.gait->see(rest, 0.);
-        lane.gait->see_step(0., 0., options_.energy_balance ? &none : nullptr);
+        lane.recorder->see_stretch({}, {});
+        const std::vector<double> rest(Recorder::n_pieces + 1, 0.);
+        lane.recorder->see_step(0., false, 1., 1., [&rest](double) { return Recorder::BodySample{rest, 0.}; });
       }
 
-      /// Shows the gait's samples that a step has passed.
-      void
-      watch_gait(Lane &lane, const LaneStep &step)
-      {
-        constexpr double same_time = 1e-12;
-        for (double time = lane.gait->next_time(); time <= step.time + same_time; time = lane.gait->next_time())
-        {
-          sampler_.sample(step, std::min(time, step.time));
-          lane.gait->see(sampler_.displacement(), sampler_.mean_displacement());
-        }
-        const LaneStage &end = step.stages[tableau_.n - 1];
-        lane.gait->see_extremes(end.min_stretch, end.max_stretch);
-        if (!step.is_output_time)
-          return;
-        sampler_.sample(step, step.time);
-        lane.gait->see_step(
-          step.time, sampler_.mean_displacement(), lane.result.energy_balance ? &*lane.result.energy_balance : nullptr);
-      }
-
-      /// The engine asks for m at the start of a run or piece, and then in all stages of each step that it tries.
+      /// The engine asks for m at the start of a run or segment, and then in all stages of each step that it tries.
       static void
       stress(void *context, const unsigned int l, const double t, double *m)
       {
         Batch &batch        = self(context);
         Lane &lane          = batch.lanes_[l];
         const std::size_t n = batch.tables_.points.size(), stages = batch.tableau_.n;
-        lane.stress->values(lane.pieces.inside(t) * lane.units.time, lane.m);
+        lane.stress->values(lane.segments.inside(t) * lane.units.time, lane.m);
         if (lane.units.force != 1.)
           for (double &value : lane.m)
             value /= lane.units.force;
@@ -269,14 +234,14 @@ namespace crawler
           batch.interrupted_ = true;
         // The engine calls a run finished that is stopped in its last step.
         lane.given_up = batch.interrupted_ || !batch.look_at_step(lane, step);
-        return !lane.given_up;
+        return !lane.given_up && !lane.recorder->cycles_repeat();
       }
 
       /// False if the run is for a Simulation.
       bool
       look_at_step(Lane &lane, const LaneStep &step)
       {
-        const double from = lane.pieces.inside(step.time - step.size), to = lane.pieces.inside(step.time);
+        const double from = lane.segments.inside(step.time - step.size), to = lane.segments.inside(step.time);
         if (!lane.watch->is_calm(from * lane.units.time, to * lane.units.time) || end_inverts(lane))
           return false;
         const unsigned int n = tableau_.n;
@@ -289,16 +254,19 @@ namespace crawler
           if (options_.energy_balance)
             add_rates(lane, step, i);
         }
-        if (lane.result.energy_balance)
-          lane.result.energy_balance->elastic_energy = step.elastic_energy;
-        if (lane.gait)
-          watch_gait(lane, step);
-        if (step.is_output_time && !lane.pieces.is_last() && step.time == lane.pieces.end())
+        if (options_.energy_balance)
+          lane.recorder->result.energy_balance->elastic_energy = step.elastic_energy;
+        const auto sample = [&](const double time) {
+          sampler_.sample(step, time);
+          return Recorder::BodySample{sampler_.displacement(), sampler_.mean_displacement()};
+        };
+        const LaneStage &end = step.stages[n - 1];
+        lane.recorder->see_step(step.time, step.is_output_time, end.min_stretch, end.max_stretch, sample);
+        if (step.is_output_time && !lane.segments.is_last() && step.time == lane.segments.end())
         {
-          lane.pieces.go_on();
+          lane.segments.go_on();
           lane.watch->restart();
-          lane.least.interrupt();
-          lane.most.interrupt();
+          lane.recorder->interrupt();
           lane.n_stress_calls = 0;
         }
         return true;
@@ -310,16 +278,16 @@ namespace crawler
       look_at_extremes(Lane &lane, const LaneStep &step, const unsigned int i, const double t) const
       {
         const LaneStage &stage = step.stages[i];
-        const auto show        = [&](ExtremeHistory &history, const double value, const unsigned int sample) {
-          Extreme now{value, tables_.place_of_sample(sample), t};
-          const double record = history.extreme().value;
-          const double margin = sharpening * std::abs(record - 1.);
-          if (history.is_beyond(value, record) || std::abs(value - record) < margin)
-            sharpen(step, i, sample, now);
-          history.add(now);
-        };
-        show(lane.least, stage.min_stretch, stage.min_sample);
-        show(lane.most, stage.max_stretch, stage.max_sample);
+        const auto sharpened =
+          [&](const double value, const unsigned int sample, const bool is_beyond, const double record) {
+            Extreme now{value, tables_.place_of_sample(sample), t};
+            if (is_beyond || std::abs(value - record) < sharpening * std::abs(record - 1.))
+              sharpen(step, i, sample, now);
+            return now;
+          };
+        const double least = lane.recorder->result.min_stretch.value, most = lane.recorder->result.max_stretch.value;
+        lane.recorder->see_stretch(sharpened(stage.min_stretch, stage.min_sample, stage.min_stretch < least, least),
+                                   sharpened(stage.max_stretch, stage.max_sample, stage.max_stretch > most, most));
       }
 
       void
@@ -357,20 +325,15 @@ namespace crawler
       void
       add_rates(Lane &lane, const LaneStep &step, const unsigned int i) const
       {
-        const LaneStage &stage        = step.stages[i];
-        const double weight           = step.size * tableau_.b[i];
-        const auto &m                 = lane.end_stress[i];
-        EnergyBalance &energy_balance = *lane.result.energy_balance;
-        energy_balance.stress_power += weight * stage.stress_power;
-        energy_balance.dissipation += weight * stage.dissipation;
-        energy_balance.positive_power += weight * stage.positive_power;
-        energy_balance.exchanged += weight * stage.absolute_power;
-        energy_balance.end_work += weight * (m[1] * stage.right_velocity - m[0] * stage.left_velocity);
-        lane.largest_friction = std::max(lane.largest_friction, stage.abs_friction);
-        if (i + 1 == tableau_.n) // where the velocity balances all forces
-          lane.largest_net_friction = std::max(lane.largest_net_friction, std::abs(stage.net_friction));
-        if (lane.largest_friction > 0.)
-          lane.result.net_friction = lane.largest_net_friction / lane.largest_friction;
+        const LaneStage &stage = step.stages[i];
+        const auto &m          = lane.end_stress[i];
+        const double end_power = m[1] * stage.right_velocity - m[0] * stage.left_velocity;
+        Rates works{{stage.stress_power, stage.dissipation, stage.positive_power, stage.absolute_power, end_power}};
+        for (double &work : works)
+          work *= step.size * tableau_.b[i];
+        lane.recorder->result.energy_balance->add_works(works);
+        const bool is_end = i + 1 == tableau_.n; // where the velocity balances all forces
+        lane.recorder->see_friction(stage.abs_friction, is_end ? std::abs(stage.net_friction) : 0.);
       }
 
       static void
@@ -378,40 +341,26 @@ namespace crawler
       {
         Batch &batch = self(context);
         Lane &lane   = batch.lanes_[l];
-        if (outcome.status == LaneOutcome::finished && !lane.given_up)
+        if ((outcome.status == LaneOutcome::finished || lane.recorder->cycles_repeat()) && !lane.given_up)
           batch.results_[lane.run] = batch.result_of(lane, outcome);
       }
 
       SimulationResult
       result_of(Lane &lane, const LaneOutcome &outcome) const
       {
-        SimulationResult result       = std::move(lane.result);
-        const Units &units            = lane.units;
+        SimulationResult &result      = lane.recorder->result;
         result.time.status            = "finished";
-        result.time.time              = runs_[lane.run].scene->end_time;
-        result.time.step_size         = outcome.step_size * units.time;
+        result.time.step_size         = outcome.step_size;
         result.time.steps             = outcome.steps;
         result.time.rejected_steps    = outcome.rejected;
         result.time.newton_iterations = outcome.newton_iterations;
-        result.displacement           = outcome.displacement * units.length;
+        result.displacement           = outcome.displacement;
         result.most_cells             = tables_.setup.n_cells;
         result.mesh = {result.most_cells, tables_.setup.degree, result.most_cells * tables_.setup.degree + 1, false};
-        const auto in_units = [&units](const Extreme &extreme) {
-          return Extreme{extreme.value, extreme.s * units.length, extreme.t * units.time};
-        };
-        result.min_stretch = in_units(lane.least.extreme());
-        result.max_stretch = in_units(lane.most.extreme());
-        if (result.energy_balance)
-          result.energy_balance = result.energy_balance->scaled(units.energy());
-        if (lane.gait)
-          result.gait = lane.gait->gait();
-        if (result.gait)
-          result.gait = result.gait->in_units(units);
-        result.gait_efficiency = gait_efficiency(*runs_[lane.run].scene, result);
-        result.integrator      = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
-                                                                                 : runs_[lane.run].time->integrator;
-        result.engine          = "fused";
-        return result;
+        result.integrator = runs_[lane.run].time->integrator == "automatic" ? runs_[lane.run].numerics->integrator
+                                                                            : runs_[lane.run].time->integrator;
+        result.engine     = "fused";
+        return lane.recorder->finish();
       }
 
       const std::shared_ptr<const LaneTables> tables_owner_;

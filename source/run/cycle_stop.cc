@@ -182,7 +182,7 @@ namespace crawler
     const double drift = largest_changes_.back() * rho / (1. - rho);
     const EnergyBalance &now = ends_[n].energy_balance, &then = ends_[n - 1].energy_balance;
     const double stored = left * std::abs(now.elastic_energy - then.elastic_energy);
-    const double work   = now.exchanged + left * (now.exchanged - then.exchanged);
+    const double work   = now.exchanged_work + left * (now.exchanged_work - then.exchanged_work);
     repeats_ = bound_ <= part * wish_.accuracy * size && relative_change() <= same && drift <= least_part * least_ &&
                stored <= wish_.accuracy * work;
   }
@@ -195,10 +195,10 @@ namespace crawler
     const auto go_on    = [&](double &value, const auto of) { value += left * (of(ends_[n]) - of(ends_[n - 1])); };
     go_on(displacement, [](const End &end) { return end.displacement; });
     if (energy_balance)
-      for (double EnergyBalance::*integral : {&EnergyBalance::stress_power,
+      for (double EnergyBalance::*integral : {&EnergyBalance::stress_work,
                                               &EnergyBalance::dissipation,
-                                              &EnergyBalance::positive_power,
-                                              &EnergyBalance::exchanged,
+                                              &EnergyBalance::positive_work,
+                                              &EnergyBalance::exchanged_work,
                                               &EnergyBalance::end_work,
                                               &EnergyBalance::transfer_loss})
         go_on(energy_balance->*integral, [&](const End &end) { return end.energy_balance.*integral; });

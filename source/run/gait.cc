@@ -172,16 +172,19 @@ namespace crawler
     largest_.add({largest, largest});
   }
 
+  bool
+  GaitMeter::keeps_step(const double time) const
+  {
+    if (!steps_.empty() && steps_.back().time == time)
+      return false;
+    const double strides = period_ ? (1. - time) / *period_ : 0.;
+    return period_ ? std::abs(strides - std::round(strides)) <= 1e-9 : time >= 0.4;
+  }
+
   void
   GaitMeter::see_step(const double time, const double displacement, const EnergyBalance *energy_balance)
   {
-    bool is_kept = time >= 0.4;
-    if (period_)
-    {
-      const double strides = (1. - time) / *period_;
-      is_kept              = std::abs(strides - std::round(strides)) <= 1e-9;
-    }
-    if (!is_kept || (!steps_.empty() && steps_.back().time == time))
+    if (!keeps_step(time))
       return;
     if (period_ && steps_.size() >= 2)
       steps_.erase(steps_.begin());

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/reduced_models/perturbation.h>
-#include <crawler/run/gait_efficiency.h>
 #include <crawler/run/reduced_model.h>
+#include <crawler/run/user_units.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace crawler
 {
   namespace
   {
-    constexpr double unknown = ReducedEnergies::unknown;
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
     Extreme
     stretch_of(const StrainExtreme &e)
@@ -22,22 +23,9 @@ namespace crawler
     }
   } // namespace
 
-  EnergyBalance
-  energy_balance_of(const ReducedEnergies &energies)
-  {
-    EnergyBalance energy_balance;
-    energy_balance.stress_power   = energies.stress_power;
-    energy_balance.dissipation    = energies.dissipation;
-    energy_balance.positive_power = energies.positive_power;
-    energy_balance.exchanged      = energies.exchanged;
-    energy_balance.end_work       = energies.end_work;
-    energy_balance.elastic_energy = energies.elastic_energy;
-    energy_balance.transfer_loss  = -energies.elastic_start;
-    return energy_balance;
-  }
-
   ReducedModel::ReducedModel(const Scene &scene, const std::string &model)
-    : levels_(scene)
+    : scene_(scene)
+    , reduced_scene_(scene)
     , model_(model)
   {
   }
@@ -45,12 +33,12 @@ namespace crawler
   void
   ReducedModel::compute_perturbation(SimulationResult &result) const
   {
-    const Perturbation series(*levels_.wave());
-    const ModelErrors errors      = levels_.model_errors();
+    const Perturbation series(*reduced_scene_.wave());
+    const ModelErrors errors      = reduced_scene_.model_errors();
     const StrainExtremes extremes = series.extremes();
     result.displacement           = series.displacement(1.);
     result.error                  = {.space = 0., .time = 0., .model = errors.known ? errors.perturbation : unknown};
-    result.energy_balance         = energy_balance_of(series.energies(1.));
+    result.energy_balance         = series.energies(1.);
     result.net_friction           = unknown;
     result.min_stretch            = stretch_of(extremes.smallest);
     result.max_stretch            = stretch_of(extremes.largest);
@@ -61,9 +49,10 @@ namespace crawler
                                   const double accuracy,
                                   const std::function<bool()> &keep_going)
   {
-    const KinematicResult motion = kinematic(levels_.scene(), *levels_.strain(), 0.5 * accuracy, keep_going);
-    n_space_panels_              = motion.n_space_panels;
-    n_time_panels_               = motion.n_time_panels;
+    const KinematicResult motion =
+      kinematic(reduced_scene_.scene(), *reduced_scene_.strain(), 0.5 * accuracy, keep_going);
+    n_space_panels_ = motion.n_space_panels;
+    n_time_panels_  = motion.n_time_panels;
     if (motion.stopped)
     {
       result.time.status = "stopped";
@@ -78,11 +67,11 @@ namespace crawler
       result.energy_balance.reset();
       return;
     }
-    const ModelErrors errors = levels_.model_errors();
+    const ModelErrors errors = reduced_scene_.model_errors();
     result.displacement      = motion.displacement;
     result.error             = {
                   .space = motion.space_error, .time = motion.time_error, .model = errors.known ? errors.kinematic : unknown};
-    result.energy_balance = energy_balance_of(motion.energies);
+    result.energy_balance = motion.energies;
     result.net_friction   = motion.net_friction;
   }
 
@@ -104,7 +93,7 @@ namespace crawler
         ? fmt::format(
             "the estimated error of the displacement is {:.3g}{}, but Accuracy is {:g}; a larger one, or Model "
             "= auto, is needed",
-            error.total * levels_.units().length,
+            error.total * reduced_scene_.units().length,
             relative,
             accuracy)
         : fmt::format(
@@ -127,33 +116,19 @@ namespace crawler
     if (result.error)
       judge(result, accuracy);
 
-    const Units &units     = levels_.units();
-    const double end_time  = units.time;
     const bool is_complete = result.time.status != "stopped" && !result.inversion;
-    result.time.time       = is_complete ? end_time : result.inversion ? result.inversion->t * end_time : 0.;
-    result.displacement *= units.length;
-    if (result.error)
-      for (double *part : {&result.error->total, &result.error->space, &result.error->time, &result.error->model})
-        *part *= units.length;
+    result.time.time       = is_complete ? 1. : result.inversion ? result.inversion->t : 0.;
     if (!energy_balance)
       result.energy_balance.reset();
-    if (result.energy_balance)
-      result.energy_balance = result.energy_balance->scaled(units.energy());
-    for (Extreme *extreme : {&result.min_stretch, &result.max_stretch})
-    {
-      extreme->s *= units.length;
-      extreme->t *= units.time;
-    }
+    result = in_user_units(std::move(result), scene_, reduced_scene_.units());
     if (result.inversion)
     {
-      result.inversion->s *= units.length;
-      result.inversion->t *= units.time;
       const double s      = result.inversion->s;
-      result.time.reason  = s == 0. || s == units.length ? "inverted_at_end" : "inverted_inside";
+      result.time.reason  = s == 0. || s == scene_.body.length ? "inverted_at_end" : "inverted_inside";
       result.time.message = fmt::format("the strain that the kinematic model assumes gives the stretch {:.3g} at s = "
                                         "{:.6g}, t = {:.6g}; Model = nonlinear is needed",
                                         result.inversion->value,
-                                        result.inversion->s,
+                                        s,
                                         result.inversion->t);
     }
     result.solve_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -168,8 +143,8 @@ namespace crawler
     State state;
     if (model_ == "perturbation")
     {
-      const Perturbation series(*levels_.wave());
-      KinematicBody body(levels_.scene(), *levels_.strain(), 2, points);
+      const Perturbation series(*reduced_scene_.wave());
+      KinematicBody body(reduced_scene_.scene(), *reduced_scene_.strain(), 2, points);
       for (const double t : times)
       {
         const auto &now    = body.evaluate(t); // for its extremes
@@ -184,8 +159,8 @@ namespace crawler
       }
       return;
     }
-    KinematicBody body(levels_.scene(), *levels_.strain(), n_space_panels_, points);
-    state.energies.elastic_start = body.evaluate(0.).elastic_energy;
+    KinematicBody body(reduced_scene_.scene(), *reduced_scene_.strain(), n_space_panels_, points);
+    state.energies.initial_energy = body.evaluate(0.).sums.elastic_energy;
     for (std::size_t i = 0; i < times.size(); ++i)
     {
       if (i > 0)
@@ -199,9 +174,9 @@ namespace crawler
                                         state.energies);
       }
       const auto &now               = body.evaluate(times[i]);
-      state.energies.elastic_energy = now.elastic_energy;
-      state.velocity                = now.velocity;
-      state.net_friction            = now.net_friction;
+      state.energies.elastic_energy = now.sums.elastic_energy;
+      state.velocity                = now.sums.velocity;
+      state.net_friction            = now.sums.net_friction;
       state.smallest                = now.smallest;
       state.largest                 = now.largest;
       state.fields                  = body.fields(state.displacement);
@@ -211,14 +186,10 @@ namespace crawler
   }
 
   void
-  ReducedModel::describe_gait(const Scene &scene, SimulationResult &result) const
+  ReducedModel::describe_gait(SimulationResult &result) const
   {
-    if (result.time.status != "finished")
-      return;
-    if (result.energy_balance)
-      result.gait_efficiency = gait_efficiency(scene, result);
-    const auto period = stride_of(*levels_.scene().active_stress, 1., 1.);
-    if (!period)
+    const auto period = stride_of(*reduced_scene_.scene().active_stress, 1., 1.);
+    if (result.time.status != "finished" || !period)
       return;
     GaitMeter meter(*period, false);
     std::vector<double> ends;
@@ -228,12 +199,11 @@ namespace crawler
       meter.see(state.fields.displacement, state.displacement);
       meter.see_extremes(result.min_stretch.value, result.max_stretch.value); // of the whole motion
       meter.see_extremes(1. + state.smallest.strain, 1. + state.largest.strain);
-      const EnergyBalance energy_balance = energy_balance_of(state.energies);
-      meter.see_step(t, state.displacement, &energy_balance);
+      meter.see_step(t, state.displacement, &state.energies);
       return true;
     });
     if (const auto gait = meter.gait())
-      result.gait = gait->in_units(levels_.units());
+      result.gait = gait->in_units(reduced_scene_.units());
   }
 
   std::string

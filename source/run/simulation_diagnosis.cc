@@ -54,7 +54,7 @@ namespace crawler
   double
   Simulation::lost_stretch() const
   {
-    return position_ != nullptr ? lost_in_position : lost_in_stretch_form(scene_.friction_exponent());
+    return mesh_.position != nullptr ? lost_in_position : lost_in_stretch_form(scene_.friction_exponent());
   }
 
   /// Has the stretch that the end conditions prescribe, 1 - m/k, become 0 since @p from? Then the diagnosis says so.
@@ -63,10 +63,10 @@ namespace crawler
   {
     constexpr int parts = 4;
     const auto smallest = [this](const double t) {
-      const auto [left, right] = assembler_->end_stretches(t);
+      const auto [left, right] = mesh_.assembler->end_stretches(t);
       return std::min(left, right);
     };
-    if (!assembler_->has_known_ends())
+    if (!mesh_.assembler->has_known_ends())
       return false;
     double begin = from;
     for (int i = from < to ? 1 : parts; i <= parts; ++i)
@@ -78,7 +78,7 @@ namespace crawler
         continue;
       }
       const double t           = begin < end ? first_zero(smallest, begin, end) : end;
-      const auto [left, right] = assembler_->end_stretches(t);
+      const auto [left, right] = mesh_.assembler->end_stretches(t);
       const double s           = left <= right ? 0. : 1.;
       inverted_at_end(s, t, "where 1 - m/k is not positive");
       return true;
@@ -89,14 +89,14 @@ namespace crawler
   void
   Simulation::inverted_at_end(const double s, const double t, const std::string &reason)
   {
-    result_.inversion = SimulationResult::Extreme{0., s, t};
-    diagnosis_        = {"inverted",
-                         "inverted_at_end",
-                         fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, {}; "
-                                     "the model ends there",
-                              s * units_.length,
-                              t * units_.time,
-                              reason)};
+    result().inversion = SimulationResult::Extreme{0., s, t};
+    run_->diagnosis    = {"inverted",
+                          "inverted_at_end",
+                          fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, {}; "
+                                      "the model ends there",
+                                   s * units_.length,
+                                   t * units_.time,
+                                   reason)};
   }
 
   /// The stretch was lost inside within the step: finds where and when on the integrator's dense output.
@@ -104,11 +104,11 @@ namespace crawler
   Simulation::locate_inversion(const Step &step)
   {
     const double threshold = lost_stretch();
-    std::vector<double> y(assembler_->n_owned());
-    StretchAt smallest = stretch_.min;
+    std::vector<double> y(mesh_.assembler->n_owned());
+    StretchAt smallest = run_->stretch.min;
     const auto above   = [&](const double t) {
-      stepper_->interpolate(t, y);
-      smallest = assembler_->stretch_range(y).min;
+      integrators_.present->interpolate(t, y);
+      smallest = mesh_.assembler->stretch_range(y).min;
       return smallest.value - threshold;
     };
     double t = step.time;
@@ -118,18 +118,18 @@ namespace crawler
       above(t); // the smallest stretch of that time
     const bool at_end  = smallest.s == 0. || smallest.s == 1.;
     const double reach = at_end ? end_reach_at_end : end_reach;
-    if (at_end && !assembler_->has_known_ends())
+    if (at_end && !mesh_.assembler->has_known_ends())
       inverted_at_end(smallest.s, t, "where the active stress with its feedback is not below k");
     else if (!end_inverts(t, std::min(t + reach, 1.)))
     {
-      inverted_inside(stretch_.min.value, smallest.s, t);
-      if (result_.inversion && stretch_form_ != nullptr)
+      inverted_inside(run_->stretch.min.value, smallest.s, t);
+      if (result().inversion && mesh_.stretch != nullptr)
       {
         // There disturbances travel without bound, so all of these places are lost at once.
         constexpr double at_once = 1e-6;
-        stepper_->interpolate(t, y);
-        const auto [first, last] = stretch_form_->lost_places(t, y, at_once);
-        result_.inverted_places  = {std::min(first, smallest.s), std::max(last, smallest.s)};
+        integrators_.present->interpolate(t, y);
+        const auto [first, last] = mesh_.stretch->lost_places(t, y, at_once);
+        result().inverted_places = {std::min(first, smallest.s), std::max(last, smallest.s)};
       }
     }
   }
@@ -142,7 +142,7 @@ namespace crawler
     if (failures == nullptr) // the same on all ranks
       return false;
     const int rank = static_cast<int>(rank_of(communicator_)), n_ranks = static_cast<int>(size_of(communicator_));
-    int first = failures->count > n_failures_ ? rank : n_ranks;
+    int first = failures->count > run_->n_failures ? rank : n_ranks;
     if (n_ranks > 1)
       MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, communicator_);
     if (first == n_ranks)
@@ -153,7 +153,7 @@ namespace crawler
       const std::vector<std::string> all = gather(message, communicator_);
       message = broadcast(rank == 0 ? all[static_cast<std::size_t>(first)] : "", communicator_);
     }
-    diagnosis_ = {"failed", "nonfinite", message};
+    run_->diagnosis = {"failed", "nonfinite", message};
     return true;
   }
 
@@ -161,7 +161,7 @@ namespace crawler
   bool
   Simulation::law_failed()
   {
-    const auto bad   = assembler_->bad_law(units_);
+    const auto bad   = mesh_.assembler->bad_law(units_);
     const int n      = size_of(communicator_);
     int speaker      = bad ? rank_of(communicator_) : n;
     std::string text = bad ? bad->entry + "\n" + bad->message : "";
@@ -172,11 +172,12 @@ namespace crawler
     MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG, speaker, communicator_);
     text.resize(length);
     MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, speaker, communicator_);
-    const auto end = text.find('\n');
-    diagnosis_     = {
-          "failed",
-          "law_not_positive",
-          fmt::format("{}: {}; at t = {:.6g}", text.substr(0, end), text.substr(end + 1), accepted_time_ * units_.time)};
+    const auto end  = text.find('\n');
+    run_->diagnosis = {
+      "failed",
+      "law_not_positive",
+      fmt::format(
+        "{}: {}; at t = {:.6g}", text.substr(0, end), text.substr(end + 1), run_->accepted.time * units_.time)};
     return true;
   }
 
@@ -186,8 +187,8 @@ namespace crawler
   {
     if (stress_failed())
       return;
-    TimeOutcome &outcome = result_.time;
-    const double t       = accepted_time_;
+    TimeOutcome &outcome = result().time;
+    const double t       = run_->accepted.time;
     if (outcome.domain_error && law_failed())
       return;
     // Very small steps may be the end of the model.
@@ -197,8 +198,8 @@ namespace crawler
       if (end_inverts(t, std::min(t + reach, 1.)))
         return;
       // How long is left at the present rate?
-      const StretchAt smallest = assembler_->stretch_range(accepted_).min;
-      const Extreme before     = min_history_.before_last();
+      const StretchAt smallest = mesh_.assembler->stretch_range(run_->accepted.y).min;
+      const Extreme before     = run_->recorder.smallest_before_last();
       const double rate        = t > before.t ? (before.value - smallest.value) / (t - before.t) : 0.;
       const double left        = rate > 0. ? smallest.value / rate : 1.;
       // For a >= 0 the stretch reaches 0 at a bounded rate, so one that is not near 0 was not lost by the body.
@@ -222,37 +223,37 @@ namespace crawler
   Simulation::inverted_inside(const double value, const double s, const double t)
   {
     const double a = scene_.friction_exponent();
-    if (a <= -1. || (a < 0. && position_ != nullptr))
+    if (a <= -1. || (a < 0. && mesh_.position != nullptr))
     {
       under_resolved(value, s, t);
       return;
     }
-    result_.inversion = SimulationResult::Extreme{std::min(value, 0.), s, t};
-    diagnosis_        = {"inverted",
-                         "inverted_inside",
-                         fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model ends "
-                                     "there",
-                              s * units_.length,
-                              t * units_.time)};
+    result().inversion = SimulationResult::Extreme{std::min(value, 0.), s, t};
+    run_->diagnosis    = {"inverted",
+                          "inverted_inside",
+                          fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model ends "
+                                      "there",
+                                   s * units_.length,
+                                   t * units_.time)};
   }
 
   void
   Simulation::under_resolved(const double value, const double s, const double t)
   {
     const bool positive = scene_.friction_exponent() <= -1.;
-    diagnosis_          = {
-               "failed",
-               "under_resolved",
-               fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, {}: {} cells of degree {} "
-                           "are too coarse, or the steps too long; {}a larger Discretization/Number of cells or a smaller "
-                           "Time/Tolerance is needed",
+    run_->diagnosis     = {
+          "failed",
+          "under_resolved",
+          fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, {}: {} cells of degree {} "
+                      "are too coarse, or the steps too long; {}a larger Discretization/Number of cells or a smaller "
+                      "Time/Tolerance is needed",
                   value,
                   s * units_.length,
                   t * units_.time,
                   positive ? "where the body itself stays uninverted (a <= -1)"
-                                    : "which for a < 0 only the stretch form is believed",
-                  discretization_->n_cells(),
-                  discretization_->element().degree,
-                  position_ != nullptr ? "Discretization/Formulation = stretch, or " : "")};
+                               : "which for a < 0 only the stretch form is believed",
+                  mesh_.discretization->n_cells(),
+                  mesh_.discretization->element().degree,
+                  mesh_.position != nullptr ? "Discretization/Formulation = stretch, or " : "")};
   }
 } // namespace crawler

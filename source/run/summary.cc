@@ -65,10 +65,10 @@ namespace crawler
                                     gait.slip() ? fmt::format(", slip {:.4g}", *gait.slip()) : ""));
       if (!gait.energy_balance)
         return;
-      const auto cost = gait.cost_of_transport(gait.energy_balance->stress_power);
+      const auto cost = gait.cost_of_transport(gait.energy_balance->stress_work);
       if (!cost)
         return;
-      const auto positive = gait.cost_of_transport(gait.energy_balance->positive_power);
+      const auto positive = gait.cost_of_transport(gait.energy_balance->positive_work);
       lines.push_back(fmt::format("  cost of transport {:.4g}{} (work per distance{})",
                                   *cost,
                                   error_bound_in_words(result, "gait.cost_of_transport.stress_power"),
@@ -139,7 +139,7 @@ namespace crawler
     if (result.energy_balance)
     {
       lines.push_back(fmt::format("  stress power      {:.10g}{}",
-                                  result.energy_balance->stress_power,
+                                  result.energy_balance->stress_work,
                                   error_bound_in_words(result, "stress_power")));
       lines.push_back(fmt::format("  dissipation       {:.10g}", result.energy_balance->dissipation));
       lines.push_back(fmt::format(

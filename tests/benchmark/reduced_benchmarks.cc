@@ -64,7 +64,7 @@ namespace crawler::test
         numerics.initial_step = 0.01;
         return Simulation(MPI_COMM_WORLD, scene, parameters.time, numerics)
           .run({}, {.energy_balance = true})
-          .energy_balance->stress_power;
+          .energy_balance->stress_work;
       }
 
       const Parameters parameters;

@@ -360,5 +360,5 @@ TEST(Jumps, MayEndWhenCyclesRepeat)
   EXPECT_EQ(early.cycles->computed + early.cycles->extrapolated, 20u);
   EXPECT_GT(early.cycles->extrapolated, 10u);
   EXPECT_NEAR(early.displacement / all.displacement, 1., 1e-6);
-  EXPECT_NEAR(early.energy_balance->stress_power / all.energy_balance->stress_power, 1., 1e-5);
+  EXPECT_NEAR(early.energy_balance->stress_work / all.energy_balance->stress_work, 1., 1e-5);
 }

@@ -120,10 +120,10 @@ namespace crawler::test
                                   static_cast<double>(r.most_cells),
                                   r.largest_indicator};
     if (r.energy_balance)
-      for (const double value : {r.energy_balance->stress_power,
+      for (const double value : {r.energy_balance->stress_work,
                                  r.energy_balance->dissipation,
-                                 r.energy_balance->positive_power,
-                                 r.energy_balance->exchanged,
+                                 r.energy_balance->positive_work,
+                                 r.energy_balance->exchanged_work,
                                  r.energy_balance->end_work,
                                  r.energy_balance->elastic_energy,
                                  r.energy_balance->transfer_loss})

@@ -47,15 +47,15 @@ TEST(GaitNumbers, ThoseOfFigure2)
   EXPECT_NEAR(gait.wave->speed, -1., 0.02); // to leading order in chi
   // From stride to stride nothing is stored: the work is dissipated.
   EXPECT_NEAR(gait.energy_balance->elastic_energy, 0., 1e-9);
-  EXPECT_NEAR(gait.energy_balance->stress_power, gait.energy_balance->dissipation, 1e-8);
-  EXPECT_NEAR(gait.energy_balance->stress_power, (1.674733 - 0.083860120) / 19., 1e-6);
+  EXPECT_NEAR(gait.energy_balance->stress_work, gait.energy_balance->dissipation, 1e-8);
+  EXPECT_NEAR(gait.energy_balance->stress_work, (1.674733 - 0.083860120) / 19., 1e-6);
   EXPECT_LT(*result.gait_efficiency, 1.);
   EXPECT_NEAR(*gait.slip(), 1. - 0.0901, 2e-3);
 
   const auto early = stride(test::wave(-1., 0.4, 1., 20.), /*with_cycle_stop=*/true);
   ASSERT_TRUE(early.cycles && early.gait);
   EXPECT_NEAR(early.gait->displacement, gait.displacement, 1e-8);
-  EXPECT_NEAR(early.gait->energy_balance->positive_power, gait.energy_balance->positive_power, 1e-5); // kinks
+  EXPECT_NEAR(early.gait->energy_balance->positive_work, gait.energy_balance->positive_work, 1e-5); // kinks
 }
 
 /// A run that ends early does so at the end of a stride, whatever rounding makes of that time.
@@ -81,7 +81,7 @@ TEST(GaitNumbers, TheDirectionSwitchesWithA)
     EXPECT_NEAR(result.gait->wave->speed, a, 2e-3);
     EXPECT_NEAR(result.gait->wave->coherence, 1., 1e-3);
     // -L gamma c/a to leading order in chi.
-    EXPECT_NEAR(*result.gait->cost_of_transport(result.gait->energy_balance->stress_power), 1., 0.02);
+    EXPECT_NEAR(*result.gait->cost_of_transport(result.gait->energy_balance->stress_work), 1., 0.02);
   }
   // The centre of mass stays where it is, so nothing is prograde or retrograde.
   const auto still = stride(test::wave(0., 0.1, 1., 2.));
@@ -95,11 +95,11 @@ TEST(GaitNumbers, TheEnergiesOfAStrideAddUpWithThoseBefore)
   const double T   = 2.3; // the last stride starts where no cycle ends
   const auto whole = stride(test::wave(-1., 0.3, 1., T)), before = stride(test::wave(-1., 0.3, 1., T - 1.));
   EXPECT_NEAR(whole.gait->displacement, whole.displacement - before.displacement, 1e-9);
-  EXPECT_NEAR(whole.gait->energy_balance->stress_power,
-              whole.energy_balance->stress_power - before.energy_balance->stress_power,
+  EXPECT_NEAR(whole.gait->energy_balance->stress_work,
+              whole.energy_balance->stress_work - before.energy_balance->stress_work,
               1e-8);
-  EXPECT_NEAR(whole.gait->energy_balance->positive_power,
-              whole.energy_balance->positive_power - before.energy_balance->positive_power,
+  EXPECT_NEAR(whole.gait->energy_balance->positive_work,
+              whole.energy_balance->positive_work - before.energy_balance->positive_work,
               1e-4);
 }
 

@@ -34,7 +34,7 @@ TEST(Identities, NetFrictionAndLedger)
     EXPECT_LT(result.net_friction, 1e-11) << p;
     EXPECT_LT(result.energy_balance->residual(), 1e-6) << p;
     EXPECT_GT(result.energy_balance->dissipation, 0.) << p;
-    EXPECT_GE(result.energy_balance->positive_power, result.energy_balance->stress_power) << p;
+    EXPECT_GE(result.energy_balance->positive_work, result.energy_balance->stress_work) << p;
   }
 }
 
@@ -65,7 +65,7 @@ TEST(Identities, LedgerWhereFrictionVanishes)
     ASSERT_EQ(result.time.status, "finished") << mesh;
     EXPECT_LT(result.net_friction, 1e-10) << mesh;
     EXPECT_LT(result.energy_balance->residual(), 1e-2) << mesh;
-    EXPECT_NEAR(result.energy_balance->stress_power, 0.129086, 1e-3) << mesh;
+    EXPECT_NEAR(result.energy_balance->stress_work, 0.129086, 1e-3) << mesh;
     EXPECT_NEAR(result.displacement, -0.185838, outcome.choice.promised_error) << mesh;
   }
 }

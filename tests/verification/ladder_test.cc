@@ -71,11 +71,11 @@ TEST(Ladder, NonlinearFollowsAPrescribedStrain)
     ASSERT_EQ(full.time.status, "finished");
     ASSERT_EQ(motion.time.status, "finished");
     EXPECT_NEAR(full.displacement / motion.displacement, 1., 1e-8) << "a = " << a;
-    EXPECT_NEAR(full.energy_balance->stress_power / motion.energy_balance->stress_power, 1., 1e-7);
+    EXPECT_NEAR(full.energy_balance->stress_work / motion.energy_balance->stress_work, 1., 1e-7);
     EXPECT_NEAR(full.energy_balance->dissipation / motion.energy_balance->dissipation, 1., 1e-7);
     EXPECT_NEAR(full.energy_balance->paper_energy() / motion.energy_balance->paper_energy(), 1., 1e-7);
     EXPECT_NEAR(
-      full.energy_balance->positive_power / motion.energy_balance->positive_power, 1., 2e-3); // an integrand with kinks
+      full.energy_balance->positive_work / motion.energy_balance->positive_work, 1., 2e-3); // an integrand with kinks
     EXPECT_NEAR(full.energy_balance->elastic_energy / motion.energy_balance->elastic_energy, 1., 1e-7);
     EXPECT_NEAR(full.min_stretch.value, motion.min_stretch.value, 1e-4);
     EXPECT_NEAR(full.max_stretch.value, motion.max_stretch.value, 1e-4);
@@ -96,7 +96,7 @@ TEST(Ladder, EachLevelAgainstTheOneAbove)
     EXPECT_LE(std::abs(series.displacement - full), series.error->total);
     EXPECT_LE(std::abs(motion.displacement - full), motion.error->total);
     EXPECT_GT(series.error->total, 0.);
-    EXPECT_NEAR(series.energy_balance->stress_power / motion.energy_balance->stress_power, 1., 0.05);
+    EXPECT_NEAR(series.energy_balance->stress_work / motion.energy_balance->stress_work, 1., 0.05);
     EXPECT_NEAR(series.energy_balance->paper_energy() / motion.energy_balance->paper_energy(), 1., 0.05);
   }
 }

@@ -80,7 +80,7 @@ main(int argc, char **argv)
                  result.displacement,
                  reference,
                  error,
-                 std::abs(result.energy_balance->stress_power / work - 1.),
+                 std::abs(result.energy_balance->stress_work / work - 1.),
                  result.energy_balance->residual(),
                  outcome.choice.numerics.n_cells,
                  result.time.steps,

@@ -39,7 +39,10 @@ namespace crawler
   TimeParameters
   time_of_finer_run(const TimeParameters &time);
   Numerics
-  numerics_of_finer_run(const NumericsChoice &choice, const TimeParameters &time, const Scene &scene);
+  numerics_of_finer_run(const NumericsChoice &choice,
+                        const TimeParameters &time,
+                        const Scene &scene,
+                        bool cycles_repeat);
 
   Simulation::Options
   options_of_finer_run(const SimulationResult &result, const std::optional<CycleWish> &cycles);

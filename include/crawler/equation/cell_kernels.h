@@ -47,9 +47,11 @@ namespace crawler
   /**
    * The loops over cells, compiled for each degree so that the compiler unrolls them. With phi_i the shape functions:
    *
-   *   residual   F_i  = int f phi_i + int N phi_i,s          (added to F); f = g(w) v, N = m + k (w - 1) of plain
-   * scenes blocks     by_state dF_i/du_j + by_velocity dF_i/dv_j  (dense block of each cell) states     u, v, strain
-   * and rate of the stretch at the quadrature points
+   *   residual   F_i = int f phi_i + int N phi_i,s (added to F); f = g(w) v, N = m + k (w - 1) of plain scenes
+   *   blocks     by_state dF_i/du_j + by_velocity dF_i/dv_j, a dense block of each cell
+   *   integrals  CellIntegrals, added
+   *   forces     N and f at the quadrature points
+   *   states     u, v, strain and rate of the stretch at the quadrature points
    */
   struct CellKernels
   {
@@ -57,6 +59,7 @@ namespace crawler
     long (*residual)(const CellInput &, double *F);
     void (*blocks)(const CellInput &, double by_state, double by_velocity, double *blocks);
     void (*integrals)(const CellInput &, CellIntegrals &);
+    void (*forces)(const CellInput &, double *N, double *f);
     void (*states)(const CellInput &, double *u, double *v, double *e, double *rate);
   };
 

@@ -106,6 +106,25 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     add_forces<n>(tables, h, N, f, F);
   }
 
+  /// The force in the body @p N and the friction @p f at the points of a cell.
+  template <int n, typename Number, typename Laws>
+  inline void
+  cell_forces(const ElementTables &tables,
+              const double h,
+              const Laws &laws,
+              const Number *u,
+              const Number *v,
+              Number *N,
+              Number *f)
+  {
+    Number e[n], w[n], v_at[n];
+    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
+    for (int p = 0; p < n; ++p)
+      w[p] = 1. + e[p];
+    evaluate<n>(tables.values, v, 1., 0., v_at);
+    laws.forces(e, w, v_at, N, f);
+  }
+
   /// The derivatives at the points of a cell.
   template <int n, bool by_state, typename Number, typename Laws>
   inline PointDerivatives<n, Number>
@@ -189,6 +208,23 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
   }
 
+  /// Adds what a point with the weight @p ds and the velocity @p v gives to @p sum, which has the members of
+  /// CellIntegrals (cell_kernels.h).
+  template <typename Number, typename Sums>
+  inline void
+  add_densities(const double ds, const PointDensities<Number> &at, const Number &v, Sums &sum)
+  {
+    const Number power = at.power, force = at.force;
+    sum.velocity += ds * v;
+    sum.elastic_energy += ds * at.elastic_energy;
+    sum.stress_power += ds * power;
+    sum.positive_power += ds * (power > 0. ? power : Number{});
+    sum.absolute_power += ds * (power > 0. ? power : -power);
+    sum.dissipation += ds * (force * v);
+    sum.net_friction += ds * force;
+    sum.abs_friction += ds * (force > 0. ? force : -force);
+  }
+
   /// Adds the integrals of a cell to @p sum, which has the members of CellIntegrals (cell_kernels.h).
   template <int n, typename Number, typename Laws, typename Sums>
   inline void
@@ -206,17 +242,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     laws.densities(e, w, v_at, v_s, at);
     for (int p = 0; p < n; ++p)
     {
-      const double ds    = h * tables.weights[p];
-      const Number power = at[p].power, force = at[p].force;
+      const double ds = h * tables.weights[p];
       sum.displacement += ds * u_at[p];
-      sum.velocity += ds * v_at[p];
-      sum.elastic_energy += ds * at[p].elastic_energy;
-      sum.stress_power += ds * power;
-      sum.positive_power += ds * (power > 0. ? power : Number{});
-      sum.absolute_power += ds * (power > 0. ? power : -power);
-      sum.dissipation += ds * (force * v_at[p]);
-      sum.net_friction += ds * force;
-      sum.abs_friction += ds * (force > 0. ? force : -force);
+      add_densities(ds, at[p], v_at[p], sum);
     }
   }
 

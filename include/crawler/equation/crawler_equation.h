@@ -23,6 +23,14 @@ namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET
     return m + k * e;
   }
 
+  /// The active stress m of a body whose force is known, @p N.
+  template <typename Number>
+  inline Number
+  active_stress(const Number N, const Number e, const Number k)
+  {
+    return N - k * e;
+  }
+
   /// Elastic energy per reference length [force], for the strain e.
   template <typename Number>
   inline Number

@@ -32,25 +32,12 @@ namespace crawler
     /// By Newton's method: the friction may depend on the velocity, and the active stress on its derivative.
     bool
     velocity(double t, ConstVector u, Vector v) override;
-    CellIntegrals
-    integrals(double t, ConstVector u, ConstVector v) override;
 
   protected:
     long
-    add_residual(double t, ConstVector u, const CellInput &in, double *F) override;
-    void
-    jacobian_blocks(double t, ConstVector u, const CellInput &in, double sigma, double *blocks) override;
-    void
-    mass_blocks(double t, ConstVector u, const CellInput &in, double *blocks) override;
-    void
-    friction(double t, ConstVector u, ConstVector v, std::vector<double> &g_v) override;
+    evaluate_laws(double t, ConstVector u, CellInput &in) override;
 
   private:
-    /// Laws at all quadrature points [cell][point]. Returns the number of the first point where a law or the stretch is
-    /// not positive, or -1.
-    long
-    evaluate(double t, ConstVector u, const CellInput &in);
-
     /// What the stretch at another place adds to a product with the Jacobian.
     struct Far
     {
@@ -60,10 +47,6 @@ namespace crawler
     far() const;
     void
     add_far(const Far &far, ConstVector x, Vector result) const;
-
-    /// The laws of the last evaluate() beside @p in.
-    CellInput
-    with_laws(const CellInput &in);
 
     SlidingAtPoints sliding_;
     BodyForceAtPoints force_;

@@ -9,8 +9,6 @@
 
 namespace crawler
 {
-  class GeneralSampler;
-
   /// How well the mesh resolves a stretch: squared norms over the whole body (see doc/numerics.md, "Accuracy").
   struct Resolution
   {
@@ -107,30 +105,18 @@ namespace crawler
     root_mean_square(ConstVector y) const;
 
   protected:
-    /// The friction g v at the quadrature points [cell][point].
-    virtual void
-    friction(double t, ConstVector u, ConstVector v, std::vector<double> &g_v);
-
     /// Local arrays of the displacement @p u and the velocity @p v (may be empty), with m of the time @p t.
     CellInput
     input(double t, ConstVector u, ConstVector v);
 
-    /// The same without unknowns and stress.
-    CellInput
-    geometry() const;
-
-    // The loops over cells, which general scenes replace. The arrays of @p in are local, the unknowns @p u are owned.
-
-    /// Adds F to the local array @p F; the number of the first quadrature point [cell][point] where F is not defined,
-    /// or -1.
+    /// What the laws of a general scene say there: sets the laws of @p in, whose arrays are local; the unknowns @p u
+    /// are owned. Returns the number of the first quadrature point [cell][point] where they are not defined, or -1.
     virtual long
-    add_residual(double t, ConstVector u, const CellInput &in, double *F);
-    /// dF/du + sigma dF/dv.
-    virtual void
-    jacobian_blocks(double t, ConstVector u, const CellInput &in, double sigma, double *blocks);
-    /// dF/dv.
-    virtual void
-    mass_blocks(double t, ConstVector u, const CellInput &in, double *blocks);
+    evaluate_laws(double t, ConstVector u, CellInput &in);
+
+    /// dF/dv, at the velocity @p v.
+    void
+    mass(double t, ConstVector u, ConstVector v, BlockTridiagonalMatrix<double> &M);
 
     const CellKernels &kernels_;
     std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< built when a velocity is first asked for
@@ -143,7 +129,6 @@ namespace crawler
 
     BlockTridiagonalMatrix<double> jacobian_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;
-    std::unique_ptr<GeneralSampler> quadrature_sampler_; ///< of a general scene, once it is needed
     /// m at the stress points.
     struct StressAtTime
     {
@@ -154,8 +139,8 @@ namespace crawler
     std::vector<StressAtTime> stresses_; ///< the latest
     std::size_t oldest_stress_ = 0;
     std::vector<double> u_local_, v_local_, F_local_;
-    const StretchSampler &sampler_; ///< at the left end, the quadrature points and the right end
-    std::vector<double> friction_at_;
+    const StretchSampler &sampler_;        ///< at the left end, the quadrature points and the right end
+    std::vector<double> force_, friction_; ///< at the quadrature points
     std::optional<StretchAt> bad_stretch_;
     std::vector<BlockTridiagonalMatrix<Complex>> complex_jacobians_;
     struct Stage

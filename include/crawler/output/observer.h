@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crawler/equation/assembler.h>
-#include <crawler/output/energy_balance.h>
+#include <crawler/equation/energy_balance.h>
 #include <crawler/time/time_stepper.h>
 
 namespace crawler

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <crawler/base/gauss_panels.h>
+#include <crawler/equation/cell_kernels.h>
+#include <crawler/equation/energy_balance.h>
 #include <crawler/reduced_models/reduced_fields.h>
 #include <crawler/scene/scene.h>
 
@@ -31,16 +33,15 @@ namespace crawler
     /// The state at one time, integrated over the body.
     struct Integrals
     {
-      double velocity       = 0.; ///< <v>
-      double dissipation    = 0.; ///< int g v^2
-      double stress_power   = 0.; ///< -int m e_t
-      double positive_power = 0.; ///< int max(-m e_t, 0)
-      double absolute_power = 0.; ///< int |m e_t|
-      double end_power      = 0.; ///< [m v] from s = 0 to L
-      double elastic_energy = 0.; ///< int (k/2) e^2
-      double net_friction   = 0.; ///< int g v, to round-off 0
-      double abs_friction   = 0.; ///< int |g v|
+      CellIntegrals sums;    ///< the mean displacement is 0 here: it is the integral of sums.velocity over time
+      double end_power = 0.; ///< [m v] from s = 0 to L
       StrainExtreme smallest, largest;
+
+      Rates
+      rates() const
+      {
+        return rates_of(sums, end_power);
+      }
     };
 
     /// Where a stretch is not positive only the extremes are known, and the rest is not a number.
@@ -67,7 +68,7 @@ namespace crawler
   {
     double displacement = 0., space_error = 0., time_error = 0.; ///< errors of the quadrature
     bool stopped = false;                                        ///< keep_going said no
-    ReducedEnergies energies;
+    EnergyBalance energies;
     double net_friction = 0.; ///< largest |int g v ds| over largest int |g v| ds, both over time
     StrainExtremes extremes{};
     std::optional<StrainExtreme> inversion; ///< where the stretch is not positive; then nothing else is known
@@ -89,5 +90,5 @@ namespace crawler
   /// Adds the time integrals from @p start to @p end (one panel of Gauss points) to @p energies; returns the change of
   /// the displacement.
   double
-  advance(KinematicBody &body, double start, double end, ReducedEnergies &energies);
+  advance(KinematicBody &body, double start, double end, EnergyBalance &energies);
 } // namespace crawler

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/equation/cell_kernels.h>
+#include <crawler/equation/energy_balance.h>
 #include <crawler/reduced_models/reduced_fields.h>
 #include <crawler/reduced_models/strain.h>
 
@@ -30,7 +32,7 @@ namespace crawler
     velocity(double t) const;
 
     /// The leading order of each; what the actuator spends without what it gets back is not known.
-    ReducedEnergies
+    EnergyBalance
     energies(double t) const;
 
     /// The fields to order chi at @p points, moved along with the centre of mass.

@@ -24,7 +24,8 @@ namespace crawler
   {
     const Scene *scene;
     const TimeParameters *time;
-    const Numerics *numerics; ///< must have a batch_method()
+    const Numerics *numerics;             ///< must have a batch_method()
+    std::optional<CycleWish> cycles = {}; ///< in place of that of the options
   };
 
   /**

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/output/energy_balance.h>
+#include <crawler/equation/energy_balance.h>
 
 #include <deque>
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/output/energy_balance.h>
+#include <crawler/equation/energy_balance.h>
 #include <crawler/run/stretch_wave.h>
 #include <crawler/scene/units.h>
 
@@ -96,7 +96,11 @@ namespace crawler
     void
     see_extremes(double smallest, double largest);
 
-    /// Sees the end of a step; @p energy balance may be null.
+    /// Does the end of a step at this time matter? Only those are shown to see_step().
+    bool
+    keeps_step(double time) const;
+
+    /// Sees the end of a step; @p energy_balance may be null.
     void
     see_step(double time, double displacement, const EnergyBalance *energy_balance);
 

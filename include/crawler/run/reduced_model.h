@@ -6,6 +6,7 @@
 #include <crawler/run/simulation.h>
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,8 +31,8 @@ namespace crawler
     /// The state at one time, in natural units.
     struct State
     {
-      double displacement = 0., velocity = 0., net_friction = ReducedEnergies::unknown;
-      ReducedEnergies energies;
+      double displacement = 0., velocity = 0., net_friction = std::numeric_limits<double>::quiet_NaN();
+      EnergyBalance energies;
       StrainExtreme smallest{}, largest{};
       ReducedFields fields;
     };
@@ -45,15 +46,14 @@ namespace crawler
            const std::vector<double> &points,
            const std::function<bool(double time, const State &state)> &see) const;
 
-    /// After compute() for @p scene, whose @p result gets the last stride, if the active stress declares its period,
-    /// and the gait efficiency. Nothing is said of a run that did not finish.
+    /// After compute(): its @p result gets the last stride, if it finished and the active stress declares its period.
     void
-    describe_gait(const Scene &scene, SimulationResult &result) const;
+    describe_gait(SimulationResult &result) const;
 
     const ReducedScene &
-    levels() const
+    reduced_scene() const
     {
-      return levels_;
+      return reduced_scene_;
     }
 
     /// What was computed, in a sentence.
@@ -68,12 +68,9 @@ namespace crawler
     void
     judge(SimulationResult &result, double accuracy) const;
 
-    const ReducedScene levels_;
+    const Scene &scene_; ///< in the user's units
+    const ReducedScene reduced_scene_;
     const std::string model_;
     unsigned int n_space_panels_ = 0, n_time_panels_ = 0; ///< of the kinematic level
   };
-
-  /// Works and energies of a level as an energy balance; the initial elastic energy counts as lost before the start.
-  EnergyBalance
-  energy_balance_of(const ReducedEnergies &energies);
 } // namespace crawler

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/extreme_history.h>
 #include <crawler/equation/assembler.h>
 #include <crawler/equation/end_power.h>
 #include <crawler/equation/position_form.h>
@@ -10,14 +9,13 @@
 #include <crawler/lanes/linear_stepper.h>
 #include <crawler/mesh/mesh_marking.h>
 #include <crawler/output/observer.h>
-#include <crawler/run/cycle_stop.h>
 #include <crawler/run/numerics.h>
-#include <crawler/run/simulation_result.h>
-#include <crawler/run/stress_watch.h>
+#include <crawler/run/output_times.h>
+#include <crawler/run/recorder.h>
+#include <crawler/run/state_velocity.h>
+#include <crawler/run/step_limiter.h>
 #include <crawler/time/time_stepper.h>
 
-#include <array>
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -34,21 +32,8 @@ namespace crawler
   class Simulation
   {
   public:
-    /// Of the last stride (SimulationResult::gait): none, if the active stress says how long it is, or in any case.
-    enum class GaitWish
-    {
-      none,
-      declared,
-      any
-    };
-    /// What is computed at each accepted step besides the state.
-    struct Options
-    {
-      bool energy_balance             = false; ///< works, energies, net friction
-      bool resolution                 = false; ///< SimulationResult::unresolved
-      std::optional<CycleWish> cycles = {};    ///< end the run when its cycles repeat; not with output times
-      GaitWish gait                   = GaitWish::none;
-    };
+    using GaitWish = crawler::GaitWish;
+    using Options  = RecordOptions;
 
     Simulation(MPI_Comm communicator, const Scene &scene, const TimeParameters &time, const Numerics &numerics);
     ~Simulation();
@@ -66,7 +51,7 @@ namespace crawler
     const Discretization &
     discretization() const
     {
-      return assembler_->discretization();
+      return mesh_.assembler->discretization();
     }
     const Units &
     units() const
@@ -79,9 +64,83 @@ namespace crawler
     enum class Request
     {
       none,
-      mesh,   ///< change the mesh by changes_
+      mesh,   ///< change the mesh
       retry,  ///< the active stress did something within the step
       restart ///< the active stress jumps
+    };
+
+    /// The equation on the present mesh.
+    struct OnMesh
+    {
+      std::unique_ptr<Discretization> discretization;
+      std::unique_ptr<Assembler> assembler;
+      PositionForm *position = nullptr; ///< the assembler, if the form is that
+      StretchForm *stretch   = nullptr;
+      std::unique_ptr<StateVelocity> velocity;
+      std::unique_ptr<EndPower> end_power; ///< once it is needed
+      bool is_first = false;               ///< the mesh is that of the start
+    };
+
+    /// Who integrates; built when they are needed.
+    struct Integrators
+    {
+      std::unique_ptr<TimeStepper> petsc;
+      std::unique_ptr<LaneStepper> lanes;
+      std::unique_ptr<LinearStepper> linear;
+      TimeIntegration *present = nullptr; ///< one of them
+    };
+
+    /// What a feedback with delay sees.
+    struct Past
+    {
+      double delay = 0.; ///< 0: the feedback does not see it
+      StretchHistory history;
+      std::shared_ptr<const std::vector<Cell>> cells; ///< of the present mesh
+    };
+
+    /// The last state that was accepted, to which a change of mesh may go back.
+    struct Accepted
+    {
+      std::vector<double> y;
+      double time = 0., next_step = 0.;
+      bool is_there = false;
+    };
+
+    /// Replaces what the time stepper says about the end.
+    struct Diagnosis
+    {
+      std::string status, reason, message;
+    };
+
+    /// One run().
+    struct Run
+    {
+      Run(const Options &options,
+          bool has_observers,
+          Recorder recorder,
+          const std::vector<double> &output_times,
+          double end_time,
+          StepLimiter limiter);
+
+      const Options options;
+      const bool has_observers;
+      Recorder recorder;
+      OutputTimes output_times;
+      StepLimiter limiter;
+      Accepted accepted;
+      StretchRange stretch{}; ///< of the state that is looked at
+      CellIntegrals integrals{};
+      RateQuadrature quadrature; ///< of works, for integrators that have none
+      Resolution largest{};      ///< over time, if looked at
+      TimeOutcome before{};      ///< counts of the parts of the run before the last change of mesh
+      Step latest{};             ///< that was tried, with the counts of the whole run
+      bool lanes_gave_up = false;
+      std::optional<Diagnosis> diagnosis;
+      Request request = Request::none;
+      std::vector<CellChange> changes;
+      std::vector<double> indicators; ///< of all cells, for the present state of an adaptive mesh
+      unsigned int tiny_steps  = 0;
+      unsigned long n_failures = 0; ///< of the active stress before this run
     };
 
     void
@@ -89,23 +148,22 @@ namespace crawler
     void
     build(std::unique_ptr<Discretization> discretization);
     bool
+    is_adaptive() const
+    {
+      return numerics_.mesh.tolerance > 0.;
+    }
+    bool
     lanes_fit() const;
     void
     choose_stepper();
     void
     build_linear_stepper();
     void
-    build_lane_stepper();
-    void
-    build_petsc_stepper();
-    void
     go_on_with_petsc(const TimeOutcome &outcome);
     void
     count_part(const TimeOutcome &outcome);
     void
     begin_segment();
-    std::vector<double>
-    output_times_of_segment();
     void
     change();
     void
@@ -113,35 +171,31 @@ namespace crawler
     bool
     stress_failed();
     bool
+    sees(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
+    bool
+    may_end_after(const Step &step, std::span<const double> y);
+    bool
     examine(const Step &step, std::span<const double> y);
     bool
-    keeps_rate() const;
-    bool
-    velocity(double t, double size, std::span<const double> y, std::vector<double> &v);
+    finds_velocity(double t, double size, std::span<const double> y, std::vector<double> &v);
     void
-    keep_rate(double t, std::span<const double> y_dot);
+    look_at_resolution(const Step &step, std::span<const double> y);
+    bool
+    leads_nowhere(const Step &step);
     bool
     mesh_is_good(const Step &step, std::span<const double> y);
-    double
-    longest_step(double t) const;
     bool
     passed_over_event(const Step &step);
     bool
-    cycle_repeats(const Step &step, std::span<const double> y);
-    void
-    prepare_gait();
-    void
-    watch_gait(const Step &step, std::span<const double> y);
-    bool
     compute_integrals(const Step &step, std::span<const double> y);
-    RateQuadrature::Rates
+    Rates
     rates(double t, const CellIntegrals &sums, std::span<const double> y, std::span<const double> v);
-    RateQuadrature::Rates
-    integrate_step(const Step &step, const RateQuadrature::Rates &at_end);
+    bool
+    integrate_step(const Step &step, const Rates &at_end);
     void
     keep_history(const Step &step, std::span<const double> y);
     void
-    look_at_extremes(double t, const StretchRange &range, bool is_first);
+    look_at_extremes(double t, const StretchRange &range);
     void
     look_for_coarser_mesh(const Step &step);
     double
@@ -163,81 +217,35 @@ namespace crawler
     TimeOutcome
     integrate(const std::vector<std::unique_ptr<Observer>> &observers, const std::function<bool()> &keep_going);
     TimeOutcome
+    integrate_part(const std::vector<std::unique_ptr<Observer>> &observers, const std::function<bool()> &keep_going);
+    bool
+    goes_on_after(TimeOutcome &outcome);
+    TimeOutcome
     failure_while_integrating();
+    SimulationResult
+    finish(const std::vector<std::unique_ptr<Observer>> &observers);
     void
     show(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
-    double
-    physical_time(const Step &step) const;
-    SimulationResult
-    in_physical_units() const;
+    SimulationResult &
+    result()
+    {
+      return run_->recorder.result;
+    }
 
     const Scene &physical_scene_;
     const Units units_;
-    TimeSegments pieces_;
-    const Scene scene_;                  ///< in natural units
-    const Numerics numerics_;            ///< in natural units
-    TimeParameters time_;                ///< in natural units
-    std::vector<StepLimit> step_limits_; ///< of adaptive steps, in natural units
+    TimeSegments segments_;
+    const Scene scene_;       ///< in natural units
+    const Numerics numerics_; ///< in natural units
+    TimeParameters time_;     ///< in natural units
     const MPI_Comm communicator_;
 
-    std::unique_ptr<Discretization> discretization_;
-    std::unique_ptr<Assembler> assembler_;
-    std::unique_ptr<EndPower> end_power_; ///< once it is needed
-    PositionForm *position_    = nullptr; ///< the assembler, if the form is that
-    StretchForm *stretch_form_ = nullptr;
-    // Who integrates; built when they are needed.
-    std::unique_ptr<TimeStepper> petsc_stepper_;
-    std::unique_ptr<LaneStepper> lane_stepper_;
-    std::unique_ptr<LinearStepper> linear_stepper_;
-    TimeIntegration *stepper_ = nullptr; ///< one of them
-    bool lanes_gave_up_       = false;
-    bool as_at_start_         = false; ///< the mesh is that of the start
-
-    // The state of one run().
-    struct Diagnosis
-    {
-      std::string status, reason, message;
-    };
-
-    Options options_;
-    bool has_observers_ = false;
-    SimulationResult result_;
-    std::optional<Diagnosis> diagnosis_; ///< replaces what the time stepper says
-    Request request_ = Request::none;
-    std::vector<CellChange> changes_;
-    std::vector<double> indicators_; ///< of all cells, for the present state of an adaptive mesh
-    RateQuadrature quadrature_;
-    Resolution largest_{}; ///< over time, if looked at
-    CellIntegrals integrals_;
-    double largest_friction_ = 0., largest_net_friction_ = 0.; ///< over time, int |g v| ds and |int g v ds|
-    StretchRange stretch_;
-    ExtremeHistory min_history_{ExtremeHistory::smallest}, max_history_{ExtremeHistory::largest};
-    std::vector<double> y_, v_;
+    OnMesh mesh_;
+    unsigned int mesh_number_ = 0;
+    Integrators integrators_;
+    Past past_;
+    std::optional<Run> run_;
+    std::vector<double> y_, v_;               ///< the present state and its velocity
     std::vector<double> y_inside_, v_inside_; ///< of a state within a step
-    struct Rate
-    {
-      double time = -1.;
-      std::vector<double> y_dot;
-    };
-    std::vector<Rate> rates_;           ///< of the latest residuals, where they are kept
-    double relaxation_time_ = HUGE_VAL; ///< of the present mesh, at least
-    double delay_           = 0.;       ///< of the feedback [natural units]; 0: it does not see the past
-    StretchHistory history_;
-    std::shared_ptr<const std::vector<Cell>> history_cells_; ///< of the present mesh
-    // The last state that was accepted, to which a change of mesh may go back.
-    std::vector<double> accepted_;
-    double accepted_time_ = 0., next_step_ = 0.;
-    TimeOutcome before_;               ///< counts of the parts of the run before the last change of mesh
-    Step latest_{};                    ///< that was tried, with the counts of the whole run
-    std::vector<double> output_times_; ///< in physical units
-    std::size_t next_output_time_ = 0;
-    bool ends_at_output_time_     = false; ///< does the present piece?
-    std::optional<CycleStop> cycle_stop_;
-    std::optional<GaitMeter> gait_meter_;
-    std::optional<StressWatch> watch_;
-    std::optional<double> hidden_output_time_; ///< one of output_times_ that nobody has asked for
-    unsigned int mesh_number_ = 0, tiny_steps_ = 0;
-    unsigned long n_failures_ = 0;     ///< of the active stress before this run
-    bool started_             = false; ///< a state has been accepted
   };
 } // namespace crawler

@@ -99,7 +99,7 @@ namespace crawler
           SimulationResult &result = task.computed.result;
           result = level.compute(task.parameters.accuracy, task.parameters.output.energy_balance, keep_going);
           if (task.gait)
-            level.describe_gait(*task.scene, result);
+            level.describe_gait(result);
           return;
         }
         const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
@@ -124,10 +124,13 @@ namespace crawler
       std::vector<Task *> members[2];
       for (Task &task : tasks)
         if (is_ready(task) && !task.computed.choice.is_family &&
-            batch_method(*task.scene, task.parameters.time, task.computed.choice.numerics) && !is_faster_alone(task))
+            batch_method(*task.scene, task.parameters.time, task.computed.choice.numerics))
         {
           const bool energy_balance = task.parameters.output.energy_balance;
-          runs[energy_balance].push_back({&*task.scene, &task.parameters.time, &task.computed.choice.numerics});
+          runs[energy_balance].push_back({&*task.scene,
+                                          &task.parameters.time,
+                                          &task.computed.choice.numerics,
+                                          cycle_wish(task.parameters, *task.scene, 0)});
           members[energy_balance].push_back(&task);
         }
       for (const bool energy_balance : {false, true})
@@ -179,15 +182,6 @@ namespace crawler
       task.computed = {std::move(answer.result), std::move(answer.choice)};
     }
   } // namespace
-
-  bool
-  is_faster_alone(const Task &task)
-  {
-    // Side by side a run is this much cheaper, and after so many cycles it usually ends.
-    constexpr double batch_gain = 6., few_cycles = 3.;
-    const auto cycles = cycle_wish(task.parameters, *task.scene, 0);
-    return cycles && task.scene->end_time / cycles->period > batch_gain * few_cycles;
-  }
 
   void
   compute_all(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)

@@ -116,26 +116,29 @@ namespace crawler
       struct Member
       {
         std::size_t task;
-        Numerics own, finer;
+        NumericsChoice own;
+        std::optional<CycleWish> cycles;
+        Numerics finer;
         TimeParameters finer_time;
       };
       std::vector<Member> members;
       for (std::size_t i = 0; i < tasks.size(); ++i)
-        if (wanted[i] && !is_faster_alone(tasks[i]) &&
-            batch_method(*tasks[i].scene, tasks[i].parameters.time, shared->numerics))
+        if (wanted[i] && batch_method(*tasks[i].scene, tasks[i].parameters.time, shared->numerics))
         {
           // Each stress has events of its own.
           NumericsChoice own = *shared;
           own.numerics.step_limits =
             similar_step_limits(*tasks[i].scene, own.numerics.step_limits, own.numerics.least_event / least_event);
           members.push_back({i,
-                             own.numerics,
-                             numerics_of_finer_run(own, tasks[i].parameters.time, *tasks[i].scene),
+                             own,
+                             cycle_wish(tasks[i].parameters, *tasks[i].scene, 0),
+                             {},
                              time_of_finer_run(tasks[i].parameters.time)});
         }
       std::vector<BatchRun> runs;
       for (const Member &member : members)
-        runs.push_back({&*tasks[member.task].scene, &tasks[member.task].parameters.time, &member.own});
+        runs.push_back(
+          {&*tasks[member.task].scene, &tasks[member.task].parameters.time, &member.own.numerics, member.cycles});
       const Simulation::Options options = {.energy_balance = tasks.front().parameters.output.energy_balance,
                                            .gait           = tasks.front().gait ? Simulation::GaitWish::declared
                                                                                 : Simulation::GaitWish::none};
@@ -143,12 +146,18 @@ namespace crawler
       std::vector<std::size_t> finished;
       std::vector<BatchRun> finer_runs;
       for (std::size_t i = 0; i < members.size(); ++i)
-        if (results[i] && results[i]->time.status == "finished" &&
-            batch_method(*tasks[members[i].task].scene, members[i].finer_time, members[i].finer))
-        {
-          finished.push_back(i);
-          finer_runs.push_back({&*tasks[members[i].task].scene, &members[i].finer_time, &members[i].finer});
-        }
+      {
+        if (!results[i] || results[i]->time.status != "finished")
+          continue;
+        Member &member     = members[i];
+        const Task &task   = tasks[member.task];
+        const bool repeats = results[i]->cycles.has_value();
+        member.finer       = numerics_of_finer_run(member.own, task.parameters.time, *task.scene, repeats);
+        if (!batch_method(*task.scene, member.finer_time, member.finer))
+          continue;
+        finished.push_back(i);
+        finer_runs.push_back({&*task.scene, &member.finer_time, &member.finer, member.cycles});
+      }
       const auto finer_results = run_batch(finer_runs, options, is_in_time);
       for (std::size_t j = 0; j < finished.size(); ++j)
       {
@@ -157,8 +166,7 @@ namespace crawler
         if (!finer_results[j] || finer_results[j]->time.status != "finished")
           continue;
         SimulationResult &result = *results[i];
-        NumericsChoice choice    = *shared;
-        choice.numerics          = members[i].own;
+        NumericsChoice choice    = members[i].own;
         choice.wanted_error      = task.parameters.accuracy * std::abs(result.displacement);
         choice.promised_error    = choice.wanted_error;
         set_errors(choice, result, &*finer_results[j], task.parameters, *task.scene);

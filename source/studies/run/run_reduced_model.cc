@@ -67,7 +67,7 @@ namespace crawler
                    const StopSignal &signal)
     {
       const OutputParameters &output = input.parameters.output;
-      const Units &units             = level.levels().units();
+      const Units &units             = level.reduced_scene().units();
       const auto points              = equidistant(KymographWriter::n_points);
       // Without snapshots the table alone has its rows as often as there would be snapshots by default.
       const unsigned int n = output.n_snapshots > 0 ? output.n_snapshots : OutputParameters().n_snapshots;
@@ -81,7 +81,7 @@ namespace crawler
       level.replay(equidistant(n + 1), points, [&](const double t, const ReducedModel::State &state) {
         const double time = number == n ? input.scene.end_time : input.scene.end_time * number / n;
         const Step step{time, number == 0 ? 0. : input.scene.end_time / n, number, true, 0, 0};
-        const Fields fields = physical_fields(state.fields, points, level.levels().scene(), units);
+        const Fields fields = physical_fields(state.fields, points, level.reduced_scene().scene(), units);
         if (output.n_snapshots > 0)
         {
           pictures.write(
@@ -94,7 +94,7 @@ namespace crawler
                              state.displacement * units.length,
                              {stretch_at(state.smallest), stretch_at(state.largest)},
                              state.velocity * units.velocity(),
-                             energy_balance_of(state.energies).scaled(units.energy()),
+                             state.energies.scaled(units.energy()),
                              state.net_friction * units.force});
         ++number;
         stopped = signal.arrived_anywhere(MPI_COMM_SELF);
@@ -140,7 +140,7 @@ namespace crawler
         result = level.compute(
           parameters.accuracy, output.energy_balance, [&]() { return !stop_signal.arrived_anywhere(MPI_COMM_SELF); });
         result.setup_seconds = setup;
-        level.describe_gait(input.scene, result);
+        level.describe_gait(result);
         if (std::isfinite(result.net_friction)) // the series has no balance to check
           check_identities(result, parameters);
         log.line(level.description());

@@ -82,12 +82,12 @@ TEST_P(LaneStepperTest, GivesWhatPetscGives)
     EXPECT_EQ(fused.time.time, petsc.time.time);
     EXPECT_NEAR(fused.time.steps, petsc.time.steps, 0.1 * petsc.time.steps);
     EXPECT_NEAR(fused.displacement, petsc.displacement, 1e-3 * tolerance);
-    const double energy    = tolerance * petsc.energy_balance->exchanged;
+    const double energy    = tolerance * petsc.energy_balance->exchanged_work;
     const EnergyBalance &a = *fused.energy_balance, &b = *petsc.energy_balance;
-    EXPECT_NEAR(a.stress_power, b.stress_power, 0.5 * energy);
+    EXPECT_NEAR(a.stress_work, b.stress_work, 0.5 * energy);
     EXPECT_NEAR(a.dissipation, b.dissipation, 0.5 * energy);
-    EXPECT_NEAR(a.positive_power, b.positive_power, 0.5 * energy);
-    EXPECT_NEAR(a.exchanged, b.exchanged, 0.5 * energy);
+    EXPECT_NEAR(a.positive_work, b.positive_work, 0.5 * energy);
+    EXPECT_NEAR(a.exchanged_work, b.exchanged_work, 0.5 * energy);
     EXPECT_NEAR(a.end_work, b.end_work, 0.5 * energy);
     EXPECT_NEAR(a.elastic_energy, b.elastic_energy, 1e-3 * energy);
     EXPECT_LT(a.residual(), tolerance);

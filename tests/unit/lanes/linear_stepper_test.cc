@@ -167,7 +167,7 @@ TEST(LinearLevel, EqualsTheNonlinearLevel)
   const auto result = test::run_with(settings).result;
   ASSERT_EQ(nonlinear.time.status, "finished");
   ASSERT_EQ(result.time.status, "finished");
-  EXPECT_NEAR(result.energy_balance->stress_power / nonlinear.energy_balance->stress_power, 1., 1e-7);
+  EXPECT_NEAR(result.energy_balance->stress_work / nonlinear.energy_balance->stress_work, 1., 1e-7);
   EXPECT_NEAR(result.energy_balance->dissipation / nonlinear.energy_balance->dissipation, 1., 1e-7);
   EXPECT_NEAR(result.energy_balance->elastic_energy / nonlinear.energy_balance->elastic_energy, 1., 1e-7);
   EXPECT_NEAR(result.min_stretch.value, nonlinear.min_stretch.value, 1e-4);
@@ -184,6 +184,6 @@ TEST(LinearLevel, CyclesRepeat)
     test::run_with(parameters, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, 0)}).result;
   const auto full = test::run_with(parameters).result;
   ASSERT_TRUE(cycles.cycles);
-  EXPECT_NEAR(cycles.energy_balance->stress_power / full.energy_balance->stress_power, 1., 1e-5);
+  EXPECT_NEAR(cycles.energy_balance->stress_work / full.energy_balance->stress_work, 1., 1e-5);
   EXPECT_LT(cycles.time.steps, full.time.steps);
 }

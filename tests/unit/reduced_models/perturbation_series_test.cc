@@ -39,7 +39,7 @@ TEST(PerturbationSeries, IsTheTheorem)
   const Perturbation series(*levels.wave());
   EXPECT_NEAR(series.displacement(1.) * scene.body.length, wave.wave().displacement, 1e-14);
   const double H = wave_energy(scene.body, wave.shape(), scene.end_time, 0.8), chi = 0.1;
-  EXPECT_NEAR(series.energies(1.).stress_power * levels.units().energy(), chi * chi * H, 1e-14);
+  EXPECT_NEAR(series.energies(1.).stress_work * levels.units().energy(), chi * chi * H, 1e-14);
   const auto extremes = series.extremes();
   EXPECT_NEAR(1. + extremes.smallest.strain, wave.wave().min_stretch, 1e-3); // which looks at 256 points
   EXPECT_LE(1. + extremes.smallest.strain, wave.wave().min_stretch);

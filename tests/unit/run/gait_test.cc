@@ -34,7 +34,7 @@ namespace
       while (meter.next_time() <= t)
         sample(meter.next_time());
       EnergyBalance energy_balance;
-      energy_balance.stress_power = work(t);
+      energy_balance.stress_work = work(t);
       meter.see_step(t, D(t), &energy_balance);
     }
   }
@@ -56,7 +56,7 @@ namespace
     EXPECT_TRUE(gait->is_declared);
     EXPECT_DOUBLE_EQ(gait->n_strides, 4.);
     EXPECT_NEAR(gait->displacement, 0.02, 1e-15);
-    EXPECT_NEAR(gait->energy_balance->stress_power, 3. * (1. - 0.75 * 0.75), 1e-14);
+    EXPECT_NEAR(gait->energy_balance->stress_work, 3. * (1. - 0.75 * 0.75), 1e-14);
     EXPECT_NEAR(gait->wave->speed, -4., 0.01);
     EXPECT_STREQ(gait->direction(), "retrograde");
     EXPECT_NEAR(*gait->slip(), 1. - 0.08 / 4., 1e-4);
@@ -105,7 +105,7 @@ namespace
     EXPECT_FALSE(gait->is_declared);
     EXPECT_NEAR(gait->period, period, 1e-4 * period);
     EXPECT_NEAR(gait->displacement, 0.01, 1e-4 * 0.01);
-    EXPECT_NEAR(gait->energy_balance->stress_power, 0.2, 1e-4 * 0.2);
+    EXPECT_NEAR(gait->energy_balance->stress_work, 0.2, 1e-4 * 0.2);
     EXPECT_NEAR(gait->wave->speed, 1. / period, 0.01 / period);
     EXPECT_STREQ(gait->direction(), "prograde");
   }

@@ -47,7 +47,7 @@ TEST(Kinematic, SineWaveOfStrain)
   EXPECT_LE(std::abs(result.displacement - exact), result.error->total + 1e-15);
   EXPECT_EQ(result.error->model, 0.);
   EXPECT_NEAR(result.energy_balance->dissipation, exact, 1e-11);
-  EXPECT_NEAR(result.energy_balance->stress_power, exact, 1e-11); // the elastic energy is what it was
+  EXPECT_NEAR(result.energy_balance->stress_work, exact, 1e-11); // the elastic energy is what it was
   EXPECT_LE(result.energy_balance->residual(), 1e-11);
   EXPECT_LE(result.net_friction, 1e-12);
   EXPECT_NEAR(result.min_stretch.value, 0.7, 1e-8);

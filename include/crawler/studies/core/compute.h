@@ -32,11 +32,6 @@ namespace crawler
     bool is_out_of_time = false; ///< stopped by the time limit
   };
 
-  /// Is a task with many cycles computed sooner alone, where it can end when they repeat, than side by side with
-  /// others?
-  bool
-  is_faster_alone(const Task &task);
-
   /**
    * What `crawler run` computes for each of @p tasks, whose parameters alone are given, on this rank alone and without
    * files: choice of the numerics, simulation, self-check. Runs that fit share the lanes of the fused engine

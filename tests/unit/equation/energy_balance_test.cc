@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../../support/observed_order.h"
 
-#include <crawler/output/energy_balance.h>
+#include <crawler/equation/energy_balance.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -66,10 +66,10 @@ TEST(EnergyBalance, ResidualIsRelativeToTheExchangedWork)
 {
   EnergyBalance energy_balance;
   EXPECT_EQ(energy_balance.residual(), 0.); // a body at rest
-  energy_balance.stress_power   = 1.;
+  energy_balance.stress_work    = 1.;
   energy_balance.dissipation    = 0.7;
   energy_balance.elastic_energy = 0.2;
-  energy_balance.exchanged      = 2.;
+  energy_balance.exchanged_work = 2.;
   energy_balance.end_work       = -0.5;
   EXPECT_NEAR(energy_balance.residual(), 0.05, 1e-15);
   EXPECT_EQ(energy_balance.paper_energy(), 0.5);

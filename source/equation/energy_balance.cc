@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/output/energy_balance.h>
+#include <crawler/equation/cell_kernels.h>
+#include <crawler/equation/energy_balance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,21 +14,37 @@ namespace crawler
     constexpr double largest_growth = 25.;
   } // namespace
 
+  Rates
+  rates_of(const CellIntegrals &sums, const double end_power)
+  {
+    return {{sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, end_power}};
+  }
+
+  void
+  EnergyBalance::add_works(const Rates &increments)
+  {
+    stress_work += increments[0];
+    dissipation += increments[1];
+    positive_work += increments[2];
+    exchanged_work += increments[3];
+    end_work += increments[4];
+  }
+
   double
   EnergyBalance::residual() const
   {
-    const double gap   = std::abs(stress_power - dissipation - elastic_energy + initial_energy - transfer_loss);
-    const double scale = std::max({exchanged, dissipation, elastic_energy, initial_energy});
+    const double gap   = std::abs(stress_work - dissipation - elastic_energy + initial_energy - transfer_loss);
+    const double scale = std::max({exchanged_work, dissipation, elastic_energy, initial_energy});
     return gap == 0. ? 0. : gap / scale;
   }
 
   EnergyBalance
   EnergyBalance::scaled(const double unit) const
   {
-    return {stress_power * unit,
+    return {stress_work * unit,
             dissipation * unit,
-            positive_power * unit,
-            exchanged * unit,
+            positive_work * unit,
+            exchanged_work * unit,
             end_work * unit,
             elastic_energy * unit,
             transfer_loss * unit,
@@ -45,7 +62,7 @@ namespace crawler
     return result;
   }
 
-  RateQuadrature::Rates
+  Rates
   RateQuadrature::advance(const double time, const Rates &rates)
   {
     points_.push_front({time, rates});
@@ -75,7 +92,7 @@ namespace crawler
             lagrange *= (left + x[g] * step - points_[i].time) / (points_[j].time - points_[i].time);
         weight += lagrange;
       }
-      for (unsigned int r = 0; r < n_rates; ++r)
+      for (unsigned int r = 0; r < increment.size(); ++r)
         increment[r] += step * weight * points_[j].rates[r];
     }
     return increment;

@@ -6,13 +6,23 @@
 
 namespace crawler
 {
-  /// Integrals over time of rates that are known at the accepted steps.
+  struct CellIntegrals;
+
+  /// Works are integrals over time of rates: of the active stress, of friction, of the positive and of the absolute
+  /// power of the active stress, and of what leaves through the ends (doc/theory.md section 6) [energy/time].
+  using Rates = std::array<double, 5>;
+
+  /// The rates of a state with these integrals, where @p end_power leaves through the ends, [m v] from s = 0 to L.
+  Rates
+  rates_of(const CellIntegrals &sums, double end_power);
+
+  /// Works over a run, and energies at its present state.
   struct EnergyBalance
   {
-    double stress_power   = 0.; ///< W = -int int m zeta_st ds dt, work of the active stress [energy]
+    double stress_work    = 0.; ///< W = -int int m zeta_st ds dt, work of the active stress [energy]
     double dissipation    = 0.; ///< Q = int int g v^2 ds dt [energy]
-    double positive_power = 0.; ///< int int max(-m zeta_st, 0) ds dt [energy]
-    double exchanged      = 0.; ///< int int |m zeta_st| ds dt [energy]
+    double positive_work  = 0.; ///< int int max(-m zeta_st, 0) ds dt, not a number if it is not known [energy]
+    double exchanged_work = 0.; ///< int int |m zeta_st| ds dt [energy]
     double end_work       = 0.; ///< int [m v] from s = 0 to L dt [energy]
     double elastic_energy = 0.; ///< of the present state [energy]
     double transfer_loss  = 0.; ///< elastic energy lost by changes of the mesh [energy]
@@ -22,14 +32,18 @@ namespace crawler
     static constexpr std::array<double EnergyBalance::*, 7>
     energies()
     {
-      return {{&EnergyBalance::stress_power,
+      return {{&EnergyBalance::stress_work,
                &EnergyBalance::dissipation,
-               &EnergyBalance::positive_power,
-               &EnergyBalance::exchanged,
+               &EnergyBalance::positive_work,
+               &EnergyBalance::exchanged_work,
                &EnergyBalance::end_work,
                &EnergyBalance::elastic_energy,
                &EnergyBalance::transfer_loss}};
     }
+
+    /// Adds to the works what they grow by.
+    void
+    add_works(const Rates &increments);
 
     /// All energies times @p unit.
     EnergyBalance
@@ -43,7 +57,7 @@ namespace crawler
     double
     paper_energy() const
     {
-      return stress_power + end_work;
+      return stress_work + end_work;
     }
     /// |W - Q - (elastic energy) + (initial energy) - (transfer loss)|/(exchanged work): 0 for the exact solution [1].
     double
@@ -58,9 +72,6 @@ namespace crawler
   class RateQuadrature
   {
   public:
-    static constexpr unsigned int n_rates = 5;
-    using Rates                           = std::array<double, n_rates>;
-
     /// Adds the rates at the next point in time and returns the increments of their integrals.
     Rates
     advance(double time, const Rates &rates);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/position_form.h>
+
+#include <span>
+#include <vector>
+
+namespace crawler
+{
+  /**
+   * The velocity of states that a time integration has reached. A state alone does not always tell it: where friction
+   * vanishes (w -> 0 for a > 0) the error of Newton's method would be divided by the friction, and cells that are small
+   * or stiff turn its round-off into velocities, by 1e-16 over their time of relaxation. The rate of the integrator
+   * has no such error, so there it is kept; that of the linear level is the velocity, exactly. Natural units.
+   */
+  class StateVelocity
+  {
+  public:
+    using ConstVector = std::span<const double>;
+
+    /// @p assembler must outlive this; @p position is the same or null (the stretch form). @p is_adaptive: its mesh has
+    /// small cells where friction is large and slows them down. @p n_stages of the method.
+    StateVelocity(
+      Assembler &assembler, PositionForm *position, bool is_linear, bool is_adaptive, unsigned int n_stages);
+
+    /// Is see_rate() to be told of the rates?
+    bool
+    keeps_rates() const;
+    /// The rate of a stage; those of the latest times are kept.
+    void
+    see_rate(double t, ConstVector y_dot);
+    /// The rates are those of other states from now on.
+    void
+    forget_rates();
+
+    /// @p v of the state @p y that was reached with a step of this size. Returns false if it cannot be computed.
+    bool
+    compute(double t, double size, ConstVector y, std::span<double> v);
+
+  private:
+    struct Rate
+    {
+      double time = -1.;
+      std::vector<double> y_dot;
+    };
+
+    Assembler &assembler_;
+    PositionForm *const position_;
+    const bool is_linear_;
+    double relaxation_time_; ///< of the mesh, at least
+    std::vector<Rate> rates_;
+  };
+} // namespace crawler

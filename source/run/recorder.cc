@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/run/recorder.h>
+#include <crawler/run/user_units.h>
+#include <crawler/scene/scene.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Times that differ by less are one, in units of the duration.
+    constexpr double same_time = 1e-12;
+  } // namespace
+
+  Recorder::Recorder(
+    const Scene &scene, const Units &units, const RecordOptions &options, const double tolerance, const bool may_search)
+    : scene_(scene)
+    , units_(units)
+  {
+    if (options.energy_balance)
+      result.energy_balance.emplace();
+    if (options.cycles && CycleStop::fits(options.cycles->period / units.time))
+      cycle_stop_.emplace(CycleWish{options.cycles->period / units.time, options.cycles->accuracy}, tolerance);
+    if (options.gait == GaitWish::none)
+      return;
+    const auto period = stride_of(*scene.active_stress, units.length, units.time);
+    if (period || (options.gait == GaitWish::any && may_search))
+      gait_meter_.emplace(period, cycle_stop_.has_value());
+  }
+
+  std::vector<double>
+  Recorder::step_ends() const
+  {
+    std::vector<double> times;
+    if (cycle_stop_)
+      times = cycle_stop_->ends();
+    const auto start = gait_meter_ ? gait_meter_->stride_start() : std::nullopt;
+    if (start)
+      times.insert(std::lower_bound(times.begin(), times.end(), *start), *start);
+    return times;
+  }
+
+  double
+  Recorder::next_sample() const
+  {
+    return std::min(gait_meter_ ? gait_meter_->next_time() : HUGE_VAL,
+                    cycle_stop_ ? cycle_stop_->next_time() : HUGE_VAL);
+  }
+
+  void
+  Recorder::see_stretch(const Extreme &smallest, const Extreme &largest)
+  {
+    if (started_)
+    {
+      smallest_.add(smallest);
+      largest_.add(largest);
+    }
+    else
+    {
+      smallest_.start(smallest);
+      largest_.start(largest);
+    }
+    started_           = true;
+    result.min_stretch = smallest_.extreme();
+    result.max_stretch = largest_.extreme();
+  }
+
+  void
+  Recorder::interrupt()
+  {
+    smallest_.interrupt();
+    largest_.interrupt();
+  }
+
+  void
+  Recorder::see_friction(const double sum_of_sizes, const double size_of_sum)
+  {
+    largest_friction_     = std::max(largest_friction_, sum_of_sizes);
+    largest_net_friction_ = std::max(largest_net_friction_, size_of_sum);
+    if (largest_friction_ > 0.)
+      result.net_friction = largest_net_friction_ / largest_friction_;
+  }
+
+  const EnergyBalance *
+  Recorder::energies() const
+  {
+    return result.energy_balance ? &*result.energy_balance : nullptr;
+  }
+
+  bool
+  Recorder::see_step(
+    const double time, const bool is_step_end, const double smallest, const double largest, const Sampler &sample)
+  {
+    if (gait_meter_)
+    {
+      for (double next = gait_meter_->next_time(); next <= time + same_time; next = gait_meter_->next_time())
+      {
+        const BodySample body = sample(next >= time - same_time ? time : next);
+        gait_meter_->see(body.u, body.displacement);
+      }
+      gait_meter_->see_extremes(smallest, largest);
+      if (gait_meter_->keeps_step(time))
+        gait_meter_->see_step(time, sample(time).displacement, energies());
+    }
+    return cycle_stop_ && see_cycles(time, is_step_end, sample);
+  }
+
+  /// Looks at the phases of a cycle that a step has passed. The ends of cycles are ends of steps.
+  bool
+  Recorder::see_cycles(const double time, const bool is_step_end, const Sampler &sample)
+  {
+    const auto see = [&](const double t) {
+      const double extremes[] = {result.min_stretch.value, result.max_stretch.value};
+      std::array<double, 2> friction{};
+      scene_.friction->values(extremes, friction);
+      const double friction_unit = units_.force * units_.time / (units_.length * units_.length);
+      const BodySample body      = sample(t);
+      return cycle_stop_->observe(body.u,
+                                  body.displacement,
+                                  energies(),
+                                  scene_.body.elastic_modulus / units_.force /
+                                    (std::max(friction[0], friction[1]) / friction_unit));
+    };
+    while (!cycle_stop_->next_is_end() && cycle_stop_->next_time() <= time)
+      see(cycle_stop_->next_time());
+    return is_step_end && cycle_stop_->next_is_end() && std::abs(cycle_stop_->next_time() - time) < same_time &&
+           see(time);
+  }
+
+  SimulationResult
+  Recorder::finish()
+  {
+    if (cycles_repeat())
+    {
+      result.time.status = "finished";
+      result.cycles =
+        cycle_stop_->extrapolate(result.displacement, result.energy_balance ? &*result.energy_balance : nullptr);
+    }
+    if (gait_meter_ && result.time.status == "finished")
+      result.gait = gait_meter_->gait();
+    return in_user_units(result, scene_, units_);
+  }
+} // namespace crawler

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The part of Simulation that changes the mesh on the way (doc/numerics.md, "Adaptive meshes").
+#include <crawler/equation/mesh_transfer.h>
+#include <crawler/run/simulation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace crawler
+{
+  namespace
+  {
+    /// The step after a change of mesh that settle() makes is this times the root of the tolerance.
+    constexpr double settling_factor = 0.01;
+  } // namespace
+
+  /// Changes the mesh, of the position form, and carries the last accepted state over.
+  void
+  Simulation::change()
+  {
+    const auto old_assembler      = std::move(mesh_.assembler);
+    PositionForm &old_form        = *mesh_.position;
+    const auto old_discretization = std::move(mesh_.discretization);
+    build(old_discretization->adapted(run_->changes));
+    y_ = mesh_transfer(numerics_.degree).transfer(old_form, run_->accepted.y, *mesh_.position);
+    if (run_->accepted.time == 0. && !scene_.is_plain())
+      mesh_.assembler->set_initial_state(y_);
+    const double old_time = run_->accepted.time;
+    if (mesh_.velocity->keeps_rates())
+      settle();
+    if (run_->options.energy_balance)
+    {
+      const std::vector<double> old_v(old_discretization->n_owned(), 0.), new_v(v_.size(), 0.);
+      result().energy_balance->transfer_loss +=
+        old_assembler->integrals(old_time, run_->accepted.y, old_v).elastic_energy -
+        mesh_.assembler->integrals(run_->accepted.time, y_, new_v).elastic_energy;
+    }
+    run_->accepted.y = y_;
+    ++result().mesh_changes;
+    result().most_cells = std::max(result().most_cells, mesh_.discretization->n_cells());
+  }
+
+  /**
+   * A state that was carried to another mesh is out of balance by the error of the mesh. Where friction is small it
+   * returns to balance at once, at the rate k/(gamma w^a h^2), and a time stepper that watched this would need steps as
+   * short. A backward Euler step is stable for any rate; this one is so short that its own error, size^2 u''/2, is a
+   * small part of the tolerance. If it cannot be made the state is left as it is.
+   */
+  void
+  Simulation::settle()
+  {
+    constexpr unsigned int most_corrections = 10;
+    const double size                       = settling_factor * std::sqrt(std::min(numerics_.tolerance, 1e-8));
+    const double t                          = run_->accepted.time + size;
+    // This step is not shown, so it must not pass a time at which a state is wanted.
+    if (t > std::min({run_->output_times.next(), segments_.end(), run_->recorder.next_sample()}) - size)
+      return;
+    std::vector<double> y = y_, rate(y.size(), 0.), F(y.size()), change(y.size());
+    for (unsigned int i = 0; i < most_corrections; ++i)
+    {
+      if (!mesh_.position->residual(t, y, rate, F) || !mesh_.position->setup_jacobian(t, y, rate, 1. / size))
+        return;
+      mesh_.position->solve_with_jacobian(F, change);
+      double largest = 0.;
+      for (std::size_t j = 0; j < y.size(); ++j)
+      {
+        y[j] -= change[j];
+        rate[j] = (y[j] - y_[j]) / size;
+        largest = std::isfinite(change[j]) ? std::max(largest, std::abs(change[j])) : HUGE_VAL;
+      }
+      MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator_);
+      if (!std::isfinite(largest))
+        return;
+      if (largest <= 0.01 * numerics_.tolerance + 1e-15)
+      {
+        y_                  = y;
+        run_->accepted.time = t;
+        return;
+      }
+    }
+  }
+
+  /// Is the sum of the error indicators admissible? If not, and if cells can be divided, asks for that.
+  bool
+  Simulation::mesh_is_good(const Step &step, const std::span<const double> y)
+  {
+    run_->indicators = all_indicators(mesh_.position->error_indicators(step.time, y, v_), *mesh_.discretization);
+    const double sum = std::accumulate(run_->indicators.begin(), run_->indicators.end(), 0.);
+    run_->changes.clear();
+    if (sum > numerics_.mesh.tolerance)
+      run_->changes = mark_for_division(run_->indicators, *mesh_.discretization, numerics_.mesh);
+    if (run_->changes.empty())
+    {
+      result().largest_indicator = std::max(result().largest_indicator, sum);
+      return true;
+    }
+    run_->request = Request::mesh;
+    return false;
+  }
+
+  void
+  Simulation::look_for_coarser_mesh(const Step &step)
+  {
+    constexpr unsigned int most_joins_every = 10;
+    if (!is_adaptive() || run_->request != Request::none || step.number == 0 || step.number % most_joins_every != 0 ||
+        step.time >= 1.)
+      return;
+    run_->changes = mark_for_joining(run_->indicators, *mesh_.discretization, numerics_.mesh);
+    if (!run_->changes.empty())
+      run_->request = Request::mesh;
+  }
+} // namespace crawler

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The part of Simulation that looks at accepted states: may they be used, and what do they give (doc/numerics.md,
+// "Energy balance and self-checks")?
+#include <crawler/run/simulation.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace crawler
+{
+  namespace
+  {
+    /// So many steps in succession smaller than this part of the duration are a failure.
+    constexpr double tiny_step             = 1e-9;
+    constexpr unsigned int most_tiny_steps = 2000;
+    /// So many of them at a stretch below this mean that it is lost: what is left of it is the error of Newton's
+    /// method.
+    constexpr unsigned int most_steps_at_zero = 20;
+    constexpr double nearly_zero              = 1e-6;
+  } // namespace
+
+  /// Looks at a state that the time stepper has accepted; returns false if it must not be used.
+  bool
+  Simulation::examine(const Step &step, const std::span<const double> y)
+  {
+    if (stress_failed())
+      return false;
+    StretchRange &stretch = run_->stretch = mesh_.assembler->stretch_range(y);
+    if (!std::isfinite(stretch.min.value) || !std::isfinite(stretch.max.value))
+    {
+      run_->diagnosis = {"failed",
+                         "nonfinite",
+                         fmt::format("the stretch at s = {:.6g}, t = {:.6g} is not a finite number",
+                                     stretch.min.s * units_.length,
+                                     step.time * units_.time)};
+      return false;
+    }
+    if (end_inverts(step.time - step.size, step.time) || passed_over_event(step))
+      return false;
+    if (stretch.min.value <= lost_stretch())
+    {
+      // A mesh that is too coarse can lose it, too, so that is mended first.
+      if (!is_adaptive() || !mesh_.velocity->compute(step.time, step.size, y, v_) || mesh_is_good(step, y))
+        locate_inversion(step);
+      return false;
+    }
+    // Pictures need the velocity at output times only, the energy balance and adaptive meshes always.
+    const bool is_shown = run_->has_observers && (step.is_output_time || step.number == 0);
+    if ((run_->options.energy_balance || is_adaptive() || is_shown) && !finds_velocity(step.time, step.size, y, v_))
+      return false;
+    if (is_adaptive() && !mesh_is_good(step, y))
+      return false;
+    if (!compute_integrals(step, y))
+      return false;
+    look_at_extremes(step.time, stretch);
+    if (run_->options.resolution)
+      look_at_resolution(step, y);
+    if (leads_nowhere(step))
+      return false;
+    keep_history(step, y);
+    run_->accepted.y.assign(y.begin(), y.end());
+    run_->accepted.time     = step.time;
+    run_->accepted.is_there = true;
+    return true;
+  }
+
+  /// The velocity of a state, or the diagnosis why there is none.
+  bool
+  Simulation::finds_velocity(const double t, const double size, const std::span<const double> y, std::vector<double> &v)
+  {
+    if (mesh_.velocity->compute(t, size, y, v))
+      return true;
+    if (!law_failed() && !stress_failed())
+      run_->diagnosis = {
+        "failed",
+        "linear_failed",
+        fmt::format("the velocity at t = {:.6g} cannot be computed: the friction matrix is singular", t * units_.time)};
+    return false;
+  }
+
+  /// Did the active stress do something within the step that its ends do not show? Then the step is made again, by
+  /// shorter ones.
+  bool
+  Simulation::passed_over_event(const Step &step)
+  {
+    if (!run_->limiter.passed_over_event(step.time - step.size, step.time))
+      return false;
+    run_->request = Request::retry;
+    return true;
+  }
+
+  void
+  Simulation::look_at_resolution(const Step &step, const std::span<const double> y)
+  {
+    SimulationResult &result = this->result();
+    if (mesh_.stretch != nullptr)
+    {
+      const auto u  = mesh_.assembler->displacement(y);
+      double square = 0.;
+      for (const double value : u)
+        square += value * value;
+      result.largest_u = std::max(result.largest_u, std::sqrt(square / static_cast<double>(u.size())));
+      return;
+    }
+    if (!is_adaptive() && mesh_.velocity->compute(step.time, step.size, y, v_))
+    {
+      const auto indicators = all_indicators(mesh_.position->error_indicators(step.time, y, v_), *mesh_.discretization);
+      result.largest_indicator =
+        std::max(result.largest_indicator, std::accumulate(indicators.begin(), indicators.end(), 0.));
+    }
+    const Resolution now = mesh_.position->resolution(y);
+    Resolution &largest  = run_->largest;
+    largest.highest_mode = std::max(largest.highest_mode, now.highest_mode);
+    largest.strain       = std::max(largest.strain, now.strain);
+    result.unresolved    = largest.strain > 0. ? largest.highest_mode / largest.strain : 0.;
+    result.strain        = largest.strain;
+    result.largest_u     = std::max(result.largest_u, mesh_.position->root_mean_square(y));
+  }
+
+  /// Are there too many small steps? Then the diagnosis says so.
+  bool
+  Simulation::leads_nowhere(const Step &step)
+  {
+    const StretchAt &smallest = run_->stretch.min;
+    const double tiny         = tiny_step * std::min(1., 10. * run_->limiter.longest_step(step.time));
+    run_->tiny_steps          = step.size > 0. && step.size < tiny ? run_->tiny_steps + 1 : 0;
+    if (run_->tiny_steps > most_steps_at_zero && scene_.friction_exponent() >= 0. && smallest.value < nearly_zero)
+    {
+      inverted_inside(smallest.value, smallest.s, step.time);
+      return true;
+    }
+    if (run_->tiny_steps <= most_tiny_steps)
+      return false;
+    run_->diagnosis = {"failed",
+                       "step_underflow",
+                       fmt::format("{} steps in succession were smaller than {:g} of the duration, at t = {:.9g}; the "
+                                   "smallest stretch is {:.3g} at s = {:.6g}",
+                                   most_tiny_steps,
+                                   tiny,
+                                   step.time * units_.time,
+                                   smallest.value,
+                                   smallest.s * units_.length)};
+    return true;
+  }
+
+  Rates
+  Simulation::rates(const double t,
+                    const CellIntegrals &sums,
+                    const std::span<const double> y,
+                    const std::span<const double> v)
+  {
+    if (!mesh_.end_power)
+      mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
+    return {
+      {sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, (*mesh_.end_power)(t, y, v)}};
+  }
+
+  /// The works of a step by the formula of the integrator itself. The states within the step are looked at for extremes
+  /// of the stretch, too. Returns false if one of them has no velocity.
+  bool
+  Simulation::integrate_step(const Step &step, const Rates &at_end)
+  {
+    if (step.size == 0.)
+      return true;
+    Rates sum{};
+    y_inside_.resize(y_.size());
+    v_inside_.resize(v_.size());
+    for (const auto &point : integrators_.present->quadrature())
+    {
+      Rates inside = at_end;
+      if (point.place < 1.)
+      {
+        const double t = step.time - (1. - point.place) * step.size;
+        integrators_.present->interpolate(t, y_inside_);
+        if (!finds_velocity(t, step.size, y_inside_, v_inside_))
+          return false;
+        inside = rates(t, mesh_.assembler->integrals(t, y_inside_, v_inside_), y_inside_, v_inside_);
+        look_at_extremes(t, mesh_.assembler->stretch_range(y_inside_));
+      }
+      for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] += step.size * point.weight * inside[i];
+    }
+    result().energy_balance->add_works(sum);
+    return true;
+  }
+
+  /// Where the feedback sees the past: the stretch within the step, from the integrator's dense output.
+  void
+  Simulation::keep_history(const Step &step, const std::span<const double> y)
+  {
+    if (past_.delay == 0. || step.size == 0.)
+      return;
+    // The step starts from the last accepted state, of which the integrator may know less than of what is inside.
+    StretchHistory::Step record{run_->accepted.time, step.time, past_.cells, &mesh_.discretization->element(), {}};
+    std::vector<double> inside(y.size());
+    for (std::size_t i = 0; i < record.coefficients.size(); ++i)
+    {
+      const double place            = StretchHistory::places()[i];
+      std::span<const double> state = place == 0. ? std::span<const double>(run_->accepted.y) : y;
+      if (place > 0. && place < 1.)
+      {
+        integrators_.present->interpolate(record.from + place * (record.to - record.from), inside);
+        state = inside;
+      }
+      record.coefficients[i] = mesh_.discretization->gather(mesh_.assembler->stretch_coefficients(state));
+    }
+    past_.history.add(std::move(record), step.time - 2. * past_.delay);
+  }
+
+  void
+  Simulation::look_at_extremes(const double t, const StretchRange &range)
+  {
+    run_->recorder.see_stretch({range.min.value, range.min.s, t}, {range.max.value, range.max.s, t});
+  }
+
+  /// Displacement, and if wanted the energy balance, at an accepted state.
+  bool
+  Simulation::compute_integrals(const Step &step, const std::span<const double> y)
+  {
+    if (!run_->options.energy_balance && !run_->has_observers)
+      return true;
+    const CellIntegrals &integrals = run_->integrals = mesh_.assembler->integrals(step.time, y, v_);
+    result().displacement                            = integrals.displacement;
+    if (!run_->options.energy_balance && !step.is_output_time && step.number != 0)
+      return true;
+    if (!std::isfinite(integrals.dissipation))
+    {
+      run_->diagnosis = {
+        "failed",
+        "nonfinite",
+        fmt::format("the velocity at t = {:.6g} is not a finite number; the smallest stretch is {:.3g} at s = {:.6g}",
+                    step.time * units_.time,
+                    run_->stretch.min.value,
+                    run_->stretch.min.s * units_.length)};
+      return false;
+    }
+    if (!run_->options.energy_balance)
+      return true;
+    const Rates now = rates(step.time, integrals, y, v_);
+    if (integrators_.present->quadrature().empty())
+      result().energy_balance->add_works(run_->quadrature.advance(step.time, now));
+    else if (!integrate_step(step, now))
+      return false;
+    EnergyBalance &energies = *result().energy_balance;
+    energies.elastic_energy = integrals.elastic_energy;
+    if (step.number == 0)
+      energies.initial_energy = integrals.elastic_energy;
+    run_->recorder.see_friction(integrals.abs_friction, std::abs(integrals.net_friction));
+    return true;
+  }
+} // namespace crawler

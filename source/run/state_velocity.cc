@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/run/state_velocity.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Cells that come to rest faster than this, relative to the duration, turn round-off of the state into a velocity.
+    constexpr double fast_relaxation = 1e-9;
+
+    /// Of the highest mode of the smallest cell; of an adaptive mesh the largest cell tells whether the body is stiff.
+    double
+    relaxation_time(const Assembler &assembler, const bool is_adaptive)
+    {
+      const Discretization &mesh = assembler.discretization();
+      double h                   = is_adaptive ? 0. : 1.;
+      for (const Cell &cell : mesh.cells())
+        h = is_adaptive ? std::max(h, cell.size) : std::min(h, cell.size);
+      return h * h / (assembler.scene().body.elastic_modulus * std::pow(mesh.element().degree, 4.));
+    }
+  } // namespace
+
+  StateVelocity::StateVelocity(Assembler &assembler,
+                               PositionForm *const position,
+                               const bool is_linear,
+                               const bool is_adaptive,
+                               const unsigned int n_stages)
+    : assembler_(assembler)
+    , position_(position)
+    , is_linear_(is_linear)
+    , relaxation_time_(relaxation_time(assembler, is_adaptive))
+    , rates_(n_stages + 1)
+  {
+  }
+
+  bool
+  StateVelocity::keeps_rates() const
+  {
+    if (is_linear_)
+      return true;
+    const Scene &scene   = assembler_.scene();
+    const bool amplifies = relaxation_time_ < fast_relaxation || (scene.friction_exponent() > 0. && scene.is_plain());
+    return amplifies && position_ != nullptr;
+  }
+
+  void
+  StateVelocity::see_rate(const double t, const ConstVector y_dot)
+  {
+    auto found = std::find_if(rates_.begin(), rates_.end(), [t](const Rate &rate) { return rate.time == t; });
+    if (found == rates_.end())
+    {
+      std::rotate(rates_.begin(), rates_.begin() + 1, rates_.end());
+      found = rates_.end() - 1;
+    }
+    found->time = t;
+    found->y_dot.assign(y_dot.begin(), y_dot.end());
+  }
+
+  void
+  StateVelocity::forget_rates()
+  {
+    rates_.assign(rates_.size(), {});
+  }
+
+  /// From the rate r, if that is kept: v is the solution of M v + f + h K (v - r) = 0, h the step. Friction balances
+  /// exactly, since K does not act on rigid motions, and where M vanishes v is r.
+  bool
+  StateVelocity::compute(const double t, const double size, const ConstVector y, const std::span<double> v)
+  {
+    const auto known = std::find_if(rates_.begin(), rates_.end(), [&](const Rate &rate) {
+      return size > 0. && std::abs(rate.time - t) <= 1e-9 * size;
+    });
+    if (!keeps_rates() || known == rates_.end())
+      return assembler_.velocity(t, y, v);
+    if (is_linear_)
+    {
+      std::copy(known->y_dot.begin(), known->y_dot.end(), v.begin());
+      return true;
+    }
+    const bool is_plain = assembler_.scene().is_plain();
+    std::vector<double> F(y.size()), correction(y.size());
+    // Without a velocity the Jacobian is M/h + K; but friction that is not linear in it has to be that of the rate.
+    const std::vector<double> at = is_plain ? std::vector<double>(y.size(), 0.) : known->y_dot;
+    if (!position_->residual(t, y, known->y_dot, F) || !position_->setup_jacobian(t, y, at, 1. / size))
+      return false;
+    position_->solve_with_jacobian(F, correction);
+    for (std::size_t i = 0; i < v.size(); ++i)
+      v[i] = known->y_dot[i] - correction[i] / size;
+    if (is_plain)
+    {
+      // K does not act on rigid motions, so round-off of the solution, 1e-16 h K/M of it, can hide in one; friction
+      // that is linear in the velocity says how large that is.
+      const std::vector<double> rigid(v.size(), 1.);
+      const double motion = assembler_.integrals(t, y, v).net_friction / assembler_.integrals(t, y, rigid).net_friction;
+      if (std::isfinite(motion))
+        for (double &value : v)
+          value -= motion;
+    }
+    return true;
+  }
+} // namespace crawler
