@@ -42,12 +42,14 @@ def blocks(text):
         indent = len(line) - len(line.lstrip())
         if line.strip() == "{":
             head, above = [], number - 1
-            while above >= 0 and lines[above].strip() and not re.search(r"[;{}]$|^\s*(//|#|public:|private:)", lines[above]):
+            while above >= 0 and lines[above].strip() and not re.search(r"[;{}]$|^\s*(//|\*|/\*|#|public:|private:)", lines[above]):
                 head.insert(0, lines[above].strip())
                 above -= 1
             opened.append((indent, number, " ".join(head)))
         elif re.fullmatch(r"}[;,]?(\s*//.*)?", line.strip()) and opened and opened[-1][0] == indent:
             _, start, head = opened.pop()
+            if re.match(r"(inline )?namespace\b", head):
+                continue
             if re.search(r"\b(class|struct)\b", head) and "(" not in head:
                 yield re.search(r"\b(?:class|struct) (\w+)", head + " struct _")[1], "class", lines[start + 1:number]
             elif "(" in head and not re.match(r"(if|for|while|switch|else|do|catch)\b", head):
@@ -68,7 +70,9 @@ def measure(files):
         for name, kind, body in blocks(text):
             if kind == "function" and len(body) > LONG_FUNCTION:
                 long_functions.append(name)
-            members = [line for line in body if re.search(r"\w_( =[^=].*|\{.*\})?;", line) and "(" not in line.split("=")[0]]
+            depth = min((len(line) - len(line.lstrip()) for line in body if line.strip()), default=0)
+            members = [line for line in body if re.match(r" {%d,%d}\w.*\w( += .*|\{.*\})?;" % (depth, depth + 2), line)
+                       and not re.search(r"\(|^\s*(using|return|friend|static|class|struct)\b", line.split("=")[0])]
             if kind == "class" and len(members) > MANY_MEMBERS:
                 many.append(f"{name} ({len(members)})")
     for unit in {other for others in arrows.values() for other in others} - set(arrows):

@@ -271,27 +271,18 @@ namespace crawler
         return true;
       }
 
-      /// A uniform mesh with up to @p most cells; returns whether that is enough.
-      bool
-      uniform(const unsigned int most)
+      /// Makes pilots on meshes from @p n_cells cells on, at most @p most, with smaller steps each time, until one
+      /// shows the deformation.
+      void
+      pilots_on_uniform_mesh(const unsigned int degree, unsigned int &n_cells, const unsigned int most)
       {
-        Numerics &n = choice_.numerics;
-        if (adaptive_steps_ || n.linear)
-          n.integrator = "radau 5";
-        // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
-        const unsigned int pilot_degree = std::max(choice_.numerics.degree, 2u);
-        // A cell of this degree resolves a stress whose scale is a quarter of its size.
-        const double seen    = std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 0.25 * most_cells);
-        unsigned int n_cells = user_cells_.value_or(static_cast<unsigned int>(seen));
-        if (n_cells > most && !user_cells_)
-          return false;
         bool good = false;
         while (!good && n_pilots_ < 20)
         {
-          pilot_ = pilot(pilot_numerics(pilot_degree, n_cells, tolerance_));
+          pilot_ = pilot(pilot_numerics(degree, n_cells, tolerance_));
           measure_size();
           if (accuracy_ >= 1e-7 && is_for_stretch())
-            return true;
+            return;
           const bool finished = pilot_.time.status == "finished";
           const bool resolves = user_cells_ || pilot_.unresolved <= std::max(resolved, accuracy_) || n_cells >= most;
           // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
@@ -307,19 +298,43 @@ namespace crawler
           else
             good = true;
         }
+      }
+
+      /// A uniform mesh with up to @p most cells; returns whether that is enough.
+      bool
+      uniform(const unsigned int most)
+      {
+        Numerics &n = choice_.numerics;
+        if (adaptive_steps_ || n.linear)
+          n.integrator = "radau 5";
+        // The stretch of a linear element has no mode that could show what is missing: one degree more shows it.
+        const unsigned int pilot_degree = std::max(choice_.numerics.degree, 2u);
+        // A cell of this degree resolves a stress whose scale is a quarter of its size.
+        const double seen    = std::clamp(std::ceil(0.25 * L_ / scales_.length), 1. * fewest_cells, 0.25 * most_cells);
+        unsigned int n_cells = user_cells_.value_or(static_cast<unsigned int>(seen));
+        if (n_cells > most && !user_cells_)
+          return false;
+        pilots_on_uniform_mesh(pilot_degree, n_cells, most);
+        if (accuracy_ >= 1e-7 && is_for_stretch())
+          return true;
         const bool predicts      = pilot_.time.status == "finished";
         choice_.numerics.n_cells = n_cells;
         if (!predicts || pilot_.unresolved > std::max(resolved, accuracy_))
           return most == most_cells; // whatever it is, there is no more
         if (most < most_cells && stiffness() < very_soft)
           return false; // a pilot may pass over such layers by luck
-        if (user_cells_)
-          return true;
+        return user_cells_ || extrapolate_cells(pilot_degree, n_cells, most);
+      }
 
-        // On smooth solutions `unresolved` goes down as (cell size)^(2q-2), q the pilot's degree, and the error of the
-        // displacement at least as fast. Thin layers look resolved before they are: so the rate is measured, with
-        // smaller steps whose errors do not hide it, on meshes twice as fine each time until it is at least half of
-        // that.
+      /**
+       * The number of cells from that of a pilot that resolves the deformation; false if these are more than @p most.
+       * On smooth solutions `unresolved` goes down as (cell size)^(2q-2), q the pilot's degree, and the error of the
+       * displacement at least as fast. Thin layers look resolved before they are: so the rate is measured, with smaller
+       * steps whose errors do not hide it, on meshes twice as fine each time until it is at least half of that.
+       */
+      bool
+      extrapolate_cells(const unsigned int pilot_degree, unsigned int n_cells, const unsigned int most)
+      {
         const double enough_cells = n_cells; // fewer failed or left too much unresolved
         const double full_rate = 2. * pilot_degree - 2., wanted_part = accuracy_ / space_factor;
         const auto rate_of = [full_rate](const double coarse, const double fine) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace crawler
 {
@@ -20,48 +21,35 @@ namespace crawler
     constexpr double same_size = 1e-9;
   } // namespace
 
-  LinearStepper::LinearStepper(const Scene &scene,
-                               const Discretization &discretization,
-                               const unsigned int n_stages,
-                               const bool adaptive)
-    : discretization_(discretization)
-    , k_(scene.body.elastic_modulus)
+  LinearStepper::LinearStepper(PositionForm &form, const unsigned int n_stages, const bool adaptive)
+    : form_(form)
     , tableau_(radau_tableau(n_stages))
     , adaptive_(adaptive)
-    , stress_(scene.active_stress->at(discretization.points(discretization.element().points)))
-    , mass_(discretization)
-    , stiffness_(discretization)
-    , m_(static_cast<std::size_t>(discretization.n_local_cells()) * discretization.element().n)
+    , mass_(form.discretization())
+    , stiffness_(form.discretization())
+    , row_sums_(form.n_owned())
+    , start_(form.n_owned())
+    , z_(n_stages * form.n_owned())
+    , right_(z_.size())
+    , work_(form.n_owned())
+    , rate_(form.n_owned())
+    , error_(form.n_owned())
   {
     for (unsigned int i = 0; i < n_stages; ++i)
       quadrature_.push_back({tableau_.c[i], tableau_.b[i]});
-    fill(mass_, 1., 0.);
-    fill(stiffness_, 0., 1.);
-    for (auto *vector : {&f_, &f_start_, &f_end_, &stiff_, &work_, &rate_, &error_, &start_})
-      vector->resize(discretization.n_owned());
-    row_sums_.resize(discretization.n_owned());
-    mass_.multiply(std::vector<double>(discretization.n_owned(), 1.), row_sums_);
-    for (auto *vector : {&right_, &z_})
-      vector->resize(n_stages * discretization.n_owned());
+    form_.mass(0., start_, start_, mass_);
+    form_.jacobian(0., start_, start_, 0., stiffness_);
+    mass_.multiply(std::vector<double>(form.n_owned(), 1.), row_sums_);
   }
 
-  /// The blocks of of_mass M + of_stiffness K; gamma = 1 in natural units.
+  /// The blocks of of_mass M + K.
   template <typename Number>
   void
-  LinearStepper::fill(BlockTridiagonalMatrix<Number> &matrix, const Number of_mass, const double of_stiffness) const
+  LinearStepper::fill(BlockTridiagonalMatrix<Number> &matrix, const Number of_mass) const
   {
-    const ReferenceElement &e = discretization_.element();
-    const auto &sizes         = discretization_.cell_size();
-    Number *block             = matrix.blocks().data();
-    for (std::size_t c = 0; c < sizes.size(); ++c, block += e.n * e.n)
-      for (unsigned int i = 0; i < e.n; ++i)
-        for (unsigned int j = 0; j < e.n; ++j)
-        {
-          double mass = 0.;
-          for (unsigned int p = 0; p < e.n; ++p)
-            mass += e.weights[p] * e.values[p * e.n + i] * e.values[p * e.n + j];
-          block[i * e.n + j] = of_mass * (sizes[c] * mass) + of_stiffness * k_ / sizes[c] * e.stiffness[i * e.n + j];
-        }
+    auto &blocks = matrix.blocks();
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      blocks[i] = stiffness_.blocks()[i] + of_mass * mass_.blocks()[i];
   }
 
   const LinearStepper::Factors &
@@ -75,15 +63,15 @@ namespace crawler
       }
     if (factors_.size() == most_factors)
       factors_.pop_back();
-    factors_.push_front({h, BlockTridiagonalMatrix<double>(discretization_), {}});
+    factors_.push_front({h, BlockTridiagonalMatrix<double>(form_.discretization()), {}});
     Factors &made = factors_.front();
     // Both matrices are positive (semi)definite and the shifts are in the right half plane: no pivot vanishes.
-    fill(made.real, tableau_.real_eigenvalue / h, 1.);
+    fill(made.real, tableau_.real_eigenvalue / h);
     bool ok = made.real.factorize();
     for (const auto lambda : tableau_.eigenvalues)
     {
-      made.complex.emplace_back(discretization_);
-      fill(made.complex.back(), lambda / h, 1.);
+      made.complex.emplace_back(form_.discretization());
+      fill(made.complex.back(), lambda / h);
       ok = made.complex.back().factorize() && ok;
     }
     if (!ok)
@@ -92,25 +80,8 @@ namespace crawler
     return made;
   }
 
-  /// f_i = int m phi_i,s
-  void
-  LinearStepper::load(const double t, const Vector f)
-  {
-    const ReferenceElement &e = discretization_.element();
-    stress_->values(t, m_);
-    local_.assign(discretization_.n_local(), 0.);
-    for (unsigned int c = 0; c < discretization_.n_local_cells(); ++c)
-      for (unsigned int p = 0; p < e.n; ++p)
-      {
-        const double m = e.weights[p] * m_[c * e.n + p];
-        for (unsigned int i = 0; i < e.n; ++i)
-          local_[c * e.degree + i] += m * e.derivatives[p * e.n + i];
-      }
-    discretization_.add_to_owned<double>(local_, f);
-  }
-
   /**
-   * The increments z_i = u(t + c_i h) - u(t), from  M sum_j (A^-1)_ij z_j/h + K (u + z_i) + f(t + c_i h) = 0. In the
+   * The increments z_i = u(t + c_i h) - u(t), from  M sum_j (A^-1)_ij z_j/h + K z_i + F(t + c_i h, u, 0) = 0. In the
    * basis of the eigenvectors of A^-1 the stages do not depend on each other (Hairer and Wanner, section IV.8). Returns
    * false if the result is not finite.
    */
@@ -121,17 +92,10 @@ namespace crawler
     const unsigned int n   = tableau_.n;
     const Factors &systems = factors(h);
     std::copy(y.begin(), y.end(), start_.begin());
-    stiffness_.multiply(y, stiff_);
     for (unsigned int i = 0; i < n; ++i)
-    {
-      const Vector right(right_.data() + i * size, size);
-      load(t + tableau_.c[i] * h, right);
-      if (i + 1 == n)
-        std::copy(right.begin(), right.end(), f_end_.begin());
-      for (std::size_t d = 0; d < size; ++d)
-        right[d] = -right[d] - stiff_[d];
-    }
-
+      form_.residual(t + tableau_.c[i] * h, y, {}, {right_.data() + i * size, size});
+    for (double &value : right_)
+      value = -value;
     const int s = static_cast<int>(n), unknowns = static_cast<int>(size);
     complex_work_.resize(tableau_.n_pairs() * size);
     radau::to_eigenbasis(s, parts(tableau_.rows), right_.data(), unknowns, work_.data(), complex_work_.data());
@@ -169,26 +133,21 @@ namespace crawler
                       z_.data(),
                       static_cast<int>(y.size()),
                       rate_.data());
-    if (t != f_time_) // else it is known from the step before
-      load(t, f_start_);
-    f_time_ = t;
-    mass_.multiply(rate_, work_);
-    for (std::size_t d = 0; d < y.size(); ++d)
-      f_[d] = f_start_[d] + work_[d];
+    std::copy(y.begin(), y.end(), work_.begin());
     double error = 0.;
     for (unsigned int round = 0; round < (steps_ < radau::settling_steps ? 2 : 1); ++round)
     {
-      for (std::size_t d = 0; d < y.size(); ++d)
-        work_[d] = y[d] + (round > 0 ? error_[d] : 0.);
-      stiffness_.multiply(work_, stiff_);
-      for (std::size_t d = 0; d < y.size(); ++d)
-        work_[d] = -stiff_[d] - f_[d];
-      factors(h).real.solve(work_, error_);
+      form_.residual(t, work_, rate_, error_);
+      for (double &value : error_)
+        value = -value;
+      factors(h).real.solve(error_, error_);
       error = root_mean_square(error_) / tolerance_;
       if (round > 0) // filtered twice: the step must not grow
         error = std::max(error, radau::error_without_growth(static_cast<int>(tableau_.n)));
       if (error < 1.)
         break;
+      for (std::size_t d = 0; d < y.size(); ++d)
+        work_[d] = y[d] + error_[d];
     }
     return error;
   }
@@ -200,8 +159,8 @@ namespace crawler
     double sum = 0.;
     for (std::size_t d = 0; d < x.size(); ++d)
       sum += row_sums_[d] * x[d];
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
+    if (form_.discretization().n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, form_.discretization().communicator());
     return sum;
   }
 
@@ -211,9 +170,41 @@ namespace crawler
     double sum = 0.;
     for (const double value : x)
       sum += value * value;
-    if (discretization_.n_ranks() > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, discretization_.communicator());
-    return std::sqrt(sum / static_cast<double>(discretization_.n_unknowns()));
+    if (form_.discretization().n_ranks() > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, form_.discretization().communicator());
+    return std::sqrt(sum / static_cast<double>(form_.n_unknowns()));
+  }
+
+  /// Divides the time to @p end, unless that is still good.
+  void
+  LinearStepper::plan_steps(Plan &plan, const double t, const double end, const std::span<const StepLimit> limits) const
+  {
+    if (adaptive_)
+    {
+      const double wanted = plan.left > 0 ? plan.h : plan.next;
+      const double most = admitted_step(limits.data(), static_cast<unsigned int>(limits.size()), plan.limit, t, wanted);
+      if (most < wanted)
+      {
+        plan.next = most;
+        plan.left = 0;
+      }
+    }
+    if (plan.left > 0)
+      return;
+    plan.left = static_cast<unsigned long>(std::max(1., std::ceil((end - t) / plan.next * (1. - same_size))));
+    plan.h    = (end - t) / static_cast<double>(plan.left);
+  }
+
+  /// After a step that could have been @p factor times as long. A new size is a new factorization.
+  void
+  LinearStepper::plan_next_step(Plan &plan, const double factor) const
+  {
+    plan.next = plan.h;
+    if (!adaptive_ || (factor >= 1. && factor <= least_growth))
+      return;
+    plan.next = std::min(factor, most_growth) * plan.h;
+    if (plan.next != plan.h)
+      plan.left = 0;
   }
 
   TimeOutcome
@@ -228,43 +219,27 @@ namespace crawler
     if (ends.empty() || ends.back() < 1.)
       ends.push_back(1.);
     TimeOutcome outcome;
-    outcome.time       = start_time;
-    steps_             = 0;
-    tolerance_         = tolerance;
-    f_time_            = -1.;
-    double next        = initial_step;
-    unsigned int limit = 0;
-    if (monitor && !monitor({start_time, 0., 0, false, 0, 0}, y))
-    {
+    outcome.time = start_time;
+    steps_       = 0;
+    tolerance_   = tolerance;
+    Plan plan{initial_step};
+    const auto goes_on = [&](const double h, const bool is_output_time) {
+      if (!monitor || monitor({outcome.time, h, steps_, is_output_time, outcome.rejected_steps, 0}, y))
+        return true;
       outcome.status    = "stopped";
-      outcome.step_size = next;
+      outcome.step_size = plan.next;
+      return false;
+    };
+    if (!goes_on(0., false))
       return outcome;
-    }
     for (const double end : ends)
-    {
-      unsigned long left = 0; // steps of size h to the end
-      double h           = 0.;
-      while (outcome.time < end)
+      for (plan.left = 0; outcome.time < end;)
       {
-        const double t = outcome.time;
-        if (adaptive_)
-        {
-          const double wanted = left > 0 ? h : next,
-                       most = admitted_step(limits.data(), static_cast<unsigned int>(limits.size()), limit, t, wanted);
-          if (most < wanted)
-          {
-            next = most;
-            left = 0;
-          }
-        }
-        if (left == 0)
-        {
-          left = static_cast<unsigned long>(std::max(1., std::ceil((end - t) / next * (1. - same_size))));
-          h    = (end - t) / static_cast<double>(left);
-        }
+        plan_steps(plan, outcome.time, end, limits);
+        const double h      = plan.h;
         outcome.step_size   = h;
-        const bool finite   = make_step(t, h, y);
-        const double error  = finite && adaptive_ ? error_of_step(t, h, y) : 0.;
+        const bool finite   = make_step(outcome.time, h, y);
+        const double error  = finite && adaptive_ ? error_of_step(outcome.time, h, y) : 0.;
         const double factor = error > 0. ? radau::safety * std::pow(error, -1. / (tableau_.n + 1.)) : most_growth;
         if (!finite || h < least_step)
         {
@@ -277,38 +252,23 @@ namespace crawler
         if (!(error <= 1.))
         {
           ++outcome.rejected_steps;
-          next = std::max(factor, radau::least_change) * h;
-          left = 0;
+          plan.next = std::max(factor, radau::least_change) * h;
+          plan.left = 0;
           continue;
         }
         const std::size_t last = (tableau_.n - 1) * y.size();
         for (std::size_t d = 0; d < y.size(); ++d)
           y[d] = start_[d] + z_[last + d];
-        --left;
+        --plan.left;
         outcome.steps = ++steps_;
-        outcome.time  = left == 0 ? end : t + h;
+        outcome.time  = plan.left == 0 ? end : outcome.time + h;
         end_          = outcome.time;
-        std::swap(f_start_, f_end_);
-        f_time_ = end_;
-        // A new size is a new factorization.
-        next = h;
-        if (adaptive_ && (factor < 1. || factor > least_growth))
-        {
-          next = std::min(factor, most_growth) * h;
-          if (next != h)
-            left = 0;
-        }
-        const bool is_output_time = outcome.time == end;
+        plan_next_step(plan, factor);
         if (stage_rates)
           show_rates();
-        if (monitor && !monitor({outcome.time, h, steps_, is_output_time, outcome.rejected_steps, 0}, y))
-        {
-          outcome.status    = "stopped";
-          outcome.step_size = next;
+        if (!goes_on(h, outcome.time == end))
           return outcome;
-        }
       }
-    }
     outcome.status = "finished";
     return outcome;
   }

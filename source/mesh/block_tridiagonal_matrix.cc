@@ -96,6 +96,48 @@ namespace crawler
     return ok;
   }
 
+  /// The system of the shared nodes 0 ... ranks, the same on every rank: the values at the first and the last node of
+  /// the own cells, for the right-hand sides that are left of them.
+  template <typename Number>
+  std::pair<Number, Number>
+  BlockTridiagonalMatrix<Number>::solve_shared(const Number first, const Number last) const
+  {
+    const auto &d            = *discretization_;
+    const unsigned int ranks = d.n_active_ranks();
+    if (ranks == 1)
+    {
+      const Number *S = reduced_.data();
+      // Eliminate the first node; the sum of both rows keeps the digits when the friction term is small.
+      const Number factor = S[2] / S[0];
+      const Number x_last = (last - factor * first) / (S[3] - factor * S[1]);
+      return {(first - S[1] * x_last) / S[0], x_last};
+    }
+    const Number sent[2] = {first, last};
+    std::vector<Number> all(2 * d.n_ranks()), diagonal(ranks + 1, 0.);
+    MPI_Allgather(
+      sent, 2 * doubles_in<Number>, MPI_DOUBLE, all.data(), 2 * doubles_in<Number>, MPI_DOUBLE, d.communicator());
+    std::fill(reduced_rhs_.begin(), reduced_rhs_.end(), 0.);
+    for (unsigned int r = 0; r < ranks; ++r)
+    {
+      reduced_rhs_[r] += all[2 * r];
+      reduced_rhs_[r + 1] += all[2 * r + 1];
+      diagonal[r] += reduced_[4 * r];
+      diagonal[r + 1] += reduced_[4 * r + 3];
+    }
+    for (unsigned int r = 0; r < ranks; ++r)
+    {
+      const Number factor = reduced_[4 * r + 2] / diagonal[r];
+      diagonal[r + 1] -= factor * reduced_[4 * r + 1];
+      reduced_rhs_[r + 1] -= factor * reduced_rhs_[r];
+    }
+    reduced_rhs_[ranks] /= diagonal[ranks];
+    for (unsigned int r = ranks; r-- > 0;)
+      reduced_rhs_[r] = (reduced_rhs_[r] - reduced_[4 * r + 1] * reduced_rhs_[r + 1]) / diagonal[r];
+    if (d.n_local_cells() == 0)
+      return {0., 0.};
+    return {reduced_rhs_[d.rank()], reduced_rhs_[d.rank() + 1]};
+  }
+
   template <typename Number>
   void
   BlockTridiagonalMatrix<Number>::solve(const std::span<const Number> b, const std::span<Number> x) const
@@ -133,45 +175,7 @@ namespace crawler
     }
     const Number last = n > 0 ? y[static_cast<std::size_t>(n) * q] : 0.;
 
-    // The system of the shared nodes 0 ... ranks, the same on every rank.
-    Number x_first = 0., x_last = 0.;
-    if (direct)
-    {
-      const Number *S = reduced_.data();
-      // Eliminate the first node; the sum of both rows keeps the digits when the friction term is small.
-      const Number factor = S[2] / S[0];
-      x_last              = (last - factor * first) / (S[3] - factor * S[1]);
-      x_first             = (first - S[1] * x_last) / S[0];
-    }
-    else
-    {
-      const Number sent[2] = {first, last};
-      std::vector<Number> all(2 * d.n_ranks()), diagonal(ranks + 1, 0.);
-      MPI_Allgather(
-        sent, 2 * doubles_in<Number>, MPI_DOUBLE, all.data(), 2 * doubles_in<Number>, MPI_DOUBLE, d.communicator());
-      std::fill(reduced_rhs_.begin(), reduced_rhs_.end(), 0.);
-      for (unsigned int r = 0; r < ranks; ++r)
-      {
-        reduced_rhs_[r] += all[2 * r];
-        reduced_rhs_[r + 1] += all[2 * r + 1];
-        diagonal[r] += reduced_[4 * r];
-        diagonal[r + 1] += reduced_[4 * r + 3];
-      }
-      for (unsigned int r = 0; r < ranks; ++r)
-      {
-        const Number factor = reduced_[4 * r + 2] / diagonal[r];
-        diagonal[r + 1] -= factor * reduced_[4 * r + 1];
-        reduced_rhs_[r + 1] -= factor * reduced_rhs_[r];
-      }
-      reduced_rhs_[ranks] /= diagonal[ranks];
-      for (unsigned int r = ranks; r-- > 0;)
-        reduced_rhs_[r] = (reduced_rhs_[r] - reduced_[4 * r + 1] * reduced_rhs_[r + 1]) / diagonal[r];
-      if (n > 0)
-      {
-        x_first = reduced_rhs_[d.rank()];
-        x_last  = reduced_rhs_[d.rank() + 1];
-      }
-    }
+    const auto [x_first, x_last] = solve_shared(first, last);
     if (n == 0)
       return;
 

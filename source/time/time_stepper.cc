@@ -72,6 +72,10 @@ namespace crawler
     void
     set_options();
     void
+    set_newton();
+    void
+    apply_user_options();
+    void
     use_krylov_method();
     bool
     report(double time, double size);
@@ -139,7 +143,7 @@ namespace crawler
     set_options();
   }
 
-  /// Our choices first, then the user's options after "--".
+  /// The choices of the program first, then the user's options after "--".
   void
   TimeStepper::Implementation::set_options()
   {
@@ -174,6 +178,15 @@ namespace crawler
     petsc(TSSetErrorIfStepFails(stepper, PETSC_FALSE));
     petsc(TSSetMaxSteps(stepper, static_cast<PetscInt>(parameters.max_steps)));
 
+    set_newton();
+    apply_user_options();
+  }
+
+  /// Newton's method with exact elimination.
+  void
+  TimeStepper::Implementation::set_newton()
+  {
+    TS stepper                 = ts.get();
     SNES snes                  = nullptr;
     SNESLineSearch line_search = nullptr;
     KSP ksp                    = nullptr;
@@ -194,7 +207,13 @@ namespace crawler
     petsc(PCShellSetName(pc, "block-tridiagonal elimination"));
     petsc(PCShellSetSetUp(pc, set_up_preconditioner));
     petsc(PCShellSetApply(pc, precondition));
+  }
 
+  /// What the user says behind "--"; it must be one of the integrators.
+  void
+  TimeStepper::Implementation::apply_user_options()
+  {
+    TS stepper          = ts.get();
     PetscErrorCode code = 0;
     std::string words;
     {

@@ -81,6 +81,10 @@ namespace crawler
     void
     jacobian(double t, ConstVector u, ConstVector v, double sigma, BlockTridiagonalMatrix<double> &A);
 
+    /// M = dF/dv.
+    void
+    mass(double t, ConstVector u, ConstVector v, BlockTridiagonalMatrix<double> &M);
+
     /// The first stretch that was not positive, of the last residual() that returned false.
     const std::optional<StretchAt> &
     bad_stretch() const
@@ -113,10 +117,6 @@ namespace crawler
     /// are owned. Returns the number of the first quadrature point [cell][point] where they are not defined, or -1.
     virtual long
     evaluate_laws(double t, ConstVector u, CellInput &in);
-
-    /// dF/dv, at the velocity @p v.
-    void
-    mass(double t, ConstVector u, ConstVector v, BlockTridiagonalMatrix<double> &M);
 
     const CellKernels &kernels_;
     std::unique_ptr<BlockTridiagonalMatrix<double>> mass_; ///< built when a velocity is first asked for

@@ -1,31 +1,29 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/mesh/block_tridiagonal_matrix.h>
-#include <crawler/scene/scene.h>
+#include <crawler/equation/position_form.h>
 #include <crawler/time/radau_tableau.h>
 #include <crawler/time/time_integration.h>
 
 #include <list>
-#include <memory>
 
 namespace crawler
 {
   /**
    * The level "linear": the equation at a = 0 (friction does not depend on the stretch) in the position form,
    *
-   *   M u' + K u + f(t) = 0,   M_ij = int gamma phi_j phi_i,   K_ij = int k phi_j,s phi_i,s,   f_i = int m phi_i,s,
+   *   F(t, u, u') = M u' + K u + f(t) = 0,   with constant M and K,
    *
-   * by the Radau IIA methods (radau_tableau.h). The stages are solved exactly, by one real and (s-1)/2 complex
+   * by the Radau IIA methods (radau_loops.h). The stages are solved exactly, by one real and (s-1)/2 complex
    * block-tridiagonal eliminations: no Newton iteration. The time to the next output time is divided into equal steps,
    * and again when the error asks for other ones; each size needs one factorization. Error control as in time/radau.h.
    */
   class LinearStepper : public TimeIntegration
   {
   public:
-    /// @p scene must have a = 0, be in natural units and, like the mesh, outlive the stepper. Without @p adaptive all
-    /// steps have one size, the initial one or the next smaller that fits.
-    LinearStepper(const Scene &scene, const Discretization &discretization, unsigned int n_stages, bool adaptive);
+    /// @p form must be that of a plain scene with a = 0 in natural units, and outlive the stepper. Without @p adaptive
+    /// all steps have one size, the initial one or the next smaller that fits.
+    LinearStepper(PositionForm &form, unsigned int n_stages, bool adaptive);
 
     /// The end time is 1.
     TimeOutcome
@@ -54,17 +52,28 @@ namespace crawler
       std::vector<BlockTridiagonalMatrix<std::complex<double>>> complex;
     };
 
+    /// Equal steps on the way to the next output time.
+    struct Plan
+    {
+      double next        = 0.; ///< size that is wanted
+      double h           = 0.; ///< size of the steps
+      unsigned long left = 0;  ///< of them; 0: to be planned
+      unsigned int limit = 0;  ///< present one of the step limits
+    };
+
     template <typename Number>
     void
-    fill(BlockTridiagonalMatrix<Number> &matrix, Number of_mass, double of_stiffness) const;
+    fill(BlockTridiagonalMatrix<Number> &matrix, Number of_mass) const;
     const Factors &
     factors(double h);
     void
-    load(double t, Vector f);
+    plan_steps(Plan &plan, double t, double end, std::span<const StepLimit> limits) const;
     bool
     make_step(double t, double h, ConstVector y);
     double
     error_of_step(double t, double h, ConstVector y);
+    void
+    plan_next_step(Plan &plan, double factor) const;
     double
     mean(ConstVector x) const;
     double
@@ -72,11 +81,9 @@ namespace crawler
     void
     show_rates();
 
-    const Discretization &discretization_;
-    const double k_;
+    PositionForm &form_;
     const RadauTableau &tableau_;
     const bool adaptive_;
-    const std::unique_ptr<ActiveStressAtPoints> stress_;
     BlockTridiagonalMatrix<double> mass_, stiffness_;
     std::vector<double> row_sums_; ///< M 1
     std::list<Factors> factors_;   ///< latest first
@@ -87,8 +94,7 @@ namespace crawler
     // The step that was made last.
     double end_ = 0., size_ = 0.;
     std::vector<double> start_, z_; ///< [unknowns], [stages][unknowns] increments
-    std::vector<double> m_, local_, f_, f_start_, f_end_, stiff_, right_, work_, rate_, error_;
-    double f_time_ = -1.; ///< that f_start_ is known for
+    std::vector<double> right_, work_, rate_, error_;
     std::vector<std::complex<double>> complex_work_;
   };
 } // namespace crawler

@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <type_traits>
+#include <utility>
 
 namespace crawler
 {
@@ -26,6 +27,11 @@ namespace crawler
     {
       return blocks_;
     }
+    const std::vector<Number> &
+    blocks() const
+    {
+      return blocks_;
+    }
 
     /// y = A x for owned vectors (collective).
     void
@@ -40,6 +46,9 @@ namespace crawler
     solve(std::span<const Number> b, std::span<Number> x) const;
 
   private:
+    std::pair<Number, Number>
+    solve_shared(Number first, Number last) const;
+
     const Discretization *discretization_;
     std::vector<Number> blocks_, factors_, schur_;
 

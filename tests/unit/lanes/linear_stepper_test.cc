@@ -5,6 +5,7 @@
 #include "../../support/observed_order.h"
 #include "../../support/run_text.h"
 
+#include <crawler/equation/general_position_form.h>
 #include <crawler/lanes/linear_stepper.h>
 
 #include <gtest/gtest.h>
@@ -52,7 +53,8 @@ namespace
   {
     const Scene scene = linear(formula).create_scene();
     const Discretization mesh(MPI_COMM_WORLD, 1., 12, 8);
-    LinearStepper stepper(scene, mesh, n_stages, /*adaptive=*/false);
+    const auto form = create_position_form(scene, mesh);
+    LinearStepper stepper(*form, n_stages, /*adaptive=*/false);
     FixedRun run;
     run.u.assign(mesh.n_owned(), 0.);
     run.outcome          = stepper.solve(run.u, {}, 1e-6, 1. / n, {}, 0.);
@@ -106,7 +108,8 @@ TEST(LinearStepper, AdaptiveStepsHaveFewSizes)
 {
   const Scene scene = linear("0.3*sin(40*t)*exp(-(6*t-3)^2)*sin(pi*s)").create_scene();
   const Discretization mesh(MPI_COMM_WORLD, 1., 6, 6);
-  LinearStepper stepper(scene, mesh, 5, /*adaptive=*/true);
+  const auto form = create_position_form(scene, mesh);
+  LinearStepper stepper(*form, 5, /*adaptive=*/true);
   std::vector<double> u(mesh.n_owned(), 0.), times;
   stepper.monitor = [&](const Step &step, const auto) {
     if (step.is_output_time)
