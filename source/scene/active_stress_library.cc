@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <functional>
+#include <type_traits>
 
 namespace crawler
 {
@@ -44,12 +44,21 @@ namespace crawler
     }
 
     std::unique_ptr<ActiveStress>
-    create_sum(const SumParameters &parameters, const Body &body, const double end_time)
+    create_sum(const ActiveStressParameters &parameters, const Body &body, const double end_time)
     {
       std::vector<SumTerm> terms;
-      for (std::size_t i = 0; i < parameters.terms.size(); ++i)
-        terms.push_back(create_term(parameters.terms[i], i + 1, body, end_time));
+      for (const TermParameters &term : parameters.sum.terms)
+        terms.push_back(create_term(term, terms.size() + 1, body, end_time));
       return std::make_unique<Sum>(std::move(terms), body.length, end_time);
+    }
+
+    /// By Fourier coefficients or of any shape.
+    std::unique_ptr<ActiveStress>
+    create_any_optimal_wave(const ActiveStressParameters &parameters, const Body &body, const double end_time)
+    {
+      if (parameters.optimal_wave.shape == "Fourier")
+        return std::make_unique<OptimalWave>(parameters.optimal_wave, body, end_time);
+      return std::make_unique<ShapedWave>(parameters.optimal_wave, body, end_time);
     }
 
     std::unique_ptr<ActiveStress>
@@ -66,75 +75,46 @@ namespace crawler
       return std::make_unique<PrescribedStrain>(own, body, end_time, std::move(generator));
     }
 
+    /// A generator with the parameters of its own section.
+    template <typename Stress, auto section>
+    std::unique_ptr<ActiveStress>
+    create(const ActiveStressParameters &parameters, const Body &body, const double end_time)
+    {
+      const auto &own = parameters.*section;
+      if constexpr (std::is_constructible_v<Stress, decltype(own), const Body &, double>)
+        return std::make_unique<Stress>(own, body, end_time);
+      else
+        return std::make_unique<Stress>(own, body.length, end_time);
+    }
+
     struct Generator
     {
       std::string name, description;
-      std::function<std::unique_ptr<ActiveStress>(const ActiveStressParameters &, const Body &, double)> create;
+      std::unique_ptr<ActiveStress> (*create)(const ActiveStressParameters &, const Body &, double);
     };
 
     /// The one list of all generators.
     const std::vector<Generator> &
     generators()
     {
+      using P                                  = ActiveStressParameters;
       static const std::vector<Generator> list = {
         {"none",
          NoActiveStress::description,
-         [](const auto &, const Body &, double) { return std::make_unique<NoActiveStress>(); }},
-        {"optimal wave",
-         OptimalWave::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return create_optimal_wave(parameters.optimal_wave, body, end_time);
+         [](const P &, const Body &, double) -> std::unique_ptr<ActiveStress> {
+           return std::make_unique<NoActiveStress>();
          }},
-        {"travelling wave",
-         TravellingWave::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return std::make_unique<TravellingWave>(parameters.travelling_wave, body.length, end_time);
-         }},
-        {"standing wave",
-         StandingWave::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return std::make_unique<StandingWave>(parameters.standing_wave, body.length, end_time);
-         }},
-        {"pulse",
-         Pulse::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return std::make_unique<Pulse>(parameters.pulse, body.length, end_time);
-         }},
-        {"expression",
-         Expression::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return std::make_unique<Expression>(parameters.expression, body.length, end_time);
-         }},
-        {"prescribed strain",
-         PrescribedStrain::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return create_prescribed_strain(parameters, body, end_time);
-         }},
-        {"library",
-         Library::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return std::make_unique<Library>(parameters.library, body, end_time);
-         }},
-        {"segments",
-         Segments::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return std::make_unique<Segments>(parameters.segments, body.length, end_time);
-         }},
-        {"strain feedback",
-         StrainFeedback::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return std::make_unique<StrainFeedback>(parameters.strain_feedback, body.length, end_time);
-         }},
-        {"table",
-         ActiveStressTable::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return std::make_unique<ActiveStressTable>(parameters.table, body.length, end_time);
-         }},
-        {name_of_sum,
-         Sum::description,
-         [](const auto &parameters, const Body &body, const double end_time) {
-           return create_sum(parameters.sum, body, end_time);
-         }},
+        {"optimal wave", OptimalWave::description, create_any_optimal_wave},
+        {"travelling wave", TravellingWave::description, create<TravellingWave, &P::travelling_wave>},
+        {"standing wave", StandingWave::description, create<StandingWave, &P::standing_wave>},
+        {"pulse", Pulse::description, create<Pulse, &P::pulse>},
+        {"expression", Expression::description, create<Expression, &P::expression>},
+        {"prescribed strain", PrescribedStrain::description, create_prescribed_strain},
+        {"library", Library::description, create<Library, &P::library>},
+        {"segments", Segments::description, create<Segments, &P::segments>},
+        {"strain feedback", StrainFeedback::description, create<StrainFeedback, &P::strain_feedback>},
+        {"table", ActiveStressTable::description, create<ActiveStressTable, &P::table>},
+        {name_of_sum, Sum::description, create_sum},
       };
       return list;
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/scene.h>
 
 #include <fmt/format.h>
@@ -14,63 +15,6 @@ namespace crawler
 {
   namespace
   {
-    /// Values of a function of s and t, in other units.
-    class ScaledAtPoints : public ActiveStressAtPoints
-    {
-    public:
-      /// @p unit is that of the values; @p pieces may be null.
-      ScaledAtPoints(std::unique_ptr<ActiveStressAtPoints> stress,
-                     const double time_unit,
-                     const double unit,
-                     const TimeSegments *pieces)
-        : stress_(std::move(stress))
-        , time_unit_(time_unit)
-        , unit_(unit)
-        , pieces_(pieces)
-      {
-      }
-
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        stress_->values((pieces_ != nullptr ? pieces_->inside(t) : t) * time_unit_, m);
-        for (double &value : m)
-          value /= unit_;
-      }
-
-    private:
-      const std::unique_ptr<ActiveStressAtPoints> stress_;
-      const double time_unit_, unit_;
-      const TimeSegments *pieces_;
-    };
-
-    class ScaledStrainAtPoints : public StrainAtPoints
-    {
-    public:
-      ScaledStrainAtPoints(std::unique_ptr<StrainAtPoints> strain, const double time_unit)
-        : strain_(std::move(strain))
-        , time_unit_(time_unit)
-      {
-      }
-
-      void
-      strain(const double t, const std::span<double> e) override
-      {
-        strain_->strain(t * time_unit_, e);
-      }
-      void
-      rate(const double t, const std::span<double> e_t) override
-      {
-        strain_->rate(t * time_unit_, e_t);
-        for (double &value : e_t)
-          value *= time_unit_;
-      }
-
-    private:
-      const std::unique_ptr<StrainAtPoints> strain_;
-      const double time_unit_;
-    };
-
     std::vector<double>
     times(std::vector<double> values, const double factor)
     {
@@ -80,103 +24,23 @@ namespace crawler
     }
 
     /// A strain history in other units.
-    class ScaledStrainHistory : public StrainHistory
+    StrainByEvaluators
+    scaled(const StrainHistory &history, const Units &units)
     {
-    public:
-      ScaledStrainHistory(const StrainHistory &history, const Units &units)
-        : history_(history)
-        , units_(units)
-      {
-      }
+      return StrainByEvaluators([&history, units](const std::vector<double> &points) -> StrainByEvaluators::Evaluators {
+        const std::shared_ptr<StrainAtPoints> at = history.at(times(points, units.length));
+        const double unit                        = units.time;
+        return {stress_at_points([at, unit](const double t, const std::span<double> e) { at->strain(t * unit, e); }),
+                stress_at_points([at, unit](const double t, const std::span<double> e_t) {
+                  at->rate(t * unit, e_t);
+                  for (double &value : e_t)
+                    value *= unit;
+                })};
+      });
+    }
 
-      std::unique_ptr<StrainAtPoints>
-      at(const std::vector<double> &points) const override
-      {
-        return std::make_unique<ScaledStrainAtPoints>(history_.at(times(points, units_.length)), units_.time);
-      }
-
-    private:
-      const StrainHistory &history_;
-      const Units units_;
-    };
-
-    class ScaledFeedbackAtPoints : public FeedbackAtPoints
-    {
-    public:
-      ScaledFeedbackAtPoints(std::unique_ptr<FeedbackAtPoints> feedback, const Units &units, const TimeSegments *pieces)
-        : feedback_(std::move(feedback))
-        , units_(units)
-        , pieces_(pieces)
-      {
-      }
-
-      void
-      values(const double t, const StretchSeen &seen, const FeedbackStress &m) override
-      {
-        rate_.assign(seen.rate.begin(), seen.rate.end());
-        for (double &value : rate_)
-          value /= units_.time;
-        feedback_->values((pieces_ != nullptr ? pieces_->inside(t) : t) * units_.time,
-                          {seen.stretch, rate_, seen.near, seen.delayed},
-                          m);
-        for (const auto &part : {m.m, m.m_w, m.m_near})
-          for (double &value : part)
-            value /= units_.force;
-        for (double &value : m.m_rate)
-          value /= units_.force * units_.time;
-      }
-
-    private:
-      const std::unique_ptr<FeedbackAtPoints> feedback_;
-      const Units units_;
-      const TimeSegments *pieces_;
-      std::vector<double> rate_;
-    };
-
-    class ScaledFeedback : public StretchFeedback
-    {
-    public:
-      ScaledFeedback(const StretchFeedback &feedback, const Units &units, const TimeSegments *pieces)
-        : feedback_(feedback)
-        , units_(units)
-        , pieces_(pieces)
-      {
-      }
-
-      std::unique_ptr<FeedbackAtPoints>
-      at(const std::vector<double> &points) const override
-      {
-        return std::make_unique<ScaledFeedbackAtPoints>(feedback_.at(times(points, units_.length)), units_, pieces_);
-      }
-      bool
-      uses_rate() const override
-      {
-        return feedback_.uses_rate();
-      }
-      double
-      distance() const override
-      {
-        return feedback_.distance() / units_.length;
-      }
-      double
-      delay() const override
-      {
-        return feedback_.delay() / units_.time;
-      }
-      double
-      sensor_length() const override
-      {
-        return feedback_.sensor_length() / units_.length;
-      }
-
-    private:
-      const StretchFeedback &feedback_;
-      const Units units_;
-      const TimeSegments *pieces_;
-    };
-
-    /// An active stress in other units.
-    class ScaledActiveStress : public ActiveStress
+    /// An active stress in other units. @p pieces may be null.
+    class ScaledActiveStress : public KnownStress
     {
     public:
       ScaledActiveStress(const ActiveStress &stress, const Units &units, const TimeSegments *pieces)
@@ -185,71 +49,38 @@ namespace crawler
         , pieces_(pieces)
       {
         if (stress.prescribed_strain() != nullptr)
-          strain_.emplace(*stress.prescribed_strain(), units);
-        if (stress.feedback() != nullptr)
-          feedback_.emplace(*stress.feedback(), units, pieces);
+          strain_.emplace(scaled(*stress.prescribed_strain(), units));
+        if (const StretchFeedback *feedback = stress.feedback())
+          feedback_.emplace(KnownFeedback::Facts{feedback->uses_rate(),
+                                                 feedback->distance() / units.length,
+                                                 feedback->delay() / units.time,
+                                                 feedback->sensor_length() / units.length},
+                            [this](const std::vector<double> &points) { return feedback_at(points); });
+        facts_.breaks_in_space = times(stress.breaks_in_space(), 1. / units.length);
+        facts_.breaks_in_time  = times(stress.breaks_in_time(), 1. / units.time);
       }
+      ScaledActiveStress(const ScaledActiveStress &) = delete;
 
-      std::unique_ptr<ActiveStressAtPoints>
-      at(const std::vector<double> &points) const override
+      std::optional<double>
+      stride() const override
       {
-        return std::make_unique<ScaledAtPoints>(
-          stress_.at(times(points, units_.length)), units_.time, units_.force, pieces_);
+        return in_units(stress_.stride());
       }
-
-      std::unique_ptr<ActiveStressAtPoints>
-      rate_at(const std::vector<double> &points) const override
-      {
-        auto rate = stress_.rate_at(times(points, units_.length));
-        return rate
-                 ? std::make_unique<ScaledAtPoints>(std::move(rate), units_.time, units_.force / units_.time, pieces_)
-                 : nullptr;
-      }
-
-      std::vector<double>
-      breaks_in_space() const override
-      {
-        return times(stress_.breaks_in_space(), 1. / units_.length);
-      }
-
-      std::vector<double>
-      breaks_in_time() const override
-      {
-        return times(stress_.breaks_in_time(), 1. / units_.time);
-      }
-
       const StrainHistory *
       prescribed_strain() const override
       {
         return strain_ ? &*strain_ : nullptr;
       }
-
       const StressFailures *
       failures() const override
       {
         return stress_.failures();
       }
-
-      std::optional<double>
-      period() const override
-      {
-        const auto physical = stress_.period();
-        return physical ? std::optional(*physical / units_.time) : std::nullopt;
-      }
-
-      std::optional<double>
-      stride() const override
-      {
-        const auto physical = stress_.stride();
-        return physical ? std::optional(*physical / units_.time) : std::nullopt;
-      }
-
       void
       report(std::ostream &out) const override
       {
         stress_.report(out);
       }
-
       const StretchFeedback *
       feedback() const override
       {
@@ -257,16 +88,74 @@ namespace crawler
       }
 
     private:
+      std::unique_ptr<ActiveStressAtPoints>
+      evaluator(const std::vector<double> &points, const bool rate) const override
+      {
+        const auto places = times(points, units_.length);
+        auto physical     = rate ? stress_.rate_at(places) : stress_.at(places);
+        if (!physical)
+          return nullptr;
+        const double unit = rate ? units_.force / units_.time : units_.force;
+        return stress_at_points(
+          [this, at = std::move(physical), unit](const double t, const std::span<double> m) {
+            at->values(physical_time(t), m);
+            for (double &value : m)
+              value /= unit;
+          });
+      }
+
+      std::unique_ptr<FeedbackAtPoints>
+      feedback_at(const std::vector<double> &points) const
+      {
+        return feedback_at_points([this,
+                                   at    = stress_.feedback()->at(times(points, units_.length)),
+                                   rates = std::vector<double>()](
+                                    const double t, const StretchSeen &seen, const FeedbackStress &m) mutable {
+          rates.assign(seen.rate.begin(), seen.rate.end());
+          for (double &value : rates)
+            value /= units_.time;
+          at->values(physical_time(t), {seen.stretch, rates, seen.near, seen.delayed}, m);
+          for (const auto &part : {m.m, m.m_w, m.m_near})
+            for (double &value : part)
+              value /= units_.force;
+          for (double &value : m.m_rate)
+            value /= units_.force * units_.time;
+        });
+      }
+
+      double
+      physical_time(const double t) const
+      {
+        return (pieces_ != nullptr ? pieces_->inside(t) : t) * units_.time;
+      }
+
+      std::optional<double>
+      in_units(const std::optional<double> time) const
+      {
+        return time ? std::optional(*time / units_.time) : std::nullopt;
+      }
+
+      std::optional<double>
+      search_period() const override
+      {
+        return in_units(stress_.period());
+      }
+
       const ActiveStress &stress_;
       const Units units_;
       const TimeSegments *pieces_;
-      std::optional<ScaledStrainHistory> strain_;
-      std::optional<ScaledFeedback> feedback_;
+      std::optional<StrainByEvaluators> strain_;
+      std::optional<KnownFeedback> feedback_;
     };
-  } // namespace
 
-  namespace
-  {
+    /// Asked for in every residual, and a comparison of types is faster than dynamic_cast.
+    bool
+    has_power_law(const Scene &scene)
+    {
+      const FrictionLaw &law = *scene.friction;
+      return typeid(law) == typeid(PowerFriction);
+    }
+
     void
     require(const char *name, const double value, const double least, const double most)
     {
@@ -302,17 +191,6 @@ namespace crawler
           largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : std::numeric_limits<double>::infinity();
       }
       return largest;
-    }
-  } // namespace
-
-  namespace
-  {
-    /// Asked for in every residual, and a comparison of types is faster than dynamic_cast.
-    bool
-    has_power_law(const Scene &scene)
-    {
-      const FrictionLaw &law = *scene.friction;
-      return typeid(law) == typeid(PowerFriction);
     }
   } // namespace
 

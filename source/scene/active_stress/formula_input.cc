@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress.h>
 #include <crawler/scene/active_stress/formula_input.h>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <numbers>
 #include <sstream>
 
@@ -138,6 +140,34 @@ namespace crawler
     catch (const mu::ParserError &error)
     {
       throw InputError(in_words(error, input), input.formula_entry);
+    }
+  }
+
+  void
+  require_finite_values(const ActiveStress &stress,
+                        const FormulaInput &input,
+                        const std::string &where,
+                        const double length,
+                        const double end_time)
+  {
+    constexpr unsigned int n = 16;
+    std::vector<double> points(n + 1), m(n + 1);
+    for (unsigned int i = 0; i <= n; ++i)
+      points[i] = length * i / n;
+    const auto at_points = stress.at(points);
+    for (unsigned int j = 0; j <= n; ++j)
+    {
+      const double t = end_time * j / n;
+      at_points->values(t, m);
+      for (unsigned int i = 0; i <= n; ++i)
+        if (!std::isfinite(m[i]))
+          throw InputError(fmt::format("the formula \"{}\" gives {}{} at s = {}, t = {}; a finite number is expected",
+                                       input.formula,
+                                       m[i],
+                                       where,
+                                       points[i],
+                                       t),
+                           input.formula_entry);
     }
   }
 } // namespace crawler

@@ -54,275 +54,150 @@ namespace crawler
       failures.latest = fmt::format("the plug-in \"{}\" {}", failures.plugin, what);
     }
 
-    /// Evaluators for some points, one of them or all, by the same function of the plug-in.
+    /// An evaluator of the plug-in that is guarded: what goes wrong is a failure.
     template <typename AtPoints>
-    using Make = std::function<std::unique_ptr<AtPoints>(const std::vector<double> &)>;
-
-    /// Makes an evaluator; null, and a failure, if that throws.
-    template <typename AtPoints>
-    std::unique_ptr<AtPoints>
-    made(LibraryFailures &failures, const Make<AtPoints> &make, const char *name, const std::vector<double> &points)
-    {
-      std::unique_ptr<AtPoints> result;
-      const auto thrown = thrown_by([&]() { result = make(points); });
-      if (thrown)
-        fail(failures, fmt::format("threw an exception in {}: {}", name, *thrown));
-      else if (!result)
-        fail(failures, fmt::format("gave no evaluator in {}", name));
-      return result;
-    }
-
-    /// Calls an evaluator that writes into @p result. If it throws, or writes something that is not a finite number,
-    /// that is a failure, and all of @p result is not a number.
-    template <typename AtPoints>
-    void
-    evaluate(LibraryFailures &failures,
-             const Make<AtPoints> &make,
-             AtPoints *at_points,
-             const std::vector<double> &points,
-             const char *name,
-             const double t,
-             const std::function<void(AtPoints &, std::span<double>)> &call,
-             const std::span<double> result)
-    {
-      if (at_points == nullptr) // that has been said already
-      {
-        ++failures.count;
-        std::fill(result.begin(), result.end(), no_number);
-        return;
-      }
-      const auto thrown = thrown_by([&]() { call(*at_points, result); });
-      if (thrown)
-      {
-        // Where? The first point that throws on its own.
-        const auto place = std::find_if(points.begin(), points.end(), [&](const double s) {
-          double value = 0.;
-          return thrown_by([&]() { call(*make({s}), {&value, 1}); }).has_value();
-        });
-        fail(failures,
-             fmt::format("threw an exception in {} at {}t = {:.9g}: {}",
-                         name,
-                         place != points.end() ? fmt::format("s = {:.9g}, ", *place) : "",
-                         t,
-                         *thrown));
-        std::fill(result.begin(), result.end(), no_number);
-        return;
-      }
-      const auto bad =
-        std::find_if_not(result.begin(), result.end(), [](const double value) { return std::isfinite(value); });
-      if (bad == result.end())
-        return;
-      fail(failures,
-           fmt::format("gave {} in {} at s = {:.9g}, t = {:.9g}; a finite number is expected",
-                       *bad,
-                       name,
-                       points[static_cast<std::size_t>(bad - result.begin())],
-                       t));
-      std::fill(result.begin(), result.end(), no_number);
-    }
-
-    class LibraryAtPoints : public ActiveStressAtPoints
+    class Guarded
     {
     public:
-      LibraryAtPoints(std::shared_ptr<LibraryFailures> failures,
-                      Make<ActiveStressAtPoints> make,
-                      const char *name,
-                      const char *maker,
-                      const std::vector<double> &points)
+      /// Makes evaluators for some points, one of them or all.
+      using Make = std::function<std::unique_ptr<AtPoints>(const std::vector<double> &)>;
+
+      /// @p maker is the name of the function of the plug-in that @p make calls. Null, and a failure, if that throws.
+      Guarded(std::shared_ptr<LibraryFailures> failures,
+              Make make,
+              const char *maker,
+              const std::vector<double> &points)
         : failures_(std::move(failures))
         , make_(std::move(make))
-        , name_(name)
         , points_(points)
-        , at_points_(made(*failures_, make_, maker, points))
       {
+        const auto thrown = thrown_by([&]() { at_points_ = make_(points); });
+        if (thrown)
+          fail(*failures_, fmt::format("threw an exception in {}: {}", maker, *thrown));
+        else if (!at_points_)
+          fail(*failures_, fmt::format("gave no evaluator in {}", maker));
       }
 
-      void
-      values(const double t, const std::span<double> m) override
+      /// As an evaluator that calls @p call, whose name is @p name. If that throws, or writes something that is not a
+      /// finite number, all of its result is not a number.
+      std::unique_ptr<ActiveStressAtPoints>
+      evaluator(const char *name, void (AtPoints::*call)(double, std::span<double>)) const
       {
-        evaluate<ActiveStressAtPoints>(
-          *failures_,
-          make_,
-          at_points_.get(),
-          points_,
-          name_,
-          t,
-          [t](ActiveStressAtPoints &at_points, const std::span<double> result) { at_points.values(t, result); },
-          m);
-      }
-
-    private:
-      const std::shared_ptr<LibraryFailures> failures_;
-      const Make<ActiveStressAtPoints> make_;
-      const char *const name_;
-      const std::vector<double> points_;
-      const std::unique_ptr<ActiveStressAtPoints> at_points_;
-    };
-
-    class LibraryStrain : public StrainHistory
-    {
-    public:
-      LibraryStrain(std::shared_ptr<LibraryFailures> failures, const StrainHistory &history)
-        : failures_(std::move(failures))
-        , history_(history)
-      {
-      }
-
-      std::unique_ptr<StrainAtPoints>
-      at(const std::vector<double> &points) const override
-      {
-        return std::make_unique<AtPoints>(failures_, history_, points);
+        return stress_at_points([guarded = *this, name, call](const double t, const std::span<double> result) {
+          if (!guarded.is_well(name, call, t, result))
+            std::fill(result.begin(), result.end(), no_number);
+        });
       }
 
     private:
-      class AtPoints : public StrainAtPoints
-      {
-      public:
-        AtPoints(const std::shared_ptr<LibraryFailures> &failures,
-                 const StrainHistory &history,
-                 const std::vector<double> &points)
-          : failures_(failures)
-          , make_([&history](const std::vector<double> &places) { return history.at(places); })
-          , points_(points)
-          , at_points_(made(*failures_, make_, "at() of its strain", points))
-        {
-        }
-
-        void
-        strain(const double t, const std::span<double> e) override
-        {
-          evaluate<StrainAtPoints>(
-            *failures_,
-            make_,
-            at_points_.get(),
-            points_,
-            "strain()",
-            t,
-            [t](StrainAtPoints &at_points, const std::span<double> result) { at_points.strain(t, result); },
-            e);
-        }
-        void
-        rate(const double t, const std::span<double> e_t) override
-        {
-          evaluate<StrainAtPoints>(
-            *failures_,
-            make_,
-            at_points_.get(),
-            points_,
-            "rate()",
-            t,
-            [t](StrainAtPoints &at_points, const std::span<double> result) { at_points.rate(t, result); },
-            e_t);
-        }
-
-      private:
-        const std::shared_ptr<LibraryFailures> failures_;
-        const Make<StrainAtPoints> make_;
-        const std::vector<double> points_;
-        const std::unique_ptr<StrainAtPoints> at_points_;
-      };
-
-      const std::shared_ptr<LibraryFailures> failures_;
-      const StrainHistory &history_;
-    };
-
-    class LibraryFeedbackAtPoints : public FeedbackAtPoints
-    {
-    public:
-      LibraryFeedbackAtPoints(std::shared_ptr<LibraryFailures> failures,
-                              const StretchFeedback &feedback,
-                              const std::vector<double> &points)
-        : failures_(std::move(failures))
-        , points_(points)
-        , at_points_(made<FeedbackAtPoints>(
-            *failures_,
-            [&feedback](const std::vector<double> &places) { return feedback.at(places); },
-            "at() of its feedback",
-            points))
-      {
-      }
-
-      void
-      values(const double t, const StretchSeen &seen, const FeedbackStress &m) override
-      {
-        const unsigned long n_before = failures_->count;
-        if (!at_points_)
-          ++failures_->count;
-        else if (const auto thrown = thrown_by([&]() { at_points_->values(t, seen, m); }))
-          fail(*failures_, fmt::format("threw an exception in values() of its feedback at t = {:.9g}: {}", t, *thrown));
-        else
-        {
-          const std::pair<const char *, std::span<double>> all[] = {
-            {"m", m.m}, {"m_w", m.m_w}, {"m_rate", m.m_rate}, {"m_near", m.m_near}};
-          for (const auto &[name, values] : all)
-            for (std::size_t i = 0; i < values.size() && failures_->count == n_before; ++i)
-              if (!std::isfinite(values[i]))
-                fail(
-                  *failures_,
-                  fmt::format("gave {} = {} in values() of its feedback at s = {:.9g}, t = {:.9g}, stretch {:.9g}; a "
-                              "finite number is expected",
-                              name,
-                              values[i],
-                              points_[i],
-                              t,
-                              seen.stretch.empty() ? 1. : seen.stretch[i]));
-        }
-        if (failures_->count > n_before)
-          for (const std::span<double> values : {m.m, m.m_w, m.m_rate, m.m_near})
-            std::fill(values.begin(), values.end(), no_number);
-      }
-
-    private:
-      const std::shared_ptr<LibraryFailures> failures_;
-      const std::vector<double> points_;
-      const std::unique_ptr<FeedbackAtPoints> at_points_;
-    };
-
-    class LibraryFeedback : public StretchFeedback
-    {
-    public:
-      LibraryFeedback(std::shared_ptr<LibraryFailures> failures, const StretchFeedback &feedback)
-        : failures_(std::move(failures))
-        , feedback_(feedback)
-        , uses_rate_(feedback.uses_rate())
-        , distance_(feedback.distance())
-        , delay_(feedback.delay())
-        , sensor_length_(feedback.sensor_length())
-      {
-      }
-
-      std::unique_ptr<FeedbackAtPoints>
-      at(const std::vector<double> &points) const override
-      {
-        return std::make_unique<LibraryFeedbackAtPoints>(failures_, feedback_, points);
-      }
       bool
-      uses_rate() const override
+      is_well(const char *name,
+              void (AtPoints::*call)(double, std::span<double>),
+              const double t,
+              const std::span<double> result) const
       {
-        return uses_rate_;
-      }
-      double
-      distance() const override
-      {
-        return distance_;
-      }
-      double
-      delay() const override
-      {
-        return delay_;
-      }
-      double
-      sensor_length() const override
-      {
-        return sensor_length_;
+        if (!at_points_) // that has been said already
+        {
+          ++failures_->count;
+          return false;
+        }
+        if (const auto thrown = thrown_by([&]() { (*at_points_.*call)(t, result); }))
+        {
+          // Where? The first point that throws on its own.
+          const auto place = std::find_if(points_.begin(), points_.end(), [&](const double s) {
+            double value = 0.;
+            return thrown_by([&]() { (*make_({s}).*call)(t, {&value, 1}); }).has_value();
+          });
+          fail(*failures_,
+               fmt::format("threw an exception in {} at {}t = {:.9g}: {}",
+                           name,
+                           place != points_.end() ? fmt::format("s = {:.9g}, ", *place) : "",
+                           t,
+                           *thrown));
+          return false;
+        }
+        const auto bad =
+          std::find_if_not(result.begin(), result.end(), [](const double value) { return std::isfinite(value); });
+        if (bad == result.end())
+          return true;
+        fail(*failures_,
+             fmt::format("gave {} in {} at s = {:.9g}, t = {:.9g}; a finite number is expected",
+                         *bad,
+                         name,
+                         points_[static_cast<std::size_t>(bad - result.begin())],
+                         t));
+        return false;
       }
 
-    private:
-      const std::shared_ptr<LibraryFailures> failures_;
-      const StretchFeedback &feedback_;
-      const bool uses_rate_;
-      const double distance_, delay_, sensor_length_;
+      std::shared_ptr<LibraryFailures> failures_;
+      Make make_;
+      std::vector<double> points_;
+      std::shared_ptr<AtPoints> at_points_;
     };
+
+    std::unique_ptr<const StrainHistory>
+    guarded_strain(const std::shared_ptr<LibraryFailures> &failures, const StrainHistory &history)
+    {
+      return std::make_unique<StrainByEvaluators>(
+        [failures, &history](const std::vector<double> &points) -> StrainByEvaluators::Evaluators {
+          const Guarded<StrainAtPoints> guarded(
+            failures,
+            [&history](const std::vector<double> &places) { return history.at(places); },
+            "at() of its strain",
+            points);
+          return {guarded.evaluator("strain()", &StrainAtPoints::strain),
+                  guarded.evaluator("rate()", &StrainAtPoints::rate)};
+        });
+    }
+
+    /// The first of the numbers @p m that is not finite is a failure.
+    void
+    require_finite(LibraryFailures &failures,
+                   const FeedbackStress &m,
+                   const std::vector<double> &points,
+                   const StretchSeen &seen,
+                   const double t)
+    {
+      const std::pair<const char *, std::span<double>> all[] = {
+        {"m", m.m}, {"m_w", m.m_w}, {"m_rate", m.m_rate}, {"m_near", m.m_near}};
+      for (const auto &[name, values] : all)
+        for (std::size_t i = 0; i < values.size(); ++i)
+          if (!std::isfinite(values[i]))
+            return fail(failures,
+                        fmt::format("gave {} = {} in values() of its feedback at s = {:.9g}, t = {:.9g}, stretch "
+                                    "{:.9g}; a finite number is expected",
+                                    name,
+                                    values[i],
+                                    points[i],
+                                    t,
+                                    seen.stretch.empty() ? 1. : seen.stretch[i]));
+    }
+
+    std::unique_ptr<FeedbackAtPoints>
+    guarded_feedback_at(const std::shared_ptr<LibraryFailures> &failures,
+                        const StretchFeedback &feedback,
+                        const std::vector<double> &points)
+    {
+      std::shared_ptr<FeedbackAtPoints> at_points;
+      if (const auto thrown = thrown_by([&]() { at_points = feedback.at(points); }))
+        fail(*failures, fmt::format("threw an exception in at() of its feedback: {}", *thrown));
+      else if (!at_points)
+        fail(*failures, "gave no evaluator in at() of its feedback");
+      return feedback_at_points(
+        [failures, points, at_points](const double t, const StretchSeen &seen, const FeedbackStress &m) {
+          const unsigned long n_before = failures->count;
+          if (!at_points)
+            ++failures->count;
+          else if (const auto thrown = thrown_by([&]() { at_points->values(t, seen, m); }))
+            fail(*failures,
+                 fmt::format("threw an exception in values() of its feedback at t = {:.9g}: {}", t, *thrown));
+          else
+            require_finite(*failures, m, points, seen, t);
+          if (failures->count > n_before)
+            for (const std::span<double> values : {m.m, m.m_w, m.m_rate, m.m_near})
+              std::fill(values.begin(), values.end(), no_number);
+        });
+    }
 
     /// The beginning of an ELF file; nothing if it is something else.
     std::optional<Elf64_Ehdr>
@@ -480,19 +355,24 @@ namespace crawler
     const char *asked = "";
     const auto thrown = thrown_by([&]() {
       asked            = "period()";
-      period_          = stress_->period();
+      facts_.period          = stress_->period();
       asked            = "breaks_in_space()";
-      breaks_in_space_ = stress_->breaks_in_space();
+      facts_.breaks_in_space = stress_->breaks_in_space();
       asked            = "breaks_in_time()";
-      breaks_in_time_  = stress_->breaks_in_time();
+      facts_.breaks_in_time  = stress_->breaks_in_time();
       asked            = "rate_at()";
-      has_rate_        = stress_->rate_at({0.}) != nullptr;
+      facts_.has_rate        = stress_->rate_at({0.}) != nullptr;
       asked            = "feedback()";
       if (const StretchFeedback *feedback = stress_->feedback())
-        feedback_ = std::make_unique<LibraryFeedback>(failures_, *feedback);
+        feedback_ = std::make_unique<KnownFeedback>(
+          KnownFeedback::Facts{
+            feedback->uses_rate(), feedback->distance(), feedback->delay(), feedback->sensor_length()},
+          [failures = failures_, feedback](const std::vector<double> &points) {
+            return guarded_feedback_at(failures, *feedback, points);
+          });
       asked = "prescribed_strain()";
       if (const StrainHistory *strain = stress_->prescribed_strain())
-        strain_ = std::make_unique<LibraryStrain>(failures_, *strain);
+        strain_ = guarded_strain(failures_, *strain);
       asked = "report()";
       std::ostringstream out;
       stress_->report(out);
@@ -503,39 +383,28 @@ namespace crawler
     };
     if (thrown)
       refuse(fmt::format("threw an exception in {}: {}", asked, *thrown));
-    if (period_ && !(*period_ > 0. && std::isfinite(*period_)))
-      refuse(fmt::format("says that its period is {}; a positive number is expected", *period_));
+    if (const auto P = facts_.period; P && !(*P > 0. && std::isfinite(*P)))
+      refuse(fmt::format("says that its period is {}; a positive number is expected", *P));
     const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end) {
       for (const double value : breaks)
         if (!(value > 0. && value < end))
           refuse(fmt::format("gave {} in {}; a number above 0 and below {:g} is expected", value, name, end));
     };
-    require_inside(breaks_in_space_, "breaks_in_space()", length);
-    require_inside(breaks_in_time_, "breaks_in_time()", end_time);
+    require_inside(facts_.breaks_in_space, "breaks_in_space()", length);
+    require_inside(facts_.breaks_in_time, "breaks_in_time()", end_time);
   }
 
   std::unique_ptr<ActiveStressAtPoints>
-  Library::at(const std::vector<double> &points) const
+  Library::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    return std::make_unique<LibraryAtPoints>(
-      failures_,
-      [stress = stress_.get()](const std::vector<double> &places) { return stress->at(places); },
-      "values()",
-      "at()",
-      points);
-  }
-
-  std::unique_ptr<ActiveStressAtPoints>
-  Library::rate_at(const std::vector<double> &points) const
-  {
-    if (!has_rate_)
-      return nullptr;
-    return std::make_unique<LibraryAtPoints>(
-      failures_,
-      [stress = stress_.get()](const std::vector<double> &places) { return stress->rate_at(places); },
-      "values() of the rate",
-      "rate_at()",
-      points);
+    return Guarded<ActiveStressAtPoints>(
+             failures_,
+             [stress = stress_.get(), rate](const std::vector<double> &places) {
+               return rate ? stress->rate_at(places) : stress->at(places);
+             },
+             rate ? "rate_at()" : "at()",
+             points)
+      .evaluator(rate ? "values() of the rate" : "values()", &ActiveStressAtPoints::values);
   }
 
   void

@@ -23,57 +23,7 @@ namespace crawler
       double q, a, b;
       std::vector<double> sine, cosine; ///< of q s at the points
     };
-
-    class WaveAtPoints : public ActiveStressAtPoints
-    {
-    public:
-      WaveAtPoints(
-        const std::vector<double> &points, const WaveShape &shape, const Body &body, const double chi, const double c)
-        : body_(body)
-        , chi_(chi)
-        , c_(c)
-      {
-        for (unsigned int n = 1; n <= shape.a.size(); ++n)
-        {
-          if (shape.power(n) == 0.)
-            continue;
-          Harmonic harmonic{2. * std::numbers::pi * n / body.length, shape.a[n - 1], shape.b[n - 1], {}, {}};
-          for (const double s : points)
-          {
-            harmonic.sine.push_back(std::sin(harmonic.q * s));
-            harmonic.cosine.push_back(std::cos(harmonic.q * s));
-          }
-          harmonics_.push_back(std::move(harmonic));
-        }
-      }
-
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        std::fill(m.begin(), m.end(), 0.);
-        for (const Harmonic &wave : harmonics_)
-        {
-          // The class formula with sin q(s+ct) and cos q(s+ct) expanded: constant + cosine cos qs + sine sin qs.
-          const double theta = wave.q * c_ * t;
-          const double st = std::sin(theta), ct = std::cos(theta);
-          const double half = std::sin(0.5 * theta), ct_minus_1 = -2. * half * half;
-          const double friction = chi_ * body_.friction_coefficient / wave.q;
-          const double elastic  = chi_ * body_.elastic_modulus / c_;
-          const double constant = friction * (wave.a * ct - wave.b * st);
-          const double cosine   = -constant - elastic * (wave.a * st + wave.b * ct_minus_1);
-          const double sine = friction * (wave.a * st + wave.b * ct) - elastic * (wave.a * ct_minus_1 - wave.b * st);
-          for (std::size_t i = 0; i < m.size(); ++i)
-            m[i] += constant + cosine * wave.cosine[i] + sine * wave.sine[i];
-        }
-      }
-
-    private:
-      const Body body_;
-      const double chi_, c_;
-      std::vector<Harmonic> harmonics_;
-    };
   } // namespace
-
 
   void
   OptimalWaveParameters::add_parameters(Declarations &declarations)
@@ -173,6 +123,13 @@ namespace crawler
     else
       wave_ = describe_wave(body_, shape_, chi_, end_time_, parameters.wave_speed);
     require_computable();
+    facts_.has_rate      = false;
+    unsigned int divisor = 0;
+    for (unsigned int n = 1; n <= shape_.a.size(); ++n)
+      if (shape_.power(n) != 0.)
+        divisor = std::gcd(divisor, n);
+    if (divisor != 0 && chi_ != 0.)
+      facts_.period = body_.length / (std::abs(wave_.speed) * divisor);
   }
 
   void
@@ -242,21 +199,39 @@ namespace crawler
   }
 
   std::unique_ptr<ActiveStressAtPoints>
-  OptimalWave::at(const std::vector<double> &points) const
+  OptimalWave::evaluator(const std::vector<double> &points, bool) const
   {
-    return std::make_unique<WaveAtPoints>(points, shape_, body_, chi_, wave_.speed);
-  }
-
-  std::optional<double>
-  OptimalWave::period() const
-  {
-    unsigned int divisor = 0;
+    std::vector<Harmonic> harmonics;
     for (unsigned int n = 1; n <= shape_.a.size(); ++n)
-      if (shape_.power(n) != 0.)
-        divisor = std::gcd(divisor, n);
-    if (divisor == 0 || chi_ == 0.)
-      return std::nullopt;
-    return body_.length / (std::abs(wave_.speed) * divisor);
+    {
+      if (shape_.power(n) == 0.)
+        continue;
+      Harmonic harmonic{2. * std::numbers::pi * n / body_.length, shape_.a[n - 1], shape_.b[n - 1], {}, {}};
+      for (const double s : points)
+      {
+        harmonic.sine.push_back(std::sin(harmonic.q * s));
+        harmonic.cosine.push_back(std::cos(harmonic.q * s));
+      }
+      harmonics.push_back(std::move(harmonic));
+    }
+    return stress_at_points([this, harmonics = std::move(harmonics)](const double t, const std::span<double> m) {
+      const double c = wave_.speed;
+      std::fill(m.begin(), m.end(), 0.);
+      for (const Harmonic &wave : harmonics)
+      {
+        // The class formula with sin q(s+ct) and cos q(s+ct) expanded: constant + cosine cos qs + sine sin qs.
+        const double theta = wave.q * c * t;
+        const double st = std::sin(theta), ct = std::cos(theta);
+        const double half = std::sin(0.5 * theta), ct_minus_1 = -2. * half * half;
+        const double friction = chi_ * body_.friction_coefficient / wave.q;
+        const double elastic  = chi_ * body_.elastic_modulus / c;
+        const double constant = friction * (wave.a * ct - wave.b * st);
+        const double cosine   = -constant - elastic * (wave.a * st + wave.b * ct_minus_1);
+        const double sine     = friction * (wave.a * st + wave.b * ct) - elastic * (wave.a * ct_minus_1 - wave.b * st);
+        for (std::size_t i = 0; i < m.size(); ++i)
+          m[i] += constant + cosine * wave.cosine[i] + sine * wave.sine[i];
+      }
+    });
   }
 
   void

@@ -21,105 +21,45 @@ namespace crawler
   {
     const std::string section = "Active stress/Prescribed strain/";
 
-    class FormulaStrain : public StrainHistory
+    using Strains = StrainByEvaluators::Evaluators;
+
+    std::unique_ptr<const StrainHistory>
+    strain_by(StrainByEvaluators::Make make)
     {
-    public:
-      explicit FormulaStrain(std::shared_ptr<const Formula> formula)
-        : formula_(std::move(formula))
-      {
-      }
+      return std::make_unique<StrainByEvaluators>(std::move(make));
+    }
 
-      std::unique_ptr<StrainAtPoints>
-      at(const std::vector<double> &points) const override
-      {
-        return std::make_unique<AtPoints>(formula_, points);
-      }
-
-    private:
-      class AtPoints : public StrainAtPoints
-      {
-      public:
-        AtPoints(const std::shared_ptr<const Formula> &formula, const std::vector<double> &points)
-          : strain_(formula, points)
-          , rate_(formula, points)
-        {
-        }
-
-        void
-        strain(const double t, const std::span<double> e) override
-        {
-          strain_.values(t, e);
-        }
-        void
-        rate(const double t, const std::span<double> e_t) override
-        {
-          rate_.values(t, e_t);
-        }
-
-      private:
-        FormulaAtPoints strain_;
-        FormulaRateAtPoints rate_;
-      };
-
-      const std::shared_ptr<const Formula> formula_;
-    };
+    std::unique_ptr<const StrainHistory>
+    formula_strain(const std::shared_ptr<const Formula> &formula)
+    {
+      return strain_by([formula](const std::vector<double> &points) -> Strains {
+        const auto by = [](auto values) {
+          return stress_at_points(
+            [values = std::move(values)](const double t, const std::span<double> e) mutable { values.values(t, e); });
+        };
+        return {by(FormulaAtPoints(formula, points)), by(FormulaRateAtPoints(formula, points))};
+      });
+    }
 
     /// e = mean + amplitude sin( q (s + c t) + phase )
-    struct Wave
+    std::unique_ptr<const StrainHistory>
+    wave_strain(const PrescribedStrainParameters &wave, const double length)
     {
-      double mean, amplitude, q, speed, phase;
-    };
-
-    class WaveAtPoints : public StrainAtPoints
-    {
-    public:
-      WaveAtPoints(const Wave &wave, const std::vector<double> &points)
-        : wave_(wave)
-        , points_(points)
-      {
-      }
-
-      void
-      strain(const double t, const std::span<double> e) override
-      {
-        for (std::size_t i = 0; i < e.size(); ++i)
-          e[i] = wave_.mean + wave_.amplitude * std::sin(phase(points_[i], t));
-      }
-      void
-      rate(const double t, const std::span<double> e_t) override
-      {
-        for (std::size_t i = 0; i < e_t.size(); ++i)
-          e_t[i] = wave_.q * wave_.speed * wave_.amplitude * std::cos(phase(points_[i], t));
-      }
-
-    private:
-      double
-      phase(const double s, const double t) const
-      {
-        return wave_.q * (s + wave_.speed * t) + wave_.phase;
-      }
-
-      const Wave wave_;
-      const std::vector<double> points_;
-    };
-
-    class WaveStrain : public StrainHistory
-    {
-    public:
-      explicit WaveStrain(const Wave &wave)
-        : wave_(wave)
-      {
-      }
-
-      std::unique_ptr<StrainAtPoints>
-      at(const std::vector<double> &points) const override
-      {
-        return std::make_unique<WaveAtPoints>(wave_, points);
-      }
-
-    private:
-      const Wave wave_;
-    };
+      const double q = 2. * std::numbers::pi * wave.wave_number / length;
+      return strain_by([wave, q](const std::vector<double> &points) -> Strains {
+        const auto phase = [wave, q](const double s, const double t) {
+          return q * (s + wave.wave_speed * t) + wave.phase;
+        };
+        return {stress_at_points([=](const double t, const std::span<double> e) {
+                  for (std::size_t i = 0; i < e.size(); ++i)
+                    e[i] = wave.mean_strain + wave.amplitude * std::sin(phase(points[i], t));
+                }),
+                stress_at_points([=](const double t, const std::span<double> e_t) {
+                  for (std::size_t i = 0; i < e_t.size(); ++i)
+                    e_t[i] = q * wave.wave_speed * wave.amplitude * std::cos(phase(points[i], t));
+                })};
+      });
+    }
 
     /// The stress from the balance of forces, see the class.
     class StressAtPoints : public ActiveStressAtPoints
@@ -175,49 +115,6 @@ namespace crawler
       std::vector<double> e_, e_t_, g_, B_t_, elastic_;
     };
 
-    /// The values of a generator, read as strain.
-    class GeneratedStrain : public StrainHistory
-    {
-    public:
-      explicit GeneratedStrain(const ActiveStress &generator)
-        : generator_(generator)
-      {
-      }
-
-      std::unique_ptr<StrainAtPoints>
-      at(const std::vector<double> &points) const override
-      {
-        return std::make_unique<AtPoints>(generator_, points);
-      }
-
-    private:
-      class AtPoints : public StrainAtPoints
-      {
-      public:
-        AtPoints(const ActiveStress &generator, const std::vector<double> &points)
-          : values_(generator.at(points))
-          , rates_(generator.rate_at(points))
-        {
-        }
-
-        void
-        strain(const double t, const std::span<double> e) override
-        {
-          values_->values(t, e);
-        }
-        void
-        rate(const double t, const std::span<double> e_t) override
-        {
-          rates_->values(t, e_t);
-        }
-
-      private:
-        const std::unique_ptr<ActiveStressAtPoints> values_, rates_;
-      };
-
-      const ActiveStress &generator_;
-    };
-
     std::unique_ptr<const StrainHistory>
     create_history(const PrescribedStrainParameters &parameters,
                    const double length,
@@ -240,17 +137,15 @@ namespace crawler
                         "differentiated in time is expected",
                         parameters.given_by),
             section + "Given by");
-        return std::make_unique<GeneratedStrain>(*generator);
+        return strain_by([generator](const std::vector<double> &points) -> Strains {
+          return {generator->at(points), generator->rate_at(points)};
+        });
       }
       if (parameters.given_by == "wave")
-        return std::make_unique<WaveStrain>(Wave{parameters.mean_strain,
-                                                 parameters.amplitude,
-                                                 2. * std::numbers::pi * parameters.wave_number / length,
-                                                 parameters.wave_speed,
-                                                 parameters.phase});
+        return wave_strain(parameters, length);
       if (parameters.given_by == "table")
         return std::make_unique<StrainTable>(parameters.file, length, end_time, section + "File");
-      return std::make_unique<FormulaStrain>(
+      return formula_strain(
         read_formula({"strain", parameters.strain, parameters.constants, section + "Strain", section + "Constants"},
                      length,
                      end_time));
@@ -320,9 +215,14 @@ namespace crawler
   {
     const double phase_rate = parameters.wave_number * parameters.wave_speed / body.length;
     if (given_by_ == "wave" && parameters.amplitude != 0. && phase_rate != 0.)
-      wave_period_ = 1. / std::abs(phase_rate);
+      facts_.period = 1. / std::abs(phase_rate);
+    facts_.has_rate = false;
     if (generator_)
+    {
+      facts_.breaks_in_space = generator_->breaks_in_space();
+      facts_.breaks_in_time  = generator_->breaks_in_time();
       require_usable_generator(end_time);
+    }
     require_admissible_strain(end_time);
     choose_panels(end_time);
   }
@@ -354,7 +254,7 @@ namespace crawler
                     place),
         section + "Given by");
     };
-    for (const double t : generator_->breaks_in_time())
+    for (const double t : facts_.breaks_in_time)
     {
       at_points->strain(t - beside * end_time, e);
       at_points->strain(t + beside * end_time, after);
@@ -362,7 +262,7 @@ namespace crawler
         if (std::abs(after[i] - e[i]) > jump * size)
           refuse("t", t);
     }
-    for (const double s : generator_->breaks_in_space())
+    for (const double s : facts_.breaks_in_space)
     {
       const auto sides = history_->at({s - beside * L, s + beside * L});
       std::array<double, 2> values{};
@@ -376,27 +276,15 @@ namespace crawler
   }
 
   std::optional<double>
-  PrescribedStrain::period() const
+  PrescribedStrain::search_period() const
   {
-    return generator_ ? generator_->period() : wave_period_;
+    return generator_ ? generator_->period() : facts_.period;
   }
 
   std::optional<double>
   PrescribedStrain::stride() const
   {
-    return generator_ ? generator_->stride() : wave_period_;
-  }
-
-  std::vector<double>
-  PrescribedStrain::breaks_in_space() const
-  {
-    return generator_ ? generator_->breaks_in_space() : std::vector<double>();
-  }
-
-  std::vector<double>
-  PrescribedStrain::breaks_in_time() const
-  {
-    return generator_ ? generator_->breaks_in_time() : std::vector<double>();
+    return generator_ ? generator_->stride() : period();
   }
 
   const StressFailures *
@@ -477,7 +365,7 @@ namespace crawler
   }
 
   std::unique_ptr<ActiveStressAtPoints>
-  PrescribedStrain::at(const std::vector<double> &points) const
+  PrescribedStrain::evaluator(const std::vector<double> &points, bool) const
   {
     return std::make_unique<StressAtPoints>(*history_, body_, n_panels_, points);
   }

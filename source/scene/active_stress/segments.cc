@@ -101,13 +101,11 @@ namespace crawler
   Segments::Segments(const SegmentsParameters &parameters, const double length, const double end_time)
     : parameters_(parameters)
     , length_(length)
-    , end_time_(end_time)
     , envelope_({{}, {}, /*window_edge=*/0., parameters.ramp_duration}, section, length)
   {
     const auto &p   = parameters_;
     const double D  = p.duty_cycle;
     const auto n    = p.number;
-    const bool head = sign_of(p.direction) < 0.; // begins there
     if (p.amplitude.size() != 1 && p.amplitude.size() != n)
       throw InputError(
         fmt::format("the list of amplitudes has {} numbers, but 1 or {}, one for each segment, are expected",
@@ -128,14 +126,33 @@ namespace crawler
       require_smooth_rate();
     }
 
-    const double segment = length / (n + (n - 1) * p.gap), pitch = segment * (1. + p.gap);
+    segments_ = create_segments();
+    set_stride(1. / p.frequency, envelope_.has_ramp());
+    for (std::size_t i = 1; i < segments_.size(); ++i)
+    {
+      facts_.breaks_in_space.push_back(segments_[i].first);
+      if (p.gap > 0.)
+        facts_.breaks_in_space.push_back(segments_[i - 1].last);
+    }
+    facts_.breaks_in_time = times_of_switching(end_time);
+  }
+
+  std::vector<Segments::Segment>
+  Segments::create_segments() const
+  {
+    const auto &p              = parameters_;
+    const double D             = p.duty_cycle;
+    const auto n               = p.number;
+    const bool begins_at_head  = sign_of(p.direction) < 0.;
+    const double segment       = length_ / (n + (n - 1) * p.gap), pitch = segment * (1. + p.gap);
+    std::vector<Segment> list;
     for (unsigned int i = 0; i < n; ++i)
     {
       const double A = p.amplitude[p.amplitude.size() == 1 ? 0 : i], most = p.saturation.value_or(std::abs(A));
       const double high = std::clamp(A, -most, most);
       Segment s{i * pitch,
-                i + 1 == n ? length : i * pitch + segment,
-                p.phase - (head ? n - 1 - i : i) * p.phase_lag,
+                i + 1 == n ? length_ : i * pitch + segment,
+                p.phase - (begins_at_head ? n - 1 - i : i) * p.phase_lag,
                 A,
                 0.,
                 high,
@@ -149,9 +166,15 @@ namespace crawler
         (D <= 0.5 ? s.high : s.low) = D <= 0.5 ? std::copysign(way, high) : high - std::copysign(way, high);
         s.front                     = way / per_period;
       }
-      segments_.push_back(s);
+      list.push_back(s);
     }
+    return list;
+  }
 
+  std::vector<double>
+  Segments::times_of_switching(const double end_time) const
+  {
+    const auto &p = parameters_;
     std::vector<double> phases; // of f t
     for (const Segment &s : segments_)
       for (const double x : breaks(s))
@@ -166,12 +189,12 @@ namespace crawler
                                    n_breaks,
                                    most),
                        section + "Frequency");
-    if (phases.empty())
-      return;
-    for (double period = 0.; period <= periods; ++period)
+    std::vector<double> times;
+    for (double period = 0.; period <= periods && !phases.empty(); ++period)
       for (const double x : phases)
         if (const double t = (period + x) / p.frequency; t > round_off * end_time && t < (1. - round_off) * end_time)
-          breaks_in_time_.push_back(t);
+          times.push_back(t);
+    return times;
   }
 
   void
@@ -247,72 +270,32 @@ namespace crawler
   }
 
   /// One number for each segment, then the segment of each point.
-  class Segments::AtPoints : public ActiveStressAtPoints
-  {
-  public:
-    AtPoints(const Segments &owner, const std::vector<double> &points, const bool rates)
-      : owner_(owner)
-      , rates_(rates)
-      , now_(owner.segments_.size() + 1, 0.)
-    {
-      for (const double s : points)
-      {
-        const auto &list = owner.segments_;
-        const auto above =
-          std::upper_bound(list.begin() + 1, list.end(), s, [](const double place, const Segment &segment) {
-            return place < segment.first;
-          });
-        const auto i = static_cast<std::size_t>(above - list.begin()) - 1;
-        segment_.push_back(s <= list[i].last + round_off * owner.length_ ? i : list.size());
-      }
-    }
-
-    void
-    values(const double t, const std::span<double> m) override
-    {
-      const Envelope &envelope = owner_.envelope_;
-      const double f = owner_.parameters_.frequency, ramp = envelope.ramp(t);
-      for (std::size_t i = 0; i < owner_.segments_.size(); ++i)
-      {
-        const Segment &segment = owner_.segments_[i];
-        const double x         = f * t + segment.phase;
-        now_[i]                = ramp * (rates_ ? f * owner_.rate(segment, x) : owner_.value(segment, x));
-        if (rates_ && envelope.has_ramp())
-          now_[i] += envelope.ramp_rate(t) * owner_.value(segment, x);
-      }
-      for (std::size_t p = 0; p < segment_.size(); ++p)
-        m[p] = now_[segment_[p]];
-    }
-
-  private:
-    const Segments &owner_;
-    const bool rates_;
-    std::vector<std::size_t> segment_; ///< of each point; in a gap the number of segments, where now_ is 0
-    std::vector<double> now_;
-  };
-
   std::unique_ptr<ActiveStressAtPoints>
-  Segments::at(const std::vector<double> &points) const
+  Segments::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    return std::make_unique<AtPoints>(*this, points, /*rates=*/false);
-  }
-
-  std::unique_ptr<ActiveStressAtPoints>
-  Segments::rate_at(const std::vector<double> &points) const
-  {
-    return std::make_unique<AtPoints>(*this, points, /*rates=*/true);
-  }
-
-  std::optional<double>
-  Segments::stride() const
-  {
-    return 1. / parameters_.frequency;
-  }
-
-  std::optional<double>
-  Segments::period() const
-  {
-    return envelope_.has_ramp() ? std::nullopt : stride();
+    std::vector<std::size_t> segment; // of each point; in a gap the number of segments, where `now` is 0
+    for (const double s : points)
+    {
+      const auto above =
+        std::upper_bound(segments_.begin() + 1, segments_.end(), s, [](const double place, const Segment &next) {
+          return place < next.first;
+        });
+      const auto i = static_cast<std::size_t>(above - segments_.begin()) - 1;
+      segment.push_back(s <= segments_[i].last + round_off * length_ ? i : segments_.size());
+    }
+    std::vector<double> now(segments_.size() + 1, 0.);
+    return stress_at_points([this, rate, segment, now](const double t, const std::span<double> m) mutable {
+      const double f = parameters_.frequency, ramp = envelope_.ramp(t);
+      for (std::size_t i = 0; i < segments_.size(); ++i)
+      {
+        const double x = f * t + segments_[i].phase;
+        now[i]         = ramp * (rate ? f * this->rate(segments_[i], x) : value(segments_[i], x));
+        if (rate && envelope_.has_ramp())
+          now[i] += envelope_.ramp_rate(t) * value(segments_[i], x);
+      }
+      for (std::size_t p = 0; p < segment.size(); ++p)
+        m[p] = now[segment[p]];
+    });
   }
 
   /// Fronts begin at 0 and at D, or half their width before if they are smooth.
@@ -341,25 +324,6 @@ namespace crawler
     return largest;
   }
 
-  std::vector<double>
-  Segments::breaks_in_space() const
-  {
-    std::vector<double> places;
-    for (std::size_t i = 1; i < segments_.size(); ++i)
-    {
-      places.push_back(segments_[i].first);
-      if (parameters_.gap > 0.)
-        places.push_back(segments_[i - 1].last);
-    }
-    return places;
-  }
-
-  std::vector<double>
-  Segments::breaks_in_time() const
-  {
-    return breaks_in_time_;
-  }
-
   void
   Segments::report(std::ostream &out) const
   {
@@ -374,6 +338,6 @@ namespace crawler
         segments_.begin(), segments_.end(), [](const Segment &a, const Segment &b) { return a.front < b.front; });
       out << fmt::format("; the rate limit makes fronts of up to {:.4g} of a period", slowest.front);
     }
-    out << fmt::format("; {} switching times\n", breaks_in_time_.size());
+    out << fmt::format("; {} switching times\n", facts_.breaks_in_time.size());
   }
 } // namespace crawler

@@ -25,75 +25,6 @@ namespace crawler
     /// The leading order is reported for so many strides at most.
     constexpr double most_reported = 100.;
 
-    class AtPoints : public ActiveStressAtPoints
-    {
-    public:
-      AtPoints(const ShapedWave::Settings &wave, const std::vector<double> &points)
-        : wave_(wave)
-        , points_(points)
-        , x_(points.size())
-        , V_(points.size())
-        , F_(points.size())
-      {
-        std::size_t panel = 0;
-        for (const double s : points)
-          start_.push_back(wave.shape.value(s, panel));
-      }
-
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        const double ct = wave_.speed * t, L = wave_.body.length;
-        const double friction = wave_.chi * wave_.body.friction_coefficient;
-        const double elastic  = wave_.chi * wave_.body.elastic_modulus / wave_.speed;
-        const double tail = wave_.shape.integral(ct, panel_), head = wave_.shape.integral(L + ct, panel_);
-        const double mean = (head - tail) / L;
-        for (std::size_t i = 0; i < m.size(); ++i)
-          x_[i] = points_[i] + ct;
-        wave_.shape.values_and_integrals(x_, panel_, V_, F_);
-        for (std::size_t i = 0; i < m.size(); ++i)
-          m[i] = friction * (F_[i] - tail - points_[i] * mean) - elastic * (V_[i] - start_[i]);
-      }
-
-    private:
-      const ShapedWave::Settings &wave_;
-      const std::vector<double> points_;
-      std::vector<double> start_;     ///< V(s)
-      std::vector<double> x_, V_, F_; ///< at one time: x = s + ct, V(x) and its integral
-      std::size_t panel_ = 0;
-    };
-
-    /// m_t = chi [ gamma c ( V(s+ct) - V(ct) - (s/L) ( V(L+ct) - V(ct) ) ) - k V'(s+ct) ]
-    class RateAtPoints : public ActiveStressAtPoints
-    {
-    public:
-      RateAtPoints(const ShapedWave::Settings &wave, const std::vector<double> &points)
-        : wave_(wave)
-        , points_(points)
-      {
-      }
-
-      void
-      values(const double t, const std::span<double> rate) override
-      {
-        const double ct = wave_.speed * t, L = wave_.body.length;
-        const double friction = wave_.chi * wave_.body.friction_coefficient * wave_.speed;
-        const double elastic  = wave_.chi * wave_.body.elastic_modulus;
-        const double tail = wave_.shape.value(ct, panel_), head = wave_.shape.value(L + ct, panel_);
-        for (std::size_t i = 0; i < rate.size(); ++i)
-        {
-          const double x = points_[i] + ct;
-          rate[i]        = friction * (wave_.shape.value(x, panel_) - tail - points_[i] / L * (head - tail)) -
-                    elastic * wave_.shape.derivative(x, panel_);
-        }
-      }
-
-    private:
-      const ShapedWave::Settings &wave_;
-      const std::vector<double> points_;
-      std::size_t panel_ = 0;
-    };
-
     ShapeFunction
     shape_from_formula(const OptimalWaveParameters &parameters,
                        const double length,
@@ -157,8 +88,8 @@ namespace crawler
       return ShapeFunction(x, f);
     }
 
-    ShapedWave::Settings
-    settings_of(const OptimalWaveParameters &parameters, const Body &body, const double end_time)
+    ShapeFunction
+    shape_of(const OptimalWaveParameters &parameters, const Body &body, const double end_time)
     {
       if (parameters.choose_wave_by == "energy")
         throw InputError(
@@ -177,72 +108,92 @@ namespace crawler
                                      parameters.shape),
                          section + "Wave speed");
       const double from = std::min(0., way), to = body.length + std::max(0., way);
-      return {body,
-              parameters.perturbation_parameter,
-              c,
-              parameters.shape == "table" ? shape_from_table(parameters.shape_file, from, to)
-                                          : shape_from_formula(parameters, body.length, end_time, from, to)};
+      return parameters.shape == "table" ? shape_from_table(parameters.shape_file, from, to)
+                                         : shape_from_formula(parameters, body.length, end_time, from, to);
     }
   } // namespace
 
 
   ShapedWave::ShapedWave(const OptimalWaveParameters &parameters, const Body &body, const double end_time)
     : end_time_(end_time)
-    , shape_(parameters.shape)
-    , settings_(settings_of(parameters, body, end_time))
+    , shape_name_(parameters.shape)
+    , body_(body)
+    , chi_(parameters.perturbation_parameter)
+    , speed_(parameters.wave_speed)
+    , shape_(shape_of(parameters, body, end_time))
   {
+    for (const double x : shape_.kinks()) // at the start
+      if (x > 0. && x < body.length)
+        facts_.breaks_in_space.push_back(x);
   }
 
   std::unique_ptr<ActiveStressAtPoints>
-  ShapedWave::at(const std::vector<double> &points) const
+  ShapedWave::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    return std::make_unique<AtPoints>(settings_, points);
+    if (rate)
+      return rate_evaluator(points);
+    std::vector<double> start;                           // V(s)
+    std::vector<double> x(points.size()), V = x, F = x;  // at one time: x = s + ct, V(x) and its integral
+    std::size_t panel = 0;
+    for (const double s : points)
+      start.push_back(shape_.value(s, panel));
+    panel = 0;
+    return stress_at_points([=, this](const double t, const std::span<double> m) mutable {
+      const double ct = speed_ * t, L = body_.length;
+      const double friction = chi_ * body_.friction_coefficient, elastic = chi_ * body_.elastic_modulus / speed_;
+      const double tail = shape_.integral(ct, panel), head = shape_.integral(L + ct, panel);
+      const double mean = (head - tail) / L;
+      for (std::size_t i = 0; i < m.size(); ++i)
+        x[i] = points[i] + ct;
+      shape_.values_and_integrals(x, panel, V, F);
+      for (std::size_t i = 0; i < m.size(); ++i)
+        m[i] = friction * (F[i] - tail - points[i] * mean) - elastic * (V[i] - start[i]);
+    });
   }
 
+  /// m_t = chi [ gamma c ( V(s+ct) - V(ct) - (s/L) ( V(L+ct) - V(ct) ) ) - k V'(s+ct) ]
   std::unique_ptr<ActiveStressAtPoints>
-  ShapedWave::rate_at(const std::vector<double> &points) const
+  ShapedWave::rate_evaluator(const std::vector<double> &points) const
   {
-    return std::make_unique<RateAtPoints>(settings_, points);
+    return stress_at_points([this, points, panel = std::size_t(0)](const double t, const std::span<double> m) mutable {
+      const double ct = speed_ * t, L = body_.length;
+      const double friction = chi_ * body_.friction_coefficient * speed_, elastic = chi_ * body_.elastic_modulus;
+      const double tail = shape_.value(ct, panel), head = shape_.value(L + ct, panel);
+      for (std::size_t i = 0; i < m.size(); ++i)
+      {
+        const double x = points[i] + ct;
+        m[i]           = friction * (shape_.value(x, panel) - tail - points[i] / L * (head - tail)) -
+               elastic * shape_.derivative(x, panel);
+      }
+    });
   }
 
   std::optional<double>
-  ShapedWave::period() const
+  ShapedWave::search_period() const
   {
-    if (!period_)
-      period_ = find_period(*this, settings_.body.length, end_time_);
-    return *period_;
-  }
-
-  std::vector<double>
-  ShapedWave::breaks_in_space() const
-  {
-    std::vector<double> places;
-    for (const double x : settings_.shape.kinks())
-      if (x > 0. && x < settings_.body.length)
-        places.push_back(x);
-    return places;
+    return find_period(*this, body_.length, end_time_);
   }
 
   ShapedWave::LeadingOrder
   ShapedWave::leading_order() const
   {
-    const Body &body = settings_.body;
-    const double c = settings_.speed, L = body.length, chi = settings_.chi;
+    const Body &body = body_;
+    const double c = speed_, L = body.length, chi = chi_;
     const double strides = std::abs(c) * end_time_ / L;
     const GaussPanels in_s(0., L, 16),
       in_t(0., end_time_, static_cast<unsigned int>(std::ceil(16. * std::clamp(strides, 1., 1e6))));
     std::vector<double> start;
     std::size_t panel = 0;
     for (const double s : in_s.points())
-      start.push_back(settings_.shape.value(s, panel));
+      start.push_back(shape_.value(s, panel));
     LeadingOrder result{0., 0., 1., 1.};
     double e_e         = 0.; // int e'^2 ds
     const auto at_time = [&](const double t, double &e_v, double &v_v) {
-      const double mean = (settings_.shape.integral(L + c * t, panel) - settings_.shape.integral(c * t, panel)) / L;
+      const double mean = (shape_.integral(L + c * t, panel) - shape_.integral(c * t, panel)) / L;
       e_v = v_v = e_e = 0.;
       for (std::size_t i = 0; i < start.size(); ++i)
       {
-        const double V = settings_.shape.value(in_s.points()[i] + c * t, panel), e = V - start[i], v = V - mean;
+        const double V = shape_.value(in_s.points()[i] + c * t, panel), e = V - start[i], v = V - mean;
         e_v += in_s.weights()[i] * e * v;
         v_v += in_s.weights()[i] * v * v;
         e_e += in_s.weights()[i] * e * e;
@@ -265,12 +216,12 @@ namespace crawler
   void
   ShapedWave::report(std::ostream &out) const
   {
-    const Body &body = settings_.body;
+    const Body &body = body_;
     out << fmt::format("Optimal wave: speed c = {:.10g}, multiplier alpha = {:.10g}, shape by {}",
-                       settings_.speed,
-                       body.friction_exponent() / (body.length * body.friction_coefficient * settings_.speed),
-                       shape_);
-    if (std::abs(settings_.speed) * end_time_ <= most_reported * body.length)
+                       speed_,
+                       body.friction_exponent() / (body.length * body.friction_coefficient * speed_),
+                       shape_name_);
+    if (std::abs(speed_) * end_time_ <= most_reported * body.length)
     {
       const LeadingOrder order = leading_order();
       out << fmt::format(", leading-order displacement {:.8g}, energy {:.8g}, stretch {:.4g} to {:.4g}{}",
@@ -281,13 +232,5 @@ namespace crawler
                          order.min_stretch > 0. ? "" : " (NOT admissible: the body would invert)");
     }
     out << '\n';
-  }
-
-  std::unique_ptr<ActiveStress>
-  create_optimal_wave(const OptimalWaveParameters &parameters, const Body &body, const double end_time)
-  {
-    if (parameters.shape == "Fourier")
-      return std::make_unique<OptimalWave>(parameters, body, end_time);
-    return std::make_unique<ShapedWave>(parameters, body, end_time);
   }
 } // namespace crawler

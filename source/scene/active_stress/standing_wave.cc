@@ -11,42 +11,6 @@ namespace crawler
   {
     const std::string section = "Active stress/Standing wave/";
     constexpr double pi       = std::numbers::pi;
-
-    class AtPoints : public ActiveStressAtPoints
-    {
-    public:
-      AtPoints(const StandingWave::Settings &wave, const std::vector<double> &points, const bool rate)
-        : wave_(wave)
-        , rate_(rate)
-      {
-        for (const double s : points)
-        {
-          window_.push_back(wave.envelope.window(s));
-          cosine_.push_back(window_.back() * std::cos(wave.wave_number * s + wave.start_in_space));
-        }
-      }
-
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        const double turns = wave_.frequency * t, x = turns - std::floor(turns) + wave_.start;
-        const double ramp = wave_.envelope.ramp(t), p = wave_.profile.value(x);
-        double offset = ramp * wave_.offset, factor = ramp * wave_.amplitude * p;
-        if (rate_)
-        {
-          const double grow = wave_.envelope.ramp_rate(t);
-          offset            = grow * wave_.offset;
-          factor            = wave_.amplitude * (grow * p + ramp * wave_.frequency * wave_.profile.rate(x));
-        }
-        for (std::size_t i = 0; i < m.size(); ++i)
-          m[i] = offset * window_[i] + factor * cosine_[i];
-      }
-
-    private:
-      const StandingWave::Settings wave_;
-      const bool rate_;
-      std::vector<double> window_, cosine_;
-    };
   } // namespace
 
 
@@ -79,56 +43,44 @@ namespace crawler
   }
 
   StandingWave::StandingWave(const StandingWaveParameters &parameters, const double length, const double end_time)
-    : end_time_(end_time)
-    , settings_{parameters.amplitude,
-                parameters.offset,
-                2. * pi * parameters.wave_number / length,
-                parameters.phase_in_space,
-                parameters.frequency,
-                parameters.phase / (2. * pi),
-                WaveProfile(parameters.profile, section),
-                Envelope(parameters.envelope, section, length)}
+    : amplitude_(parameters.amplitude)
+    , offset_(parameters.offset)
+    , wave_number_(2. * pi * parameters.wave_number / length)
+    , start_in_space_(parameters.phase_in_space)
+    , frequency_(parameters.frequency)
+    , start_(parameters.phase / (2. * pi))
+    , profile_(parameters.profile, section)
+    , envelope_(parameters.envelope, section, length)
   {
-    require_countable_periods(settings_.frequency, end_time, settings_.profile.jumps(), section + "Frequency");
+    require_countable_periods(frequency_, end_time, profile_.jumps(), section + "Frequency");
+    if (amplitude_ != 0. && frequency_ != 0.)
+      set_stride(1. / frequency_, envelope_.has_ramp());
+    facts_.has_rate        = !(profile_.jumps() && frequency_ > 0.);
+    facts_.breaks_in_space = envelope_.breaks_in_space();
+    facts_.breaks_in_time  = times_of_jumps(profile_, frequency_, start_, end_time);
   }
 
   std::unique_ptr<ActiveStressAtPoints>
-  StandingWave::at(const std::vector<double> &points) const
+  StandingWave::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    return std::make_unique<AtPoints>(settings_, points, false);
-  }
-
-  std::unique_ptr<ActiveStressAtPoints>
-  StandingWave::rate_at(const std::vector<double> &points) const
-  {
-    if (settings_.profile.jumps() && settings_.frequency > 0.)
-      return nullptr;
-    return std::make_unique<AtPoints>(settings_, points, true);
-  }
-
-  std::optional<double>
-  StandingWave::stride() const
-  {
-    if (settings_.amplitude == 0. || settings_.frequency == 0.)
-      return std::nullopt;
-    return 1. / settings_.frequency;
-  }
-
-  std::optional<double>
-  StandingWave::period() const
-  {
-    return settings_.envelope.has_ramp() ? std::nullopt : stride();
-  }
-
-  std::vector<double>
-  StandingWave::breaks_in_space() const
-  {
-    return settings_.envelope.breaks_in_space();
-  }
-
-  std::vector<double>
-  StandingWave::breaks_in_time() const
-  {
-    return times_of_jumps(settings_.profile, settings_.frequency, settings_.start, end_time_);
+    std::vector<double> window, cosine;
+    for (const double s : points)
+    {
+      window.push_back(envelope_.window(s));
+      cosine.push_back(window.back() * std::cos(wave_number_ * s + start_in_space_));
+    }
+    return stress_at_points([this, rate, window, cosine](const double t, const std::span<double> m) {
+      const double turns = frequency_ * t, x = turns - std::floor(turns) + start_;
+      const double ramp = envelope_.ramp(t), p = profile_.value(x);
+      double offset = ramp * offset_, factor = ramp * amplitude_ * p;
+      if (rate)
+      {
+        const double grow = envelope_.ramp_rate(t);
+        offset            = grow * offset_;
+        factor            = amplitude_ * (grow * p + ramp * frequency_ * profile_.rate(x));
+      }
+      for (std::size_t i = 0; i < m.size(); ++i)
+        m[i] = offset * window[i] + factor * cosine[i];
+    });
   }
 } // namespace crawler

@@ -28,95 +28,18 @@ namespace crawler
     };
     const std::vector<std::string> names = {"s", "t", "w", "w_t", "w_near", "w_delayed"};
 
-    class FormulaFeedback : public FeedbackAtPoints
-    {
-    public:
-      FormulaFeedback(const std::shared_ptr<const Formula> &formula, const std::vector<double> &points)
-        : points_(points)
-        , gradient_(formula)
-      {
-      }
-
-      void
-      values(const double time, const StretchSeen &seen, const FeedbackStress &m) override
-      {
-        const std::span<const double> arguments[] = {
-          points_, {&time, 1}, seen.stretch, seen.rate, seen.near, seen.delayed};
-        const std::span<double> derivatives[] = {{}, {}, m.m_w, m.m_rate, m.m_near};
-        gradient_.evaluate(arguments, m.m, derivatives);
-      }
-
-    private:
-      const std::vector<double> points_;
-      FormulaGradient gradient_;
-    };
-
-    /// A body that is neither stretched nor moved.
-    class AtRest : public ActiveStressAtPoints
-    {
-    public:
-      AtRest(std::unique_ptr<FeedbackAtPoints> feedback, const std::size_t n)
-        : feedback_(std::move(feedback))
-        , one_(n, 1.)
-        , zero_(n, 0.)
-      {
-      }
-
-      void
-      values(const double time, const std::span<double> m) override
-      {
-        feedback_->values(time, {one_, zero_, one_, one_}, {m, {}, {}, {}});
-      }
-
-    private:
-      const std::unique_ptr<FeedbackAtPoints> feedback_;
-      const std::vector<double> one_, zero_;
-    };
-  } // namespace
-
-  class StrainFeedback::Feedback : public StretchFeedback
-  {
-  public:
-    Feedback(std::shared_ptr<const Formula> formula, const double distance, const double delay, const double sensor)
-      : formula_(std::move(formula))
-      , distance_(distance)
-      , delay_(delay)
-      , sensor_length_(sensor)
-    {
-    }
-
     std::unique_ptr<FeedbackAtPoints>
-    at(const std::vector<double> &points) const override
+    formula_feedback(const std::shared_ptr<const Formula> &formula, const std::vector<double> &points)
     {
-      return std::make_unique<FormulaFeedback>(formula_, points);
+      return feedback_at_points([points, gradient = FormulaGradient(formula)](
+                                  const double time, const StretchSeen &seen, const FeedbackStress &m) mutable {
+        const std::span<const double> arguments[] = {
+          points, {&time, 1}, seen.stretch, seen.rate, seen.near, seen.delayed};
+        const std::span<double> derivatives[] = {{}, {}, m.m_w, m.m_rate, m.m_near};
+        gradient.evaluate(arguments, m.m, derivatives);
+      });
     }
-    bool
-    uses_rate() const override
-    {
-      return formula_->uses(w_t);
-    }
-    double
-    distance() const override
-    {
-      return formula_->uses(w_near) ? distance_ : 0.;
-    }
-    double
-    delay() const override
-    {
-      return formula_->uses(w_delayed) ? delay_ : 0.;
-    }
-    double
-    sensor_length() const override
-    {
-      return formula_->uses(w_near) ? sensor_length_ : 0.;
-    }
-
-  private:
-    const std::shared_ptr<const Formula> formula_;
-    const double distance_, delay_, sensor_length_;
-
-    friend class StrainFeedback;
-  };
+  } // namespace
 
   void
   StrainFeedbackParameters::add_parameters(Declarations &declarations)
@@ -152,13 +75,10 @@ namespace crawler
   }
 
   StrainFeedback::StrainFeedback(const StrainFeedbackParameters &parameters, const double length, const double end_time)
-    : length_(length)
-    , end_time_(end_time)
   {
-    auto formula = read_formula(
-      {"active stress", parameters.active_stress, parameters.constants, formula_entry, section + "Constants", names},
-      length,
-      end_time);
+    const FormulaInput input = {
+      "active stress", parameters.active_stress, parameters.constants, formula_entry, section + "Constants", names};
+    const auto formula = read_formula(input, length, end_time);
     const double sensor = parameters.sensor_length;
     if (formula->uses(w_near) && !(sensor == 0. || (sensor >= 1e-6 * length && sensor <= length)))
       throw InputError(
@@ -181,74 +101,53 @@ namespace crawler
                     parameters.delay,
                     end_time),
         section + "Delay");
-    feedback_ = std::make_shared<const Feedback>(std::move(formula), parameters.distance, parameters.delay, sensor);
+    const KnownFeedback::Facts facts = {.uses_rate     = formula->uses(w_t),
+                                        .distance      = formula->uses(w_near) ? parameters.distance : 0.,
+                                        .delay         = formula->uses(w_delayed) ? parameters.delay : 0.,
+                                        .sensor_length = formula->uses(w_near) ? sensor : 0.};
+    feedback_ = std::make_unique<KnownFeedback>(
+      facts, [formula](const std::vector<double> &points) { return formula_feedback(formula, points); });
+    facts_.has_rate        = false;
+    facts_.breaks_in_space = kinks_in_space(length);
+    // The past begins at t = 0: what follows from it has kinks at the first multiples of the delay.
+    constexpr int most = 6; // each is smoother than the one before
+    for (int i = 1; i <= most && facts.delay > 0. && i * facts.delay < end_time; ++i)
+      facts_.breaks_in_time.push_back(i * facts.delay);
 
-    constexpr unsigned int n = 16;
-    std::vector<double> points(n + 1), m(n + 1);
-    for (unsigned int i = 0; i <= n; ++i)
-      points[i] = length * i / n;
-    const auto at_rest = at(points);
-    for (unsigned int j = 0; j <= n; ++j)
-    {
-      at_rest->values(end_time * j / n, m);
-      for (unsigned int i = 0; i <= n; ++i)
-        if (!std::isfinite(m[i]))
-          throw InputError(
-            fmt::format("the formula \"{}\" gives {} for a body at rest with the stretch 1 at s = {}, t = "
-                        "{}; a finite number is expected",
-                        parameters.active_stress,
-                        m[i],
-                        points[i],
-                        end_time * j / n),
-            formula_entry);
-    }
+    require_finite_values(*this, input, " for a body at rest with the stretch 1", length, end_time);
   }
 
-  StrainFeedback::~StrainFeedback() = default;
-
   std::unique_ptr<ActiveStressAtPoints>
-  StrainFeedback::at(const std::vector<double> &points) const
+  StrainFeedback::evaluator(const std::vector<double> &points, bool) const
   {
-    return std::make_unique<AtRest>(feedback_->at(points), points.size());
+    const std::vector<double> one(points.size(), 1.), zero(points.size(), 0.);
+    return stress_at_points(
+      [at = feedback_->at(points), one, zero](const double time, const std::span<double> m) {
+        at->values(time, {one, zero, one, one}, {m, {}, {}, {}});
+      });
   }
 
   std::vector<double>
-  StrainFeedback::breaks_in_space() const
+  StrainFeedback::kinks_in_space(const double length) const
   {
     constexpr int most    = 20; // more are not worth a cell each
     const double distance = feedback_->distance(), sensor = feedback_->sensor_length();
     std::vector<double> places;
-    if (sensor * most >= length_)
+    if (sensor * most >= length)
     {
       // The near stretch has kinks where the sensor comes to an end of the body, and smoother ones where an end of the
       // sensor comes to those.
-      for (const double kink : {0.5 * sensor - distance, length_ - 0.5 * sensor - distance})
-        if (kink > 0. && kink < length_)
+      for (const double kink : {0.5 * sensor - distance, length - 0.5 * sensor - distance})
+        if (kink > 0. && kink < length)
           for (const double place : {kink, kink - distance - 0.5 * sensor, kink - distance + 0.5 * sensor})
-            if (place > 0. && place < length_)
+            if (place > 0. && place < length)
               places.push_back(place);
       return places;
     }
-    if (distance == 0. || std::abs(distance) * most < length_)
+    if (distance == 0. || std::abs(distance) * most < length)
       return places;
-    for (int i = 1; std::abs(i * distance) < length_; ++i)
-      places.push_back(distance > 0. ? length_ - i * distance : -i * distance);
+    for (int i = 1; std::abs(i * distance) < length; ++i)
+      places.push_back(distance > 0. ? length - i * distance : -i * distance);
     return places;
-  }
-
-  std::vector<double>
-  StrainFeedback::breaks_in_time() const
-  {
-    constexpr int most = 6; // each is smoother than the one before
-    std::vector<double> times;
-    for (int i = 1; i <= most && feedback_->delay() > 0. && i * feedback_->delay() < end_time_; ++i)
-      times.push_back(i * feedback_->delay());
-    return times;
-  }
-
-  const StretchFeedback *
-  StrainFeedback::feedback() const
-  {
-    return feedback_.get();
   }
 } // namespace crawler

@@ -1,33 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/grid_interpolation.h>
 #include <crawler/scene/active_stress/strain_table.h>
 
 namespace crawler
 {
   namespace
   {
-    class TableAtPoints : public StrainAtPoints
-    {
-    public:
-      explicit TableAtPoints(std::unique_ptr<GridInterpolation::AtPoints> table)
-        : table_(std::move(table))
-      {
-      }
-
-      void
-      strain(const double t, const std::span<double> e) override
-      {
-        table_->values(t, e);
-      }
-      void
-      rate(const double t, const std::span<double> e_t) override
-      {
-        table_->rates(t, e_t);
-      }
-
-    private:
-      const std::unique_ptr<GridInterpolation::AtPoints> table_;
-    };
-
     GridTable
     read(const std::string &name, const double length, const double end_time, const std::string &entry)
     {
@@ -44,13 +22,14 @@ namespace crawler
                            const double length,
                            const double end_time,
                            const std::string &entry)
-    : table_(read(name, length, end_time, entry), GridInterpolation::Method::cubic, GridInterpolation::Outside::go_on)
+    : StrainByEvaluators([table = std::make_shared<const GridInterpolation>(read(name, length, end_time, entry),
+                                                                            GridInterpolation::Method::cubic,
+                                                                            GridInterpolation::Outside::go_on)](
+                           const std::vector<double> &points) -> Evaluators {
+      const std::shared_ptr<GridInterpolation::AtPoints> at = table->at(points);
+      return {stress_at_points([at](const double t, const std::span<double> e) { at->values(t, e); }),
+              stress_at_points([at](const double t, const std::span<double> e_t) { at->rates(t, e_t); })};
+    })
   {
-  }
-
-  std::unique_ptr<StrainAtPoints>
-  StrainTable::at(const std::vector<double> &points) const
-  {
-    return std::make_unique<TableAtPoints>(table_.at(points));
   }
 } // namespace crawler

@@ -277,78 +277,44 @@ namespace crawler
     };
 
     const std::string section = "Active stress/Sum/";
-  } // namespace
 
-
-  class Sum::Feedback : public StretchFeedback
-  {
-  public:
-    explicit Feedback(const std::vector<SumTerm> &terms)
-      : terms_(terms)
+    /// What the feedbacks of all terms use; one distance, delay and sensor for all.
+    KnownFeedback::Facts
+    common_facts(const std::vector<SumTerm> &terms)
     {
+      KnownFeedback::Facts common;
+      bool sees_near = false;
       for (std::size_t i = 0; i < terms.size(); ++i)
-        if (const StretchFeedback *feedback = terms[i].stress->feedback())
+      {
+        const StretchFeedback *const feedback = terms[i].stress->feedback();
+        if (feedback == nullptr)
+          continue;
+        const auto take = [i](const double value, double &known, const bool is_known, const char *name) {
+          if (is_known && value != known)
+            throw InputError(
+              fmt::format("term {} uses the stretch with the {} {:g}, but another term with {:g}; one {} for all "
+                          "terms is expected",
+                          i + 1,
+                          name,
+                          value,
+                          known,
+                          name),
+              fmt::format("{}Term {}/Generator", section, i + 1));
+          known = value;
+        };
+        common.uses_rate = common.uses_rate || feedback->uses_rate();
+        if (feedback->sees_near())
         {
-          uses_rate_ = uses_rate_ || feedback->uses_rate();
-          if (feedback->sees_near())
-          {
-            take(feedback->distance(), distance_, sees_near_, "distance", i);
-            take(feedback->sensor_length(), sensor_length_, sees_near_, "sensor length", i);
-            sees_near_ = true;
-          }
-          if (feedback->delay() != 0.)
-            take(feedback->delay(), delay_, delay_ != 0., "delay", i);
+          take(feedback->distance(), common.distance, sees_near, "distance");
+          take(feedback->sensor_length(), common.sensor_length, sees_near, "sensor length");
+          sees_near = true;
         }
+        if (feedback->delay() != 0.)
+          take(feedback->delay(), common.delay, common.delay != 0., "delay");
+      }
+      return common;
     }
-
-    std::unique_ptr<FeedbackAtPoints>
-    at(const std::vector<double> &points) const override
-    {
-      return std::make_unique<SumFeedbackAtPoints>(terms_, points);
-    }
-    bool
-    uses_rate() const override
-    {
-      return uses_rate_;
-    }
-    double
-    distance() const override
-    {
-      return distance_;
-    }
-    double
-    delay() const override
-    {
-      return delay_;
-    }
-    double
-    sensor_length() const override
-    {
-      return sensor_length_;
-    }
-
-  private:
-    static void
-    take(const double value, double &common, const bool is_known, const char *name, const std::size_t i)
-    {
-      if (is_known && value != common)
-        throw InputError(
-          fmt::format("term {} uses the stretch with the {} {:g}, but another term with {:g}; one {} for all "
-                      "terms is expected",
-                      i + 1,
-                      name,
-                      value,
-                      common,
-                      name),
-          fmt::format("{}Term {}/Generator", section, i + 1));
-      common = value;
-    }
-
-    const std::vector<SumTerm> &terms_;
-    bool uses_rate_ = false, sees_near_ = false;
-    double distance_ = 0., delay_ = 0., sensor_length_ = 0.;
-  };
-
+  } // namespace
 
   void
   SumTermParameters::add_parameters(Declarations &declarations)
@@ -387,15 +353,25 @@ namespace crawler
       throw InputError("all terms of the sum multiply; at least one that adds is expected", section + "Term 1/Combine");
     if (std::any_of(
           terms_.begin(), terms_.end(), [](const SumTerm &term) { return term.stress->feedback() != nullptr; }))
-      feedback_ = std::make_unique<Feedback>(terms_);
+      feedback_ = std::make_unique<KnownFeedback>(common_facts(terms_), [this](const std::vector<double> &points) {
+        return std::make_unique<SumFeedbackAtPoints>(terms_, points);
+      });
+    const auto add = [](std::vector<double> &all, const std::vector<double> &list) {
+      all.insert(all.end(), list.begin(), list.end());
+    };
+    for (const SumTerm &term : terms_)
+    {
+      add(facts_.breaks_in_space, term.stress->breaks_in_space());
+      add(facts_.breaks_in_space, term.in_s.breaks());
+      add(facts_.breaks_in_time, term.stress->breaks_in_time());
+      add(facts_.breaks_in_time, term.in_t.ends());
+    }
   }
 
-  Sum::~Sum() = default;
-
   std::unique_ptr<ActiveStressAtPoints>
-  Sum::at(const std::vector<double> &points) const
+  Sum::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    return std::make_unique<SumAtPoints>(terms_, points, /*wants_rate=*/false);
+    return std::make_unique<SumAtPoints>(terms_, points, /*wants_rate=*/rate);
   }
 
   std::unique_ptr<ActiveStressAtPoints>
@@ -404,31 +380,26 @@ namespace crawler
     for (const SumTerm &term : terms_)
       if (!term.stress->rate_at({0.}))
         return nullptr;
-    return std::make_unique<SumAtPoints>(terms_, points, /*wants_rate=*/true);
+    return evaluator(points, /*rate=*/true);
   }
 
   std::optional<double>
-  Sum::period() const
+  Sum::search_period() const
   {
-    if (period_)
-      return *period_;
-    period_.emplace();
     std::vector<double> periods;
     for (const SumTerm &term : terms_)
     {
       if (!term.in_t.is_whole())
-        return *period_;
+        return std::nullopt;
       if (const auto period = term.stress->period())
         periods.push_back(*period);
     }
     if (periods.size() < terms_.size())
-      *period_ = find_period(*this, length_, end_time_);
-    else if (const auto common = common_period(periods))
-      *period_ = shortest_period(*this, length_, *common);
-    return *period_;
+      return find_period(*this, length_, end_time_);
+    const auto common = common_period(periods);
+    return common ? std::optional(shortest_period(*this, length_, *common)) : std::nullopt;
   }
 
-  /// Windows in t may open and close on the way: whoever uses it looks whether m repeats at the end.
   std::optional<double>
   Sum::stride() const
   {
@@ -499,32 +470,6 @@ namespace crawler
     const double rate = (sum.rate > 0. && product.value > 0. ? sum.rate * product.value : 0.) +
                         (sum.value > 0. && product.rate > 0. ? sum.value * product.rate : 0.);
     return Bounds{sum.value * product.value, rate};
-  }
-
-  std::vector<double>
-  Sum::breaks_in_space() const
-  {
-    std::vector<double> all;
-    for (const SumTerm &term : terms_)
-      for (const auto &list : {term.stress->breaks_in_space(), term.in_s.breaks()})
-        all.insert(all.end(), list.begin(), list.end());
-    return all;
-  }
-
-  std::vector<double>
-  Sum::breaks_in_time() const
-  {
-    std::vector<double> all;
-    for (const SumTerm &term : terms_)
-      for (const auto &list : {term.stress->breaks_in_time(), term.in_t.ends()})
-        all.insert(all.end(), list.begin(), list.end());
-    return all;
-  }
-
-  const StretchFeedback *
-  Sum::feedback() const
-  {
-    return feedback_.get();
   }
 
   const StressFailures *

@@ -15,42 +15,6 @@ namespace crawler
   {
     const std::string section = "Active stress/Table/", file_entry = section + "File";
 
-    class ValuesAtPoints : public ActiveStressAtPoints
-    {
-    public:
-      explicit ValuesAtPoints(std::unique_ptr<GridInterpolation::AtPoints> table)
-        : table_(std::move(table))
-      {
-      }
-
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        table_->values(t, m);
-      }
-
-    private:
-      const std::unique_ptr<GridInterpolation::AtPoints> table_;
-    };
-
-    class RatesAtPoints : public ActiveStressAtPoints
-    {
-    public:
-      explicit RatesAtPoints(std::unique_ptr<GridInterpolation::AtPoints> table)
-        : table_(std::move(table))
-      {
-      }
-
-      void
-      values(const double t, const std::span<double> m_t) override
-      {
-        table_->rates(t, m_t);
-      }
-
-    private:
-      const std::unique_ptr<GridInterpolation::AtPoints> table_;
-    };
-
     double
     largest(const std::vector<double> &values)
     {
@@ -184,7 +148,6 @@ namespace crawler
   ActiveStressTable::ActiveStressTable(const TableParameters &parameters, const double length, const double end_time)
     : parameters_(parameters)
     , length_(length)
-    , end_time_(end_time)
     , table_(read(parameters, length, end_time),
              parameters.interpolation == "cubic" ? GridInterpolation::Method::cubic : GridInterpolation::Method::linear,
              outside_in_t(parameters))
@@ -199,18 +162,16 @@ namespace crawler
         change = std::max(change, std::abs(grid.values[i + n_s] - grid.values[i]));
       changes_.push_back(change / (grid.t[j + 1] - grid.t[j]));
     }
+    facts_.breaks_in_space = kinks_in_space();
+    facts_.breaks_in_time  = kinks_in_time(end_time);
   }
 
   std::unique_ptr<ActiveStressAtPoints>
-  ActiveStressTable::at(const std::vector<double> &points) const
+  ActiveStressTable::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    return std::make_unique<ValuesAtPoints>(table_.at(points));
-  }
-
-  std::unique_ptr<ActiveStressAtPoints>
-  ActiveStressTable::rate_at(const std::vector<double> &points) const
-  {
-    return std::make_unique<RatesAtPoints>(table_.at(points));
+    return stress_at_points([table = table_.at(points), rate](const double t, const std::span<double> m) {
+      rate ? table->rates(t, m) : table->values(t, m);
+    });
   }
 
   /// Of the samples, and a spline may be steeper than the steepest of its neighbours.
@@ -245,7 +206,7 @@ namespace crawler
   }
 
   std::optional<double>
-  ActiveStressTable::period() const
+  ActiveStressTable::search_period() const
   {
     if (parameters_.outside != "periodic")
       return std::nullopt;
@@ -270,7 +231,7 @@ namespace crawler
   }
 
   std::vector<double>
-  ActiveStressTable::breaks_in_space() const
+  ActiveStressTable::kinks_in_space() const
   {
     constexpr std::size_t most = 256;
     const auto &s              = table_.grid().s;
@@ -281,25 +242,25 @@ namespace crawler
   }
 
   std::vector<double>
-  ActiveStressTable::breaks_in_time() const
+  ActiveStressTable::kinks_in_time(const double end_time) const
   {
     constexpr std::size_t most = 4096;
     const auto &t              = table_.grid().t;
     const bool linear = parameters_.interpolation == "linear", periodic = parameters_.outside == "periodic";
     if (linear && !periodic)
-      if (const auto knots = inside(t, end_time_); knots.size() <= most)
+      if (const auto knots = inside(t, end_time); knots.size() <= most)
         return knots;
     if (linear && periodic)
     {
       const double P = t.back() - t.front();
       std::vector<double> knots;
-      for (double n = -std::ceil(t.back() / P); t.front() + n * P < end_time_ && knots.size() <= 2 * most; ++n)
+      for (double n = -std::ceil(t.back() / P); t.front() + n * P < end_time && knots.size() <= 2 * most; ++n)
         for (std::size_t j = 0; j + 1 < t.size(); ++j)
           knots.push_back(t[j] + n * P);
-      if (knots = inside(knots, end_time_); knots.size() <= most)
+      if (knots = inside(knots, end_time); knots.size() <= most)
         return knots;
     }
-    return periodic ? std::vector<double>() : inside({t.front(), t.back()}, end_time_);
+    return periodic ? std::vector<double>() : inside({t.front(), t.back()}, end_time);
   }
 
   void

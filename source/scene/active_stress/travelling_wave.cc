@@ -14,113 +14,17 @@ namespace crawler
     const std::string section = "Active stress/Travelling wave/";
     constexpr double pi       = std::numbers::pi;
 
-    /// The sine with its parts of s and t apart: p = sin x cos theta + cos x sin theta, theta = 2 pi phase_rate t.
-    class SineAtPoints : public ActiveStressAtPoints
+    /// f [1/time]
+    double
+    frequency_of(const TravellingWaveParameters &parameters, const double length)
     {
-    public:
-      SineAtPoints(const TravellingWave::Settings &wave, const std::vector<double> &points, const bool rate)
-        : wave_(wave)
-        , rate_(rate)
-      {
-        for (const double s : points)
-        {
-          const double x = 2. * pi * (wave.wave_number * s + wave.start), window = wave.envelope.window(s);
-          window_.push_back(window);
-          sine_.push_back(window * std::sin(x));
-          cosine_.push_back(window * std::cos(x));
-        }
-      }
-
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        const double turns = wave_.phase_rate * t, theta = 2. * pi * (turns - std::floor(turns));
-        const double ramp = wave_.envelope.ramp(t), st = std::sin(theta), ct = std::cos(theta);
-        double offset = ramp * wave_.offset, of_sine = ramp * wave_.amplitude * ct,
-               of_cosine = ramp * wave_.amplitude * st;
-        if (rate_)
-        {
-          const double turn = ramp * wave_.amplitude * 2. * pi * wave_.phase_rate, grow = wave_.envelope.ramp_rate(t);
-          offset    = grow * wave_.offset;
-          of_sine   = grow * wave_.amplitude * ct - turn * st;
-          of_cosine = grow * wave_.amplitude * st + turn * ct;
-        }
-        for (std::size_t i = 0; i < m.size(); ++i)
-          m[i] = offset * window_[i] + of_sine * sine_[i] + of_cosine * cosine_[i];
-      }
-
-    private:
-      const TravellingWave::Settings wave_;
-      const bool rate_;
-      std::vector<double> window_, sine_, cosine_;
-    };
-
-    class SquareAtPoints : public ActiveStressAtPoints
-    {
-    public:
-      SquareAtPoints(const TravellingWave::Settings &wave, const std::vector<double> &points, const bool rate)
-        : wave_(wave)
-        , rate_(rate)
-      {
-        for (const double s : points)
-        {
-          window_.push_back(wave.envelope.window(s));
-          x_.push_back(wave.wave_number * s + wave.start);
-        }
-      }
-
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        const double turns = wave_.phase_rate * t, x = turns - std::floor(turns), ramp = wave_.envelope.ramp(t);
-        if (!rate_)
-        {
-          for (std::size_t i = 0; i < m.size(); ++i)
-            m[i] = window_[i] * ramp * (wave_.offset + wave_.amplitude * wave_.profile.value(x_[i] + x));
-          return;
-        }
-        const double grow = wave_.envelope.ramp_rate(t), turn = ramp * wave_.amplitude * wave_.phase_rate;
-        for (std::size_t i = 0; i < m.size(); ++i)
-        {
-          const double value = grow == 0. ? 0. : wave_.offset + wave_.amplitude * wave_.profile.value(x_[i] + x);
-          m[i]               = window_[i] * (grow * value + turn * wave_.profile.rate(x_[i] + x));
-        }
-      }
-
-    private:
-      const TravellingWave::Settings wave_;
-      const bool rate_;
-      std::vector<double> window_, x_;
-    };
-
-    std::unique_ptr<ActiveStressAtPoints>
-    make(const TravellingWave::Settings &wave, const std::vector<double> &points, const bool rate)
-    {
-      if (wave.profile.is_sine())
-        return std::make_unique<SineAtPoints>(wave, points, rate);
-      return std::make_unique<SquareAtPoints>(wave, points, rate);
-    }
-
-    TravellingWave::Settings
-    settings_of(const TravellingWaveParameters &parameters, const double length)
-    {
-      const double n = parameters.wave_number;
-      double f       = parameters.frequency;
-      if (parameters.given_by == "wave speed")
-      {
-        if (n == 0.)
-          throw InputError("a wave of wave number 0 has no speed; a wave number that is not 0, or Given by = "
-                           "frequency, is expected",
-                           section + "Given by");
-        f = parameters.wave_speed * n / length;
-      }
-      return {parameters.amplitude,
-              parameters.offset,
-              n / length,
-              -sign_of(parameters.direction) * f,
-              parameters.phase / (2. * pi),
-              WaveProfile(parameters.profile, section),
-              Envelope(parameters.envelope, section, length)};
+      if (parameters.given_by == "frequency")
+        return parameters.frequency;
+      if (parameters.wave_number == 0.)
+        throw InputError("a wave of wave number 0 has no speed; a wave number that is not 0, or Given by = "
+                         "frequency, is expected",
+                         section + "Given by");
+      return parameters.wave_speed * parameters.wave_number / length;
     }
   } // namespace
 
@@ -159,83 +63,109 @@ namespace crawler
   }
 
   TravellingWave::TravellingWave(const TravellingWaveParameters &parameters, const double length, const double end_time)
-    : length_(length)
-    , end_time_(end_time)
-    , settings_(settings_of(parameters, length))
+    : amplitude_(parameters.amplitude)
+    , offset_(parameters.offset)
+    , wave_number_(parameters.wave_number / length)
+    , phase_rate_(-sign_of(parameters.direction) * frequency_of(parameters, length))
+    , start_(parameters.phase / (2. * pi))
+    , profile_(parameters.profile, section)
+    , envelope_(parameters.envelope, section, length)
   {
-    require_countable_periods(std::abs(settings_.phase_rate),
+    require_countable_periods(std::abs(phase_rate_),
                               end_time,
-                              settings_.profile.jumps() && settings_.wave_number == 0.,
+                              profile_.jumps() && wave_number_ == 0.,
                               section + (parameters.given_by == "frequency" ? "Frequency" : "Wave speed"));
+    if (amplitude_ != 0. && phase_rate_ != 0.)
+      set_stride(1. / std::abs(phase_rate_), envelope_.has_ramp());
+    facts_.has_rate        = !(profile_.jumps() && phase_rate_ != 0.);
+    facts_.breaks_in_space = places_of_jumps(length);
+    facts_.breaks_in_time  = times_of_own_jumps(end_time);
+  }
+
+  /// Of the sine the parts of s and t are apart: p = sin x cos theta + cos x sin theta, theta = 2 pi phase_rate t.
+  std::unique_ptr<ActiveStressAtPoints>
+  TravellingWave::sine_at(const std::vector<double> &points, const bool rate) const
+  {
+    std::vector<double> windows, sine, cosine;
+    for (const double s : points)
+    {
+      const double x = 2. * pi * (wave_number_ * s + start_), window = envelope_.window(s);
+      windows.push_back(window);
+      sine.push_back(window * std::sin(x));
+      cosine.push_back(window * std::cos(x));
+    }
+    return stress_at_points([this, rate, windows, sine, cosine](const double t, const std::span<double> m) {
+      const double turns = phase_rate_ * t, theta = 2. * pi * (turns - std::floor(turns));
+      const double ramp = envelope_.ramp(t), st = std::sin(theta), ct = std::cos(theta);
+      double offset = ramp * offset_, of_sine = ramp * amplitude_ * ct, of_cosine = ramp * amplitude_ * st;
+      if (rate)
+      {
+        const double turn = ramp * amplitude_ * 2. * pi * phase_rate_, grow = envelope_.ramp_rate(t);
+        offset    = grow * offset_;
+        of_sine   = grow * amplitude_ * ct - turn * st;
+        of_cosine = grow * amplitude_ * st + turn * ct;
+      }
+      for (std::size_t i = 0; i < m.size(); ++i)
+        m[i] = offset * windows[i] + of_sine * sine[i] + of_cosine * cosine[i];
+    });
   }
 
   std::unique_ptr<ActiveStressAtPoints>
-  TravellingWave::at(const std::vector<double> &points) const
+  TravellingWave::evaluator(const std::vector<double> &points, const bool rate) const
   {
-    return make(settings_, points, false);
-  }
-
-  std::unique_ptr<ActiveStressAtPoints>
-  TravellingWave::rate_at(const std::vector<double> &points) const
-  {
-    if (settings_.profile.jumps() && settings_.phase_rate != 0.)
-      return nullptr;
-    return make(settings_, points, true);
-  }
-
-  std::optional<double>
-  TravellingWave::stride() const
-  {
-    if (settings_.amplitude == 0. || settings_.phase_rate == 0.)
-      return std::nullopt;
-    return 1. / std::abs(settings_.phase_rate);
-  }
-
-  std::optional<double>
-  TravellingWave::period() const
-  {
-    return settings_.envelope.has_ramp() ? std::nullopt : stride();
+    if (profile_.is_sine())
+      return sine_at(points, rate);
+    std::vector<double> window, x;
+    for (const double s : points)
+    {
+      window.push_back(envelope_.window(s));
+      x.push_back(wave_number_ * s + start_);
+    }
+    return stress_at_points([this, rate, window, x](const double t, const std::span<double> m) {
+      const double turns = phase_rate_ * t, phase = turns - std::floor(turns), ramp = envelope_.ramp(t);
+      const double grow = envelope_.ramp_rate(t), turn = ramp * amplitude_ * phase_rate_;
+      for (std::size_t i = 0; i < m.size(); ++i)
+        if (!rate)
+          m[i] = window[i] * ramp * (offset_ + amplitude_ * profile_.value(x[i] + phase));
+        else
+        {
+          const double value = grow == 0. ? 0. : offset_ + amplitude_ * profile_.value(x[i] + phase);
+          m[i]               = window[i] * (grow * value + turn * profile_.rate(x[i] + phase));
+        }
+    });
   }
 
   std::vector<double>
-  TravellingWave::breaks_in_space() const
+  TravellingWave::places_of_jumps(const double length) const
   {
-    std::vector<double> places = settings_.envelope.breaks_in_space();
-    if (settings_.phase_rate == 0. && settings_.wave_number > 0.)
-      for (const double x :
-           settings_.profile.breaks(settings_.start, settings_.start + settings_.wave_number * length_))
-      {
-        const double s = (x - settings_.start) / settings_.wave_number;
-        if (s > 0. && s < length_)
-          places.push_back(s);
-      }
+    std::vector<double> places = envelope_.breaks_in_space();
+    if (phase_rate_ == 0.)
+      for (const double s : times_of_jumps(profile_, wave_number_, start_, length))
+        places.push_back(s);
     return places;
   }
 
   std::vector<double>
-  TravellingWave::breaks_in_time() const
+  TravellingWave::times_of_own_jumps(const double end_time) const
   {
-    if (settings_.wave_number > 0.)
+    if (wave_number_ > 0.)
       return {};
+    if (phase_rate_ >= 0.)
+      return times_of_jumps(profile_, phase_rate_, start_, end_time);
     // A phase that runs backwards passes the mirrored jumps.
-    if (settings_.phase_rate >= 0.)
-      return times_of_jumps(settings_.profile, settings_.phase_rate, settings_.start, end_time_);
     std::vector<double> times;
-    const double f = -settings_.phase_rate;
-    for (const double x : settings_.profile.breaks(settings_.start - f * end_time_, settings_.start))
-    {
-      const double t = (settings_.start - x) / f;
-      if (t > 0. && t < end_time_)
+    const double f = -phase_rate_;
+    for (const double x : profile_.breaks(start_ - f * end_time, start_))
+      if (const double t = (start_ - x) / f; t > 0. && t < end_time)
         times.push_back(t);
-    }
     return times;
   }
 
   void
   TravellingWave::report(std::ostream &out) const
   {
-    if (settings_.profile.jumps() && settings_.phase_rate != 0. && settings_.wave_number > 0. &&
-        settings_.amplitude != 0.)
+    if (profile_.jumps() && phase_rate_ != 0. && wave_number_ > 0. &&
+        amplitude_ != 0.)
       out << "Travelling wave: the jumps of a square wave move through the cells of the mesh, which costs orders of "
              "convergence; Profile = smoothed square is recommended\n";
   }

@@ -98,11 +98,8 @@ namespace crawler
     std::vector<double> times;
     if (frequency > 0.)
       for (const double x : profile.breaks(start, start + frequency * end_time))
-      {
-        const double t = (x - start) / frequency;
-        if (t > 0. && t < end_time)
+        if (const double t = (x - start) / frequency; t > 0. && t < end_time)
           times.push_back(t);
-      }
     return times;
   }
 } // namespace crawler

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crawler/formula/formula_bound.h>
-#include <crawler/scene/active_stress.h>
+#include <crawler/scene/known_stress.h>
 
 #include <optional>
 #include <string>
@@ -25,7 +25,7 @@ namespace crawler
    * An active stress m(s,t) that the user writes as a formula (muParser), with variables s and t, the
    * constants pi, L (the body length) and T (the end time) and the user's own.
    */
-  class Expression : public ActiveStress
+  class Expression : public KnownStress
   {
   public:
     static constexpr const char *description = "a formula of s and t";
@@ -36,27 +36,17 @@ namespace crawler
      */
     Expression(const ExpressionParameters &parameters, double length, double end_time);
 
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
-
     std::optional<Bounds>
     bounds(const Box &box) const override;
 
-    /// Looked for (scene/period.h).
-    std::optional<double>
-    period() const override;
-
   private:
-    /// Throws InputError, see the constructor.
-    void
-    require_finite_values(double length, double end_time) const;
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+    std::optional<double>
+    search_period() const override;
 
     const double length_, end_time_;
-    std::string formula_;
-    std::shared_ptr<const Formula> compiled_;
+    const std::shared_ptr<const Formula> compiled_;
     mutable FormulaBound bound_;
-    mutable std::optional<std::optional<double>> period_; ///< once it was asked for
   };
 } // namespace crawler

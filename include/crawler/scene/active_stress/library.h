@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/body.h>
 
 #include <string>
@@ -31,7 +31,7 @@ namespace crawler
    * not finite numbers do not leave it: they are kept as failures, and the values are not a number there, which ends a
    * run in order on all ranks.
    */
-  class Library : public ActiveStress
+  class Library : public KnownStress
   {
   public:
     static constexpr const char *description = "a shared object that the user has compiled";
@@ -42,25 +42,6 @@ namespace crawler
      */
     Library(const LibraryParameters &parameters, const Body &body, double end_time);
 
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
-    std::optional<double>
-    period() const override
-    {
-      return period_;
-    }
-    std::vector<double>
-    breaks_in_space() const override
-    {
-      return breaks_in_space_;
-    }
-    std::vector<double>
-    breaks_in_time() const override
-    {
-      return breaks_in_time_;
-    }
     const StretchFeedback *
     feedback() const override
     {
@@ -80,6 +61,9 @@ namespace crawler
     }
 
   private:
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+
     void
     ask(double length, double end_time);
 
@@ -87,9 +71,6 @@ namespace crawler
     std::shared_ptr<LibraryFailures> failures_; ///< evaluators write here
     std::unique_ptr<const ActiveStress> stress_;
     // What it says of itself, asked once.
-    bool has_rate_ = false;
-    std::optional<double> period_;
-    std::vector<double> breaks_in_space_, breaks_in_time_;
     std::unique_ptr<const StretchFeedback> feedback_;
     std::unique_ptr<const StrainHistory> strain_;
     std::string report_;

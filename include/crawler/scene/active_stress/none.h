@@ -1,21 +1,29 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress.h>
+#include <crawler/scene/known_stress.h>
+
+#include <algorithm>
 
 namespace crawler
 {
-  /// No actuation: m = 0. The simplest generator, and the template for a new one.
-  class NoActiveStress : public ActiveStress
+  /// No actuation: m = 0. The simplest generator.
+  class NoActiveStress : public KnownStress
   {
   public:
     static constexpr const char *description = "no actuation, m = 0";
 
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
     std::optional<Bounds>
-    bounds(const Box &box) const override;
+    bounds(const Box &) const override
+    {
+      return Bounds{0., 0.};
+    }
+
+  private:
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &, bool) const override
+    {
+      return stress_at_points([](double, const std::span<double> m) { std::fill(m.begin(), m.end(), 0.); });
+    }
   };
 } // namespace crawler

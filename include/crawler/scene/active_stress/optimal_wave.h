@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/active_stress/wave_roots.h>
 #include <crawler/scene/body.h>
 
@@ -39,9 +39,10 @@ namespace crawler
    *                   - (k/c) ( a_n (sin q(s+ct) - sin q s) + b_n (cos q(s+ct) - cos q s) ) ],   q = 2 pi n/L,
    *
    * with the wave speed given, or chosen among the waves that spend a given energy H (wave_roots.h). This is the wave
-   * whose shape is given by Fourier coefficients; for others see ShapedWave.
+   * whose shape is given by Fourier coefficients; for others see ShapedWave. Its period is L/(|c| n), n the greatest
+   * common divisor of its harmonics' numbers.
    */
-  class OptimalWave : public ActiveStress
+  class OptimalWave : public KnownStress
   {
   public:
     static constexpr const char *description =
@@ -50,13 +51,6 @@ namespace crawler
     /// Throws InputError if no wave spends the energy, if the root asked for does not exist, or if the lists of
     /// coefficients do not fit together.
     OptimalWave(const OptimalWaveParameters &parameters, const Body &body, double end_time);
-
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-
-    /// L/(|c| n), n the greatest common divisor of its harmonics' numbers.
-    std::optional<double>
-    period() const override;
 
     /// The wave, and all roots if it was chosen by its energy.
     void
@@ -80,6 +74,9 @@ namespace crawler
     }
 
   private:
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+
     void
     choose_by_energy(const OptimalWaveParameters &parameters);
     void

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crawler/base/gauss_panels.h>
-#include <crawler/scene/active_stress.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/body.h>
 
 #include <string>
@@ -40,7 +40,7 @@ namespace crawler
    *
    * The integrals over s are Gauss quadrature on panels, which are doubled until m does not change any more.
    */
-  class PrescribedStrain : public ActiveStress
+  class PrescribedStrain : public KnownStress
   {
   public:
     static constexpr const char *description = "the stress that brings about a given strain";
@@ -53,24 +53,15 @@ namespace crawler
                      double end_time,
                      std::unique_ptr<const ActiveStress> generator = nullptr);
 
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-
     const StrainHistory *
     prescribed_strain() const override
     {
       return history_.get();
     }
 
-    /// What the generator knows of these, if the strain is generated.
-    std::optional<double>
-    period() const override;
+    /// What the generator knows, if the strain is generated.
     std::optional<double>
     stride() const override;
-    std::vector<double>
-    breaks_in_space() const override;
-    std::vector<double>
-    breaks_in_time() const override;
     const StressFailures *
     failures() const override;
 
@@ -78,6 +69,11 @@ namespace crawler
     report(std::ostream &out) const override;
 
   private:
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+    std::optional<double>
+    search_period() const override;
+
     void
     require_usable_generator(double end_time) const;
     void
@@ -88,7 +84,6 @@ namespace crawler
     const Body body_;
     const std::string given_by_;
     const std::unique_ptr<const ActiveStress> generator_; ///< of the strain, if it is generated
-    std::optional<double> wave_period_;                   ///< if it is given as a wave
     std::unique_ptr<const StrainHistory> history_;
     StrainExtremes extremes_{};
     unsigned int n_panels_ = 1;

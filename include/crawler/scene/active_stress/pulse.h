@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress.h>
 #include <crawler/scene/active_stress/envelope.h>
+#include <crawler/scene/known_stress.h>
 
 #include <string>
 
@@ -35,7 +35,7 @@ namespace crawler
    * pulses follow each other at the distance v P, and those that are ahead of the first are on the body at t = 0 if it
    * is longer than that. Its period is P; with a ramp, or a single pulse, it has none.
    */
-  class Pulse : public ActiveStress
+  class Pulse : public KnownStress
   {
   public:
     static constexpr const char *description = "a bump that runs along the body, once or repeatedly";
@@ -44,34 +44,26 @@ namespace crawler
     /// not come to the body before the end time.
     Pulse(const PulseParameters &parameters, double length, double end_time);
 
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
-    std::optional<double>
-    period() const override;
-    std::optional<double>
-    stride() const override;
     std::optional<Bounds>
     bounds(const Box &box) const override;
-    std::vector<double>
-    breaks_in_space() const override;
 
     /// Where the pulse is in the beginning.
     void
     report(std::ostream &out) const override;
 
-    struct Settings
-    {
-      bool compact;
-      double amplitude, width;
-      double start, velocity, period; ///< x_0, sigma v, P
-      double reach;                   ///< beyond this distance from its centre a pulse is 0 [length]
-      double length;                  ///< of the body
-      Envelope envelope;
-    };
-
   private:
-    const Settings settings_;
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+
+    void
+    require_reachable_body(double end_time) const;
+
+    const bool compact_;
+    const double amplitude_, width_;
+    const double reach_;             ///< beyond this distance from its centre a pulse is 0 [length]
+    const double velocity_, period_; ///< sigma v, P
+    const double start_;             ///< x_0
+    const double length_;            ///< of the body
+    const Envelope envelope_;
   };
 } // namespace crawler

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress.h>
 #include <crawler/scene/active_stress/envelope.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/active_stress/profile.h>
 
 #include <string>
@@ -42,7 +42,7 @@ namespace crawler
    *    the periodic answer of an actuator that goes towards the square signal with the rate r: a trapezoid;
    *  - smooth: A_i times a Switching with smooth fronts (profile.h), cut to the saturation.
    */
-  class Segments : public ActiveStress
+  class Segments : public KnownStress
   {
   public:
     static constexpr const char *description = "actuated segments of a robot that switch one after the other";
@@ -51,22 +51,8 @@ namespace crawler
     /// faster than the rate limit, or if there is more switching until the end time than a run can have.
     Segments(const SegmentsParameters &parameters, double length, double end_time);
 
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
-
-    /// 1/f; none with a ramp.
-    std::optional<double>
-    period() const override;
-    std::optional<double>
-    stride() const override;
     std::optional<Bounds>
     bounds(const Box &box) const override;
-    std::vector<double>
-    breaks_in_space() const override;
-    std::vector<double>
-    breaks_in_time() const override;
 
     /// Lengths, and how far a rate limit lets the segments come.
     void
@@ -80,7 +66,16 @@ namespace crawler
       double first, last, phase, amplitude;
       double low, high, front;
     };
-    class AtPoints;
+
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+
+    /// The segments from s = 0 to s = L.
+    std::vector<Segment>
+    create_segments() const;
+
+    std::vector<double>
+    times_of_switching(double end_time) const;
 
     /// y_i(x), or its derivative [force/period].
     double
@@ -97,10 +92,9 @@ namespace crawler
     require_smooth_rate() const;
 
     const SegmentsParameters parameters_;
-    const double length_, end_time_;
+    const double length_;
     const Envelope envelope_; ///< the ramp only
     std::optional<Switching> smooth_;
     std::vector<Segment> segments_; ///< from s = 0 to s = L
-    std::vector<double> breaks_in_time_;
   };
 } // namespace crawler

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
 #include <crawler/scene/active_stress/shape_function.h>
 
@@ -16,26 +16,13 @@ namespace crawler
    * To leading order in chi the velocity is chi ( V(s+ct) - its mean over the body ) and the strain
    * (chi/c) ( V(s+ct) - V(s) ). With V = sum a_n sin q_n x + b_n cos q_n x it is the OptimalWave.
    */
-  class ShapedWave : public ActiveStress
+  class ShapedWave : public KnownStress
   {
   public:
     /// For Shape = expression or table. Throws InputError if the wave is to be chosen by its energy, if the speed is 0
     /// or so large that 1e4 body lengths of V are passed, if the formula or the file has an error, or if V is not given
     /// or not continuous wherever the wave comes, min(0, cT) <= x <= L + max(0, cT).
     ShapedWave(const OptimalWaveParameters &parameters, const Body &body, double end_time);
-
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
-
-    /// Looked for (scene/period.h).
-    std::optional<double>
-    period() const override;
-
-    /// Where V' jumps at the start.
-    std::vector<double>
-    breaks_in_space() const override;
 
     /// The wave, with what the leading order says of it.
     void
@@ -52,21 +39,18 @@ namespace crawler
     LeadingOrder
     leading_order() const;
 
-    struct Settings
-    {
-      Body body;
-      double chi, speed;
-      ShapeFunction shape; ///< V [length/time]
-    };
-
   private:
-    const double end_time_;
-    const std::string shape_;
-    const Settings settings_;
-    mutable std::optional<std::optional<double>> period_; ///< once it was asked for
-  };
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+    std::unique_ptr<ActiveStressAtPoints>
+    rate_evaluator(const std::vector<double> &points) const;
+    std::optional<double>
+    search_period() const override;
 
-  /// OptimalWave or ShapedWave, as the entry Shape says.
-  std::unique_ptr<ActiveStress>
-  create_optimal_wave(const OptimalWaveParameters &parameters, const Body &body, double end_time);
+    const double end_time_;
+    const std::string shape_name_;
+    const Body body_;
+    const double chi_, speed_;
+    const ShapeFunction shape_; ///< V [length/time]
+  };
 } // namespace crawler

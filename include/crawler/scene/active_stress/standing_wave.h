@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress.h>
 #include <crawler/scene/active_stress/envelope.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/active_stress/wave_entries.h>
 
 namespace crawler
@@ -29,9 +29,10 @@ namespace crawler
    *
    *   m = window(s) ramp(t) [ offset + A cos( 2 pi n s/L + phase in space ) p( f t + phase/(2 pi) ) ],
    *
-   * with the profile p (wave_entries.h). Its period is 1/f; with a ramp it has none.
+   * with the profile p (wave_entries.h). Its period is 1/f; with a ramp it has none. A square wave, which jumps, has no
+   * rate.
    */
-  class StandingWave : public ActiveStress
+  class StandingWave : public KnownStress
   {
   public:
     static constexpr const char *description = "a wave whose nodes stay in their places";
@@ -39,33 +40,14 @@ namespace crawler
     /// Throws InputError if fronts or window do not fit, or if there are more than 1e8 periods (1e6 of a square wave).
     StandingWave(const StandingWaveParameters &parameters, double length, double end_time);
 
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-
-    /// Null for a square wave, which jumps.
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
-
-    std::optional<double>
-    period() const override;
-    std::optional<double>
-    stride() const override;
-    std::vector<double>
-    breaks_in_space() const override;
-    std::vector<double>
-    breaks_in_time() const override;
-
-    struct Settings
-    {
-      double amplitude, offset;
-      double wave_number, start_in_space; ///< [rad/length], [rad]
-      double frequency, start;            ///< [1/time], [periods]
-      WaveProfile profile;
-      Envelope envelope;
-    };
-
   private:
-    const double end_time_;
-    const Settings settings_;
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+
+    const double amplitude_, offset_;
+    const double wave_number_, start_in_space_; ///< [rad/length], [rad]
+    const double frequency_, start_;            ///< [1/time], [periods]
+    const WaveProfile profile_;
+    const Envelope envelope_;
   };
 } // namespace crawler

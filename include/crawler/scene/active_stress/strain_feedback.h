@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crawler/formula/formula.h>
-#include <crawler/scene/active_stress.h>
+#include <crawler/scene/known_stress.h>
 
 #include <string>
 
@@ -29,7 +29,7 @@ namespace crawler
    * its mean over a sensor around that place, and the stretch of the time t - delay (the initial stretch before
    * t = 0). Derivatives are exact.
    */
-  class StrainFeedback : public ActiveStress
+  class StrainFeedback : public KnownStress
   {
   public:
     static constexpr const char *description =
@@ -38,27 +38,21 @@ namespace crawler
     /// Throws InputError if the formula, the constants, the distance, the delay or the sensor do not make sense.
     StrainFeedback(const StrainFeedbackParameters &parameters, double length, double end_time);
 
+    const StretchFeedback *
+    feedback() const override
+    {
+      return feedback_.get();
+    }
+
+  private:
     /// Of a body with the stretch 1 at rest.
     std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-
-    ~StrainFeedback() override;
+    evaluator(const std::vector<double> &points, bool rate) const override;
 
     /// Where the place of w_near, or the sensor, reaches the end of the body, and where that is seen from in turn.
     std::vector<double>
-    breaks_in_space() const override;
+    kinks_in_space(double length) const;
 
-    /// The past begins at t = 0: what follows from it has kinks at the first multiples of the delay.
-    std::vector<double>
-    breaks_in_time() const override;
-
-    const StretchFeedback *
-    feedback() const override;
-
-  private:
-    class Feedback;
-
-    const double length_, end_time_;
-    std::shared_ptr<const Feedback> feedback_;
+    std::unique_ptr<const StretchFeedback> feedback_;
   };
 } // namespace crawler

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/grid_interpolation.h>
-#include <crawler/scene/strain_history.h>
+#include <crawler/scene/evaluators.h>
 
 #include <string>
 
 namespace crawler
 {
   /// A strain given on a grid over s and t, with cubic splines in both directions (tensor product).
-  class StrainTable : public StrainHistory
+  class StrainTable : public StrainByEvaluators
   {
   public:
     /**
@@ -18,11 +17,5 @@ namespace crawler
      * grid does not reach from 0 to @p length and from 0 to @p end_time.
      */
     StrainTable(const std::string &name, double length, double end_time, const std::string &entry);
-
-    std::unique_ptr<StrainAtPoints>
-    at(const std::vector<double> &points) const override;
-
-  private:
-    const GridInterpolation table_;
   };
 } // namespace crawler

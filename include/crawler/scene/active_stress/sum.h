@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/active_stress/window.h>
 
 #include <memory>
@@ -43,25 +43,19 @@ namespace crawler
    * evaluated where a window is closed. Rates and derivatives with respect to the stretch follow from the sum and the
    * product rule.
    */
-  class Sum : public ActiveStress
+  class Sum : public KnownStress
   {
   public:
     static constexpr const char *description = "a sum and product of generators, each with a window in s and t";
 
     /// Throws InputError if no term adds, or if terms use the stretch at different distances or with different delays.
     Sum(std::vector<SumTerm> terms, double length, double end_time);
-    ~Sum() override;
 
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
     /// Null if a term has none.
     std::unique_ptr<ActiveStressAtPoints>
     rate_at(const std::vector<double> &points) const override;
 
-    /// A period that all terms have in common (period.h), or a whole part of it after which the sum repeats; where not
-    /// all terms know theirs, the sum's is looked for. Nothing if a window in time opens or closes.
-    std::optional<double>
-    period() const override;
+    /// Windows in t may open and close on the way: whoever uses it looks whether m repeats at the end.
     std::optional<double>
     stride() const override;
 
@@ -69,24 +63,28 @@ namespace crawler
     std::optional<Bounds>
     bounds(const Box &box) const override;
 
-    std::vector<double>
-    breaks_in_space() const override;
-    std::vector<double>
-    breaks_in_time() const override;
     const StretchFeedback *
-    feedback() const override;
+    feedback() const override
+    {
+      return feedback_.get();
+    }
     void
     report(std::ostream &out) const override;
     const StressFailures *
     failures() const override;
 
   private:
-    class Feedback;
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+
+    /// A period that all terms have in common (period.h), or a whole part of it after which the sum repeats; where not
+    /// all terms know theirs, the sum's is looked for. Nothing if a window in time opens or closes.
+    std::optional<double>
+    search_period() const override;
 
     const std::vector<SumTerm> terms_;
     const double length_, end_time_;
-    std::unique_ptr<const Feedback> feedback_;
-    mutable std::optional<std::optional<double>> period_; ///< once it was asked for
-    mutable StressFailures failures_;                     ///< of all terms
+    std::unique_ptr<const StretchFeedback> feedback_;
+    mutable StressFailures failures_; ///< of all terms
   };
 } // namespace crawler

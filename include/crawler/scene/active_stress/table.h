@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crawler/base/grid_interpolation.h>
-#include <crawler/scene/active_stress.h>
+#include <crawler/scene/known_stress.h>
 
 #include <string>
 
@@ -27,7 +27,7 @@ namespace crawler
    * An active stress through samples m(s_i, t_j), as measured (doc/generators/table.md): linear between them, or by
    * cubic splines in s and t (tensor product).
    */
-  class ActiveStressTable : public ActiveStress
+  class ActiveStressTable : public KnownStress
   {
   public:
     static constexpr const char *description = "samples over s and t in a CSV or HDF5 file";
@@ -40,31 +40,29 @@ namespace crawler
      */
     ActiveStressTable(const TableParameters &parameters, double length, double end_time);
 
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
-
     std::optional<Bounds>
     bounds(const Box &box) const override;
-
-    /// If it is periodic, that of the table, or a whole part of it after which equally spaced samples repeat.
-    std::optional<double>
-    period() const override;
-
-    /// Linear: the samples, unless there are more than 256 in (0, L). Where a table that is held begins and ends.
-    std::vector<double>
-    breaks_in_space() const override;
-    /// The same in time, but at most 4096 samples.
-    std::vector<double>
-    breaks_in_time() const override;
 
     void
     report(std::ostream &out) const override;
 
   private:
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+
+    /// If it is periodic, that of the table, or a whole part of it after which equally spaced samples repeat.
+    std::optional<double>
+    search_period() const override;
+
+    /// Linear: the samples, unless there are more than 256 in (0, L). Where a table that is held begins and ends.
+    std::vector<double>
+    kinks_in_space() const;
+    /// The same in time, but at most 4096 samples.
+    std::vector<double>
+    kinks_in_time(double end_time) const;
+
     const TableParameters parameters_;
-    const double length_, end_time_;
+    const double length_;
     const GridInterpolation table_;
     double largest_ = 0.;         ///< |m| [force]
     std::vector<double> changes_; ///< largest |m_t| between two times of the table [force/time]

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress.h>
 #include <crawler/scene/active_stress/envelope.h>
+#include <crawler/scene/known_stress.h>
 #include <crawler/scene/active_stress/wave_entries.h>
 
 #include <string>
@@ -34,9 +34,10 @@ namespace crawler
    *   m = window(s) ramp(t) [ offset + A p( n s/L - sigma f t + phase/(2 pi) ) ],
    *
    * with the profile p (wave_entries.h), and f = n |c|/L if the wave speed c is given. Its period is 1/f; with a ramp
-   * it has none.
+   * it has none. A square wave of frequency 0 jumps at some places, one of wave number 0 at some times; the jumps of
+   * others move, so that no list holds them. Those that change have no rate.
    */
-  class TravellingWave : public ActiveStress
+  class TravellingWave : public KnownStress
   {
   public:
     static constexpr const char *description = "a sine or square wave that runs along the body";
@@ -45,42 +46,28 @@ namespace crawler
     /// than 1e8 periods (1e6 if all of the body is switched at once).
     TravellingWave(const TravellingWaveParameters &parameters, double length, double end_time);
 
-    std::unique_ptr<ActiveStressAtPoints>
-    at(const std::vector<double> &points) const override;
-
-    /// Null for a square wave that moves: it jumps everywhere.
-    std::unique_ptr<ActiveStressAtPoints>
-    rate_at(const std::vector<double> &points) const override;
-
-    std::optional<double>
-    period() const override;
-    std::optional<double>
-    stride() const override;
-
-    /// Edges of the window, and the jumps of a square wave of frequency 0.
-    std::vector<double>
-    breaks_in_space() const override;
-
-    /// The jumps of a square wave of wave number 0; those of others move, so that no list holds them.
-    std::vector<double>
-    breaks_in_time() const override;
-
     /// A word on jumps that move.
     void
     report(std::ostream &out) const override;
 
-    struct Settings
-    {
-      double amplitude, offset;
-      double wave_number; ///< per length: n/L
-      double phase_rate;  ///< -sigma f [periods/time]
-      double start;       ///< phase/(2 pi) [periods]
-      WaveProfile profile;
-      Envelope envelope;
-    };
-
   private:
-    const double length_, end_time_;
-    const Settings settings_;
+    std::unique_ptr<ActiveStressAtPoints>
+    evaluator(const std::vector<double> &points, bool rate) const override;
+    std::unique_ptr<ActiveStressAtPoints>
+    sine_at(const std::vector<double> &points, bool rate) const;
+
+    /// Where a square wave that does not move jumps, in (0, @p length), and when one that is everywhere the same does,
+    /// in (0, @p end_time).
+    std::vector<double>
+    places_of_jumps(double length) const;
+    std::vector<double>
+    times_of_own_jumps(double end_time) const;
+
+    const double amplitude_, offset_;
+    const double wave_number_; ///< per length: n/L
+    const double phase_rate_;  ///< -sigma f [periods/time]
+    const double start_;       ///< phase/(2 pi) [periods]
+    const WaveProfile profile_;
+    const Envelope envelope_;
   };
 } // namespace crawler
