@@ -223,15 +223,27 @@ namespace crawler
     }
 
     Enclosure
+    operator+(const Enclosure &a, const Enclosure &b)
+    {
+      return {a.value + b.value, a.rate + b.rate};
+    }
+
+    Enclosure
+    operator-(const Enclosure &a)
+    {
+      return {-a.value, -a.rate};
+    }
+
+    Enclosure
     plus_rule(const Arguments x)
     {
-      return {x[0].value + x[1].value, x[0].rate + x[1].rate};
+      return x[0] + x[1];
     }
 
     Enclosure
     minus_rule(const Arguments x)
     {
-      return {x[0].value + -x[1].value, x[0].rate + -x[1].rate};
+      return x[0] + -x[1];
     }
 
     Enclosure
@@ -328,18 +340,13 @@ namespace crawler
       return truth(x[0].value.lower <= x[1].value.upper, x[0].value.upper <= x[1].value.lower, x);
     }
 
+    /// With its two arguments the other way round.
+    template <Enclosure (*rule)(Arguments)>
     Enclosure
-    greater_rule(const Arguments x)
+    turned(const Arguments x)
     {
-      const Enclosure turned[] = {x[1], x[0]};
-      return less_rule(turned);
-    }
-
-    Enclosure
-    greater_equal_rule(const Arguments x)
-    {
-      const Enclosure turned[] = {x[1], x[0]};
-      return less_equal_rule(turned);
+      const Enclosure other_way[] = {x[1], x[0]};
+      return rule(Arguments(other_way));
     }
 
     Enclosure
@@ -408,9 +415,8 @@ namespace crawler
     {
       std::vector<Enclosure> turned;
       for (const Enclosure &e : x)
-        turned.push_back({-e.value, -e.rate});
-      const Enclosure f = min_rule(turned);
-      return {-f.value, -f.rate};
+        turned.push_back(-e);
+      return -min_rule(turned);
     }
 
     Enclosure
@@ -418,7 +424,7 @@ namespace crawler
     {
       Enclosure f = x[0];
       for (const Enclosure &e : x.subspan(1))
-        f = {f.value + e.value, f.rate + e.rate};
+        f = f + e;
       return f;
     }
 
@@ -438,43 +444,7 @@ namespace crawler
   } // namespace
 
   Bound
-  bound_of(const mu::ECmdCode code)
-  {
-    switch (code)
-    {
-      case mu::cmADD:
-        return plus_rule;
-      case mu::cmSUB:
-        return minus_rule;
-      case mu::cmMUL:
-        return times_rule;
-      case mu::cmDIV:
-        return divide_rule;
-      case mu::cmPOW:
-        return power_rule;
-      case mu::cmLT:
-        return less_rule;
-      case mu::cmLE:
-        return less_equal_rule;
-      case mu::cmGT:
-        return greater_rule;
-      case mu::cmGE:
-        return greater_equal_rule;
-      case mu::cmEQ:
-        return equal_rule;
-      case mu::cmNEQ:
-        return not_equal_rule;
-      case mu::cmLAND:
-        return and_rule;
-      case mu::cmLOR:
-        return or_rule;
-      default:
-        return unknown_rule;
-    }
-  }
-
-  Bound
-  bound_of(const std::string &function)
+  bound_of(const std::string &operation)
   {
     static const std::map<std::string, Bound> rules = {
       {"sin", sin_rule},
@@ -511,10 +481,22 @@ namespace crawler
       {"rint", step_rule<std::rint>},
       {"floor", step_rule<std::floor>},
       {"ceil", step_rule<std::ceil>},
+      {"a+b", plus_rule},
+      {"a-b", minus_rule},
+      {"a*b", times_rule},
+      {"a/b", divide_rule},
+      {"a<b", less_rule},
+      {"a<=b", less_equal_rule},
+      {"a>b", turned<less_rule>},
+      {"a>=b", turned<less_equal_rule>},
+      {"a==b", equal_rule},
+      {"a!=b", not_equal_rule},
+      {"a&&b", and_rule},
+      {"a||b", or_rule},
     };
-    const auto found = rules.find(function);
+    const auto found = rules.find(operation);
     if (found == rules.end())
-      throw std::logic_error("no rule for enclosures of the function " + function);
+      throw std::logic_error("no rule for enclosures of the function " + operation);
     return found->second;
   }
 } // namespace crawler

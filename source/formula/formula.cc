@@ -93,42 +93,26 @@ namespace crawler
       }
     }
 
-    /// The loop of an operator between two values; null if @p code is something else.
-    Formula::Operation::Loop
-    loop_of(const mu::ECmdCode code)
+    /// An operator between two values: its code in muParser, the name of its rules, and its loop.
+    struct Operator
     {
-      switch (code)
-      {
-        case mu::cmLE:
-          return binary<std::less_equal<double>>;
-        case mu::cmGE:
-          return binary<std::greater_equal<double>>;
-        case mu::cmNEQ:
-          return binary<std::not_equal_to<double>>;
-        case mu::cmEQ:
-          return binary<std::equal_to<double>>;
-        case mu::cmLT:
-          return binary<std::less<double>>;
-        case mu::cmGT:
-          return binary<std::greater<double>>;
-        case mu::cmADD:
-          return binary<std::plus<double>>;
-        case mu::cmSUB:
-          return binary<std::minus<double>>;
-        case mu::cmMUL:
-          return binary<std::multiplies<double>>;
-        case mu::cmDIV:
-          return binary<std::divides<double>>;
-        case mu::cmPOW:
-          return binary<Power>;
-        case mu::cmLAND:
-          return binary<std::logical_and<double>>;
-        case mu::cmLOR:
-          return binary<std::logical_or<double>>;
-        default:
-          return nullptr;
-      }
-    }
+      mu::ECmdCode code;
+      const char *name;
+      Formula::Operation::Loop loop;
+    };
+    constexpr Operator operators[] = {{mu::cmLE, "a<=b", binary<std::less_equal<double>>},
+                                      {mu::cmGE, "a>=b", binary<std::greater_equal<double>>},
+                                      {mu::cmNEQ, "a!=b", binary<std::not_equal_to<double>>},
+                                      {mu::cmEQ, "a==b", binary<std::equal_to<double>>},
+                                      {mu::cmLT, "a<b", binary<std::less<double>>},
+                                      {mu::cmGT, "a>b", binary<std::greater<double>>},
+                                      {mu::cmADD, "a+b", binary<std::plus<double>>},
+                                      {mu::cmSUB, "a-b", binary<std::minus<double>>},
+                                      {mu::cmMUL, "a*b", binary<std::multiplies<double>>},
+                                      {mu::cmDIV, "a/b", binary<std::divides<double>>},
+                                      {mu::cmPOW, "pow", binary<Power>},
+                                      {mu::cmLAND, "a&&b", binary<std::logical_and<double>>},
+                                      {mu::cmLOR, "a||b", binary<std::logical_or<double>>}};
 
     /// What users of formulas expect besides muParser's own functions.
     void
@@ -224,10 +208,10 @@ namespace crawler
     void
     apply(const mu::ECmdCode code)
     {
-      const auto loop = loop_of(code);
-      if (loop == nullptr)
-        throw mu::ParserError(mu::ecINTERNAL_ERROR);
-      add({.loop = loop, .tangent = tangent_of(code), .bound = bound_of(code)}, 2);
+      for (const auto &[own_code, name, loop] : operators)
+        if (own_code == code)
+          return add({.loop = loop, .tangent = tangent_of(name), .bound = bound_of(name)}, 2);
+      throw mu::ParserError(mu::ecINTERNAL_ERROR);
     }
 
     /// x x ... x, multiplied from the left as muParser does.

@@ -150,10 +150,22 @@ namespace crawler
         {"sum", sum},
         {"avg", average},
         {"?", select},
+        {"a+b", plus},
+        {"a-b", minus},
+        {"a*b", times},
+        {"a/b", divide},
         {"sign", nullptr},
         {"rint", nullptr},
         {"floor", nullptr},
         {"ceil", nullptr},
+        {"a<b", nullptr},
+        {"a<=b", nullptr},
+        {"a>b", nullptr},
+        {"a>=b", nullptr},
+        {"a==b", nullptr},
+        {"a!=b", nullptr},
+        {"a&&b", nullptr},
+        {"a||b", nullptr},
       };
       return list;
     }
@@ -161,31 +173,11 @@ namespace crawler
   } // namespace
 
   Tangent
-  tangent_of(const mu::ECmdCode code)
+  tangent_of(const std::string &operation)
   {
-    switch (code)
-    {
-      case mu::cmADD:
-        return plus;
-      case mu::cmSUB:
-        return minus;
-      case mu::cmMUL:
-        return times;
-      case mu::cmDIV:
-        return divide;
-      case mu::cmPOW:
-        return power;
-      default:
-        return nullptr;
-    }
-  }
-
-  Tangent
-  tangent_of(const std::string &function)
-  {
-    const auto found = tangents().find(function);
+    const auto found = tangents().find(operation);
     if (found == tangents().end())
-      throw std::logic_error("no rule of differentiation for the function " + function);
+      throw std::logic_error("no rule of differentiation for the function " + operation);
     return found->second;
   }
 } // namespace crawler

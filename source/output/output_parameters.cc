@@ -8,33 +8,21 @@ namespace crawler
   OutputParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Output");
-    declarations.whole_number(
-      "Number of snapshots",
-      n_snapshots,
-      0,
-      1000000,
-      "Number of snapshots for ParaView at equal time intervals until the end time, besides the "
-      "initial state. 0: none.");
-    declarations.flag("Kymograph", kymograph, "Whether to write the fields over s and t of all snapshots as one file.");
-    declarations.flag("Statistics", statistics, "Whether to write statistics.csv, a row for each time step.");
-    declarations.flag("Ledger",
-                      energy_balance,
-                      "Whether to compute works, energies and the net friction in every step, and to check that they "
-                      "balance.");
-    declarations.number(
-      "Ledger tolerance",
-      energy_balance_tolerance,
-      positive(),
-      "Largest admissible ledger residual, relative to the work that the active stress exchanges with "
-      "the body; beyond it the run fails its self-check. Automatic: ten times Accuracy (300 times in the stretch "
-      "form), at least 1e-8 "
-      "(a Tolerance or an integrator of the user's own choice: 0.1).",
-      "1");
-    declarations.numbers("Active stress table",
-                         active_stress_table,
-                         "Numbers of samples over s and over t, like 65, 129, of the active stress that are written to "
-                         "active_stress.csv, which the generator table reads. Nothing: no such file.",
-                         "");
+    declarations.whole_number("Number of snapshots", n_snapshots, 0, 1000000)
+      .means("Number of snapshots for ParaView at equal time intervals until the end time, besides the initial state. "
+             "0: none.");
+    declarations.flag("Kymograph", kymograph)
+      .means("Whether to write the fields over s and t of all snapshots as one file.");
+    declarations.flag("Statistics", statistics).means("Whether to write statistics.csv, a row for each time step.");
+    declarations.flag("Ledger", energy_balance)
+      .means("Whether to compute works, energies and the net friction in every step, and to check that they balance.");
+    declarations.number("Ledger tolerance", energy_balance_tolerance, positive(), "1")
+      .means("Largest admissible ledger residual, relative to the work that the active stress exchanges with the body; "
+             "beyond it the run fails its self-check. Automatic: ten times Accuracy (300 times in the stretch form), "
+             "at least 1e-8 (a Tolerance or an integrator of the user's own choice: 0.1).");
+    declarations.numbers("Active stress table", active_stress_table, "")
+      .means("Numbers of samples over s and over t, like 65, 129, of the active stress that are written to "
+             "active_stress.csv, which the generator table reads. Nothing: no such file.");
     declarations.leave();
   }
 } // namespace crawler

@@ -230,12 +230,15 @@ namespace crawler
   }
 
   void
-  require_valid(const Axis &axis, const std::string &name, Declarations &declarations)
+  require_valid(const Axis &axis,
+                const std::string &name,
+                Declarations &declarations,
+                const std::filesystem::path &folder)
   {
     try
     {
       for (const std::string &value : axis.values)
-        declarations.set(axis.entry, value);
+        declarations.set(axis.entry, value, folder);
     }
     catch (const InputError &error)
     {

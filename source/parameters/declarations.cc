@@ -92,9 +92,86 @@ namespace crawler
     }
 
     std::string
+    path_text(const std::vector<std::string> &words)
+    {
+      return fmt::format("{}", fmt::join(words, "/"));
+    }
+
+    /// The section that an entry is in.
+    std::string
+    section_of(const std::vector<std::string> &words)
+    {
+      return fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
+    }
+
+    // The default values as they are written.
+
+    std::string
+    default_text(const double value)
+    {
+      return to_text(value);
+    }
+    std::string
+    default_text(const unsigned int value)
+    {
+      return std::to_string(value);
+    }
+    std::string
+    default_text(const bool value)
+    {
+      return value ? "true" : "false";
+    }
+    std::string
+    default_text(const std::string &value)
+    {
+      return value;
+    }
+    std::string
+    default_text(const std::vector<double> &value)
+    {
+      return fmt::format("{}", fmt::join(value, ", "));
+    }
+
+    // How values are read: nothing if a text is not admissible.
+
+    auto
+    reader(const Range &range)
+    {
+      return [range](const std::string &text) {
+        const auto number = to_number(text);
+        return number && range.contains(*number) ? number : std::nullopt;
+      };
+    }
+    auto
+    reader(const unsigned int lower, const unsigned int upper)
+    {
+      return [lower, upper](const std::string &text) {
+        const auto count = to_count(text);
+        return count && *count >= lower && *count <= upper ? count : std::nullopt;
+      };
+    }
+
+    std::string
     count_range(const unsigned int lower, const unsigned int upper)
     {
       return fmt::format("a whole number from {} to {}", lower, upper);
+    }
+
+    /// The nearest of the words that a choice offers, as a hint.
+    std::string
+    nearest_word(const std::string &value, const std::string &expected)
+    {
+      if (value.empty() || expected.front() != '"')
+        return "";
+      std::vector<std::string> choices;
+      for (std::size_t start = expected.find('"'); start != std::string::npos;)
+      {
+        const std::size_t end = expected.find('"', start + 1);
+        choices.push_back(expected.substr(start + 1, end - start - 1));
+        start = expected.find('"', end + 1);
+      }
+      const auto near = nearest_names(value, choices, 1);
+      return near.empty() ? "" : "; the nearest is " + quoted_list(near);
     }
   } // namespace
 
@@ -152,7 +229,7 @@ namespace crawler
   {
     handler_->enter_subsection(section);
     section_.push_back(section);
-    sections_.push_back(fmt::format("{}", fmt::join(section_, "/")));
+    sections_.push_back(path_text(section_));
   }
 
   void
@@ -167,272 +244,244 @@ namespace crawler
   {
     std::vector<std::string> words = section_;
     words.push_back(name);
-    return fmt::format("{}", fmt::join(words, "/"));
+    return path_text(words);
   }
 
   void
-  Declarations::declare(const std::string &name,
-                        const std::string &default_value,
-                        const std::string &expected,
-                        const std::function<bool(const std::string &)> &match,
-                        const std::function<void(const std::string &)> &assign,
-                        const std::string &documentation,
-                        const std::string &unit)
+  Declarations::Entry::means(const std::string &documentation)
   {
-    const std::string unit_text = unit.empty() ? "" : " Unit: " + unit + ".";
-    handler_->declare_entry(
-      name, default_value, WordyPattern(expected, match), documentation + " Expected: " + expected + "." + unit_text);
-    handler_->add_action(name, [assign](const std::string &text) { assign(trimmed(text)); });
-    entries_.push_back({path_of(name), default_value, expected, unit, documentation});
+    info_.documentation = documentation;
+    if (info_.names_file)
+      info_.documentation +=
+        " A file counts from the folder of this parameter file (with --set, from the current one).";
+    const std::string unit_text = info_.unit.empty() ? "" : " Unit: " + info_.unit + ".";
+    owner_.handler_->declare_entry(name_,
+                                   info_.default_value,
+                                   WordyPattern(info_.expected, match_),
+                                   info_.documentation + " Expected: " + info_.expected + "." + unit_text);
+    owner_.handler_->add_action(name_, [assign = assign_](const std::string &text) { assign(trimmed(text)); });
+    owner_.entries_.push_back(info_);
   }
 
-  void
-  Declarations::number(const std::string &name,
-                       double &value,
-                       const Range &range,
-                       const std::string &documentation,
-                       const std::string &unit)
+  template <typename Value, typename Read>
+  Declarations::Entry
+  Declarations::entry(
+    const std::string &name, Value &value, const std::string &expected, const std::string &unit, const Read &read)
   {
-    declare(
+    Entry result(*this, name, {path_of(name), default_text(value), expected, unit, ""});
+    result.match_  = [read](const std::string &text) { return read(text).has_value(); };
+    result.assign_ = [&value, read](const std::string &text) { value = *read(text); };
+    return result;
+  }
+
+  template <typename Value, typename Read>
+  Declarations::Entry
+  Declarations::entry(const std::string &name,
+                      std::optional<Value> &value,
+                      const std::string &expected,
+                      const std::string &unit,
+                      const Read &read)
+  {
+    Entry result(
+      *this,
       name,
-      to_text(value),
-      range.in_words(),
-      [range](const std::string &text) {
-        const auto number = to_number(text);
-        return number && range.contains(*number);
-      },
-      [&value](const std::string &text) { value = *to_number(text); },
-      documentation,
-      unit);
+      {path_of(name), value ? default_text(*value) : automatic, expected + " or the word \"automatic\"", unit, ""});
+    result.match_  = [read](const std::string &text) { return text == automatic || read(text).has_value(); };
+    result.assign_ = [&value, read](const std::string &text) { value = read(text); };
+    return result;
   }
 
-  void
+  Declarations::Entry
+  Declarations::number(const std::string &name, double &value, const Range &range, const std::string &unit)
+  {
+    return entry(name, value, range.in_words(), unit, reader(range));
+  }
+
+  Declarations::Entry
   Declarations::number(const std::string &name,
                        std::optional<double> &value,
                        const Range &range,
-                       const std::string &documentation,
                        const std::string &unit)
   {
-    declare(
-      name,
-      value ? to_text(*value) : automatic,
-      range.in_words() + " or the word \"automatic\"",
-      [range](const std::string &text) {
-        const auto number = to_number(text);
-        return text == automatic || (number && range.contains(*number));
-      },
-      [&value](const std::string &text) { value = to_number(text); },
-      documentation,
-      unit);
+    return entry(name, value, range.in_words(), unit, reader(range));
   }
 
-  void
+  Declarations::Entry
   Declarations::whole_number(const std::string &name,
                              unsigned int &value,
                              const unsigned int lower,
-                             const unsigned int upper,
-                             const std::string &documentation)
+                             const unsigned int upper)
   {
-    declare(
-      name,
-      std::to_string(value),
-      count_range(lower, upper),
-      [lower, upper](const std::string &text) {
-        const auto count = to_count(text);
-        return count && *count >= lower && *count <= upper;
-      },
-      [&value](const std::string &text) { value = *to_count(text); },
-      documentation,
-      "");
+    return entry(name, value, count_range(lower, upper), "", reader(lower, upper));
   }
 
-  void
+  Declarations::Entry
   Declarations::whole_number(const std::string &name,
                              std::optional<unsigned int> &value,
                              const unsigned int lower,
-                             const unsigned int upper,
-                             const std::string &documentation)
+                             const unsigned int upper)
   {
-    declare(
-      name,
-      value ? std::to_string(*value) : automatic,
-      count_range(lower, upper) + " or the word \"automatic\"",
-      [lower, upper](const std::string &text) {
-        const auto count = to_count(text);
-        return text == automatic || (count && *count >= lower && *count <= upper);
-      },
-      [&value](const std::string &text) { value = to_count(text); },
-      documentation,
-      "");
+    return entry(name, value, count_range(lower, upper), "", reader(lower, upper));
   }
 
-  void
-  Declarations::numbers(const std::string &name,
-                        std::vector<double> &value,
-                        const std::string &documentation,
-                        const std::string &unit)
+  Declarations::Entry
+  Declarations::numbers(const std::string &name, std::vector<double> &value, const std::string &unit)
   {
-    const bool may_be_empty = value.empty();
-    std::vector<std::string> items;
-    for (const double number : value)
-      items.push_back(to_text(number));
-    declare(
-      name,
-      fmt::format("{}", fmt::join(items, ", ")),
-      may_be_empty ? "a list of numbers separated by commas, or nothing" : "a list of numbers separated by commas",
-      [may_be_empty](const std::string &text) {
-        const auto all = to_numbers(text);
-        return (may_be_empty && text.empty()) ||
-               std::all_of(all.begin(), all.end(), [](const auto &number) { return number; });
-      },
-      [&value](const std::string &text) {
-        value.clear();
-        if (!text.empty())
-          for (const auto &number : to_numbers(text))
-            value.push_back(*number);
-      },
-      documentation,
-      unit);
+    const bool may_be_empty    = value.empty();
+    const std::string expected = "a list of numbers separated by commas";
+    return entry(name,
+                 value,
+                 may_be_empty ? expected + ", or nothing" : expected,
+                 unit,
+                 [may_be_empty](const std::string &text) -> std::optional<std::vector<double>> {
+                   std::vector<double> list;
+                   if (may_be_empty && text.empty())
+                     return list;
+                   for (const auto &number : to_numbers(text))
+                     if (number)
+                       list.push_back(*number);
+                     else
+                       return std::nullopt;
+                   return list;
+                 });
   }
 
-  void
-  Declarations::choice(const std::string &name,
-                       std::string &value,
-                       const std::vector<std::string> &words,
-                       const std::string &documentation)
+  Declarations::Entry
+  Declarations::choice(const std::string &name, std::string &value, const std::vector<std::string> &words)
   {
-    declare(
-      name,
-      value,
-      words.size() == 1 ? "the word " + quoted_list(words) : quoted_list(words),
-      [words](const std::string &text) { return std::find(words.begin(), words.end(), text) != words.end(); },
-      [&value](const std::string &text) { value = text; },
-      documentation,
-      "");
+    return entry(name,
+                 value,
+                 words.size() == 1 ? "the word " + quoted_list(words) : quoted_list(words),
+                 "",
+                 [words](const std::string &text) {
+                   return std::find(words.begin(), words.end(), text) != words.end() ? std::optional(text)
+                                                                                     : std::nullopt;
+                 });
   }
 
-  void
-  Declarations::flag(const std::string &name, bool &value, const std::string &documentation)
+  Declarations::Entry
+  Declarations::flag(const std::string &name, bool &value)
   {
-    declare(
-      name,
-      value ? "true" : "false",
-      "\"true\" or \"false\"",
-      [](const std::string &text) { return text == "true" || text == "false"; },
-      [&value](const std::string &text) { value = (text == "true"); },
-      documentation,
-      "");
+    return entry(name, value, "\"true\" or \"false\"", "", [](const std::string &text) {
+      return text == "true" || text == "false" ? std::optional(text == "true") : std::nullopt;
+    });
   }
 
-  void
-  Declarations::text(const std::string &name,
-                     std::string &value,
-                     const std::string &expected,
-                     const std::string &documentation,
-                     const std::string &unit)
+  Declarations::Entry
+  Declarations::text(const std::string &name, std::string &value, const std::string &expected, const std::string &unit)
   {
-    declare(
-      name,
-      value,
-      expected,
-      [](const std::string &) { return true; },
-      [&value](const std::string &text) { value = text; },
-      documentation,
-      unit);
+    return entry(name, value, expected, unit, [](const std::string &text) { return std::optional(text); });
   }
 
-  void
+  Declarations::Entry
   Declarations::file(const std::string &name,
                      std::string &value,
                      const std::string &expected,
-                     const std::string &documentation,
                      const std::string &unit,
                      const std::string &ending)
   {
-    declare(
-      name,
-      value,
-      expected,
-      [](const std::string &) { return true; },
-      [&value, ending](const std::string &text) { value = text.ends_with(ending) ? seen_from_here(text) : text; },
-      documentation + " A file counts from the folder of this parameter file (with --set, from the current one).",
-      unit);
-    entries_.back().names_file  = true;
-    entries_.back().file_ending = ending;
+    Entry result             = entry(name, value, expected, unit, [ending](const std::string &text) {
+      return std::optional(text.ends_with(ending) ? seen_from_here(text) : text);
+    });
+    result.info_.names_file  = true;
+    result.info_.file_ending = ending;
+    return result;
   }
 
   void
   Declarations::set(const std::string &path, const std::string &value, const std::filesystem::path &folder)
   {
     const std::vector<std::string> words = split_path(path);
-    const std::string full               = fmt::format("{}", fmt::join(words, "/"));
-    const auto entry =
-      std::find_if(entries_.begin(), entries_.end(), [&](const EntryInfo &e) { return e.path == full; });
-    if (entry == entries_.end())
-    {
-      const std::string section = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
-      if (!section.empty())
-        require_section(section);
-      // Prefer names of the same section, then any entry of the same name elsewhere.
-      std::vector<std::string> same_section, elsewhere;
-      for (const EntryInfo &e : entries_)
-      {
-        const auto other                = split_path(e.path);
-        const std::string other_section = fmt::format("{}", fmt::join(other.begin(), other.end() - 1, "/"));
-        if (other_section == section)
-          same_section.push_back(other.back());
-        else if (!nearest_names(words.back(), {other.back()}).empty())
-          elsewhere.push_back(e.path);
-      }
-      if (std::find(sections_.begin(), sections_.end(), full) != sections_.end())
-        throw InputError(fmt::format("\"{}\" is a section; the name of an entry in it is expected", full), full);
-      std::vector<std::string> near = nearest_names(words.back(), same_section);
-      if (near.empty())
-        near.assign(elsewhere.begin(), elsewhere.begin() + std::min<std::size_t>(3, elsewhere.size()));
-      const std::string where = section.empty() ? "at the top level of the file" : "in section \"" + section + "\"";
-      throw InputError(
-        fmt::format("unknown entry \"{}\" {}; {}",
-                    words.back(),
-                    where,
-                    near.empty()
-                      ? "entries there are " + quoted_list(same_section)
-                      : "the nearest " + std::string(near.size() > 1 ? "names are " : "name is ") + quoted_list(near)),
-        full);
-    }
-    for (std::size_t i = 0; i + 1 < words.size(); ++i)
-      handler_->enter_subsection(words[i]);
-    std::string problem;
+    const EntryInfo &entry               = find(words);
+    const std::string text               = with_absolute_name(path, value, folder);
+    bool is_admissible                   = true;
+    enter_sections(words);
     try
     {
-      std::string text = trimmed(value);
-      if (entry->names_file && !text.empty() && text.ends_with(entry->file_ending))
-        text = std::filesystem::absolute(folder / text).lexically_normal().string();
       handler_->set(words.back(), text);
     }
     catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
     {
-      problem = fmt::format("\"{}\" is \"{}\", but {} is expected", full, value, entry->expected);
-      if (entry->expected.find("number") != std::string::npos)
-        problem += number_hint(trimmed(value));
-      // A choice of words: name the nearest one.
-      if (!value.empty() && entry->expected.front() == '"')
-      {
-        std::vector<std::string> choices;
-        for (std::size_t start = entry->expected.find('"'); start != std::string::npos;)
-        {
-          const std::size_t end = entry->expected.find('"', start + 1);
-          choices.push_back(entry->expected.substr(start + 1, end - start - 1));
-          start = entry->expected.find('"', end + 1);
-        }
-        const auto near = nearest_names(value, choices, 1);
-        if (!near.empty())
-          problem += "; the nearest is " + quoted_list(near);
-      }
+      is_admissible = false;
     }
-    for (std::size_t i = 0; i + 1 < words.size(); ++i)
+    leave_sections(words);
+    if (is_admissible)
+      return;
+    const bool is_number = entry.expected.find("number") != std::string::npos;
+    throw InputError(fmt::format("\"{}\" is \"{}\", but {} is expected{}{}",
+                                 entry.path,
+                                 value,
+                                 entry.expected,
+                                 is_number ? number_hint(trimmed(value)) : "",
+                                 nearest_word(value, entry.expected)),
+                     entry.path);
+  }
+
+  std::string
+  Declarations::with_absolute_name(const std::string &path,
+                                   const std::string &value,
+                                   const std::filesystem::path &folder) const
+  {
+    const EntryInfo &entry = find(split_path(path));
+    const std::string text = trimmed(value);
+    if (!entry.names_file || text.empty() || !text.ends_with(entry.file_ending))
+      return text;
+    return std::filesystem::absolute(folder / text).lexically_normal().string();
+  }
+
+  const EntryInfo &
+  Declarations::find(const std::vector<std::string> &path) const
+  {
+    const std::string full = path_text(path);
+    for (const EntryInfo &entry : entries_)
+      if (entry.path == full)
+        return entry;
+    refuse_name(path);
+  }
+
+  /// With the nearest names: those of the same section, else any entry of a near name elsewhere.
+  void
+  Declarations::refuse_name(const std::vector<std::string> &words) const
+  {
+    const std::string full = path_text(words), section = section_of(words);
+    if (!section.empty())
+      require_section(section);
+    std::vector<std::string> same_section, elsewhere;
+    for (const EntryInfo &e : entries_)
+    {
+      const auto other = split_path(e.path);
+      if (section_of(other) == section)
+        same_section.push_back(other.back());
+      else if (!nearest_names(words.back(), {other.back()}).empty())
+        elsewhere.push_back(e.path);
+    }
+    if (std::find(sections_.begin(), sections_.end(), full) != sections_.end())
+      throw InputError(fmt::format("\"{}\" is a section; the name of an entry in it is expected", full), full);
+    std::vector<std::string> near = nearest_names(words.back(), same_section);
+    if (near.empty())
+      near.assign(elsewhere.begin(), elsewhere.begin() + std::min<std::size_t>(3, elsewhere.size()));
+    throw InputError(
+      fmt::format("unknown entry \"{}\" {}; {}",
+                  words.back(),
+                  section.empty() ? "at the top level of the file" : "in section \"" + section + "\"",
+                  near.empty()
+                    ? "entries there are " + quoted_list(same_section)
+                    : "the nearest " + std::string(near.size() > 1 ? "names are " : "name is ") + quoted_list(near)),
+      full);
+  }
+
+  void
+  Declarations::enter_sections(const std::vector<std::string> &path) const
+  {
+    for (std::size_t i = 0; i + 1 < path.size(); ++i)
+      handler_->enter_subsection(path[i]);
+  }
+
+  void
+  Declarations::leave_sections(const std::vector<std::string> &path) const
+  {
+    for (std::size_t i = 0; i + 1 < path.size(); ++i)
       handler_->leave_subsection();
-    if (!problem.empty())
-      throw InputError(problem, full);
   }
 
   void
@@ -454,11 +503,9 @@ namespace crawler
   Declarations::value(const unsigned int index) const
   {
     const std::vector<std::string> words = split_path(entries_[index].path);
-    for (std::size_t i = 0; i + 1 < words.size(); ++i)
-      handler_->enter_subsection(words[i]);
+    enter_sections(words);
     const std::string result = handler_->get(words.back());
-    for (std::size_t i = 0; i + 1 < words.size(); ++i)
-      handler_->leave_subsection();
+    leave_sections(words);
     return result;
   }
 
@@ -491,7 +538,7 @@ namespace crawler
     for (const EntryInfo &entry : entries_)
     {
       const auto words      = split_path(entry.path);
-      const std::string own = fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
+      const std::string own = section_of(words);
       if (own != section)
       {
         section = own;
@@ -538,7 +585,7 @@ namespace crawler
   std::string
   normal_path(const std::string &path)
   {
-    return fmt::format("{}", fmt::join(split_path(path), "/"));
+    return path_text(split_path(path));
   }
 
   std::optional<double>

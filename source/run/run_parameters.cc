@@ -153,24 +153,16 @@ namespace crawler
   void
   RunParameters::add_parameters(Declarations &declarations)
   {
-    declarations.choice(
-      "Model",
-      model,
-      {"auto", "perturbation", "kinematic", "linear", "nonlinear"},
-      "The level of the model's ladder (doc/theory.md): the series for the optimal wave in closed form, "
-      "a body whose strain is known, the equation for a = 0, or the full nonlinear equation; auto is "
-      "the first of these whose estimated error is at most Accuracy.");
-    declarations.number("Accuracy",
-                        accuracy,
-                        between(1e-12, 0.1),
-                        "Wanted error of the displacement, relative to it (or to 1e-4 of the largest deformation, if "
-                        "that is larger). Chooses degree, cells and time tolerance where they "
-                        "are automatic (doc/numerics.md).",
-                        "1");
-    declarations.flag("Error estimate",
-                      error_estimate,
-                      "Whether a second, finer run tells the error of the displacement; about as expensive as a run "
-                      "without output.");
+    declarations.choice("Model", model, {"auto", "perturbation", "kinematic", "linear", "nonlinear"})
+      .means("The level of the model's ladder (doc/theory.md): the series for the optimal wave in closed form, a body "
+             "whose strain is known, the equation for a = 0, or the full nonlinear equation; auto is the first of "
+             "these whose estimated error is at most Accuracy.");
+    declarations.number("Accuracy", accuracy, between(1e-12, 0.1), "1")
+      .means("Wanted error of the displacement, relative to it (or to 1e-4 of the largest deformation, if that is "
+             "larger). Chooses degree, cells and time tolerance where they are automatic (doc/numerics.md).");
+    declarations.flag("Error estimate", error_estimate)
+      .means(
+        "Whether a second, finer run tells the error of the displacement; about as expensive as a run without output.");
     body.add_parameters(declarations);
     ground.add_parameters(declarations);
     active_stress.add_parameters(declarations);

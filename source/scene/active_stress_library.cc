@@ -157,8 +157,8 @@ namespace crawler
       if (entry.name != "none" && entry.name != "prescribed strain")
         of_strain.push_back(entry.name);
     }
-    declarations.choice(
-      "Generator", generator, names, is_term ? "What makes the term, as in Active stress." : documentation + ".");
+    declarations.choice("Generator", generator, names)
+      .means(is_term ? "What makes the term, as in Active stress." : documentation + ".");
     optimal_wave.add_parameters(declarations);
     travelling_wave.add_parameters(declarations);
     standing_wave.add_parameters(declarations);

@@ -8,47 +8,24 @@ namespace crawler
   Body::add_parameters(Declarations &declarations)
   {
     declarations.enter("Body");
-    declarations.number("Length", length, positive(), "Rest length L of the body.", "length");
-    declarations.number(
-      "Elastic modulus", elastic_modulus, positive(), "Elastic modulus k: force per unit strain.", "force");
-    declarations.number("Friction coefficient",
-                        friction_coefficient,
-                        positive(),
-                        "Friction coefficient gamma: force per velocity and reference length of the "
-                        "unstretched body.",
-                        "force time/length^2");
-    declarations.number("Anchoring exponent",
-                        anchoring_exponent,
-                        between(-100, 100),
-                        "Anchoring exponent p: friction per reference length is gamma times velocity times "
-                        "stretch^(1-p). Where p > 1 a contracted part grips (earthworm), where p < 1 a "
-                        "stretched part grips (snail); at p = 1 no wave moves the body.",
-                        "1");
+    declarations.number("Length", length, positive(), "length").means("Rest length L of the body.");
+    declarations.number("Elastic modulus", elastic_modulus, positive(), "force")
+      .means("Elastic modulus k: force per unit strain.");
+    declarations.number("Friction coefficient", friction_coefficient, positive(), "force time/length^2")
+      .means("Friction coefficient gamma: force per velocity and reference length of the unstretched body.");
+    declarations.number("Anchoring exponent", anchoring_exponent, between(-100, 100), "1")
+      .means("Anchoring exponent p: friction per reference length is gamma times velocity times stretch^(1-p). Where p "
+             "> 1 a contracted part grips (earthworm), where p < 1 a stretched part grips (snail); at p = 1 no wave "
+             "moves the body.");
     const std::string expected = "a formula of s, or a CSV file (a name that ends in .csv) with the header s,value";
-    declarations.file("Elastic modulus profile",
-                      elastic_modulus_profile,
-                      expected,
-                      "Factor of the elastic modulus along the body; s is the material coordinate, L the body length.",
-                      "1",
-                      ".csv");
-    declarations.file("Friction profile",
-                      friction_profile,
-                      expected,
-                      "Factor of the friction coefficient along the body, for example of a belly with scales.",
-                      "1",
-                      ".csv");
-    declarations.file("Initial stretch",
-                      initial_stretch,
-                      expected,
-                      "Stretch of the body at t = 0; its centre of mass starts where that of the unstretched body "
-                      "would.",
-                      "1",
-                      ".csv");
-    declarations.choice("Profile interpolation",
-                        profile_interpolation,
-                        {"cubic", "linear"},
-                        "Between the rows of the CSV files of this section; beyond the first and the last row their "
-                        "values hold.");
+    declarations.file("Elastic modulus profile", elastic_modulus_profile, expected, "1", ".csv")
+      .means("Factor of the elastic modulus along the body; s is the material coordinate, L the body length.");
+    declarations.file("Friction profile", friction_profile, expected, "1", ".csv")
+      .means("Factor of the friction coefficient along the body, for example of a belly with scales.");
+    declarations.file("Initial stretch", initial_stretch, expected, "1", ".csv")
+      .means("Stretch of the body at t = 0; its centre of mass starts where that of the unstretched body would.");
+    declarations.choice("Profile interpolation", profile_interpolation, {"cubic", "linear"})
+      .means("Between the rows of the CSV files of this section; beyond the first and the last row their values hold.");
     declarations.leave();
   }
 

@@ -81,37 +81,27 @@ namespace crawler
       names.push_back(law.name);
     }
     declarations.enter("Ground");
-    declarations.file("Profile",
-                      profile,
-                      "a formula of x, or a CSV file (a name that ends in .csv) with the header x,value",
-                      "Factor of the friction along the ground; x is the place on the ground, where the body lies from "
-                      "0 to L before it is stretched.",
-                      "1",
-                      ".csv");
-    declarations.choice(
-      "Profile interpolation", interpolation, {"cubic", "linear"}, "Between the rows of the CSV file.");
-    declarations.choice("Outside",
-                        outside,
-                        {"hold", "error"},
-                        "Beyond the first and the last row of the CSV file: their values hold, or the run ends.");
-    declarations.choice("Friction law", friction_law, names, documentation + ".");
-    declarations.text("Expression",
-                      expression,
-                      "a formula of w",
-                      "For the law expression: friction divided by gamma, as a function of the stretch w; positive.",
-                      "1");
-    declarations.text("Constants", constants, "a list name=number, name=number", "Constants that it may use.");
-    declarations.number("Backward ratio",
-                        backward_ratio,
-                        between(0.1, 10),
-                        "Resistance to backward motion (v < 0) over that to forward motion, r; in between the friction "
-                        "has the factor (1+r)/2 + (1-r)/2 tanh(v/v_s).",
-                        "1");
-    declarations.number("Switching velocity",
-                        switching_velocity,
-                        positive(),
-                        "The velocity v_s of this transition; needed if the Backward ratio is not 1.",
-                        "length/time");
+    declarations
+      .file("Profile",
+            profile,
+            "a formula of x, or a CSV file (a name that ends in .csv) with the header x,value",
+            "1",
+            ".csv")
+      .means("Factor of the friction along the ground; x is the place on the ground, where the body lies from 0 to L "
+             "before it is stretched.");
+    declarations.choice("Profile interpolation", interpolation, {"cubic", "linear"})
+      .means("Between the rows of the CSV file.");
+    declarations.choice("Outside", outside, {"hold", "error"})
+      .means("Beyond the first and the last row of the CSV file: their values hold, or the run ends.");
+    declarations.choice("Friction law", friction_law, names).means(documentation + ".");
+    declarations.text("Expression", expression, "a formula of w", "1")
+      .means("For the law expression: friction divided by gamma, as a function of the stretch w; positive.");
+    declarations.text("Constants", constants, "a list name=number, name=number").means("Constants that it may use.");
+    declarations.number("Backward ratio", backward_ratio, between(0.1, 10), "1")
+      .means("Resistance to backward motion (v < 0) over that to forward motion, r; in between the friction has the "
+             "factor (1+r)/2 + (1-r)/2 tanh(v/v_s).");
+    declarations.number("Switching velocity", switching_velocity, positive(), "length/time")
+      .means("The velocity v_s of this transition; needed if the Backward ratio is not 1.");
     declarations.leave();
   }
 

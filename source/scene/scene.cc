@@ -96,31 +96,29 @@ namespace crawler
         if (!physical)
           return nullptr;
         const double unit = rate ? units_.force / units_.time : units_.force;
-        return stress_at_points(
-          [this, at = std::move(physical), unit](const double t, const std::span<double> m) {
-            at->values(physical_time(t), m);
-            for (double &value : m)
-              value /= unit;
-          });
+        return stress_at_points([this, at = std::move(physical), unit](const double t, const std::span<double> m) {
+          at->values(physical_time(t), m);
+          for (double &value : m)
+            value /= unit;
+        });
       }
 
       std::unique_ptr<FeedbackAtPoints>
       feedback_at(const std::vector<double> &points) const
       {
-        return feedback_at_points([this,
-                                   at    = stress_.feedback()->at(times(points, units_.length)),
-                                   rates = std::vector<double>()](
-                                    const double t, const StretchSeen &seen, const FeedbackStress &m) mutable {
-          rates.assign(seen.rate.begin(), seen.rate.end());
-          for (double &value : rates)
-            value /= units_.time;
-          at->values(physical_time(t), {seen.stretch, rates, seen.near, seen.delayed}, m);
-          for (const auto &part : {m.m, m.m_w, m.m_near})
-            for (double &value : part)
-              value /= units_.force;
-          for (double &value : m.m_rate)
-            value /= units_.force * units_.time;
-        });
+        return feedback_at_points(
+          [this, at = stress_.feedback()->at(times(points, units_.length)), rates = std::vector<double>()](
+            const double t, const StretchSeen &seen, const FeedbackStress &m) mutable {
+            rates.assign(seen.rate.begin(), seen.rate.end());
+            for (double &value : rates)
+              value /= units_.time;
+            at->values(physical_time(t), {seen.stretch, rates, seen.near, seen.delayed}, m);
+            for (const auto &part : {m.m, m.m_w, m.m_near})
+              for (double &value : part)
+                value /= units_.force;
+            for (double &value : m.m_rate)
+              value /= units_.force * units_.time;
+          });
       }
 
       double

@@ -16,41 +16,31 @@ namespace crawler
     for (const Integrator &entry : integrators())
       names.push_back(entry.name);
     declarations.enter("Time");
-    declarations.number("End time", end_time, positive(), "Duration T; the body starts at rest at time 0.", "time");
-    declarations.text("Integrator",
-                      integrator,
-                      quoted_list(names),
-                      "Time integrator (PETSc TS). Automatic: radau 5 or 9, bdf or arkimex 4, by accuracy and stretch "
-                      "(doc/numerics.md). "
-                      "Integrators of PETSc that are not sound for this equation are refused "
-                      "with the reason.");
-    declarations.choice("Engine",
-                        engine,
-                        {"automatic", "petsc"},
-                        "What carries the integrator out. Automatic: the fused engine of the program, which is several "
-                        "times faster, for the radau integrators in the position form on uniform meshes, and PETSc "
-                        "otherwise and where that gives up.");
-    declarations.whole_number("Order", order, 1, 5, "Order of bdf; the other integrators have their own.");
-    declarations.choice("Step control",
-                        step_control,
-                        {"adaptive", "fixed"},
-                        "Whether step sizes follow the estimated error, or all are Initial step (shortened to end on "
-                        "output times).");
-    declarations.number("Tolerance",
-                        tolerance,
-                        positive(),
-                        "Estimated error of the displacement that is admissible in a step (root mean square over the "
-                        "body). Automatic: chosen from Accuracy.",
-                        "length");
-    declarations.number(
-      "Initial step", initial_step, positive(), "Size of the first step. Automatic: chosen from Accuracy.", "time");
-    declarations.choice("Cycle stop",
-                        cycle_stop,
-                        {"automatic", "on", "off"},
-                        "Whether a run whose active stress has a period ends when a cycle repeats; the cycles that are "
-                        "left are extrapolated, with a bound (doc/numerics.md). Automatic: if there are no snapshots "
-                        "and Step control is adaptive. A table of statistics ends with the cycles that are computed.");
-    declarations.whole_number("Maximum number of steps", max_steps, 1, 999999999, "The run stops after so many steps.");
+    declarations.number("End time", end_time, positive(), "time")
+      .means("Duration T; the body starts at rest at time 0.");
+    declarations.text("Integrator", integrator, quoted_list(names))
+      .means(
+        "Time integrator (PETSc TS). Automatic: radau 5 or 9, bdf or arkimex 4, by accuracy and stretch "
+        "(doc/numerics.md). Integrators of PETSc that are not sound for this equation are refused with the reason.");
+    declarations.choice("Engine", engine, {"automatic", "petsc"})
+      .means("What carries the integrator out. Automatic: the fused engine of the program, which is several times "
+             "faster, for the radau integrators in the position form on uniform meshes, and PETSc otherwise and where "
+             "that gives up.");
+    declarations.whole_number("Order", order, 1, 5).means("Order of bdf; the other integrators have their own.");
+    declarations.choice("Step control", step_control, {"adaptive", "fixed"})
+      .means(
+        "Whether step sizes follow the estimated error, or all are Initial step (shortened to end on output times).");
+    declarations.number("Tolerance", tolerance, positive(), "length")
+      .means("Estimated error of the displacement that is admissible in a step (root mean square over the body). "
+             "Automatic: chosen from Accuracy.");
+    declarations.number("Initial step", initial_step, positive(), "time")
+      .means("Size of the first step. Automatic: chosen from Accuracy.");
+    declarations.choice("Cycle stop", cycle_stop, {"automatic", "on", "off"})
+      .means("Whether a run whose active stress has a period ends when a cycle repeats; the cycles that are left are "
+             "extrapolated, with a bound (doc/numerics.md). Automatic: if there are no snapshots and Step control is "
+             "adaptive. A table of statistics ends with the cycles that are computed.");
+    declarations.whole_number("Maximum number of steps", max_steps, 1, 999999999)
+      .means("The run stops after so many steps.");
     declarations.leave();
   }
 

@@ -7,8 +7,9 @@ namespace crawler
 {
   /**
    * The value of a formula of any variables, and its derivatives with respect to some of them, at points that change
-   * with each call. Derivatives are exact up to round-off (forward-mode automatic differentiation, as in
-   * FormulaRateAtPoints); at a jump or a kink they are those of one of the sides.
+   * with each call. Derivatives are exact up to round-off (each operation hands
+   * on the derivative of its result: forward-mode automatic differentiation); at a jump or a kink they are those of one
+   * of the sides.
    */
   class FormulaGradient
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,9 +63,12 @@ namespace crawler
   parse_axis(const std::string &text, const std::string &name);
 
   /// Throws InputError, in the name of the entry @p name, unless the axis is that of an entry in @p declarations and
-  /// all its values are admissible there. Leaves the entry at the last value.
+  /// all its values are admissible there; names of files count from @p folder. Leaves the entry at the last value.
   void
-  require_valid(const Axis &axis, const std::string &name, Declarations &declarations);
+  require_valid(const Axis &axis,
+                const std::string &name,
+                Declarations &declarations,
+                const std::filesystem::path &folder = "");
 
   /// The values as numbers. Throws InputError if one is something else.
   std::vector<double>

@@ -52,7 +52,10 @@ namespace crawler
 
   /**
    * The list of all entries of the parameter file. A parameter struct declares its members here, each
-   * with its default, range, unit and a sentence; from then on the member follows the entry.
+   * with its default, range, unit and a sentence; from then on the member follows the entry:
+   *
+   *   declarations.number("Length", length, positive(), "length").means("Rest length L of the body.");
+   *
    * Values are kept and printed by dealii::ParameterHandler. Names are unique and have one spelling.
    */
   class Declarations
@@ -66,56 +69,52 @@ namespace crawler
     void
     leave();
 
-    void
-    number(const std::string &name,
-           double &value,
-           const Range &range,
-           const std::string &documentation,
-           const std::string &unit);
-    /// Like number(), but the word "automatic" (an empty optional) is admissible as well.
-    void
-    number(const std::string &name,
-           std::optional<double> &value,
-           const Range &range,
-           const std::string &documentation,
-           const std::string &unit);
-    void
-    whole_number(const std::string &name,
-                 unsigned int &value,
-                 unsigned int lower,
-                 unsigned int upper,
-                 const std::string &documentation);
-    void
-    whole_number(const std::string &name,
-                 std::optional<unsigned int> &value,
-                 unsigned int lower,
-                 unsigned int upper,
-                 const std::string &documentation);
+    /// An entry that is declared once it says what it means, in a sentence or several.
+    class [[nodiscard]] Entry
+    {
+    public:
+      void
+      means(const std::string &documentation);
+
+    private:
+      friend class Declarations;
+      Declarations &owner_;
+      std::string name_;
+      EntryInfo info_;
+      std::function<bool(const std::string &)> match_;
+      std::function<void(const std::string &)> assign_;
+
+      Entry(Declarations &owner, std::string name, EntryInfo info)
+        : owner_(owner)
+        , name_(std::move(name))
+        , info_(std::move(info))
+      {
+      }
+    };
+
+    // Where a value is optional, the word "automatic" (an empty optional) is admissible as well.
+    Entry
+    number(const std::string &name, double &value, const Range &range, const std::string &unit);
+    Entry
+    number(const std::string &name, std::optional<double> &value, const Range &range, const std::string &unit);
+    Entry
+    whole_number(const std::string &name, unsigned int &value, unsigned int lower, unsigned int upper);
+    Entry
+    whole_number(const std::string &name, std::optional<unsigned int> &value, unsigned int lower, unsigned int upper);
     /// A list; it may be empty if the default is.
-    void
-    numbers(const std::string &name,
-            std::vector<double> &value,
-            const std::string &documentation,
-            const std::string &unit);
-    void
-    choice(const std::string &name,
-           std::string &value,
-           const std::vector<std::string> &words,
-           const std::string &documentation);
-    void
-    flag(const std::string &name, bool &value, const std::string &documentation);
-    void
-    text(const std::string &name,
-         std::string &value,
-         const std::string &expected,
-         const std::string &documentation,
-         const std::string &unit = "");
+    Entry
+    numbers(const std::string &name, std::vector<double> &value, const std::string &unit);
+    Entry
+    choice(const std::string &name, std::string &value, const std::vector<std::string> &words);
+    Entry
+    flag(const std::string &name, bool &value);
+    Entry
+    text(const std::string &name, std::string &value, const std::string &expected, const std::string &unit = "");
     /// A text that is the name of a file, or may be one if its ending is @p ending.
-    void
+    Entry
     file(const std::string &name,
          std::string &value,
          const std::string &expected,
-         const std::string &documentation,
          const std::string &unit   = "",
          const std::string &ending = "");
 
@@ -124,6 +123,10 @@ namespace crawler
     /// file counts from @p folder; it is kept, and printed, as an absolute one.
     void
     set(const std::string &path, const std::string &value, const std::filesystem::path &folder = "");
+
+    /// The value that set() would keep: the name of a file, if the entry names one, as an absolute one.
+    std::string
+    with_absolute_name(const std::string &path, const std::string &value, const std::filesystem::path &folder) const;
 
     /// Throws InputError with the nearest names unless @p path is a declared section.
     void
@@ -150,14 +153,28 @@ namespace crawler
     print_markdown(std::ostream &out) const;
 
   private:
+    template <typename Value, typename Read>
+    Entry
+    entry(
+      const std::string &name, Value &value, const std::string &expected, const std::string &unit, const Read &read);
+    template <typename Value, typename Read>
+    Entry
+    entry(const std::string &name,
+          std::optional<Value> &value,
+          const std::string &expected,
+          const std::string &unit,
+          const Read &read);
+
     void
-    declare(const std::string &name,
-            const std::string &default_value,
-            const std::string &expected,
-            const std::function<bool(const std::string &)> &match,
-            const std::function<void(const std::string &)> &assign,
-            const std::string &documentation,
-            const std::string &unit);
+    enter_sections(const std::vector<std::string> &path) const;
+    void
+    leave_sections(const std::vector<std::string> &path) const;
+    /// Throws InputError with the nearest names if there is no such entry.
+    const EntryInfo &
+    find(const std::vector<std::string> &path) const;
+    [[noreturn]] void
+    refuse_name(const std::vector<std::string> &path) const;
+
     std::string
     path_of(const std::string &name) const;
 

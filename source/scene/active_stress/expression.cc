@@ -13,8 +13,11 @@ namespace crawler
     input_of(const ExpressionParameters &parameters)
     {
       const std::string section = "Active stress/Expression/";
-      return {
-        "active stress", parameters.active_stress, parameters.constants, section + "Active stress", section + "Constants"};
+      return {"active stress",
+              parameters.active_stress,
+              parameters.constants,
+              section + "Active stress",
+              section + "Constants"};
     }
   } // namespace
 
@@ -23,14 +26,12 @@ namespace crawler
   ExpressionParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Expression");
-    declarations.text("Active stress",
-                      active_stress,
-                      "a formula of s and t",
-                      "The active stress m(s,t): s is the material coordinate, t the time; pi, L (body length) "
-                      "and T (end time) are known, and sin, cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, "
-                      "sign, min, max, pow, mod, floor, ceil, erf, erfc, ^, comparisons and a ? b : c.",
-                      "force");
-    declarations.text("Constants", constants, "a list name=number, name=number", "Constants that the formula may use.");
+    declarations.text("Active stress", active_stress, "a formula of s and t", "force")
+      .means("The active stress m(s,t): s is the material coordinate, t the time; pi, L (body length) and T (end time) "
+             "are known, and sin, cos, tan, sinh, cosh, tanh, exp, log, sqrt, abs, sign, min, max, pow, mod, floor, "
+             "ceil, erf, erfc, ^, comparisons and a ? b : c.");
+    declarations.text("Constants", constants, "a list name=number, name=number")
+      .means("Constants that the formula may use.");
     declarations.leave();
   }
 

@@ -183,20 +183,19 @@ namespace crawler
         fail(*failures, fmt::format("threw an exception in at() of its feedback: {}", *thrown));
       else if (!at_points)
         fail(*failures, "gave no evaluator in at() of its feedback");
-      return feedback_at_points(
-        [failures, points, at_points](const double t, const StretchSeen &seen, const FeedbackStress &m) {
-          const unsigned long n_before = failures->count;
-          if (!at_points)
-            ++failures->count;
-          else if (const auto thrown = thrown_by([&]() { at_points->values(t, seen, m); }))
-            fail(*failures,
-                 fmt::format("threw an exception in values() of its feedback at t = {:.9g}: {}", t, *thrown));
-          else
-            require_finite(*failures, m, points, seen, t);
-          if (failures->count > n_before)
-            for (const std::span<double> values : {m.m, m.m_w, m.m_rate, m.m_near})
-              std::fill(values.begin(), values.end(), no_number);
-        });
+      return feedback_at_points([failures, points, at_points](
+                                  const double t, const StretchSeen &seen, const FeedbackStress &m) {
+        const unsigned long n_before = failures->count;
+        if (!at_points)
+          ++failures->count;
+        else if (const auto thrown = thrown_by([&]() { at_points->values(t, seen, m); }))
+          fail(*failures, fmt::format("threw an exception in values() of its feedback at t = {:.9g}: {}", t, *thrown));
+        else
+          require_finite(*failures, m, points, seen, t);
+        if (failures->count > n_before)
+          for (const std::span<double> values : {m.m, m.m_w, m.m_rate, m.m_near})
+            std::fill(values.begin(), values.end(), no_number);
+      });
     }
 
     /// The beginning of an ELF file; nothing if it is something else.
@@ -316,14 +315,10 @@ namespace crawler
   LibraryParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Library");
-    declarations.file("File",
-                      file,
-                      "the name of a shared object",
-                      "Shared object with the active stress as a plug-in (doc/generators/library.md).");
-    declarations.text("Parameters",
-                      parameters,
-                      "a list name=value, name=value",
-                      "What the plug-in is told; it says itself which names it knows.");
+    declarations.file("File", file, "the name of a shared object")
+      .means("Shared object with the active stress as a plug-in (doc/generators/library.md).");
+    declarations.text("Parameters", parameters, "a list name=value, name=value")
+      .means("What the plug-in is told; it says itself which names it knows.");
     declarations.leave();
   }
 
@@ -354,15 +349,15 @@ namespace crawler
   {
     const char *asked = "";
     const auto thrown = thrown_by([&]() {
-      asked            = "period()";
+      asked                  = "period()";
       facts_.period          = stress_->period();
-      asked            = "breaks_in_space()";
+      asked                  = "breaks_in_space()";
       facts_.breaks_in_space = stress_->breaks_in_space();
-      asked            = "breaks_in_time()";
+      asked                  = "breaks_in_time()";
       facts_.breaks_in_time  = stress_->breaks_in_time();
-      asked            = "rate_at()";
+      asked                  = "rate_at()";
       facts_.has_rate        = stress_->rate_at({0.}) != nullptr;
-      asked            = "feedback()";
+      asked                  = "feedback()";
       if (const StretchFeedback *feedback = stress_->feedback())
         feedback_ = std::make_unique<KnownFeedback>(
           KnownFeedback::Facts{

@@ -29,70 +29,38 @@ namespace crawler
   OptimalWaveParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Optimal wave");
-    declarations.number("Perturbation parameter",
-                        perturbation_parameter,
-                        any_number(),
-                        "Perturbation parameter chi: the active stress is proportional to it, the displacement to "
-                        "its square.",
-                        "1");
-    declarations.choice("Shape",
-                        shape,
-                        {"Fourier", "expression", "table"},
-                        "What gives the velocity wave V(x): Fourier coefficients, a formula or a table. The active "
-                        "stress moves V along the body; x = s at t = 0.");
-    declarations.numbers("Sine coefficients",
-                         sine_coefficients,
-                         "Fourier coefficients a_1, a_2, ... of the velocity wave.",
-                         "length/time");
-    declarations.numbers("Cosine coefficients",
-                         cosine_coefficients,
-                         "Fourier coefficients b_1, b_2, ... of the velocity wave: as many as there are sine "
-                         "coefficients, or a single 0 for none.",
-                         "length/time");
-    declarations.text("Shape formula",
-                      shape_formula,
-                      "a formula of x",
-                      "The velocity wave V as a formula of x, continuous, like that of Active stress/Expression; it "
-                      "need not repeat after the length of the body. Used if Shape is expression.",
-                      "length/time");
-    declarations.text(
-      "Shape constants", shape_constants, "a list name=number, name=number", "Constants that the formula may use.");
-    declarations.file(
-      "Shape file",
-      shape_file,
-      "the name of a CSV file",
-      "Table with the header x,f: values of the velocity wave V at increasing x, with a cubic spline "
-      "through them; from min(0, cT) to L + max(0, cT) for the wave speed c and the end time T. Used if "
-      "Shape is table.");
-    declarations.choice(
-      "Choose wave by",
-      choose_wave_by,
-      {"energy", "wave speed"},
-      "Whether the wave is given by its speed, or is one of those that spend a given energy (only for "
-      "Shape = Fourier).");
-    declarations.number("Energy",
-                        energy,
-                        positive(),
-                        "Energy H that the wave spends until the end time (chi^2 H in all). Used if the wave is "
-                        "chosen by energy.",
-                        "force length");
-    declarations.choice("Root",
-                        root,
-                        {"largest admissible displacement", "largest displacement", "index"},
-                        "Which of the waves of that energy: the one that goes farthest among those whose "
-                        "leading-order stretch stays positive, or among all, or the one with the number Root index.");
-    declarations.whole_number("Root index",
-                              root_index,
-                              1,
-                              100000,
-                              "Number of the wave, the slowest being 1 (crawler check lists them). Used if Root is "
-                              "index.");
-    declarations.number("Wave speed",
-                        wave_speed,
-                        any_number(),
-                        "Wave speed c, not 0; a positive one runs from s = L to s = 0. Used if the wave is chosen by "
-                        "wave speed.",
-                        "length/time");
+    declarations.number("Perturbation parameter", perturbation_parameter, any_number(), "1")
+      .means("Perturbation parameter chi: the active stress is proportional to it, the displacement to its square.");
+    declarations.choice("Shape", shape, {"Fourier", "expression", "table"})
+      .means("What gives the velocity wave V(x): Fourier coefficients, a formula or a table. The active stress moves V "
+             "along the body; x = s at t = 0.");
+    declarations.numbers("Sine coefficients", sine_coefficients, "length/time")
+      .means("Fourier coefficients a_1, a_2, ... of the velocity wave.");
+    declarations.numbers("Cosine coefficients", cosine_coefficients, "length/time")
+      .means("Fourier coefficients b_1, b_2, ... of the velocity wave: as many as there are sine coefficients, or a "
+             "single 0 for none.");
+    declarations.text("Shape formula", shape_formula, "a formula of x", "length/time")
+      .means("The velocity wave V as a formula of x, continuous, like that of Active stress/Expression; it need not "
+             "repeat after the length of the body. Used if Shape is expression.");
+    declarations.text("Shape constants", shape_constants, "a list name=number, name=number")
+      .means("Constants that the formula may use.");
+    declarations.file("Shape file", shape_file, "the name of a CSV file")
+      .means(
+        "Table with the header x,f: values of the velocity wave V at increasing x, with a cubic spline through them; "
+        "from min(0, cT) to L + max(0, cT) for the wave speed c and the end time T. Used if Shape is table.");
+    declarations.choice("Choose wave by", choose_wave_by, {"energy", "wave speed"})
+      .means("Whether the wave is given by its speed, or is one of those that spend a given energy (only for Shape = "
+             "Fourier).");
+    declarations.number("Energy", energy, positive(), "force length")
+      .means(
+        "Energy H that the wave spends until the end time (chi^2 H in all). Used if the wave is chosen by energy.");
+    declarations.choice("Root", root, {"largest admissible displacement", "largest displacement", "index"})
+      .means("Which of the waves of that energy: the one that goes farthest among those whose leading-order stretch "
+             "stays positive, or among all, or the one with the number Root index.");
+    declarations.whole_number("Root index", root_index, 1, 100000)
+      .means("Number of the wave, the slowest being 1 (crawler check lists them). Used if Root is index.");
+    declarations.number("Wave speed", wave_speed, any_number(), "length/time")
+      .means("Wave speed c, not 0; a positive one runs from s = L to s = 0. Used if the wave is chosen by wave speed.");
     declarations.leave();
   }
 

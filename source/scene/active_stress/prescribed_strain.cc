@@ -166,41 +166,26 @@ namespace crawler
       if (std::find(choices.begin(), choices.end(), name) == choices.end())
         choices.push_back(name);
     declarations.enter("Prescribed strain");
-    declarations.choice(
-      "Given by",
-      given_by,
-      choices,
-      "What gives the strain e(s,t), the stretch minus 1: a formula, a sine wave, a table in a file, or "
-      "another generator with the entries of its own section, whose values are read as strain. The nonlinear model "
-      "starts from rest, so there e(s,0) must be 0.");
-    declarations.text("Strain",
-                      strain,
-                      "a formula of s and t",
-                      "The strain e(s,t) as a formula like that of Active stress/Expression. Used if given by "
-                      "expression.",
-                      "1");
-    declarations.text("Constants",
-                      constants,
-                      "a list name=number, name=number",
-                      "Constants that the formula may use. Used if given by expression.");
-    declarations.number("Mean strain",
-                        mean_strain,
-                        any_number(),
-                        "Mean of the wave: e = mean + amplitude sin(2 pi n (s + c t)/L + phase). Used, as the "
-                        "following entries, if given by wave.",
-                        "1");
-    declarations.number("Amplitude", amplitude, any_number(), "Amplitude of the wave.", "1");
-    declarations.number("Wave number", wave_number, positive(), "Number n of waves per body length.", "1");
-    declarations.number(
-      "Wave speed", wave_speed, any_number(), "Wave speed c; a positive one runs from s = L to s = 0.", "length/time");
-    declarations.number("Phase", phase, any_number(), "Phase of the wave at s = 0, t = 0, in radians.", "1");
-    declarations.file(
-      "File",
-      file,
-      "the name of a CSV or HDF5 file",
-      "Table: CSV with the header s,t,strain and a row for each point of a full grid over the whole body "
-      "and duration, in any order, or HDF5 with s[ns], t[nt] and strain[nt,ns]; cubic splines in s and t go through "
-      "them. Used if given by table.");
+    declarations.choice("Given by", given_by, choices)
+      .means("What gives the strain e(s,t), the stretch minus 1: a formula, a sine wave, a table in a file, or another "
+             "generator with the entries of its own section, whose values are read as strain. The nonlinear model "
+             "starts from rest, so there e(s,0) must be 0.");
+    declarations.text("Strain", strain, "a formula of s and t", "1")
+      .means("The strain e(s,t) as a formula like that of Active stress/Expression. Used if given by expression.");
+    declarations.text("Constants", constants, "a list name=number, name=number")
+      .means("Constants that the formula may use. Used if given by expression.");
+    declarations.number("Mean strain", mean_strain, any_number(), "1")
+      .means("Mean of the wave: e = mean + amplitude sin(2 pi n (s + c t)/L + phase). Used, as the following entries, "
+             "if given by wave.");
+    declarations.number("Amplitude", amplitude, any_number(), "1").means("Amplitude of the wave.");
+    declarations.number("Wave number", wave_number, positive(), "1").means("Number n of waves per body length.");
+    declarations.number("Wave speed", wave_speed, any_number(), "length/time")
+      .means("Wave speed c; a positive one runs from s = L to s = 0.");
+    declarations.number("Phase", phase, any_number(), "1").means("Phase of the wave at s = 0, t = 0, in radians.");
+    declarations.file("File", file, "the name of a CSV or HDF5 file")
+      .means("Table: CSV with the header s,t,strain and a row for each point of a full grid over the whole body and "
+             "duration, in any order, or HDF5 with s[ns], t[nt] and strain[nt,ns]; cubic splines in s and t go through "
+             "them. Used if given by table.");
     declarations.leave();
   }
 

@@ -40,27 +40,19 @@ namespace crawler
   {
     const Range not_negative{.lower = 0., .lower_included = true};
     declarations.enter("Pulse");
-    declarations.choice("Shape",
-                        shape,
-                        {"gaussian", "compact"},
-                        "The bump over its distance z from the centre in widths: exp(-z^2), or "
-                        "exp(1 - 1/(1-z^2)) for |z| < 1 and 0 beyond.");
-    declarations.number("Amplitude", amplitude, any_number(), "Active stress in the middle of the pulse.", "force");
-    declarations.number("Width", width, positive(), "Width of the pulse, see Shape.", "length");
-    declarations.number(
-      "Start position",
-      start_position,
-      any_number(),
-      "Where the middle of the pulse is at t = 0, also outside of the body; automatic: so far outside "
-      "that it comes to the body without a jump.",
-      "length");
+    declarations.choice("Shape", shape, {"gaussian", "compact"})
+      .means("The bump over its distance z from the centre in widths: exp(-z^2), or exp(1 - 1/(1-z^2)) for |z| < 1 and "
+             "0 beyond.");
+    declarations.number("Amplitude", amplitude, any_number(), "force")
+      .means("Active stress in the middle of the pulse.");
+    declarations.number("Width", width, positive(), "length").means("Width of the pulse, see Shape.");
+    declarations.number("Start position", start_position, any_number(), "length")
+      .means("Where the middle of the pulse is at t = 0, also outside of the body; automatic: so far outside that it "
+             "comes to the body without a jump.");
     declare_direction(direction, declarations);
-    declarations.number("Speed", speed, not_negative, "Speed of the pulse; with 0 it stays.", "length/time");
-    declarations.number("Repetition period",
-                        repetition_period,
-                        not_negative,
-                        "Time from one pulse to the next; 0 for a single pulse.",
-                        "time");
+    declarations.number("Speed", speed, not_negative, "length/time").means("Speed of the pulse; with 0 it stays.");
+    declarations.number("Repetition period", repetition_period, not_negative, "time")
+      .means("Time from one pulse to the next; 0 for a single pulse.");
     envelope.add_parameters(declarations);
     declarations.leave();
   }
@@ -89,9 +81,8 @@ namespace crawler
     const double least_width = 1e-4 * length_;
     if (width_ < least_width)
       throw InputError(
-        fmt::format("the pulse is {:g} wide, but at least {:g} is expected, a ten thousandth of the body",
-                    width_,
-                    least_width),
+        fmt::format(
+          "the pulse is {:g} wide, but at least {:g} is expected, a ten thousandth of the body", width_, least_width),
         section + "Width");
     if (period_ > 0.)
     {

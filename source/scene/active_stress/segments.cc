@@ -40,61 +40,34 @@ namespace crawler
   SegmentsParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Segments");
-    declarations.whole_number(
-      "Number of segments", number, 1, 1000, "Number N of actuated segments, all of the same length.");
-    declarations.numbers("Amplitude",
-                         amplitude,
-                         "Active stress of a segment that is on, positive for a contraction: one number for all "
-                         "segments, or N from s = 0 to s = L.",
-                         "force");
-    declarations.number("Frequency", frequency, positive(), "Frequency f of the switching.", "1/time");
-    declarations.number("Phase lag",
-                        phase_lag,
-                        between(0., 1.),
-                        "How much later a segment switches than its neighbour before it, as a share of the period; 1/N "
-                        "for one wave on the body.",
-                        "1");
+    declarations.whole_number("Number of segments", number, 1, 1000)
+      .means("Number N of actuated segments, all of the same length.");
+    declarations.numbers("Amplitude", amplitude, "force")
+      .means("Active stress of a segment that is on, positive for a contraction: one number for all segments, or N "
+             "from s = 0 to s = L.");
+    declarations.number("Frequency", frequency, positive(), "1/time").means("Frequency f of the switching.");
+    declarations.number("Phase lag", phase_lag, between(0., 1.), "1")
+      .means("How much later a segment switches than its neighbour before it, as a share of the period; 1/N for one "
+             "wave on the body.");
     declare_direction(direction, declarations);
-    declarations.number(
-      "Duty cycle", duty_cycle, {.lower = 0., .upper = 1.}, "Share of the period in which a segment is on.", "1");
-    declarations.choice("Switching",
-                        switching,
-                        {"square", "smooth"},
-                        "How a segment switches: by jumps, or by smooth fronts about the same instants.");
-    declarations.number("Front width",
-                        front_width,
-                        {.lower = 0., .upper = 0.5, .upper_included = true},
-                        "Width of a smooth front as a share of the period.",
-                        "1");
-    declarations.number("Phase",
-                        phase,
-                        any_number(),
-                        "Phase of the first segment at t = 0 as a share of the period: it is switched on at phase 0.",
-                        "1");
-    declarations.number("Gap",
-                        gap,
-                        {.lower = 0., .lower_included = true},
-                        "Length of the passive part between neighbouring segments as a share of the length of a "
-                        "segment.",
-                        "1");
-    declarations.number("Saturation",
-                        saturation,
-                        positive(),
-                        "Largest absolute value of the active stress; larger ones are cut to it. Automatic: no limit.",
-                        "force");
-    declarations.number("Rate limit",
-                        rate_limit,
-                        positive(),
-                        "Largest absolute value of the active stress's change per time: square signals become "
-                        "trapezoids. Automatic: no limit.",
-                        "force/time");
-    declarations.number(
-      "Ramp duration",
-      ramp_duration,
-      {.lower = 0., .lower_included = true},
-      "How long the stress takes to grow, by a smooth step, from 0 at t = 0 to its full size; the rate "
-      "limit holds without this factor.",
-      "time");
+    declarations.number("Duty cycle", duty_cycle, {.lower = 0., .upper = 1.}, "1")
+      .means("Share of the period in which a segment is on.");
+    declarations.choice("Switching", switching, {"square", "smooth"})
+      .means("How a segment switches: by jumps, or by smooth fronts about the same instants.");
+    declarations.number("Front width", front_width, {.lower = 0., .upper = 0.5, .upper_included = true}, "1")
+      .means("Width of a smooth front as a share of the period.");
+    declarations.number("Phase", phase, any_number(), "1")
+      .means("Phase of the first segment at t = 0 as a share of the period: it is switched on at phase 0.");
+    declarations.number("Gap", gap, {.lower = 0., .lower_included = true}, "1")
+      .means("Length of the passive part between neighbouring segments as a share of the length of a segment.");
+    declarations.number("Saturation", saturation, positive(), "force")
+      .means("Largest absolute value of the active stress; larger ones are cut to it. Automatic: no limit.");
+    declarations.number("Rate limit", rate_limit, positive(), "force/time")
+      .means("Largest absolute value of the active stress's change per time: square signals become trapezoids. "
+             "Automatic: no limit.");
+    declarations.number("Ramp duration", ramp_duration, {.lower = 0., .lower_included = true}, "time")
+      .means("How long the stress takes to grow, by a smooth step, from 0 at t = 0 to its full size; the rate limit "
+             "holds without this factor.");
     declarations.leave();
   }
 
@@ -103,9 +76,9 @@ namespace crawler
     , length_(length)
     , envelope_({{}, {}, /*window_edge=*/0., parameters.ramp_duration}, section, length)
   {
-    const auto &p   = parameters_;
-    const double D  = p.duty_cycle;
-    const auto n    = p.number;
+    const auto &p  = parameters_;
+    const double D = p.duty_cycle;
+    const auto n   = p.number;
     if (p.amplitude.size() != 1 && p.amplitude.size() != n)
       throw InputError(
         fmt::format("the list of amplitudes has {} numbers, but 1 or {}, one for each segment, are expected",
@@ -140,11 +113,11 @@ namespace crawler
   std::vector<Segments::Segment>
   Segments::create_segments() const
   {
-    const auto &p              = parameters_;
-    const double D             = p.duty_cycle;
-    const auto n               = p.number;
-    const bool begins_at_head  = sign_of(p.direction) < 0.;
-    const double segment       = length_ / (n + (n - 1) * p.gap), pitch = segment * (1. + p.gap);
+    const auto &p             = parameters_;
+    const double D            = p.duty_cycle;
+    const auto n              = p.number;
+    const bool begins_at_head = sign_of(p.direction) < 0.;
+    const double segment = length_ / (n + (n - 1) * p.gap), pitch = segment * (1. + p.gap);
     std::vector<Segment> list;
     for (unsigned int i = 0; i < n; ++i)
     {

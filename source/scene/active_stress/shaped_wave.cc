@@ -132,8 +132,8 @@ namespace crawler
   {
     if (rate)
       return rate_evaluator(points);
-    std::vector<double> start;                           // V(s)
-    std::vector<double> x(points.size()), V = x, F = x;  // at one time: x = s + ct, V(x) and its integral
+    std::vector<double> start;                          // V(s)
+    std::vector<double> x(points.size()), V = x, F = x; // at one time: x = s + ct, V(x) and its integral
     std::size_t panel = 0;
     for (const double s : points)
       start.push_back(shape_.value(s, panel));

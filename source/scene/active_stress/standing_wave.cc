@@ -18,25 +18,18 @@ namespace crawler
   StandingWaveParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Standing wave");
-    declarations.number("Amplitude", amplitude, any_number(), "Amplitude of the active stress.", "force");
-    declarations.number("Offset", offset, any_number(), "What is added to the wave.", "force");
-    declarations.number("Wave number",
-                        wave_number,
-                        {.lower = 0., .upper = 1000., .lower_included = true, .upper_included = true},
-                        "Number n of waves on the body, not only whole ones: the stress is proportional to "
-                        "cos(2 pi n s/L + phase in space); with 0 the whole body acts at once.",
-                        "1");
-    declarations.number("Phase in space",
-                        phase_in_space,
-                        any_number(),
-                        "Phase of the cosine at s = 0, in radians; -pi/2 makes it a sine.",
-                        "1");
-    declarations.number("Frequency",
-                        frequency,
-                        {.lower = 0., .lower_included = true},
-                        "Frequency f; with 0 the stress does not change.",
-                        "1/time");
-    declarations.number("Phase", phase, any_number(), "Phase of the oscillation at t = 0, in radians.", "1");
+    declarations.number("Amplitude", amplitude, any_number(), "force").means("Amplitude of the active stress.");
+    declarations.number("Offset", offset, any_number(), "force").means("What is added to the wave.");
+    declarations
+      .number(
+        "Wave number", wave_number, {.lower = 0., .upper = 1000., .lower_included = true, .upper_included = true}, "1")
+      .means("Number n of waves on the body, not only whole ones: the stress is proportional to cos(2 pi n s/L + phase "
+             "in space); with 0 the whole body acts at once.");
+    declarations.number("Phase in space", phase_in_space, any_number(), "1")
+      .means("Phase of the cosine at s = 0, in radians; -pi/2 makes it a sine.");
+    declarations.number("Frequency", frequency, {.lower = 0., .lower_included = true}, "1/time")
+      .means("Frequency f; with 0 the stress does not change.");
+    declarations.number("Phase", phase, any_number(), "1").means("Phase of the oscillation at t = 0, in radians.");
     profile.add_parameters(declarations);
     envelope.add_parameters(declarations);
     declarations.leave();

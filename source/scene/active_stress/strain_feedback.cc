@@ -45,32 +45,21 @@ namespace crawler
   StrainFeedbackParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Strain feedback");
-    declarations.text(
-      "Active stress",
-      active_stress,
-      "a formula of s, t, w, w_t, w_near, w_delayed",
-      "The active stress: s is the material coordinate, t the time, w the stretch, w_t its rate, w_near "
-      "the stretch at s + Distance (or at the end of the body) and w_delayed that at t - Delay; "
-      "functions as in Expression.",
-      "force");
-    declarations.text("Constants", constants, "a list name=number, name=number", "Constants that the formula may use.");
-    declarations.number("Distance",
-                        distance,
-                        any_number(),
-                        "From s to the place whose stretch is w_near; positive towards s = L.",
-                        "length");
-    declarations.number("Sensor length",
-                        sensor_length,
-                        Range{0., std::numeric_limits<double>::infinity(), true, false},
-                        "If positive, w_near is the mean stretch of the piece of this length around that place; at "
-                        "the ends of the body the piece is moved inside. 0: the stretch at the place.",
-                        "length");
-    declarations.number("Delay",
-                        delay,
-                        Range{0., std::numeric_limits<double>::infinity(), true, false},
-                        "How long ago the stretch was w_delayed; before t = 0 it was the initial one. Steps are not "
-                        "longer than this.",
-                        "time");
+    declarations.text("Active stress", active_stress, "a formula of s, t, w, w_t, w_near, w_delayed", "force")
+      .means(
+        "The active stress: s is the material coordinate, t the time, w the stretch, w_t its rate, w_near the stretch "
+        "at s + Distance (or at the end of the body) and w_delayed that at t - Delay; functions as in Expression.");
+    declarations.text("Constants", constants, "a list name=number, name=number")
+      .means("Constants that the formula may use.");
+    declarations.number("Distance", distance, any_number(), "length")
+      .means("From s to the place whose stretch is w_near; positive towards s = L.");
+    declarations
+      .number("Sensor length", sensor_length, Range{0., std::numeric_limits<double>::infinity(), true, false}, "length")
+      .means("If positive, w_near is the mean stretch of the piece of this length around that place; at the ends of "
+             "the body the piece is moved inside. 0: the stretch at the place.");
+    declarations.number("Delay", delay, Range{0., std::numeric_limits<double>::infinity(), true, false}, "time")
+      .means(
+        "How long ago the stretch was w_delayed; before t = 0 it was the initial one. Steps are not longer than this.");
     declarations.leave();
   }
 
@@ -78,7 +67,7 @@ namespace crawler
   {
     const FormulaInput input = {
       "active stress", parameters.active_stress, parameters.constants, formula_entry, section + "Constants", names};
-    const auto formula = read_formula(input, length, end_time);
+    const auto formula  = read_formula(input, length, end_time);
     const double sensor = parameters.sensor_length;
     if (formula->uses(w_near) && !(sensor == 0. || (sensor >= 1e-6 * length && sensor <= length)))
       throw InputError(
@@ -105,7 +94,7 @@ namespace crawler
                                         .distance      = formula->uses(w_near) ? parameters.distance : 0.,
                                         .delay         = formula->uses(w_delayed) ? parameters.delay : 0.,
                                         .sensor_length = formula->uses(w_near) ? sensor : 0.};
-    feedback_ = std::make_unique<KnownFeedback>(
+    feedback_                        = std::make_unique<KnownFeedback>(
       facts, [formula](const std::vector<double> &points) { return formula_feedback(formula, points); });
     facts_.has_rate        = false;
     facts_.breaks_in_space = kinks_in_space(length);
@@ -121,10 +110,9 @@ namespace crawler
   StrainFeedback::evaluator(const std::vector<double> &points, bool) const
   {
     const std::vector<double> one(points.size(), 1.), zero(points.size(), 0.);
-    return stress_at_points(
-      [at = feedback_->at(points), one, zero](const double time, const std::span<double> m) {
-        at->values(time, {one, zero, one, one}, {m, {}, {}, {}});
-      });
+    return stress_at_points([at = feedback_->at(points), one, zero](const double time, const std::span<double> m) {
+      at->values(time, {one, zero, one, one}, {m, {}, {}, {}});
+    });
   }
 
   std::vector<double>

@@ -320,22 +320,15 @@ namespace crawler
   SumTermParameters::add_parameters(Declarations &declarations)
   {
     const Range not_negative{.lower = 0., .lower_included = true};
-    declarations.choice("Combine",
-                        combine,
-                        {"add", "multiply"},
-                        "m is the sum of all terms that add, times the product of all terms that multiply.");
-    declarations.number("Factor", factor, any_number(), "What the term's generator is multiplied with.", "1");
+    declarations.choice("Combine", combine, {"add", "multiply"})
+      .means("m is the sum of all terms that add, times the product of all terms that multiply.");
+    declarations.number("Factor", factor, any_number(), "1").means("What the term's generator is multiplied with.");
     const auto window = [&](WindowEntries &entries, const std::string &x, const std::string &whole, const char *unit) {
-      declarations.numbers("Window in " + x,
-                           entries.interval,
-                           "From where to where in " + x +
-                             " the term acts, as two numbers; outside it is 0. Nothing: " + whole + ".",
-                           unit);
-      declarations.number("Edge width in " + x,
-                          entries.edge_width,
-                          not_negative,
-                          "Width of the window's edges, smooth steps inside of its ends; with 0 the term jumps there.",
-                          unit);
+      declarations.numbers("Window in " + x, entries.interval, unit)
+        .means("From where to where in " + x + " the term acts, as two numbers; outside it is 0. Nothing: " + whole +
+               ".");
+      declarations.number("Edge width in " + x, entries.edge_width, not_negative, unit)
+        .means("Width of the window's edges, smooth steps inside of its ends; with 0 the term jumps there.");
     };
     window(in_s, "s", "the whole body", "length");
     window(in_t, "t", "all the time", "time");

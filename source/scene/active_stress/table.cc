@@ -115,33 +115,23 @@ namespace crawler
   TableParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Table");
-    declarations.file("File",
-                      file,
-                      "the name of a CSV or HDF5 file",
-                      "CSV with the header s,t,m and a row for each point of a full grid, in any order; or HDF5 with "
-                      "the datasets s[ns], t[nt] and m[nt,ns], s and t increasing.");
-    declarations.choice("Interpolation",
-                        interpolation,
-                        {"cubic", "linear"},
-                        "Cubic splines through the samples, in s and t; or linear between them.");
-    declarations.choice("Outside",
-                        outside,
-                        {"error", "hold", "periodic"},
-                        "What m is before the first and after the last time of the table: an error if they are needed; "
-                        "the values at these times; or a repetition, with equal values at both times.");
-    declarations.choice("Outside in s",
-                        outside_in_s,
-                        {"error", "hold"},
-                        "The same along the body, if the table does not reach both ends.");
-    declarations.number(
-      "Unit of s", unit_of_s, positive(), "Factor that turns s of the table into a length.", "length");
-    declarations.number("Unit of t", unit_of_t, positive(), "Factor that turns t of the table into a time.", "time");
-    declarations.number("Unit of m",
-                        unit_of_m,
-                        any_number(),
-                        "Factor that turns m of the table into an active stress; a negative one if the table has "
-                        "contractions as positive numbers.",
-                        "force");
+    declarations.file("File", file, "the name of a CSV or HDF5 file")
+      .means("CSV with the header s,t,m and a row for each point of a full grid, in any order; or HDF5 with the "
+             "datasets s[ns], t[nt] and m[nt,ns], s and t increasing.");
+    declarations.choice("Interpolation", interpolation, {"cubic", "linear"})
+      .means("Cubic splines through the samples, in s and t; or linear between them.");
+    declarations.choice("Outside", outside, {"error", "hold", "periodic"})
+      .means("What m is before the first and after the last time of the table: an error if they are needed; the values "
+             "at these times; or a repetition, with equal values at both times.");
+    declarations.choice("Outside in s", outside_in_s, {"error", "hold"})
+      .means("The same along the body, if the table does not reach both ends.");
+    declarations.number("Unit of s", unit_of_s, positive(), "length")
+      .means("Factor that turns s of the table into a length.");
+    declarations.number("Unit of t", unit_of_t, positive(), "time")
+      .means("Factor that turns t of the table into a time.");
+    declarations.number("Unit of m", unit_of_m, any_number(), "force")
+      .means("Factor that turns m of the table into an active stress; a negative one if the table has contractions as "
+             "positive numbers.");
     declarations.leave();
   }
 

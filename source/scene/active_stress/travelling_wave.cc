@@ -34,29 +34,20 @@ namespace crawler
   {
     const Range not_negative{.lower = 0., .lower_included = true};
     declarations.enter("Travelling wave");
-    declarations.number("Amplitude", amplitude, any_number(), "Amplitude of the active stress.", "force");
-    declarations.number("Offset", offset, any_number(), "What is added to the wave.", "force");
-    declarations.number("Wave number",
-                        wave_number,
-                        {.lower = 0., .upper = 1000., .lower_included = true, .upper_included = true},
-                        "Number n of waves on the body, not only whole ones; with 0 the whole body acts at once.",
-                        "1");
+    declarations.number("Amplitude", amplitude, any_number(), "force").means("Amplitude of the active stress.");
+    declarations.number("Offset", offset, any_number(), "force").means("What is added to the wave.");
+    declarations
+      .number(
+        "Wave number", wave_number, {.lower = 0., .upper = 1000., .lower_included = true, .upper_included = true}, "1")
+      .means("Number n of waves on the body, not only whole ones; with 0 the whole body acts at once.");
     declare_direction(direction, declarations);
-    declarations.choice("Given by",
-                        given_by,
-                        {"frequency", "wave speed"},
-                        "Which of the two says how fast the wave runs; frequency = wave number * wave speed/L.");
-    declarations.number("Frequency",
-                        frequency,
-                        not_negative,
-                        "Frequency f; with 0 the wave stands still. Used if given by frequency.",
-                        "1/time");
-    declarations.number("Wave speed",
-                        wave_speed,
-                        not_negative,
-                        "Speed of the wave along the body. Used if given by wave speed.",
-                        "length/time");
-    declarations.number("Phase", phase, any_number(), "Phase of the wave at s = 0, t = 0, in radians.", "1");
+    declarations.choice("Given by", given_by, {"frequency", "wave speed"})
+      .means("Which of the two says how fast the wave runs; frequency = wave number * wave speed/L.");
+    declarations.number("Frequency", frequency, not_negative, "1/time")
+      .means("Frequency f; with 0 the wave stands still. Used if given by frequency.");
+    declarations.number("Wave speed", wave_speed, not_negative, "length/time")
+      .means("Speed of the wave along the body. Used if given by wave speed.");
+    declarations.number("Phase", phase, any_number(), "1").means("Phase of the wave at s = 0, t = 0, in radians.");
     profile.add_parameters(declarations);
     envelope.add_parameters(declarations);
     declarations.leave();
@@ -164,8 +155,7 @@ namespace crawler
   void
   TravellingWave::report(std::ostream &out) const
   {
-    if (profile_.jumps() && phase_rate_ != 0. && wave_number_ > 0. &&
-        amplitude_ != 0.)
+    if (profile_.jumps() && phase_rate_ != 0. && wave_number_ > 0. && amplitude_ != 0.)
       out << "Travelling wave: the jumps of a square wave move through the cells of the mesh, which costs orders of "
              "convergence; Profile = smoothed square is recommended\n";
   }

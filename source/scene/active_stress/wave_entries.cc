@@ -14,21 +14,13 @@ namespace crawler
   void
   WaveProfileParameters::add_parameters(Declarations &declarations)
   {
-    declarations.choice("Profile",
-                        profile,
-                        {"sine", "square", "smoothed square"},
-                        "How the stress changes within a period: as a sine, or between +1 and -1 times the amplitude, "
-                        "by jumps or by smooth fronts.");
-    declarations.number("Duty cycle",
-                        duty_cycle,
-                        {.lower = 0., .upper = 1.},
-                        "Share of the period in which a square profile is +1. Not used by the sine.",
-                        "1");
-    declarations.number("Front width",
-                        front_width,
-                        {.lower = 0., .upper = 0.5, .upper_included = true},
-                        "Width of each front of the smoothed square as a share of the period.",
-                        "1");
+    declarations.choice("Profile", profile, {"sine", "square", "smoothed square"})
+      .means("How the stress changes within a period: as a sine, or between +1 and -1 times the amplitude, by jumps or "
+             "by smooth fronts.");
+    declarations.number("Duty cycle", duty_cycle, {.lower = 0., .upper = 1.}, "1")
+      .means("Share of the period in which a square profile is +1. Not used by the sine.");
+    declarations.number("Front width", front_width, {.lower = 0., .upper = 0.5, .upper_included = true}, "1")
+      .means("Width of each front of the smoothed square as a share of the period.");
   }
 
   WaveProfile::WaveProfile(const WaveProfileParameters &parameters, const std::string &section)
@@ -68,10 +60,8 @@ namespace crawler
   void
   declare_direction(std::string &direction, Declarations &declarations)
   {
-    declarations.choice("Direction",
-                        direction,
-                        {"from head to tail", to_head},
-                        "Where it runs; the head is at s = L, the tail at s = 0.");
+    declarations.choice("Direction", direction, {"from head to tail", to_head})
+      .means("Where it runs; the head is at s = L, the tail at s = 0.");
   }
 
   double

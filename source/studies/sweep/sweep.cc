@@ -55,7 +55,6 @@ namespace crawler
     keep_fields(MPI_Comm communicator,
                 const CommandOptions &options,
                 const fs::path &folder,
-                const SweepDesign &design,
                 const SweepPoints &points,
                 const std::vector<unsigned long> &kept)
     {
@@ -76,7 +75,7 @@ namespace crawler
         one.output    = place.string();
         one.overwrite = one.quiet = true;
         one.resume                = false;
-        one.overrides             = points.overrides(design, kept[i]);
+        one.overrides             = points.overrides(kept[i]);
         try
         {
           fs::create_directories(place);
@@ -184,7 +183,7 @@ namespace crawler
     };
     bool is_whole      = compute_rows(communicator, path, points, table, done, interrupted, log);
     std::string reason = is_whole ? "" : stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
-    if (is_whole && !kept.empty() && !keep_fields(communicator, options, path, design, points, kept))
+    if (is_whole && !kept.empty() && !keep_fields(communicator, options, path, points, kept))
     {
       is_whole = false;
       reason   = "signal";

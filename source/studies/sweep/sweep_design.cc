@@ -131,12 +131,12 @@ namespace crawler
 
     /// The values in a column of a CSV file with a line of names. Lines that are empty or start with "#" do not count.
     std::vector<std::string>
-    read_column(const Call &call)
+    read_column(const Call &call, const std::filesystem::path &folder)
     {
       if (call.arguments.size() != 2 || call.arguments[0].empty() || call.arguments[1].empty())
         refuse(fmt::format("found \"column({})\", but \"column(file.csv, name)\" is expected",
                            fmt::join(call.arguments, ", ")));
-      const std::string &file = call.arguments[0], &name = call.arguments[1];
+      const std::string file = (folder / call.arguments[0]).string(), name = call.arguments[1];
       std::ifstream in      = open(file, "a CSV file with a line of names");
       std::size_t n_columns = 0, column = 0;
       std::vector<std::string> values;
@@ -267,7 +267,7 @@ namespace crawler
     }
     else if (call && call->function == "column")
     {
-      axis.values = read_column(*call);
+      axis.values = read_column(*call, folder_);
       if (kind_ == Kind::grid)
         require_distinct(axis.values,
                          entry_name,
@@ -287,12 +287,13 @@ namespace crawler
     }
     if (axis.is_file())
       for (const std::string &file : std::set<std::string>(axis.values.begin(), axis.values.end()))
-        open(file, "a parameter file");
+        open((folder_ / file).string(), "a parameter file");
     return axis;
   }
 
-  SweepDesign::SweepDesign(const SweepParameters &parameters)
-    : kind_(parameters.design == "grid"     ? Kind::grid
+  SweepDesign::SweepDesign(const SweepParameters &parameters, std::filesystem::path folder)
+    : folder_(std::move(folder))
+    , kind_(parameters.design == "grid"     ? Kind::grid
             : parameters.design == "zip"    ? Kind::zip
             : parameters.design == "random" ? Kind::random
                                             : Kind::latin_hypercube)

@@ -85,7 +85,7 @@ namespace crawler
         for (const SweepAxis &axis : points.design().axes())
           if (axis.entry == entry.path)
             for (const std::string &one : axis.values)
-              add_file(one);
+              add_file((points.design().folder() / one).string());
       }
       return texts;
     };

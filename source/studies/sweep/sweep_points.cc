@@ -71,15 +71,16 @@ namespace crawler
     effective_ = text.str();
     try
     {
-      design_    = std::make_unique<SweepDesign>(sweep_);
-      file_axis_ = design_->axes().size();
+      const Assignment *const axes = file_.assignment_of(axes_entry);
+      design_                      = std::make_unique<SweepDesign>(sweep_, axes != nullptr ? axes->folder : "");
+      file_axis_                   = design_->axes().size();
       for (std::size_t i = 0; i < design_->axes().size(); ++i)
         if (design_->axes()[i].is_file())
           file_axis_ = i;
       if (file_axis_ < design_->axes().size())
         for (const std::string &name : design_->axes()[file_axis_].values)
           if (scenes_.count(name) == 0)
-            scenes_.emplace(name, read_file(communicator, name, {}));
+            scenes_.emplace(name, read_file(communicator, (design_->folder() / name).string(), {}));
       forms_[""] = std::move(base);
       for (const auto &[name, scene] : scenes_)
       {
@@ -133,7 +134,7 @@ namespace crawler
             fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),
             axes_entry);
       Form scratch(file_, nullptr);
-      require_valid({axis.entry, axis.values}, axes_entry, scratch.declarations);
+      require_valid({axis.entry, axis.values}, axes_entry, scratch.declarations, design_->folder());
       if (axis.is_range) // most numbers in it are not whole
         require_valid({axis.entry, {design_->value(number, 0)}}, axes_entry, scratch.declarations);
     }
@@ -151,7 +152,7 @@ namespace crawler
             continue;
           parameters(0);
           Form &form = *forms_.at(file_axis_ < design_->axes().size() ? design_->value(file_axis_, 0) : "");
-          form.declarations.set(axis.entry, word);
+          form.declarations.set(axis.entry, word, design_->folder());
           try
           {
             form.parameters.create_scene();
@@ -193,22 +194,27 @@ namespace crawler
     Form &form       = *forms_.at(file_axis_ < axes.size() ? design_->value(file_axis_, point) : "");
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (i != file_axis_)
-        form.declarations.set(axes[i].entry, design_->value(i, point));
+        form.declarations.set(axes[i].entry, design_->value(i, point), design_->folder());
     return form.parameters;
   }
 
   std::vector<std::string>
-  SweepPoints::overrides(const SweepDesign &design, const unsigned long point) const
+  SweepPoints::overrides(const unsigned long point) const
   {
     std::vector<std::string> list;
-    const auto &axes = design.axes();
-    if (file_axis_ < axes.size())
-      for (const Assignment &assignment : scenes_.at(design.value(file_axis_, point)).assignments())
-        list.push_back(assignment.path + "=" + assignment.value);
+    const auto &axes         = design_->axes();
+    const std::string scene  = file_axis_ < axes.size() ? design_->value(file_axis_, point) : "";
+    const auto &declarations = forms_.at(scene)->declarations;
+    const auto add = [&](const std::string &path, const std::string &value, const std::filesystem::path &folder) {
+      list.push_back(path + "=" + declarations.with_absolute_name(path, value, folder));
+    };
+    if (!scene.empty())
+      for (const Assignment &assignment : scenes_.at(scene).assignments())
+        add(assignment.path, assignment.value, assignment.folder);
     list.insert(list.end(), file_.overrides().begin(), file_.overrides().end());
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (i != file_axis_)
-        list.push_back(axes[i].entry + "=" + design.value(i, point));
+        add(axes[i].entry, design_->value(i, point), design_->folder());
     return list;
   }
 

@@ -19,15 +19,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <sstream>
 
 namespace crawler
 {
   namespace
   {
     namespace fs = std::filesystem;
+
+    /// Rows by the numbers of their settings.
+    using Rows = std::map<unsigned long, TradeoffRow>;
 
     /// What all parts of the study need.
     struct Study
@@ -41,7 +41,7 @@ namespace crawler
 
     /// The rows of one family, in the order of its tolerances.
     std::vector<TradeoffRow>
-    rows_of(const TradeoffFamily &family, const std::map<unsigned long, TradeoffRow> &rows)
+    rows_of(const TradeoffFamily &family, const Rows &rows)
     {
       std::vector<TradeoffRow> own;
       for (std::size_t i = 0; i < family.tolerances.size(); ++i)
@@ -64,18 +64,14 @@ namespace crawler
     }
 
     /// This rank's share of the families that are not done. A signal ends the work of all ranks.
-    std::vector<TradeoffRow>
-    measure_own(MPI_Comm communicator,
-                const Study &study,
-                const std::map<unsigned long, TradeoffRow> &kept,
-                TradeoffRowWriter &writer,
-                Log &log)
+    Rows
+    measure_own(MPI_Comm communicator, const Study &study, const Rows &kept, TradeoffRowWriter &writer, Log &log)
     {
       std::vector<const TradeoffFamily *> pending;
       for (const TradeoffFamily &family : study.families)
         if (next_of(study, family, rows_of(family, kept)))
           pending.push_back(&family);
-      std::vector<TradeoffRow> own;
+      Rows own;
       if (pending.empty())
         return own;
       WorkQueue queue(communicator, pending.size());
@@ -96,7 +92,7 @@ namespace crawler
           }
           writer.write(*row);
           rows.push_back(*row);
-          own.push_back(*row);
+          own.emplace(row->index, *row);
         }
         queue.done();
         progress.report(queue.so_far().done, fmt::format(" ({} settings on this rank)", own.size()));
@@ -125,28 +121,6 @@ namespace crawler
       std::vector<double> all(size_of(communicator));
       MPI_Allgather(&seconds, 1, MPI_DOUBLE, all.data(), 1, MPI_DOUBLE, communicator);
       return all;
-    }
-
-    /// The rows of all ranks, with those that were kept, on rank 0.
-    std::vector<TradeoffRow>
-    collect(MPI_Comm communicator,
-            const std::map<unsigned long, TradeoffRow> &kept,
-            const std::vector<TradeoffRow> &own)
-    {
-      std::string text;
-      for (const TradeoffRow &row : own)
-        text += pack(row) + "\n";
-      std::vector<TradeoffRow> rows;
-      if (rank_of(communicator) == 0)
-        for (const auto &[index, row] : kept)
-          rows.push_back(row);
-      for (const std::string &part : gather(text, communicator))
-      {
-        std::istringstream lines(part);
-        for (std::string line; std::getline(lines, line);)
-          rows.push_back(unpack_row(line));
-      }
-      return rows;
     }
 
     void
@@ -185,6 +159,62 @@ namespace crawler
       return reference.status == "inverted" ? ExitCode::inverted : ExitCode::numerical_failure;
     }
 
+    TradeoffLists
+    lists_of(const Input &input)
+    {
+      try
+      {
+        // The reference needs the whole equation.
+        Parameters whole = input.parameters;
+        whole.model      = "nonlinear";
+        choose_model(whole, input.scene);
+        return read_lists(input.parameters);
+      }
+      catch (const InputError &error)
+      {
+        throw input.file.with_place(error);
+      }
+    }
+
+    /// What an earlier start has left.
+    struct Earlier
+    {
+      bool is_done = false;
+      std::string reference; ///< as a text; empty: there is none
+      Rows rows;
+    };
+
+    fs::path
+    reference_file(const fs::path &folder)
+    {
+      return folder / "rows" / "reference.json";
+    }
+
+    /// Known to all ranks.
+    Earlier
+    begin_or_resume(MPI_Comm communicator, StudyFolder &folder, const Input &input)
+    {
+      Earlier earlier;
+      const fs::path rows = folder.path() / "rows", file = reference_file(folder.path());
+      earlier.reference = on_first_rank(communicator, [&]() -> std::string {
+        if (!folder.begin(input.file.text(), input.effective))
+        {
+          fs::remove_all(rows); // of an earlier study
+          fs::create_directories(rows);
+          return "";
+        }
+        folder.resume(
+          differences(read_whole_file(folder.path() / "parameters.prm"), input.effective, folder.kind().free_entries));
+        if (!fs::exists(rows))
+          return "done";
+        earlier.rows = recover_rows(folder.path());
+        return fs::exists(file) ? read_whole_file(file) : "";
+      });
+      earlier.is_done   = earlier.reference == "done";
+      earlier.rows      = unpack_rows(broadcast(pack(earlier.rows), communicator));
+      return earlier;
+    }
+
     /// All files of the results, written by rank 0.
     void
     write_results(const fs::path &folder,
@@ -216,60 +246,25 @@ namespace crawler
     const double start = now();
     const bool first   = rank_of(communicator) == 0;
     Log log(first, options.quiet);
-    const Input input            = read_input(communicator, options.file, options.overrides);
-    const Parameters &parameters = input.parameters;
-    const TradeoffLists lists    = [&]() {
-      try
-      {
-        // The reference needs the whole equation.
-        Parameters whole = parameters;
-        whole.model      = "nonlinear";
-        choose_model(whole, input.scene);
-        return read_lists(parameters);
-      }
-      catch (const InputError &error)
-      {
-        throw input.file.with_place(error);
-      }
-    }();
+    const Input input                       = read_input(communicator, options.file, options.overrides);
+    const Parameters &parameters            = input.parameters;
+    const TradeoffLists lists               = lists_of(input);
     const auto folder                       = output_folder(options.output, options.file);
-    const auto reference_file               = folder / "rows" / "reference.json";
     const auto is_out_of_time               = [&]() { return now() - start > parameters.tradeoff.time_limit; };
     const std::function<bool()> interrupted = [&]() {
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || is_out_of_time();
     };
 
     StudyFolder study_folder({"tradeoff", {"rows", "tradeoff.csv"}, {"Tradeoff/Time limit"}}, folder, options, log);
-    std::map<unsigned long, TradeoffRow> kept;
-    std::string known = on_first_rank(communicator, [&]() -> std::string {
-      if (!study_folder.begin(input.file.text(), input.effective))
-      {
-        fs::remove_all(folder / "rows"); // of an earlier study
-        fs::create_directories(folder / "rows");
-        return "";
-      }
-      study_folder.resume(
-        differences(read_whole_file(folder / "parameters.prm"), input.effective, study_folder.kind().free_entries));
-      if (!fs::exists(folder / "rows"))
-        return "done";
-      kept = recover_rows(folder);
-      return fs::exists(reference_file) ? read_whole_file(reference_file) : "";
-    });
-    if (known == "done")
+    Earlier earlier = begin_or_resume(communicator, study_folder, input);
+    if (earlier.is_done)
     {
       log.line(fmt::format("The tradeoff in {} is finished; nothing is left to do.", folder.string()));
       study_folder.leave();
       return ExitCode::finished;
     }
-    // All ranks know the rows that are kept.
-    std::string kept_text;
-    for (const auto &[index, row] : kept)
-      kept_text += pack(row) + "\n";
-    std::istringstream kept_lines(broadcast(kept_text, communicator));
-    for (std::string line; std::getline(kept_lines, line);)
-      kept.emplace(unpack_row(line).index, unpack_row(line));
     if (options.resume)
-      log.line(fmt::format("Resumed with {} settings that are done.", kept.size()));
+      log.line(fmt::format("Resumed with {} settings that are done.", earlier.rows.size()));
 
     log.line(fmt::format("Tradeoff of {} on {} rank{}: making the reference ...",
                          input.file.name(),
@@ -277,15 +272,16 @@ namespace crawler
                          size_of(communicator) == 1 ? "" : "s"));
     for (const std::string &note : input.notes)
       log.line(note);
-    if (known.empty())
+    if (earlier.reference.empty())
     {
       // On every rank alike, that no one has an idle core beside it; what counts is the first one's.
       const auto report = [&log](const std::string &line) { log.line(line); };
-      known = broadcast(pack(make_reference(parameters, input.scene, lists, interrupted, report)), communicator);
-      if (first && unpack_reference(known).status == "finished")
-        write_file(reference_file, known);
+      earlier.reference =
+        broadcast(pack(make_reference(parameters, input.scene, lists, interrupted, report)), communicator);
+      if (first && unpack_reference(earlier.reference).status == "finished")
+        write_file(reference_file(folder), earlier.reference);
     }
-    const TradeoffReference reference = unpack_reference(known);
+    const TradeoffReference reference = unpack_reference(earlier.reference);
     if (reference.status != "finished")
     {
       study_folder.leave();
@@ -303,17 +299,16 @@ namespace crawler
       "{} settings on {} meshes; the reference took {:.1f} s.", course.n_settings, all_families.size(), now() - start));
 
     TradeoffRowWriter writer(folder, rank_of(communicator));
-    const auto own            = measure_own(communicator, study, kept, writer, log);
+    const Rows own            = measure_own(communicator, study, earlier.rows, writer, log);
     course.calibration.at_end = calibrate(communicator, study);
-    auto rows                 = collect(communicator, kept, own);
-    int code                  = 0;
+    Rows rows                 = std::move(earlier.rows);
+    for (const std::string &part : gather(pack(own), communicator)) // on rank 0
+      rows.merge(unpack_rows(part));
+    int code = 0;
     if (first)
     {
-      std::map<unsigned long, TradeoffRow> by_index;
-      for (const TradeoffRow &row : rows)
-        by_index.emplace(row.index, row);
       const bool finished = std::none_of(all_families.begin(), all_families.end(), [&](const TradeoffFamily &family) {
-        return next_of(study, family, rows_of(family, by_index)).has_value();
+        return next_of(study, family, rows_of(family, rows)).has_value();
       });
       course.status       = finished ? "finished" : "stopped";
       course.reason       = finished ? "" : is_out_of_time() ? "time_limit" : "signal";
@@ -321,11 +316,14 @@ namespace crawler
       course.seconds      = now() - start;
     }
     on_first_rank(communicator, [&]() {
-      write_results(folder, evaluate(reference, std::move(rows)), course, input.effective, log);
+      std::vector<TradeoffRow> tried;
+      for (const auto &[index, row] : rows)
+        tried.push_back(row);
+      write_results(folder, evaluate(reference, std::move(tried)), course, input.effective, log);
       if (course.status == "stopped")
         log.warn(fmt::format("stopped by {} after {} settings; --resume goes on",
                              course.reason == "signal" ? "a signal" : "Tradeoff/Time limit",
-                             kept.size() + own.size()));
+                             rows.size()));
       study_folder.leave();
       return "";
     });

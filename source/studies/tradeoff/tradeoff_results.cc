@@ -19,13 +19,6 @@ namespace crawler
 
     constexpr unsigned int first_exponent = 2, last_exponent = 14;
 
-    /// 0 stands for what has no meaning.
-    double
-    count(const unsigned int n)
-    {
-      return n > 0 ? n : TradeoffRow::unknown;
-    }
-
     const char *
     yes_no(const bool value)
     {
@@ -189,81 +182,45 @@ namespace crawler
   Table
   tradeoff_table(const TradeoffResults &results)
   {
-    const auto &rows = results.rows;
     Table table;
     const auto add =
       [&](const std::string &name, const std::string &unit, const std::string &description, const auto &value) {
         std::vector<std::decay_t<decltype(value(std::size_t()))>> values;
-        for (std::size_t i = 0; i < rows.size(); ++i)
+        for (std::size_t i = 0; i < results.rows.size(); ++i)
           values.push_back(value(i));
         table.push_back({name, unit, description, std::move(values)});
       };
-    const auto add_text =
-      [&](const std::string &name, const std::string &description, std::string TradeoffRow::*member) {
-        add(name, "", description, [&, member](const std::size_t i) { return rows[i].*member; });
-      };
-    const auto add_word =
-      [&](const std::string &name, const std::string &description, std::string TradeoffSetting::*member) {
-        add(name, "", description, [&, member](const std::size_t i) { return rows[i].setting.*member; });
-      };
-    const auto add_number = [&](const std::string &name,
-                                const std::string &unit,
-                                const std::string &description,
-                                double TradeoffRow::*member) {
-      add(name, unit, description, [&, member](const std::size_t i) { return rows[i].*member; });
+    const auto add_errors = [&]() {
+      add("error",
+          "1",
+          "distance of the displacement to the reference, over the size of the displacement",
+          [&](const std::size_t i) { return results.errors[i]; });
+      add("shown error", "1", "the same, but no smaller than the reference's bar", [&](const std::size_t i) {
+        return results.shown[i];
+      });
+      add("below bar",
+          "",
+          "true if the error cannot be told from 0: it is below the reference's bar",
+          [&](const std::size_t i) { return std::string(yes_no(results.errors[i] < results.shown[i])); });
+      add("pareto",
+          "",
+          "true if no other single run (for a batch: no other batch) is as cheap and as accurate, and better in one",
+          [&](const std::size_t i) { return std::string(yes_no(results.on_front[i])); });
     };
-    add("index", "1", "number of the setting", [&](const std::size_t i) { return static_cast<double>(rows[i].index); });
-    add_word("model", "level of the model", &TradeoffSetting::model);
-    add_word("formulation", "position or stretch", &TradeoffSetting::formulation);
-    add_word("mesh", "uniform or adaptive", &TradeoffSetting::mesh);
-    add_word("engine", "fused, petsc, or batch: 8 bodies side by side by the fused engine", &TradeoffSetting::engine);
-    add_word("integrator", "time integrator", &TradeoffSetting::integrator);
-    add("degree", "1", "polynomial degree", [&](const std::size_t i) { return count(rows[i].setting.degree); });
-    add("cells", "1", "cells of a uniform mesh", [&](const std::size_t i) { return count(rows[i].setting.cells); });
-    add("mesh tolerance", "1", "of an adaptive mesh, relative to the square of the strain", [&](const std::size_t i) {
-      return rows[i].setting.mesh_tolerance;
+    add("index", "1", "number of the setting", [&](const std::size_t i) {
+      return static_cast<double>(results.rows[i].index);
     });
-    add("tolerance",
-        "1",
-        "time tolerance over the size of the displacement; of a level without a mesh: Accuracy",
-        [&](const std::size_t i) { return rows[i].setting.tolerance; });
-    add_text("status", "finished, inverted, failed, stopped, refused, or not offered", &TradeoffRow::status);
-    add_text("reason", "name of what went wrong", &TradeoffRow::reason);
-    add_text("message", "what went wrong, or what the level says about its error, in words", &TradeoffRow::message);
-    add_number("displacement", "length", "of the centre of mass at the end time", &TradeoffRow::displacement);
-    add("error",
-        "1",
-        "distance of the displacement to the reference, over the size of the displacement",
-        [&](const std::size_t i) { return results.errors[i]; });
-    add("shown error", "1", "the same, but no smaller than the reference's bar", [&](const std::size_t i) {
-      return results.shown[i];
-    });
-    add("below bar",
-        "",
-        "true if the error cannot be told from 0: it is below the reference's bar",
-        [&](const std::size_t i) { return std::string(yes_no(results.errors[i] < results.shown[i])); });
-    add("pareto",
-        "",
-        "true if no other single run (for a batch: no other batch) is as cheap and as accurate, and better in one",
-        [&](const std::size_t i) { return std::string(yes_no(results.on_front[i])); });
-    add_number("seconds",
-               "s",
-               "processor time to build the simulation and run it, median; of a body, in a batch",
-               &TradeoffRow::seconds);
-    add_number("spread", "1", "largest minus smallest measurement over the median", &TradeoffRow::spread);
-    add_number("repetitions", "1", "runs that were timed", &TradeoffRow::repetitions);
-    add_number("choice seconds",
-               "s",
-               "processor time of the pilot runs of an adaptive mesh, which is not in seconds",
-               &TradeoffRow::choice_seconds);
-    add_number("memory",
-               "byte",
-               "largest heap in use by the simulation at the ends of steps; of a batch: by all bodies",
-               &TradeoffRow::memory);
-    add_number("steps", "1", "accepted time steps", &TradeoffRow::steps);
-    add_number("rejected steps", "1", "time steps that were done again", &TradeoffRow::rejected_steps);
-    add_number("newton iterations", "1", "of all steps", &TradeoffRow::newton_iterations);
-    add_number("most cells", "1", "of an adaptive mesh, largest over time", &TradeoffRow::most_cells);
+    for (const TradeoffColumn &column : tradeoff_columns())
+    {
+      const auto add_column = [&](const auto &kind) {
+        add(column.name, column.unit, column.description, [&](const std::size_t i) {
+          return std::get<std::decay_t<decltype(kind)>>(column.value_in(results.rows[i]));
+        });
+      };
+      std::visit(add_column, column.value_in(TradeoffRow()));
+      if (column.name == "displacement")
+        add_errors();
+    }
     return table;
   }
 
@@ -271,28 +228,19 @@ namespace crawler
   recommendation_lines(const TradeoffResults &results)
   {
     std::vector<std::string> lines;
-    const auto &single = results.recommendations;
     // Accuracies with the same setting share a line.
-    std::string accuracies;
-    for (std::size_t i = 0; i < single.size(); ++i)
-    {
-      accuracies += fmt::format("{}1e-{}", accuracies.empty() ? "" : " and ", single[i].exponent);
-      if (i + 1 == single.size() || single[i + 1].row != single[i].row)
-        lines.push_back(fmt::format("For {} use {}: {}",
-                                    std::exchange(accuracies, ""),
-                                    in_words(results.rows[single[i].row].setting),
-                                    costs(results, single[i].row)));
-    }
-    const auto &batch = results.batch_recommendations;
-    for (std::size_t i = 0; i < batch.size(); ++i)
-    {
-      accuracies += fmt::format("{}1e-{}", accuracies.empty() ? "" : " and ", batch[i].exponent);
-      if (i + 1 == batch.size() || batch[i + 1].row != batch[i].row)
-        lines.push_back(fmt::format("Many bodies, for {}: {}: {}",
-                                    std::exchange(accuracies, ""),
-                                    in_words(results.rows[batch[i].row].setting),
-                                    costs(results, batch[i].row)));
-    }
+    const auto add = [&](const std::vector<Recommendation> &list, const std::string &words) {
+      std::string accuracies;
+      for (std::size_t i = 0; i < list.size(); ++i)
+      {
+        accuracies += fmt::format("{}1e-{}", accuracies.empty() ? "" : " and ", list[i].exponent);
+        if (i + 1 == list.size() || list[i + 1].row != list[i].row)
+          lines.push_back(fmt::format(fmt::runtime(words), std::exchange(accuracies, "")) +
+                          in_words(results.rows[list[i].row].setting) + ": " + costs(results, list[i].row));
+      }
+    };
+    add(results.recommendations, "For {} use ");
+    add(results.batch_recommendations, "Many bodies, for {}: ");
     return lines;
   }
 

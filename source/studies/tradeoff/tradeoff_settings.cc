@@ -31,38 +31,52 @@ namespace crawler
     /// The largest Accuracy.
     constexpr double loosest_accuracy = 0.1;
 
-    std::vector<std::string>
-    words(const std::string &text, const std::string &entry, const std::vector<std::string> &known)
+    /// The list of the entry @p entry: what @p read makes of each value; values of which it makes nothing are refused
+    /// with @p expected and a hint.
+    template <typename Read>
+    auto
+    list_of(const std::string &text,
+            const std::string &entry,
+            const std::string &expected,
+            const Read &read,
+            const std::vector<std::string> &known = {})
     {
       const std::string name = "Tradeoff/" + entry;
-      const auto values      = parse_values(text, name);
-      for (const std::string &value : values)
-        if (std::find(known.begin(), known.end(), value) == known.end())
+      std::vector<typename decltype(read(text))::value_type> result;
+      for (const std::string &value : parse_values(text, name))
+      {
+        const auto one = read(value);
+        if (!one)
         {
           const auto near = nearest_names(value, known, 1);
           throw InputError(fmt::format("\"{}\": found \"{}\", but {} is expected{}",
                                        name,
                                        value,
-                                       quoted_list(known),
+                                       expected,
                                        near.empty() ? "" : "; the nearest is " + quoted_list(near)),
                            name);
         }
-      return values;
+        result.push_back(*one);
+      }
+      return result;
+    }
+
+    std::vector<std::string>
+    words(const std::string &text, const std::string &entry, const std::vector<std::string> &known)
+    {
+      const auto read = [&](const std::string &value) {
+        return std::find(known.begin(), known.end(), value) != known.end() ? std::optional(value) : std::nullopt;
+      };
+      return list_of(text, entry, quoted_list(known), read, known);
     }
 
     std::vector<double>
     numbers(const std::string &text, const std::string &entry)
     {
-      const std::string name = "Tradeoff/" + entry;
-      std::vector<double> result;
-      for (const std::string &value : parse_values(text, name))
-      {
+      auto result = list_of(text, entry, "a number between 0 and 1", [](const std::string &value) {
         const auto number = to_number(value);
-        if (!number || !(*number > 0.) || !(*number < 1.))
-          throw InputError(fmt::format("\"{}\": found \"{}\", but a number between 0 and 1 is expected", name, value),
-                           name);
-        result.push_back(*number);
-      }
+        return number && *number > 0. && *number < 1. ? number : std::nullopt;
+      });
       std::sort(result.rbegin(), result.rend());
       return result;
     }
@@ -70,17 +84,13 @@ namespace crawler
     std::vector<unsigned int>
     whole_numbers(const std::string &text, const std::string &entry, const unsigned int largest)
     {
-      const std::string name = "Tradeoff/" + entry;
-      std::vector<unsigned int> result;
-      for (const std::string &value : parse_values(text, name))
-      {
+      const auto read = [largest](const std::string &value) {
         const auto number = to_number(value);
-        if (!number || *number != std::round(*number) || *number < 1 || *number > largest)
-          throw InputError(
-            fmt::format("\"{}\": found \"{}\", but a whole number from 1 to {} is expected", name, value, largest),
-            name);
-        result.push_back(static_cast<unsigned int>(*number));
-      }
+        return number && *number == std::round(*number) && *number >= 1 && *number <= largest
+                 ? std::optional(static_cast<unsigned int>(*number))
+                 : std::nullopt;
+      };
+      auto result = list_of(text, entry, fmt::format("a whole number from 1 to {}", largest), read);
       std::sort(result.begin(), result.end());
       return result;
     }
@@ -138,10 +148,7 @@ namespace crawler
                            setting.is_batch() ? ", which computes batches," : "");
       return "";
     }
-  } // namespace
 
-  namespace
-  {
     /// A level without a mesh: one setting, or several of different Accuracy.
     TradeoffFamily
     reduced_family(const std::string &model,

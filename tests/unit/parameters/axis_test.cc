@@ -100,7 +100,7 @@ TEST(Axis, AllValuesAreCheckedAgainstTheDeclarations)
   double length = 1.;
   Declarations declarations;
   declarations.enter("Body");
-  declarations.number("Length", length, positive(), "Length.", "length");
+  declarations.number("Length", length, positive(), "length").means("Length.");
   declarations.leave();
   require_valid(parse_axis("Body/Length : 1, 3", name), name, declarations);
   EXPECT_EQ(length, 3.);

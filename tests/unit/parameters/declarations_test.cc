@@ -22,11 +22,11 @@ namespace
     Example()
     {
       declarations.enter("Body");
-      declarations.number("Length", length, positive(), "A length.", "length");
-      declarations.whole_number("Cells", cells, 1, 10, "A count.");
+      declarations.number("Length", length, positive(), "length").means("A length.");
+      declarations.whole_number("Cells", cells, 1, 10).means("A count.");
       declarations.leave();
-      declarations.numbers("List", list, "A list.", "1");
-      declarations.choice("Word", word, {"yes", "no"}, "A choice.");
+      declarations.numbers("List", list, "1").means("A list.");
+      declarations.choice("Word", word, {"yes", "no"}).means("A choice.");
     }
   };
 
@@ -115,8 +115,8 @@ TEST(Declarations, FilesCountFromAFolder)
 {
   Declarations declarations;
   std::string file = "none.csv", profile = "1";
-  declarations.file("File", file, "a file", "Documentation.");
-  declarations.file("Profile", profile, "a formula or a file", "Documentation.", "1", ".csv");
+  declarations.file("File", file, "a file").means("Documentation.");
+  declarations.file("Profile", profile, "a formula or a file", "1", ".csv").means("Documentation.");
   EXPECT_EQ(file, "none.csv");
   declarations.set("File", "a.csv", "/folder/inner/..");
   declarations.set("Profile", "2/s", "/folder");

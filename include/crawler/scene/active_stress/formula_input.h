@@ -25,12 +25,9 @@ namespace crawler
   std::shared_ptr<const Formula>
   read_formula(const FormulaInput &input, double length, double end_time);
 
-  /// Throws InputError if an active stress by a formula is not a finite number somewhere on a grid over the body and the
-  /// duration; @p where says in the message for which body, if it is not any.
+  /// Throws InputError if an active stress by a formula is not a finite number somewhere on a grid over the body and
+  /// the duration; @p where says in the message for which body, if it is not any.
   void
-  require_finite_values(const ActiveStress &stress,
-                        const FormulaInput &input,
-                        const std::string &where,
-                        double length,
-                        double end_time);
+  require_finite_values(
+    const ActiveStress &stress, const FormulaInput &input, const std::string &where, double length, double end_time);
 } // namespace crawler

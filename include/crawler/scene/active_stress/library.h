@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/known_stress.h>
 #include <crawler/scene/body.h>
+#include <crawler/scene/known_stress.h>
 
 #include <string>
 

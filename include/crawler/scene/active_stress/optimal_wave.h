@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/known_stress.h>
 #include <crawler/scene/active_stress/wave_roots.h>
 #include <crawler/scene/body.h>
+#include <crawler/scene/known_stress.h>
 
 #include <optional>
 #include <string>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <crawler/base/gauss_panels.h>
-#include <crawler/scene/known_stress.h>
 #include <crawler/scene/body.h>
+#include <crawler/scene/known_stress.h>
 
 #include <string>
 

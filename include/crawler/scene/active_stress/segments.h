@@ -2,8 +2,8 @@
 #pragma once
 
 #include <crawler/scene/active_stress/envelope.h>
-#include <crawler/scene/known_stress.h>
 #include <crawler/scene/active_stress/profile.h>
+#include <crawler/scene/known_stress.h>
 
 #include <string>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/known_stress.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
 #include <crawler/scene/active_stress/shape_function.h>
+#include <crawler/scene/known_stress.h>
 
 namespace crawler
 {

@@ -3,6 +3,7 @@
 
 #include <crawler/studies/core/sweep_parameters.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,10 @@ namespace crawler
   class SweepDesign
   {
   public:
-    /// Reads the axes, with the CSV files that they name. Throws InputError in the name of the entry Sweep/Axes if they
-    /// do not make sense, if the axes of a zip have different lengths or if there are more than
-    /// SweepParameters::most_points.
-    explicit SweepDesign(const SweepParameters &parameters);
+    /// Reads the axes, with the CSV files that they name, whose names count from @p folder. Throws InputError in the
+    /// name of the entry Sweep/Axes if they do not make sense, if the axes of a zip have different lengths or if there
+    /// are more than SweepParameters::most_points.
+    explicit SweepDesign(const SweepParameters &parameters, std::filesystem::path folder = "");
 
     unsigned long
     n_points() const
@@ -49,6 +50,13 @@ namespace crawler
     /// Of a grid the last axis varies fastest. Nothing is kept for random points: they are computed.
     std::string
     value(std::size_t axis, unsigned long point) const;
+
+    /// From which the names of files on the axes count.
+    const std::filesystem::path &
+    folder() const
+    {
+      return folder_;
+    }
 
     /// Does the entry vary from point to point?
     bool
@@ -73,6 +81,7 @@ namespace crawler
     SweepAxis
     read_axis(const std::string &entry, const std::string &text, const std::string &design) const;
 
+    std::filesystem::path folder_;
     std::vector<SweepAxis> axes_;
     Kind kind_;
     unsigned int seed_;

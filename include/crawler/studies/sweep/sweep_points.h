@@ -60,7 +60,7 @@ namespace crawler
 
     /// The same as overrides "Section/Entry=value" of a command line: the file of the axis, the user, the axes.
     std::vector<std::string>
-    overrides(const SweepDesign &design, unsigned long point) const;
+    overrides(unsigned long point) const;
 
     /// The numbers in Sweep/Keep fields. Throws InputError if one is not that of a point.
     std::vector<unsigned long>

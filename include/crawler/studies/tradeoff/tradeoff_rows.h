@@ -7,6 +7,8 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <variant>
+#include <vector>
 
 namespace crawler
 {
@@ -26,18 +28,38 @@ namespace crawler
     double choice_seconds = unknown; ///< processor time of the pilot runs of an adaptive mesh [s]
     double memory         = unknown; ///< largest heap in use, of all bodies of a batch together [byte]
     double steps = unknown, rejected_steps = unknown, newton_iterations = unknown, most_cells = unknown;
-    std::string prm; ///< entries that repeat it with `crawler run`; empty if there are none
+    std::string prm; ///< entries that repeat it with `crawler run`; empty if there are none (a column of no table)
   };
 
-  /// A row as a line of text (JSON), and back. unpack_row() throws std::exception if the line is not whole.
+  /// A column of the table that is a member of the row or of its setting. What has no meaning there, 0 cells for
+  /// example, is not a number.
+  struct TradeoffColumn
+  {
+    std::string name, unit, description;
+    std::variant<std::string TradeoffSetting::*,
+                 double TradeoffSetting::*,
+                 unsigned int TradeoffSetting::*,
+                 std::string TradeoffRow::*,
+                 double TradeoffRow::*>
+      member;
+
+    std::variant<double, std::string>
+    value_in(const TradeoffRow &row) const;
+  };
+
+  /// All but the index, in the order of tradeoff.csv. What is missing here is lost when a study is resumed.
+  const std::vector<TradeoffColumn> &
+  tradeoff_columns();
+
+  /// Rows as lines of text (JSON), one for each, and back. A line that is not whole is not a row.
   std::string
-  pack(const TradeoffRow &row);
-  TradeoffRow
-  unpack_row(const std::string &line);
+  pack(const std::map<unsigned long, TradeoffRow> &rows);
+  std::map<unsigned long, TradeoffRow>
+  unpack_rows(const std::string &lines);
 
   /**
    * The rows as they come, in files of their own (FOLDER/rows/RANK.jsonl), so that a job that is killed loses none but
-   * those under way. A line is written at once; one that was cut off is not a row.
+   * those under way: a line is written at once.
    */
   class TradeoffRowWriter
   {
@@ -52,7 +74,7 @@ namespace crawler
     std::ofstream out_;
   };
 
-  /// All whole rows of @p folder by index, and rewrites them as one file. Only one rank calls this.
+  /// All whole rows of @p folder by index; rewrites them as one file. Only one rank calls this.
   std::map<unsigned long, TradeoffRow>
   recover_rows(const std::filesystem::path &folder);
 } // namespace crawler
