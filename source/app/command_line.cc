@@ -147,6 +147,59 @@ namespace crawler
                                    near.empty() ? "" : "; the nearest is " + quoted_list(near)));
     }
 
+    /// A command that reads a parameter file.
+    struct Command
+    {
+      const char *name, *description;
+      ExitCode (*function)(MPI_Comm, const CommandOptions &);
+      bool writes, is_study; ///< --overwrite and --quiet; --resume
+    };
+    constexpr Command commands[] = {{"run", "Runs the crawler of a parameter file", run, true, false},
+                                    {"check",
+                                     "Says what run would do with a parameter file; runs and writes nothing",
+                                     check,
+                                     /*writes=*/false,
+                                     /*is_study=*/false},
+                                    {"atlas",
+                                     "Maps two entries of a parameter file: runs every point in all forms and compares",
+                                     atlas,
+                                     /*writes=*/true,
+                                     /*is_study=*/true},
+                                    {"tradeoff",
+                                     "Measures cost against error of many settings on the scene of a parameter file",
+                                     tradeoff,
+                                     /*writes=*/true,
+                                     /*is_study=*/true},
+                                    {"sweep",
+                                     "Runs all points of section Sweep of a parameter file and makes a table of them",
+                                     sweep,
+                                     /*writes=*/true,
+                                     /*is_study=*/true}};
+
+    void
+    add_command(const Command &command, CLI::App &app, CommandOptions &options)
+    {
+      CLI::App *own = app.add_subcommand(command.name, command.description);
+      own->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();
+      own->add_option("--set", options.overrides, "Sets an entry: \"Section/Entry=value\" (repeatable)")
+        ->allow_extra_args(false)
+        ->take_all();
+      own->add_option("--output", options.output, "Output folder (default: output-NAME for NAME.prm)");
+      if (command.is_study)
+        own->add_flag("--resume",
+                      options.resume,
+                      fmt::format("Goes on with {} {} that was stopped or killed",
+                                  command.name[0] == 'a' ? "an" : "a",
+                                  command.name));
+      if (command.function == sweep)
+        own->add_flag("--strict", options.strict, "Exit code 8 if the row of a point failed");
+      if (command.writes)
+      {
+        own->add_flag("--overwrite", options.overwrite, "Replaces the results in the output folder");
+        own->add_flag("--quiet", options.quiet, "Prints nothing but errors");
+      }
+    }
+
     int
     dispatch(MPI_Comm communicator,
              const std::vector<std::string> &arguments,
@@ -164,36 +217,8 @@ namespace crawler
       options.petsc_options = fmt::format("{}", fmt::join(petsc_options, " "));
       if (!petsc_options.empty())
         options.command_line += " -- " + options.petsc_options;
-      const auto common = [&](CLI::App *command) {
-        command->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();
-        command->add_option("--set", options.overrides, "Sets an entry: \"Section/Entry=value\" (repeatable)")
-          ->allow_extra_args(false)
-          ->take_all();
-        command->add_option("--output", options.output, "Output folder (default: output-NAME for NAME.prm)");
-      };
-      CLI::App *run_command = app.add_subcommand("run", "Runs the crawler of a parameter file");
-      common(run_command);
-      CLI::App *check_command =
-        app.add_subcommand("check", "Says what run would do with a parameter file; runs and writes nothing");
-      common(check_command);
-      CLI::App *atlas_command =
-        app.add_subcommand("atlas", "Maps two entries of a parameter file: runs every point in all forms and compares");
-      common(atlas_command);
-      CLI::App *tradeoff_command =
-        app.add_subcommand("tradeoff", "Measures cost against error of many settings on the scene of a parameter file");
-      common(tradeoff_command);
-      tradeoff_command->add_flag("--resume", options.resume, "Goes on with a tradeoff that was stopped or killed");
-      CLI::App *sweep_command =
-        app.add_subcommand("sweep", "Runs all points of section Sweep of a parameter file and makes a table of them");
-      common(sweep_command);
-      sweep_command->add_flag("--resume", options.resume, "Goes on with a sweep that was stopped or killed");
-      atlas_command->add_flag("--resume", options.resume, "Goes on with an atlas that was stopped or killed");
-      sweep_command->add_flag("--strict", options.strict, "Exit code 8 if the row of a point failed");
-      for (CLI::App *command : {run_command, sweep_command, atlas_command, tradeoff_command})
-      {
-        command->add_flag("--overwrite", options.overwrite, "Replaces the results in the output folder");
-        command->add_flag("--quiet", options.quiet, "Prints nothing but errors");
-      }
+      for (const Command &command : commands)
+        add_command(command, app, options);
       std::string format          = "prm";
       CLI::App *parameter_command = app.add_subcommand("parameters", "Prints every entry of the parameter file");
       parameter_command->add_option("--format", format, "prm, json or markdown");
@@ -216,24 +241,21 @@ namespace crawler
       {
         throw InputError(in_words(error, app, arguments) + " (crawler --help tells the commands and options)");
       }
-      const CLI::App *const command = app.get_subcommands().front();
-      if (command != parameter_command && command->count("--output") > 0 && options.output.empty())
+      const CLI::App *const chosen = app.get_subcommands().front();
+      if (chosen != parameter_command && chosen->count("--output") > 0 && options.output.empty())
         throw InputError("behind \"--output\" stands \"\", but the name of a folder is expected");
-      if (!petsc_options.empty() && (*parameter_command || *atlas_command || *tradeoff_command))
+      const auto command = std::find_if(
+        std::begin(commands), std::end(commands), [&](const Command &c) { return c.name == chosen->get_name(); });
+      if (!petsc_options.empty() &&
+          (command == std::end(commands) || command->function == atlas || command->function == tradeoff))
         throw InputError(fmt::format("behind \"--\" stands \"{}\", but the command \"{}\" has no use for PETSc options",
                                      petsc_options[0],
-                                     command->get_name()));
+                                     chosen->get_name()));
+      if (command == std::end(commands))
+        return first ? print_parameters(format) : 0;
       if (!petsc_options.empty()) // they are for PETSc's objects, unless the user wants something else
         options.overrides.insert(options.overrides.begin(), "Time/Engine=petsc");
-      if (*parameter_command)
-        return first ? print_parameters(format) : 0;
-      if (*sweep_command)
-        return static_cast<int>(sweep(communicator, options));
-      if (*atlas_command)
-        return static_cast<int>(atlas(communicator, options));
-      if (*tradeoff_command)
-        return static_cast<int>(tradeoff(communicator, options));
-      return static_cast<int>(*run_command ? run(communicator, options) : check(communicator, options));
+      return static_cast<int>(command->function(communicator, options));
     }
   } // namespace
 

@@ -62,6 +62,15 @@ namespace crawler
     return result;
   }
 
+  std::vector<std::string>
+  nearly_alike(const std::string &name, const std::vector<std::string> &candidates)
+  {
+    auto nearest = nearest_names(name, candidates, 1);
+    if (!nearest.empty() && 3 * edit_distance(lower(name), lower(nearest[0])) > name.size())
+      nearest.clear();
+    return nearest;
+  }
+
   std::string
   quoted_list(const std::vector<std::string> &names)
   {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/formula/enclosure_rules.h>
 #include <crawler/formula/formula.h>
-#include <crawler/formula/tangent_rules.h>
+#include <crawler/formula/operation_rules.h>
 
 #include <muParser.h>
 

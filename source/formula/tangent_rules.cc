@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/formula/tangent_rules.h>
+#include <crawler/formula/operation_rules.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
-#include <crawler/scene/friction_law/expression_friction.h>
-#include <crawler/scene/friction_law/newtonian.h>
 #include <crawler/scene/ground.h>
 
 #include <fmt/format.h>
@@ -16,6 +15,92 @@ namespace crawler
 {
   namespace
   {
+    /// A viscous film under the body: force per present length proportional to the velocity, g(w) = gamma w. The
+    /// simplest law.
+    class NewtonianFriction : public FrictionLaw
+    {
+    public:
+      /// @param gamma friction coefficient [force time/length^2].
+      explicit NewtonianFriction(const double gamma)
+        : gamma_(gamma)
+      {
+      }
+
+      void
+      values(const std::span<const double> w, const std::span<double> g) const override
+      {
+        for (std::size_t i = 0; i < w.size(); ++i)
+          g[i] = gamma_ * w[i];
+      }
+      void
+      values_and_log_derivatives(const std::span<const double> w,
+                                 const std::span<double> g,
+                                 const std::span<double> w_dg) const override
+      {
+        values(w, g);
+        std::copy(g.begin(), g.end(), w_dg.begin());
+      }
+      std::unique_ptr<FrictionLaw>
+      scaled(const double factor) const override
+      {
+        return std::make_unique<NewtonianFriction>(gamma_ * factor);
+      }
+      double
+      exponent(double) const override
+      {
+        return 1.;
+      }
+
+    private:
+      const double gamma_;
+    };
+
+    /// A formula f of the stretch: g(w) = gamma f(w).
+    class ExpressionFriction : public FrictionLaw
+    {
+    public:
+      /// @param gamma friction coefficient [force time/length^2]; @param formula of the one variable w.
+      ExpressionFriction(const double gamma, std::shared_ptr<const Formula> formula)
+        : gamma_(gamma)
+        , formula_(std::move(formula))
+        , gradient_(formula_)
+      {
+      }
+
+      void
+      values(const std::span<const double> w, const std::span<double> g) const override
+      {
+        const std::span<const double> stretch[] = {w};
+        gradient_.evaluate(stretch, g);
+        for (double &value : g)
+          value *= gamma_;
+      }
+      void
+      values_and_log_derivatives(const std::span<const double> w,
+                                 const std::span<double> g,
+                                 const std::span<double> w_dg) const override
+      {
+        const std::span<const double> stretch[] = {w};
+        const std::span<double> derivatives[]   = {w_dg};
+        gradient_.evaluate(stretch, g, derivatives);
+        for (std::size_t i = 0; i < w.size(); ++i)
+        {
+          g[i] *= gamma_;
+          w_dg[i] *= gamma_ * w[i];
+        }
+      }
+      std::unique_ptr<FrictionLaw>
+      scaled(const double factor) const override
+      {
+        return std::make_unique<ExpressionFriction>(gamma_ * factor, formula_);
+      }
+
+    private:
+      const double gamma_;
+      const std::shared_ptr<const Formula> formula_;
+      mutable FormulaGradient gradient_; ///< has room for intermediate values
+    };
+
     struct Law
     {
       std::string name, description;
@@ -50,12 +135,12 @@ namespace crawler
            return std::make_unique<PowerFriction>(body.friction_coefficient, body.friction_exponent());
          }},
         {"Newtonian",
-         NewtonianFriction::description,
+         "a viscous film: gamma times stretch",
          [](const auto &, const Body &body, double) -> std::unique_ptr<const FrictionLaw> {
            return std::make_unique<NewtonianFriction>(body.friction_coefficient);
          }},
         {"expression",
-         ExpressionFriction::description,
+         "gamma times a formula of the stretch w",
          [](const auto &p, const Body &body, const double end_time) -> std::unique_ptr<const FrictionLaw> {
            auto law = std::make_unique<ExpressionFriction>(
              body.friction_coefficient,

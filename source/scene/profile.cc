@@ -25,23 +25,15 @@ namespace crawler
       {
       }
 
+    private:
       void
-      values(const std::span<const double> x, const std::span<double> f) const override
-      {
-        const std::span<const double> places[] = {x};
-        gradient_.evaluate(places, f);
-      }
-      void
-      values_and_slopes(const std::span<const double> x,
-                        const std::span<double> f,
-                        const std::span<double> slope) const override
+      evaluate(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
       {
         const std::span<const double> places[] = {x};
         const std::span<double> slopes[]       = {slope};
         gradient_.evaluate(places, f, slopes);
       }
 
-    private:
       mutable FormulaGradient gradient_; ///< has room for intermediate values
     };
 
@@ -61,20 +53,6 @@ namespace crawler
         }
       }
 
-      void
-      values(const std::span<const double> x, const std::span<double> f) const override
-      {
-        for (std::size_t i = 0; i < x.size(); ++i)
-          f[i] = at(x[i]).first;
-      }
-      void
-      values_and_slopes(const std::span<const double> x,
-                        const std::span<double> f,
-                        const std::span<double> slope) const override
-      {
-        for (std::size_t i = 0; i < x.size(); ++i)
-          std::tie(f[i], slope[i]) = at(x[i]);
-      }
       std::vector<double>
       breaks() const override
       {
@@ -82,6 +60,18 @@ namespace crawler
       }
 
     private:
+      void
+      evaluate(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
+      {
+        for (std::size_t i = 0; i < x.size(); ++i)
+        {
+          const auto [value, derivative] = at(x[i]);
+          f[i]                           = value;
+          if (!slope.empty())
+            slope[i] = derivative;
+        }
+      }
+
       std::pair<double, double>
       at(const double x) const
       {
@@ -119,22 +109,6 @@ namespace crawler
       {
       }
 
-      void
-      values(const std::span<const double> x, const std::span<double> f) const override
-      {
-        scale(x);
-        profile_->values(scaled_, f);
-      }
-      void
-      values_and_slopes(const std::span<const double> x,
-                        const std::span<double> f,
-                        const std::span<double> slope) const override
-      {
-        scale(x);
-        profile_->values_and_slopes(scaled_, f, slope);
-        for (double &value : slope)
-          value *= unit_;
-      }
       std::vector<double>
       breaks() const override
       {
@@ -146,10 +120,15 @@ namespace crawler
 
     private:
       void
-      scale(const std::span<const double> x) const
+      evaluate(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const override
       {
         scaled_.assign(x.begin(), x.end());
         for (double &value : scaled_)
+          value *= unit_;
+        if (slope.empty())
+          return profile_->values(scaled_, f);
+        profile_->values_and_slopes(scaled_, f, slope);
+        for (double &value : slope)
           value *= unit_;
       }
 

@@ -167,6 +167,31 @@ def test_designs(program, folder):
     check(result.returncode == 0 and "points" not in result.stdout, f"without axes there is no sweep to check {result.stderr}")
 
 
+def test_places_of_files(program, folder):
+    """Names of files on the axes count from the folder of the parameter file, wherever the program is started."""
+    study = folder / "a_study"
+    (study / "parts").mkdir(parents=True)
+    (study / "values.csv").write_text("p\n2\n3\n", encoding="utf-8")
+    (study / "parts" / "scaly.csv").write_text("s,value\n0,1\n0.3,1.2\n0.6,1\n1,1\n", encoding="utf-8")
+    (study / "parts" / "soft.prm").write_text("subsection Body\n set Elastic modulus = 2\n"
+                                              " set Initial stretch = start.csv\nend\n", encoding="utf-8")
+    (study / "parts" / "start.csv").write_text("s,value\n0,1\n0.3,1.01\n0.6,1\n1,1\n", encoding="utf-8")
+    axes = f"{P} : column(values.csv, p); Body/Friction profile : 1, parts/scaly.csv; File : parts/soft.prm"
+    write(study, axes, "set Keep fields = 3")
+    for place, name in ((study, "sweep.prm"), (folder, "a_study/sweep.prm"), (study / "parts", "../sweep.prm")):
+        result = call(program, place, "sweep", name, "--output", "from_here", "--set", "Output/Number of snapshots=1")
+        check(result.returncode == 0 and same(table(place / "from_here"), table(study / "from_here"))
+              and all(table(place / "from_here")["status"] == "finished")
+              and (place / "from_here" / "points" / "3" / "summary.json").exists(),
+              f"started in {place.name}: {result.returncode} {result.stderr.strip()}")
+    result = call(program, folder, "sweep", "a_study/sweep.prm", "--output", "from_here", "--resume")
+    check(result.returncode == 2 and "Number of snapshots" in result.stderr, f"resumed: {result.stderr.strip()}")
+    shutil.copy(study / "values.csv", folder / "other.csv")
+    result = call(program, folder, "sweep", "a_study/sweep.prm", "--output", "with_set", "--set",
+                  f"Sweep/Axes={P} : column(other.csv, p)", "--set", "Sweep/Keep fields=")
+    check(result.returncode == 0, f"with --set they count from the current folder: {result.stderr.strip()}")
+
+
 def test_out_of_memory(program, folder):
     """What a run throws is how it ends: with a reason, a summary and exit code 3; in a sweep it is a row."""
     cells = "Discretization/Number of cells"
@@ -547,6 +572,7 @@ def main():
         test_damaged_table(program, folder)
         test_grid(program, mpirun, folder)
         test_designs(program, folder)
+        test_places_of_files(program, folder)
         test_out_of_memory(program, folder)
         test_rows_that_fail(program, folder)
         test_limits(program, folder)

@@ -11,6 +11,11 @@ namespace crawler
   std::vector<std::string>
   nearest_names(const std::string &name, const std::vector<std::string> &candidates, unsigned int count = 3);
 
+  /// The one that @p name is most likely a slip of: no more than a third of its letters are wrong. Nothing if there is
+  /// none.
+  std::vector<std::string>
+  nearly_alike(const std::string &name, const std::vector<std::string> &candidates);
+
   /// "a", "b" or "c": a list in quotation marks as it stands in a sentence.
   std::string
   quoted_list(const std::vector<std::string> &names);

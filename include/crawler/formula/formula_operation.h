@@ -55,7 +55,7 @@ namespace crawler
                              double *rate,
                              std::size_t n);
 
-    /// Encloses the result (enclosure_rules.h).
+    /// Encloses the result (operation_rules.h).
     using Bound = Enclosure (*)(std::span<const Enclosure> arguments);
 
     Loop loop                           = nullptr;

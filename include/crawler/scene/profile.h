@@ -16,10 +16,16 @@ namespace crawler
     virtual ~Profile() = default;
 
     /// The factor [1] at the places @p x [length]; and in the second function its derivative [1/length].
-    virtual void
-    values(std::span<const double> x, std::span<double> f) const = 0;
-    virtual void
-    values_and_slopes(std::span<const double> x, std::span<double> f, std::span<double> slope) const = 0;
+    void
+    values(const std::span<const double> x, const std::span<double> f) const
+    {
+      evaluate(x, f, {});
+    }
+    void
+    values_and_slopes(const std::span<const double> x, const std::span<double> f, const std::span<double> slope) const
+    {
+      evaluate(x, f, slope);
+    }
 
     /// Where the factor is known to have a kink [length].
     virtual std::vector<double>
@@ -30,6 +36,11 @@ namespace crawler
 
     double
     value(double x) const;
+
+  private:
+    /// @p slope is empty where it is not wanted.
+    virtual void
+    evaluate(std::span<const double> x, std::span<double> f, std::span<double> slope) const = 0;
   };
 
   /// A profile as the user writes it: a formula, or the name of a CSV file with two columns.

@@ -39,7 +39,7 @@ namespace crawler
         names.insert(names.end(), {"L",    "T",    "pi",   "sin",   "cos",  "tan",  "asin", "acos", "atan",
                                    "sinh", "cosh", "tanh", "exp",   "log",  "sqrt", "abs",  "sign", "min",
                                    "max",  "pow",  "mod",  "floor", "ceil", "erf",  "erfc"});
-        const auto near = nearest_names(token, names, 1);
+        const auto near = nearly_alike(token, names);
         problem += near.empty() ? "" : "; the nearest name is " + quoted_list(near);
         const bool is_called =
           trimmed(formula.substr(std::min(error.GetPos() + token.size(), formula.size()))).starts_with("(");

@@ -1,9 +1,97 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/parameters.h>
 
+#include <limits>
+
 namespace crawler
 {
+  const std::string sweep_syntax = "\"Section/Entry : VALUES\", several of them separated by semicolons";
+
+  void
+  SweepParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Sweep");
+    declarations.choice("Design", design, {"grid", "zip", "random", "latin hypercube"})
+      .means("How the axes are combined: grid, every value with every other one; zip, the first values of all axes "
+             "together, then the second ones, and so on; random, points drawn from the axes independently; latin "
+             "hypercube, random points that are spread evenly over each axis.");
+    declarations.text("Axes", axes, sweep_syntax)
+      .means(
+        "What varies. VALUES is a list, linspace(first, last, count), logspace(first exponent, last exponent, count), "
+        "or column(file.csv, name), the values in a column of a CSV file; for random designs also uniform(from, to) "
+        "and loguniform(from, to). The name \"File\" instead of an entry stands for parameter files whose entries "
+        "replace those of this one. Names of files count from the folder of this parameter file (with --set, from the "
+        "current one).");
+    declarations.whole_number("Number of points", n_points, 1, most_points)
+      .means("Of a random or Latin hypercube design; the others count themselves.");
+    declarations.whole_number("Seed", seed, 0, std::numeric_limits<unsigned int>::max())
+      .means("Of the random numbers of a random or Latin hypercube design: the same seed gives the same points.");
+    declarations.text("Keep fields", keep_fields, "a list of numbers of points, or nothing")
+      .means("Points whose fields are kept: for each there is a folder points/NUMBER with all files of a run.");
+    declarations.number("Time limit per point", point_time_limit, positive(), "s")
+      .means(
+        "Wall time after which a point is given up; it becomes a row with the reason time_limit. Automatic: none.");
+    declarations.number("Time limit", time_limit, positive(), "s")
+      .means("Wall time after which no more points are computed; the rest is for --resume. Automatic: none.");
+    declarations.leave();
+  }
+
+  void
+  AtlasParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Atlas");
+    declarations.text("First axis", first_axis, axis_syntax)
+      .means("The entry, and its values, that varies along the first axis of the map that crawler atlas makes. Any "
+             "entry that is a number will do.");
+    declarations.text("Second axis", second_axis, axis_syntax).means("The same for the second axis.");
+    declarations.number("Refinement", refinement, between(1, 1e6), "1")
+      .means("The refined run, with which the others are compared, asks for Accuracy divided by this and chooses mesh "
+             "and time steps itself.");
+    declarations.number("Time limit per run", time_limit, positive(), "s")
+      .means("A run at a point of the map that takes longer is stopped (reason time_limit).");
+    declarations.leave();
+  }
+
+  void
+  TradeoffParameters::add_parameters(Declarations &declarations)
+  {
+    const std::string numbers = "values separated by commas, \"linspace(first, last, count)\" or \"logspace(first "
+                                "exponent, last exponent, count)\"";
+    declarations.enter("Tradeoff");
+    declarations.text("Models", models, "a list of \"perturbation\", \"kinematic\" and \"nonlinear\"")
+      .means("The levels of the model that crawler tradeoff tries. The first two need no mesh; for nonlinear all other "
+             "lists of this section are combined.");
+    declarations.text("Formulations", formulations, "a list of \"position\" and \"stretch\"")
+      .means("The formulations that it tries.");
+    declarations.text("Meshes", meshes, "a list of \"uniform\" and \"adaptive\"")
+      .means("The kinds of meshes that it tries.");
+    declarations.text("Engines", engines, "a list of \"fused\", \"petsc\" and \"batch\"")
+      .means("What carries the integrators out: the fused engine, PETSc, or the fused engine with 8 bodies side by "
+             "side, where the cost is that of one body.");
+    declarations
+      .text("Integrators", integrators, "a list of integrators as in the section Time that estimate their error")
+      .means("The time integrators that it tries.");
+    declarations.text("Degrees", degrees, "a list of whole numbers from 1 to 8").means("The degrees that it tries.");
+    declarations.text("Cells", cells, "\"automatic\" or a list of whole numbers")
+      .means("The numbers of cells of uniform meshes. Automatic: up to five for each degree, from the coarsest mesh "
+             "that is good for 3 % on (doc/numerics.md).");
+    declarations.text("Mesh tolerances", mesh_tolerances, numbers, "1")
+      .means("The tolerances of adaptive meshes, as in the section Discretization.");
+    declarations.text("Tolerances", tolerances, numbers, "1")
+      .means("The time tolerances relative to the displacement, the loosest first. A mesh's list ends early where "
+             "tighter ones cannot reduce the error.");
+    declarations.whole_number("Repetitions", repetitions, 1, 1000)
+      .means("The cost is the median of so many measurements, each of at least 5 ms.");
+    declarations.number("Time limit per run", run_time_limit, positive(), "s")
+      .means(
+        "A run that takes longer is stopped (reason time_limit), and tighter tolerances on its mesh are not tried.");
+    declarations.number("Time limit", time_limit, positive(), "s")
+      .means("After this time the command ends in order, as with a signal; it can be resumed.");
+    declarations.leave();
+  }
+
   void
   Parameters::add_parameters(Declarations &declarations)
   {

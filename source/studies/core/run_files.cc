@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/files.h>
 #include <crawler/output/active_stress_table.h>
+#include <crawler/run/summary.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/run_files.h>
-#include <crawler/time/time_integration.h>
 
 #include <fmt/format.h>
 
@@ -59,8 +59,16 @@ namespace crawler
   }
 
   ExitCode
-  exit_code(const TimeOutcome &outcome)
+  report_end(Log &log, const SimulationResult &result, const std::filesystem::path &folder, const bool has_pictures)
   {
+    const TimeOutcome &outcome = result.time;
+    for (const std::string &line : summary_lines(result))
+      log.line(line);
+    if (outcome.status != "finished")
+      log.warn(outcome.reason + ": " + outcome.message);
+    log.line(fmt::format("Results are in {}/{}.",
+                         folder.string(),
+                         has_pictures ? fmt::format("; open {} in ParaView", (folder / "solution.pvd").string()) : ""));
     if (outcome.status == "finished")
       return ExitCode::finished;
     if (outcome.status == "inverted")

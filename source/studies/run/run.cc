@@ -252,16 +252,8 @@ namespace crawler
       write_summary();
       return "";
     });
-    for (const std::string &line : summary_lines(result))
-      log.line(line);
-    if (result.time.status != "finished")
-      log.warn(result.time.reason + ": " + result.time.message);
-    log.line(
-      output.n_snapshots > 0
-        ? fmt::format("Results are in {}/; open {} in ParaView.", folder.string(), (folder / "solution.pvd").string())
-        : fmt::format("Results are in {}/.", folder.string()));
     // The first rank speaks for all: a signal may have stopped some only.
-    int code = static_cast<int>(exit_code(result.time));
+    int code = static_cast<int>(report_end(log, result, folder, output.n_snapshots > 0));
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
     return static_cast<ExitCode>(code);
   }

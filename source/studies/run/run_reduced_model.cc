@@ -161,15 +161,7 @@ namespace crawler
         result.time.message = "stopped by a signal";
       }
       write_file(folder / "summary.json", summary_json(result, size_of(communicator), options.command_line));
-      for (const std::string &line : summary_lines(result))
-        log.line(line);
-      if (result.time.status != "finished")
-        log.warn(result.time.reason + ": " + result.time.message);
-      log.line(
-        output.n_snapshots > 0 && result.error
-          ? fmt::format("Results are in {}/; open {} in ParaView.", folder.string(), (folder / "solution.pvd").string())
-          : fmt::format("Results are in {}/.", folder.string()));
-      code = static_cast<int>(exit_code(result.time));
+      code = static_cast<int>(report_end(log, result, folder, output.n_snapshots > 0 && result.error));
       return "";
     });
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);

@@ -13,7 +13,6 @@
 #include <crawler/studies/sweep/sweep.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_check.h>
-#include <crawler/studies/sweep/sweep_results.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 #include <crawler/studies/sweep/sweep_worker.h>
 
@@ -114,7 +113,7 @@ namespace crawler
                          "points",
                          interrupted,
                          [&](const unsigned long number, const auto &stops, const auto &see) {
-                           return SweepWorker(points, done, results, stops).compute(blocks[order[number]], see);
+                           return compute_block(blocks[order[number]], points, done, results, stops, see);
                          }},
                         log);
     }

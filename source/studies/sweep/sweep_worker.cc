@@ -9,36 +9,59 @@
 
 namespace crawler
 {
-  SweepWorker::SweepWorker(SweepPoints &points,
-                           const std::vector<bool> &done,
-                           RowFile &file,
-                           const std::function<bool()> &interrupted)
-    : points_(points)
-    , done_(done)
-    , file_(file)
-    , interrupted_(interrupted)
+  namespace
   {
-  }
+    /// The rows of the tasks that are @p ready, those in succession at once.
+    void
+    write(const SweepBlock &block,
+          const std::vector<Task> &tasks,
+          const std::vector<bool> &ready,
+          RowFile &file,
+          const std::function<void(unsigned long n, unsigned long failed)> &see)
+    {
+      std::vector<RowFile::Row> rows;
+      unsigned long n = 0, failed = 0;
+      for (unsigned long i = 0; i <= block.size; ++i)
+      {
+        if (i < block.size && ready[i])
+        {
+          rows.push_back(sweep_row(tasks[i]));
+          ++n;
+          failed += status_of(tasks[i]).status != "finished";
+          continue;
+        }
+        file.write(block.first + i - rows.size(), rows);
+        rows.clear();
+      }
+      if (n > 0)
+        see(n, failed);
+    }
+  } // namespace
 
   bool
-  SweepWorker::compute(const SweepBlock &block, const std::function<void(unsigned long n, unsigned long failed)> &see)
+  compute_block(const SweepBlock &block,
+                SweepPoints &points,
+                const std::vector<bool> &done,
+                RowFile &file,
+                const std::function<bool()> &interrupted,
+                const std::function<void(unsigned long n, unsigned long failed)> &see)
   {
     std::vector<bool> missing(block.size);
     for (unsigned long i = 0; i < block.size; ++i)
-      missing[i] = !done_[block.first + i];
+      missing[i] = !done[block.first + i];
     if (std::none_of(missing.begin(), missing.end(), [](const bool is) { return is; }))
       return true;
     std::vector<Task> tasks(block.size);
     for (unsigned long i = 0; i < block.size; ++i)
     {
-      tasks[i].parameters = points_.parameters(block.first + i);
+      tasks[i].parameters = points.parameters(block.first + i);
       tasks[i].gait       = true;
     }
     const double limit          = tasks.front().parameters.sweep.point_time_limit.value_or(HUGE_VAL);
-    const std::vector<bool> one = compute_similar(tasks, missing, limit, interrupted_);
-    if (interrupted_())
+    const std::vector<bool> one = compute_similar(tasks, missing, limit, interrupted);
+    if (interrupted())
       return false;
-    write(block, tasks, one, see);
+    write(block, tasks, one, file, see);
     for (unsigned long i = 0; i < block.size; ++i)
       missing[i] = missing[i] && !one[i];
 
@@ -62,8 +85,8 @@ namespace crawler
         few[j].gait       = true;
       }
       const double before = now();
-      compute_all(few, limit, interrupted_);
-      if (interrupted_())
+      compute_all(few, limit, interrupted);
+      if (interrupted())
         return false;
       together = (now() - before) / static_cast<double>(some.size()) > long_time ? 1 : most_together;
       std::vector<bool> ready(block.size, false);
@@ -72,32 +95,8 @@ namespace crawler
         ready[some[j]] = true;
         tasks[some[j]] = std::move(few[j]);
       }
-      write(block, tasks, ready, see);
+      write(block, tasks, ready, file, see);
     }
     return true;
-  }
-
-  void
-  SweepWorker::write(const SweepBlock &block,
-                     const std::vector<Task> &tasks,
-                     const std::vector<bool> &ready,
-                     const std::function<void(unsigned long n, unsigned long failed)> &see)
-  {
-    std::vector<RowFile::Row> rows;
-    unsigned long n = 0, failed = 0;
-    for (unsigned long i = 0; i <= block.size; ++i)
-    {
-      if (i < block.size && ready[i])
-      {
-        rows.push_back(sweep_row(tasks[i]));
-        ++n;
-        failed += status_of(tasks[i]).status != "finished";
-        continue;
-      }
-      file_.write(block.first + i - rows.size(), rows);
-      rows.clear();
-    }
-    if (n > 0)
-      see(n, failed);
   }
 } // namespace crawler

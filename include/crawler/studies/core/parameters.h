@@ -2,12 +2,63 @@
 #pragma once
 
 #include <crawler/run/run_parameters.h>
-#include <crawler/studies/core/atlas_parameters.h>
-#include <crawler/studies/core/sweep_parameters.h>
-#include <crawler/studies/core/tradeoff_parameters.h>
+
+#include <optional>
+#include <string>
 
 namespace crawler
 {
+  /// What Sweep/Axes reads, in words.
+  extern const std::string sweep_syntax;
+
+  /// Section "Sweep": which scenes `crawler sweep` computes (sweep_design.h reads the axes).
+  struct SweepParameters
+  {
+    static constexpr unsigned int most_points = 10000000;
+
+    std::string design      = "grid";
+    std::string axes        = "";
+    unsigned int n_points   = 100; ///< of a random or Latin hypercube design
+    unsigned int seed       = 1;
+    std::string keep_fields = "";
+    std::optional<double> point_time_limit; ///< [s]
+    std::optional<double> time_limit;       ///< [s]
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /// Section "Atlas": the map that `crawler atlas` makes.
+  struct AtlasParameters
+  {
+    std::string first_axis, second_axis;
+    double refinement = 10.;
+    double time_limit = 30.; ///< [s]
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /// Section "Tradeoff": the settings that `crawler tradeoff` tries, as lists (tradeoff_settings.h reads them).
+  struct TradeoffParameters
+  {
+    std::string models          = "perturbation, kinematic, nonlinear";
+    std::string formulations    = "position, stretch";
+    std::string meshes          = "uniform, adaptive";
+    std::string engines         = "fused, petsc, batch";
+    std::string integrators     = "radau 5, radau 9, bdf";
+    std::string degrees         = "2, 4, 6, 8";
+    std::string cells           = "automatic";
+    std::string mesh_tolerances = "logspace(-2, -8, 4)";
+    std::string tolerances      = "logspace(-2, -11, 10)";
+    unsigned int repetitions    = 3;
+    double run_time_limit       = 10.;   ///< [s]
+    double time_limit           = 3600.; ///< of all [s]
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
   /// All sections of the parameter file: those of one run, and those of each study of many runs.
   struct Parameters : RunParameters
   {

@@ -9,7 +9,7 @@
 
 namespace crawler
 {
-  struct TimeOutcome;
+  struct SimulationResult;
 
   /// Logs body and active stress.
   void
@@ -20,7 +20,7 @@ namespace crawler
   void
   begin_files(Log &log, const Input &input, const std::filesystem::path &folder);
 
-  /// What a run that ended like this returns to the shell.
+  /// Says how a run ended, and where its results are. What it returns to the shell.
   ExitCode
-  exit_code(const TimeOutcome &outcome);
+  report_end(Log &log, const SimulationResult &result, const std::filesystem::path &folder, bool has_pictures);
 } // namespace crawler

@@ -11,9 +11,9 @@ namespace crawler
    * --resume the points that have no row yet are computed, with --strict rows that failed make the exit code 8.
    *
    * The parts, each used by those below it: sweep_design.h, which values the axes take; sweep_points.h, the parameters
-   * of a point; sweep_blocks.h, what is computed together and in which order; sweep_rows.h, columns and rows of the
-   * table; sweep_inputs.h, what the answers depend on; point_table.h, to begin or to resume; sweep_worker.h, one
-   * rank's work; sweep_results.h, results.csv and summary.json.
+   * of a point; sweep_blocks.h, what is computed together and in which order; sweep_rows.h, columns, rows and results
+   * of the table; sweep_inputs.h, what the answers depend on; point_table.h, to begin or to resume; sweep_worker.h, one
+   * rank's work.
    */
   ExitCode
   sweep(MPI_Comm communicator, const CommandOptions &options);

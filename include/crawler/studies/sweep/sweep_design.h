@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/studies/core/sweep_parameters.h>
+#include <crawler/studies/core/parameters.h>
 
 #include <filesystem>
 #include <string>

@@ -11,4 +11,9 @@ namespace crawler
   /// for the sign and "?" for the choice "c ? a : b". Throws std::logic_error for an unknown name.
   FormulaOperation::Bound
   bound_of(const std::string &operation);
+
+  /// The rule of differentiation of an operation by its name as above; null for those that are
+  /// constant except for jumps. Throws std::logic_error for an unknown name.
+  FormulaOperation::Tangent
+  tangent_of(const std::string &operation);
 } // namespace crawler
