@@ -22,10 +22,11 @@ namespace crawler
     {
       std::string file, name, entry;
 
+      template <typename... Arguments>
       [[noreturn]] void
-      refuse(const std::string &message) const
+      refuse(fmt::format_string<Arguments...> message, Arguments &&...arguments) const
       {
-        throw InputError(message, entry);
+        throw InputError(fmt::format(message, std::forward<Arguments>(arguments)...), entry);
       }
     };
 
@@ -68,13 +69,12 @@ namespace crawler
       const std::size_t n_s = grid.s.size(), n_t = grid.t.size(), n = values.size();
       constexpr std::size_t most_gaps = 100; // points for each row: rather no grid than one with gaps
       if (n_s * n_t > most_gaps * n)
-        source.refuse(
-          fmt::format("\"{}\" has {} rows after the header with {} different values of s and {} of t, but a "
+        source.refuse("\"{}\" has {} rows after the header with {} different values of s and {} of t, but a "
                       "full grid, a row for each of them with each, is expected",
                       source.file,
                       n,
                       n_s,
-                      n_t));
+                      n_t);
       grid.values.resize(n_s * n_t);
       std::vector<std::size_t> seen(n_s * n_t, 0); // the number of the row
       Mistakes repetitions;
@@ -112,8 +112,7 @@ namespace crawler
             first += fmt::format(
               "{}s = {:g}, t = {:g}", first.empty() ? "" : "; ", grid.s[missing % n_s], grid.t[missing / n_s]);
           }
-        source.refuse(
-          fmt::format("\"{}\" has {} rows after the header, but {} are expected, each of {} values of s with "
+        source.refuse("\"{}\" has {} rows after the header, but {} are expected, each of {} values of s with "
                       "each of {} values of t; the first that {} missing {} {}",
                       source.file,
                       n,
@@ -122,7 +121,7 @@ namespace crawler
                       n_t,
                       n_gaps == 1 ? "is" : "are",
                       n_gaps == 1 ? "is" : "are",
-                      first));
+                      first);
       }
       return grid;
     }
@@ -138,8 +137,8 @@ namespace crawler
     read_dataset(const hid_t file, const std::string &name, const std::string &form, const Source &source)
     {
       const auto wrong = [&](const std::string &what) {
-        source.refuse(fmt::format(
-          "\"{}\" {}, but the datasets s[ns], t[nt] and {}[nt,ns] are expected", source.file, what, source.name));
+        source.refuse(
+          "\"{}\" {}, but the datasets s[ns], t[nt] and {}[nt,ns] are expected", source.file, what, source.name);
       };
       const Hdf5Handle dataset(H5Dopen(file, name.c_str(), H5P_DEFAULT), H5Dclose);
       if (dataset < 0)
@@ -170,18 +169,17 @@ namespace crawler
     {
       for (std::size_t i = 0; i < values.size(); ++i)
         if (!std::isfinite(values[i]))
-          source.refuse(
-            fmt::format("{}[{}] in \"{}\" is {}, but a finite number is expected", name, i, source.file, values[i]));
+          source.refuse("{}[{}] in \"{}\" is {}, but a finite number is expected", name, i, source.file, values[i]);
       for (std::size_t i = 1; i < values.size(); ++i)
         if (!(values[i] - values[i - 1] > round_off * std::abs(values.back() - values.front())))
-          source.refuse(fmt::format("{0}[{1}] = {2:g} follows {0}[{3}] = {4:g} in \"{5}\", but increasing values are "
-                                    "expected",
-                                    name,
-                                    i,
-                                    values[i],
-                                    i - 1,
-                                    values[i - 1],
-                                    source.file));
+          source.refuse("{0}[{1}] = {2:g} follows {0}[{3}] = {4:g} in \"{5}\", but increasing values are "
+                        "expected",
+                        name,
+                        i,
+                        values[i],
+                        i - 1,
+                        values[i - 1],
+                        source.file);
     }
 
     GridTable
@@ -190,33 +188,33 @@ namespace crawler
       H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
       const Hdf5Handle file(H5Fopen(source.file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
       if (file < 0)
-        source.refuse("\"" + source.file + "\" begins as an HDF5 file does, but HDF5 cannot open it");
+        source.refuse("\"{}\" begins as an HDF5 file does, but HDF5 cannot open it", source.file);
       GridTable grid;
       grid.s                = read_dataset(file, "s", "ns", source).values;
       grid.t                = read_dataset(file, "t", "nt", source).values;
       const Dataset value   = read_dataset(file, source.name, "nt,ns", source);
       const std::size_t n_s = grid.s.size(), n_t = grid.t.size();
       if (value.extents != std::vector<hsize_t>{n_t, n_s})
-        source.refuse(fmt::format("{0}[{1},{2}] in \"{3}\" does not fit to s[{4}] and t[{5}]; {0}[{5},{4}] is expected",
-                                  source.name,
-                                  value.extents[0],
-                                  value.extents[1],
-                                  source.file,
-                                  n_s,
-                                  n_t));
+        source.refuse("{0}[{1},{2}] in \"{3}\" does not fit to s[{4}] and t[{5}]; {0}[{5},{4}] is expected",
+                      source.name,
+                      value.extents[0],
+                      value.extents[1],
+                      source.file,
+                      n_s,
+                      n_t);
       require_increasing(grid.s, "s", source);
       require_increasing(grid.t, "t", source);
       grid.values = value.values;
       for (std::size_t i = 0; i < grid.values.size(); ++i)
         if (!std::isfinite(grid.values[i]))
-          source.refuse(fmt::format("{}[{},{}] in \"{}\" (s = {:g}, t = {:g}) is {}, but a finite number is expected",
-                                    source.name,
-                                    i / n_s,
-                                    i % n_s,
-                                    source.file,
-                                    grid.s[i % n_s],
-                                    grid.t[i / n_s],
-                                    grid.values[i]));
+          source.refuse("{}[{},{}] in \"{}\" (s = {:g}, t = {:g}) is {}, but a finite number is expected",
+                        source.name,
+                        i / n_s,
+                        i % n_s,
+                        source.file,
+                        grid.s[i % n_s],
+                        grid.t[i / n_s],
+                        grid.values[i]);
       return grid;
     }
   } // namespace
@@ -228,11 +226,10 @@ namespace crawler
     std::ostringstream content;
     std::ifstream in(file, std::ios::binary);
     if (!in || in.peek() == std::ifstream::traits_type::eof() || !(content << in.rdbuf()))
-      source.refuse(
-        fmt::format("cannot read \"{}\", or it is empty; the name of a CSV file with the header s,t,{} or of "
+      source.refuse("cannot read \"{}\", or it is empty; the name of a CSV file with the header s,t,{} or of "
                     "an HDF5 file is expected",
                     file,
-                    name));
+                    name);
     const std::string text = std::move(content).str();
     return text.starts_with("\x89HDF\r\n\x1a\n") ? read_hdf5(source) : read_csv(text, source);
   }

@@ -23,6 +23,13 @@ namespace crawler
   } // namespace
 
   std::vector<double>
+  within(std::vector<double> places, const double end)
+  {
+    std::erase_if(places, [end](const double x) { return !(x > 0. && x < end); });
+    return places;
+  }
+
+  std::vector<double>
   breaks_in_space(const ActiveStress &stress, const double length)
   {
     return distinct_breaks_in_space(stress.breaks_in_space(), length);

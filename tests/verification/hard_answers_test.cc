@@ -6,7 +6,6 @@
 
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/studies/core/compute.h>
-#include <crawler/studies/core/compute_similar.h>
 
 #include <gtest/gtest.h>
 

@@ -12,6 +12,10 @@ namespace crawler
   /// Breaks closer than this part of the duration, or of the length, are one.
   constexpr double least_time_between_breaks = 1e-12, least_space_between_breaks = 1e-9;
 
+  /// Those of the @p places that are in (0, @p end).
+  std::vector<double>
+  within(std::vector<double> places, double end);
+
   /// The breaks of an active stress in (0, @p length), ascending, each once [length]; an end of the body is none.
   std::vector<double>
   breaks_in_space(const ActiveStress &stress, double length);

@@ -3,6 +3,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/envelope.h>
 #include <crawler/scene/active_stress/profile.h>
+#include <crawler/scene/breaks.h>
 
 #include <fmt/format.h>
 
@@ -82,11 +83,6 @@ namespace crawler
   std::vector<double>
   Envelope::breaks_in_space() const
   {
-    std::vector<double> places;
-    if (edge_ == 0.)
-      for (const auto &place : {start_, end_})
-        if (place && *place > 0. && *place < length_)
-          places.push_back(*place);
-    return places;
+    return edge_ == 0. ? within({start_.value_or(0.), end_.value_or(length_)}, length_) : std::vector<double>();
   }
 } // namespace crawler

@@ -4,6 +4,7 @@
 #include <crawler/base/gauss_panels.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/active_stress/shaped_wave.h>
+#include <crawler/scene/breaks.h>
 #include <crawler/scene/period.h>
 
 #include <fmt/format.h>
@@ -122,9 +123,7 @@ namespace crawler
     , speed_(parameters.wave_speed)
     , shape_(shape_of(parameters, body, end_time))
   {
-    for (const double x : shape_.kinks()) // at the start
-      if (x > 0. && x < body.length)
-        facts_.breaks_in_space.push_back(x);
+    facts_.breaks_in_space = within(shape_.kinks(), body.length); // at the start
   }
 
   std::unique_ptr<ActiveStressAtPoints>

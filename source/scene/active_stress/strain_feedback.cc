@@ -4,6 +4,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/active_stress/strain_feedback.h>
+#include <crawler/scene/breaks.h>
 
 #include <fmt/format.h>
 
@@ -125,12 +126,9 @@ namespace crawler
     {
       // The near stretch has kinks where the sensor comes to an end of the body, and smoother ones where an end of the
       // sensor comes to those.
-      for (const double kink : {0.5 * sensor - distance, length - 0.5 * sensor - distance})
-        if (kink > 0. && kink < length)
-          for (const double place : {kink, kink - distance - 0.5 * sensor, kink - distance + 0.5 * sensor})
-            if (place > 0. && place < length)
-              places.push_back(place);
-      return places;
+      for (const double kink : within({0.5 * sensor - distance, length - 0.5 * sensor - distance}, length))
+        places.insert(places.end(), {kink, kink - distance - 0.5 * sensor, kink - distance + 0.5 * sensor});
+      return within(std::move(places), length);
     }
     if (distance == 0. || std::abs(distance) * most < length)
       return places;

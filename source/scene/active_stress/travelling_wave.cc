@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/travelling_wave.h>
+#include <crawler/scene/breaks.h>
 
 #include <cmath>
 #include <numbers>
@@ -147,9 +148,8 @@ namespace crawler
     std::vector<double> times;
     const double f = -phase_rate_;
     for (const double x : profile_.breaks(start_ - f * end_time, start_))
-      if (const double t = (start_ - x) / f; t > 0. && t < end_time)
-        times.push_back(t);
-    return times;
+      times.push_back((start_ - x) / f);
+    return within(std::move(times), end_time);
   }
 
   void

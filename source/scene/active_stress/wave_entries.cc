@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/wave_entries.h>
+#include <crawler/scene/breaks.h>
 
 #include <fmt/format.h>
 
@@ -88,8 +89,7 @@ namespace crawler
     std::vector<double> times;
     if (frequency > 0.)
       for (const double x : profile.breaks(start, start + frequency * end_time))
-        if (const double t = (x - start) / frequency; t > 0. && t < end_time)
-          times.push_back(t);
-    return times;
+        times.push_back((x - start) / frequency);
+    return within(std::move(times), end_time);
   }
 } // namespace crawler

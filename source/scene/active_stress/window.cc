@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/scene/active_stress/profile.h>
 #include <crawler/scene/active_stress/window.h>
+#include <crawler/scene/breaks.h>
 
 #include <fmt/format.h>
 
@@ -78,23 +79,13 @@ namespace crawler
   std::vector<double>
   Window::breaks() const
   {
-    std::vector<double> list;
-    if (!is_everywhere_ && edge_ == 0.)
-      for (const double x : {from_, to_})
-        if (x > 0. && x < end_)
-          list.push_back(x);
-    return list;
+    return edge_ == 0. ? ends() : std::vector<double>();
   }
 
   std::vector<double>
   Window::ends() const
   {
-    std::vector<double> places;
-    if (!is_everywhere_)
-      for (const double x : {from_, to_})
-        if (x > 0. && x < end_)
-          places.push_back(x);
-    return places;
+    return is_everywhere_ ? std::vector<double>() : within({from_, to_}, end_);
   }
 
   bool

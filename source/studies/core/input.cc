@@ -15,86 +15,85 @@ namespace crawler
 {
   namespace
   {
+    /// Some entries of a section (or the beginnings of their names) that have an effect only if another one, the
+    /// chooser, has one of certain values.
     struct Rule
     {
-      std::string entry; ///< or the beginning of several
-      bool used;
-      std::string because;
+      std::string section;
+      std::vector<std::string> entries;
+      std::string chooser, value;
+      std::vector<std::string> needed;
+
+      bool
+      is_against(const std::string &path) const
+      {
+        return std::find(needed.begin(), needed.end(), value) == needed.end() &&
+               std::any_of(entries.begin(), entries.end(), [&](const std::string &entry) {
+                 return path.starts_with(section + entry);
+               });
+      }
     };
 
     /// The sections in @p section of generators that are not used.
     void
-    rules_of_generators(const std::string &section, const ActiveStressParameters &p, std::vector<Rule> &rules)
+    add_rules_of_generators(const std::string &section, const ActiveStressParameters &p, std::vector<Rule> &rules)
     {
       const bool is_strain = p.generator == "prescribed strain" && p.prescribed_strain.is_generated();
       for (const std::string &name : generator_names())
       {
         std::string title = name;
         title[0]          = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-        rules.push_back({section + title + "/",
-                         p.generator == name || (is_strain && p.prescribed_strain.given_by == name),
-                         "Generator = " + p.generator});
+        if (!is_strain || p.prescribed_strain.given_by != name)
+          rules.push_back({section, {title + "/"}, "Generator", p.generator, {name}});
       }
     }
 
-    /// Entries that have an effect only if another entry says so: a change of one that has none is worth a word.
+    std::vector<Rule>
+    all_rules(const Parameters &p)
+    {
+      const std::string stress = "Active stress/", optimal = stress + "Optimal wave/",
+                        travel = stress + "Travelling wave/", stand = stress + "Standing wave/",
+                        strain          = stress + "Prescribed strain/";
+      const auto &wave                  = p.active_stress.optimal_wave;
+      const auto &travelling            = p.active_stress.travelling_wave;
+      const std::string &travel_profile = travelling.profile.profile,
+                        &given_by       = p.active_stress.prescribed_strain.given_by,
+                        &stand_profile  = p.active_stress.standing_wave.profile.profile;
+      std::vector<Rule> rules;
+      add_rules_of_generators(stress, p.active_stress, rules);
+      for (std::size_t i = 0; i < p.active_stress.sum.terms.size(); ++i)
+        add_rules_of_generators(
+          fmt::format("{}Sum/Term {}/", stress, i + 1), p.active_stress.sum.terms[i].stress, rules);
+      const std::vector<Rule> details = {
+        {stress + "Segments/", {"Front width"}, "Switching", p.active_stress.segments.switching, {"smooth"}},
+        {strain, {"Strain", "Constants"}, "Given by", given_by, {"expression"}},
+        {strain, {"File"}, "Given by", given_by, {"table"}},
+        {strain, {"Mean strain", "Amplitude", "Wave", "Phase"}, "Given by", given_by, {"wave"}},
+        {"Discretization/", {""}, "Model", p.model, {"auto", "linear", "nonlinear"}},
+        {optimal, {"Sine coefficients", "Cosine coefficients"}, "Shape", wave.shape, {"Fourier"}},
+        {optimal, {"Shape formula", "Shape constants"}, "Shape", wave.shape, {"expression"}},
+        {optimal, {"Shape file"}, "Shape", wave.shape, {"table"}},
+        {optimal, {"Wave speed"}, "Choose wave by", wave.choose_wave_by, {"wave speed"}},
+        {optimal, {"Energy", "Root"}, "Choose wave by", wave.choose_wave_by, {"energy"}},
+        {optimal, {"Root index"}, "Root", wave.root, {"index"}},
+        {travel, {"Frequency"}, "Given by", travelling.given_by, {"frequency"}},
+        {travel, {"Wave speed"}, "Given by", travelling.given_by, {"wave speed"}},
+        {travel, {"Duty cycle"}, "Profile", travel_profile, {"square", "smoothed square"}},
+        {travel, {"Front width"}, "Profile", travel_profile, {"smoothed square"}},
+        {stand, {"Duty cycle"}, "Profile", stand_profile, {"square", "smoothed square"}},
+        {stand, {"Front width"}, "Profile", stand_profile, {"smoothed square"}},
+        {"Time/", {"Order"}, "Integrator", p.time.integrator, {"bdf", "automatic"}},
+        {"Output/", {"Ledger tolerance"}, "Ledger", p.output.energy_balance ? "true" : "false", {"true"}},
+      };
+      rules.insert(rules.end(), details.begin(), details.end());
+      return rules;
+    }
+
+    /// A change of an entry that has no effect is worth a word.
     std::vector<std::string>
     settings_without_effect(const ParameterFile &file, const Parameters &p, const Declarations &declarations)
     {
-      const auto &wave         = p.active_stress.optimal_wave;
-      const std::string choice = "Choose wave by = " + wave.choose_wave_by;
-      const auto &given_by     = p.active_stress.prescribed_strain.given_by;
-      const std::string source = "Given by = " + given_by;
-      const auto &travelling   = p.active_stress.travelling_wave;
-      const auto &standing     = p.active_stress.standing_wave;
-      const auto smoothed  = [](const WaveProfileParameters &profile) { return profile.profile == "smoothed square"; };
-      const bool by_energy = wave.choose_wave_by == "energy";
-      std::vector<Rule> rules;
-      rules_of_generators("Active stress/", p.active_stress, rules);
-      for (std::size_t i = 0; i < p.active_stress.sum.terms.size(); ++i)
-        rules_of_generators(
-          fmt::format("Active stress/Sum/Term {}/", i + 1), p.active_stress.sum.terms[i].stress, rules);
-      const std::vector<Rule> details = {
-        {"Active stress/Segments/Front width",
-         p.active_stress.segments.switching == "smooth",
-         "Switching = " + p.active_stress.segments.switching},
-        {"Active stress/Prescribed strain/Strain", given_by == "expression", source},
-        {"Active stress/Prescribed strain/Constants", given_by == "expression", source},
-        {"Active stress/Prescribed strain/File", given_by == "table", source},
-        {"Active stress/Prescribed strain/Mean strain", given_by == "wave", source},
-        {"Active stress/Prescribed strain/Amplitude", given_by == "wave", source},
-        {"Active stress/Prescribed strain/Wave", given_by == "wave", source},
-        {"Active stress/Prescribed strain/Phase", given_by == "wave", source},
-        {"Discretization/", p.model != "perturbation" && p.model != "kinematic", "Model = " + p.model},
-        {"Active stress/Optimal wave/Sine coefficients", wave.shape == "Fourier", "Shape = " + wave.shape},
-        {"Active stress/Optimal wave/Cosine coefficients", wave.shape == "Fourier", "Shape = " + wave.shape},
-        {"Active stress/Optimal wave/Shape formula", wave.shape == "expression", "Shape = " + wave.shape},
-        {"Active stress/Optimal wave/Shape constants", wave.shape == "expression", "Shape = " + wave.shape},
-        {"Active stress/Optimal wave/Shape file", wave.shape == "table", "Shape = " + wave.shape},
-        {"Active stress/Optimal wave/Wave speed", !by_energy, choice},
-        {"Active stress/Optimal wave/Energy", by_energy, choice},
-        {"Active stress/Optimal wave/Root", by_energy, choice},
-        {"Active stress/Optimal wave/Root index", wave.root == "index", "Root = " + wave.root},
-        {"Active stress/Travelling wave/Frequency",
-         travelling.given_by == "frequency",
-         "Given by = " + travelling.given_by},
-        {"Active stress/Travelling wave/Wave speed",
-         travelling.given_by == "wave speed",
-         "Given by = " + travelling.given_by},
-        {"Active stress/Travelling wave/Duty cycle", travelling.profile.profile != "sine", "Profile = sine"},
-        {"Active stress/Travelling wave/Front width",
-         smoothed(travelling.profile),
-         "Profile = " + travelling.profile.profile},
-        {"Active stress/Standing wave/Duty cycle", standing.profile.profile != "sine", "Profile = sine"},
-        {"Active stress/Standing wave/Front width",
-         smoothed(standing.profile),
-         "Profile = " + standing.profile.profile},
-        {"Time/Order",
-         p.time.integrator == "bdf" || p.time.integrator == "automatic",
-         "Integrator = " + p.time.integrator},
-        {"Output/Ledger tolerance", p.output.energy_balance, "Ledger = false"},
-      };
-      rules.insert(rules.end(), details.begin(), details.end());
+      const std::vector<Rule> rules = all_rules(p);
       std::vector<std::string> notes;
       for (const Assignment &assignment : file.assignments())
       {
@@ -103,13 +102,14 @@ namespace crawler
           std::find_if(entries.begin(), entries.end(), [&](const EntryInfo &e) { return e.path == assignment.path; });
         if (entry == entries.end() || entry->default_value == assignment.value)
           continue;
-        for (const Rule &rule : rules)
-          if (!rule.used && assignment.path.starts_with(rule.entry))
-          {
-            notes.push_back(fmt::format(
-              "Note: {}: \"{}\" has no effect with \"{}\"", assignment.place, assignment.path, rule.because));
-            break;
-          }
+        const auto rule =
+          std::find_if(rules.begin(), rules.end(), [&](const Rule &r) { return r.is_against(assignment.path); });
+        if (rule != rules.end())
+          notes.push_back(fmt::format("Note: {}: \"{}\" has no effect with \"{} = {}\"",
+                                      assignment.place,
+                                      assignment.path,
+                                      rule->chooser,
+                                      rule->value));
       }
       return notes;
     }

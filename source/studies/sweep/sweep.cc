@@ -6,7 +6,6 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
-#include <crawler/studies/core/share_work.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/sweep/point_table.h>
@@ -14,7 +13,6 @@
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_check.h>
 #include <crawler/studies/sweep/sweep_rows.h>
-#include <crawler/studies/sweep/sweep_worker.h>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
-#include <crawler/studies/core/compute_similar.h>
+#include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_check.h>

@@ -25,10 +25,12 @@ namespace crawler
   {
     const std::string entry_name = "Sweep/Axes";
 
+    template <typename... Arguments>
     [[noreturn]] void
-    refuse(const std::string &sentence)
+    refuse(fmt::format_string<Arguments...> sentence, Arguments &&...arguments)
     {
-      throw InputError("\"" + entry_name + "\": " + sentence, entry_name);
+      throw InputError("\"" + entry_name + "\": " + fmt::format(sentence, std::forward<Arguments>(arguments)...),
+                       entry_name);
     }
 
     /// Opens a file that the axes name, @p what in words.
@@ -37,7 +39,7 @@ namespace crawler
     {
       std::error_code ignored;
       if (std::filesystem::is_directory(file, ignored))
-        refuse(fmt::format("\"{}\" is a folder, but {} is expected", file, what));
+        refuse("\"{}\" is a folder, but {} is expected", file, what);
       errno = 0;
       std::ifstream in(file);
       if (in)
@@ -52,11 +54,11 @@ namespace crawler
       auto near = nearest_names(path.stem().string(), others, 1);
       for (std::string &name : near)
         name = (folder / name).string() + path.extension().string();
-      refuse(fmt::format("cannot read \"{}\" ({}), but {} is expected{}",
-                         file,
-                         reason,
-                         what,
-                         near.empty() ? "" : "; the nearest name is " + quoted_list(near)));
+      refuse("cannot read \"{}\" ({}), but {} is expected{}",
+             file,
+             reason,
+             what,
+             near.empty() ? "" : "; the nearest name is " + quoted_list(near));
     }
 
     /// Can it be shown on a terminal? Not if it is UTF-16, compressed or a picture.
@@ -114,18 +116,18 @@ namespace crawler
         constexpr std::size_t most = 10;
         const bool all_are_named   = names.size() <= most;
         const auto near            = nearest_names(name, names, 1);
-        refuse(fmt::format(
-          "\"{}\" has no column \"{}\", but {} is expected{}",
-          file,
-          name,
-          all_are_named ? quoted_list(names)
-                        : fmt::format("one of {} columns, {}, ...",
-                                      names.size(),
-                                      fmt::format("\"{}\"", fmt::join(names.begin(), names.begin() + most, "\", \""))),
-          near.empty() ? "" : "; the nearest is " + quoted_list(near)));
+        refuse("\"{}\" has no column \"{}\", but {} is expected{}",
+               file,
+               name,
+               all_are_named
+                 ? quoted_list(names)
+                 : fmt::format("one of {} columns, {}, ...",
+                               names.size(),
+                               fmt::format("\"{}\"", fmt::join(names.begin(), names.begin() + most, "\", \""))),
+               near.empty() ? "" : "; the nearest is " + quoted_list(near));
       }
       if (std::find(found + 1, names.end(), name) != names.end())
-        refuse(fmt::format("\"{}\" has more than one column \"{}\", but different names are expected", file, name));
+        refuse("\"{}\" has more than one column \"{}\", but different names are expected", file, name);
       return static_cast<std::size_t>(found - names.begin());
     }
 
@@ -134,8 +136,7 @@ namespace crawler
     read_column(const Call &call, const std::filesystem::path &folder)
     {
       if (call.arguments.size() != 2 || call.arguments[0].empty() || call.arguments[1].empty())
-        refuse(fmt::format("found \"column({})\", but \"column(file.csv, name)\" is expected",
-                           fmt::join(call.arguments, ", ")));
+        refuse("found \"column({})\", but \"column(file.csv, name)\" is expected", fmt::join(call.arguments, ", "));
       const std::string file = (folder / call.arguments[0]).string(), name = call.arguments[1];
       std::ifstream in      = open(file, "a CSV file with a line of names");
       std::size_t n_columns = 0, column = 0;
@@ -146,14 +147,13 @@ namespace crawler
         if (row == 1 && line.starts_with("\xef\xbb\xbf"))
           line.erase(0, 3);
         if (!is_text(line))
-          refuse(fmt::format("row {} of \"{}\" is not text, but a CSV file in UTF-8 is expected", row, file));
+          refuse("row {} of \"{}\" is not text, but a CSV file in UTF-8 is expected", row, file);
         line = trimmed(line);
         if (line.empty() || line[0] == '#')
           continue;
         const auto cells = csv_cells(line);
         if (!cells)
-          refuse(fmt::format(
-            "a double quote in row {} of \"{}\" is not closed, but rows of one line are expected", row, file));
+          refuse("a double quote in row {} of \"{}\" is not closed, but rows of one line are expected", row, file);
         if (n_columns == 0)
         {
           n_columns = cells->size();
@@ -161,23 +161,23 @@ namespace crawler
           continue;
         }
         if (cells->size() != n_columns)
-          refuse(fmt::format("row {} of \"{}\" has {} value{}, but {}, as many as names in the first row, {} expected",
-                             row,
-                             file,
-                             cells->size(),
-                             cells->size() == 1 ? "" : "s",
-                             n_columns,
-                             n_columns == 1 ? "is" : "are"));
+          refuse("row {} of \"{}\" has {} value{}, but {}, as many as names in the first row, {} expected",
+                 row,
+                 file,
+                 cells->size(),
+                 cells->size() == 1 ? "" : "s",
+                 n_columns,
+                 n_columns == 1 ? "is" : "are");
         if ((*cells)[column].empty())
-          refuse(fmt::format("row {} of \"{}\" has no value in column \"{}\", but one is expected", row, file, name));
+          refuse("row {} of \"{}\" has no value in column \"{}\", but one is expected", row, file, name);
         values.push_back((*cells)[column]);
       }
       if (in.bad())
-        refuse(fmt::format("cannot read \"{}\" to its end", file));
+        refuse("cannot read \"{}\" to its end", file);
       if (n_columns == 0)
-        refuse(fmt::format("\"{}\" is empty, but a CSV file with a line of names is expected", file));
+        refuse("\"{}\" is empty, but a CSV file with a line of names is expected", file);
       if (values.empty())
-        refuse(fmt::format("\"{}\" has no rows after the line of names, but at least one is expected", file));
+        refuse("\"{}\" has no rows after the line of names, but at least one is expected", file);
       return values;
     }
 
@@ -191,14 +191,11 @@ namespace crawler
         if (const auto number = to_number(argument))
           ends.push_back(*number);
       if (call.arguments.size() != 2 || ends.size() != 2 || !(ends[0] < ends[1]) || (is_logarithmic && !(ends[0] > 0.)))
-        throw InputError(
-          fmt::format("\"{}\": found \"{}({})\", but {}(from, to) with two {}increasing numbers is expected",
-                      entry_name,
-                      call.function,
-                      fmt::join(call.arguments, ", "),
-                      call.function,
-                      is_logarithmic ? "positive, " : ""),
-          entry_name);
+        refuse("found \"{}({})\", but {}(from, to) with two {}increasing numbers is expected",
+               call.function,
+               fmt::join(call.arguments, ", "),
+               call.function,
+               is_logarithmic ? "positive, " : "");
       return {to_text(ends[0]), to_text(ends[1])};
     }
 
@@ -253,14 +250,13 @@ namespace crawler
     SweepAxis axis{entry, {}};
     const auto call = read_call(text);
     if (axis.is_file() && call && call->function != "column")
-      refuse(fmt::format(
+      refuse(
         "found \"{}\" on the axis \"File\", but names of parameter files or \"column(file.csv, name)\" are expected",
-        text));
+        text);
     if (call && (call->function == "uniform" || call->function == "loguniform"))
     {
       if (kind_ == Kind::grid || kind_ == Kind::zip)
-        refuse(
-          fmt::format("{} belongs to a random or latin hypercube design, and this is a {}", call->function, design));
+        refuse("{} belongs to a random or latin hypercube design, and this is a {}", call->function, design);
       axis.values         = read_range(*call);
       axis.is_range       = true;
       axis.is_logarithmic = call->function == "loguniform";
@@ -278,10 +274,10 @@ namespace crawler
       if (!call)
         for (const std::string &value : split_parts(text, ','))
           if (split_parts(value, ':').size() > 1 && value.find('?') == std::string::npos) // not "x<0 ? 1 : 2"
-            refuse(fmt::format("found the value \"{}\" of \"{}\"; is a semicolon missing before the next entry? (a "
-                               "value with a colon stands in double quotes)",
-                               value,
-                               entry));
+            refuse("found the value \"{}\" of \"{}\"; is a semicolon missing before the next entry? (a "
+                   "value with a colon stands in double quotes)",
+                   value,
+                   entry);
       axis.values =
         parse_values(text, entry_name, /*distinct=*/kind_ == Kind::grid, {"column", "uniform", "loguniform"});
     }
@@ -308,12 +304,10 @@ namespace crawler
       const std::string entry = trimmed(text.substr(0, colon));
       const std::string rest  = colon == std::string::npos ? "" : trimmed(text.substr(colon + 1));
       if (entry.empty() || rest.empty())
-        throw InputError(fmt::format("\"{}\": found \"{}\", but {} is expected", entry_name, text, sweep_syntax),
-                         entry_name);
+        refuse("found \"{}\", but {} is expected", text, sweep_syntax);
       const std::string path = normal_path(entry);
       if (varies(path))
-        throw InputError(
-          fmt::format("\"{}\": \"{}\" varies twice, but different entries are expected", entry_name, path), entry_name);
+        refuse("\"{}\" varies twice, but different entries are expected", path);
       axes_.push_back(read_axis(path, rest, parameters.design));
     }
     if (axes_.empty())
@@ -324,14 +318,11 @@ namespace crawler
       if (kind_ == Kind::grid)
         n *= static_cast<double>(axis.values.size());
       else if (kind_ == Kind::zip && axis.values.size() != axes_[0].values.size())
-        throw InputError(
-          fmt::format("\"{}\": a zip has as many values on each axis, but \"{}\" has {} and \"{}\" has {}",
-                      entry_name,
-                      axes_[0].entry,
-                      axes_[0].values.size(),
-                      axis.entry,
-                      axis.values.size()),
-          entry_name);
+        refuse("a zip has as many values on each axis, but \"{}\" has {} and \"{}\" has {}",
+               axes_[0].entry,
+               axes_[0].values.size(),
+               axis.entry,
+               axis.values.size());
     if (n > SweepParameters::most_points)
       throw InputError(fmt::format("\"{}\" makes {:.3g} points, but at most {:g} are expected",
                                    entry_name,

@@ -3,7 +3,10 @@
 
 #include <crawler/studies/core/log.h>
 
+#include <mpi.h>
+
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -68,4 +71,34 @@ namespace crawler
   /// Draws the picture of @p folder with the script of this name in contrib/plot, or says how to.
   void
   draw(const std::string &script, const std::filesystem::path &folder, Log &log);
+
+  /// The parts of a study, which the ranks take one after the other.
+  struct SharedWork
+  {
+    unsigned long n_parts;
+    unsigned long n_points; ///< that are missing, in all parts together
+    std::string points;     ///< what these are called: "points"
+    /// Whether a signal or a time limit ends the work.
+    std::function<bool()> interrupted;
+    /// Computes part @p number and keeps what it gives. Calls @p see with the number of points that are kept and how
+    /// many of these did not finish; asks @p stops at every step of a run. Returns false if it was interrupted. Throws
+    /// FileError.
+    std::function<bool(unsigned long number,
+                       const std::function<bool()> &stops,
+                       const std::function<void(unsigned long n, unsigned long failed)> &see)>
+      compute;
+  };
+
+  /// Returns false if some rank was interrupted (collective). A file that one rank cannot write ends the work of all:
+  /// FileError on all ranks.
+  bool
+  share_work(MPI_Comm communicator, const SharedWork &work, Log &log);
+
+  /// What went wrong with the files of any rank (empty: nothing) is a FileError on all of them (collective).
+  void
+  throw_on_all_ranks(MPI_Comm communicator, const std::string &problem);
+
+  /// Collective.
+  bool
+  on_all_ranks(MPI_Comm communicator, bool here);
 } // namespace crawler

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/numerics_choice.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/core/command_options.h>
@@ -8,6 +9,8 @@
 #include <crawler/studies/core/log.h>
 
 #include <mpi.h>
+
+#include <chrono>
 
 namespace crawler
 {
@@ -18,4 +21,22 @@ namespace crawler
   /// The lines that say what will be computed.
   void
   report_plan(Log &log, const Input &input, const ModelChoice &model, const NumericsChoice &choice);
+
+  class Log;
+  class StopSignal;
+
+  /// What `crawler run` does on a level that needs no mesh (collective; the first rank computes and writes all files,
+  /// whose names and contents are those of any run). @p start is when the program started.
+  ExitCode
+  run_reduced_model(MPI_Comm communicator,
+                    const CommandOptions &options,
+                    const Input &input,
+                    const ModelChoice &choice,
+                    const StopSignal &stop_signal,
+                    std::chrono::steady_clock::time_point start,
+                    Log &log);
+
+  /// The same for `crawler check`.
+  ExitCode
+  check_reduced_model(const Input &input, const ModelChoice &choice, Log &log);
 } // namespace crawler
