@@ -47,6 +47,35 @@ namespace crawler
         return {line, ""};
       return {line.substr(0, end), trimmed(line.substr(end))};
     }
+
+    /// A line without its comment, with those that continue it.
+    struct Statement
+    {
+      std::string text;
+      unsigned int line; ///< where it begins
+    };
+
+    std::vector<Statement>
+    statements_of(const std::string &text)
+    {
+      std::vector<Statement> statements;
+      std::istringstream in{std::string(without_byte_order_mark(text))};
+      std::string raw, line;
+      for (unsigned int number = 1, first = 1; std::getline(in, raw); ++number)
+      {
+        raw = trimmed(raw.substr(0, raw.find('#')));
+        if (line.empty())
+          first = number;
+        const bool continues = raw.ends_with('\\');
+        line += continues ? raw.substr(0, raw.size() - 1) : raw;
+        if (continues && !in.eof())
+          continue;
+        if (const std::string whole = trimmed(line); !whole.empty())
+          statements.push_back({whole, first});
+        line.clear();
+      }
+      return statements;
+    }
   } // namespace
 
 
@@ -88,28 +117,8 @@ namespace crawler
       return normal_path(result + last);
     };
 
-    std::istringstream in{std::string(without_byte_order_mark(text))};
-    std::string raw, line;
-    unsigned int number = 0, first = 0;
-    while (std::getline(in, raw))
+    for (const auto &[statement, first] : statements_of(text))
     {
-      ++number;
-      if (const auto comment = raw.find('#'); comment != std::string::npos)
-        raw.erase(comment);
-      raw = trimmed(raw);
-      if (line.empty())
-        first = number;
-      const bool continues = !raw.empty() && raw.back() == '\\';
-      if (continues)
-        raw.pop_back();
-      line += raw;
-      if (continues && !in.eof())
-        continue;
-      const std::string statement = trimmed(line);
-      line.clear();
-      if (statement.empty())
-        continue;
-
       const std::string place    = fmt::format("{}, line {}", name, first);
       const auto [keyword, rest] = first_word(statement);
       if (keyword == "subsection")
@@ -139,23 +148,9 @@ namespace crawler
       }
       else if (keyword == "include")
       {
-        if (depth == 10)
-          throw InputError(fmt::format("{}: files include each other more than 10 deep", place));
-        if (rest.empty())
-          throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
-        const auto file = (folder / rest).string();
-        std::string included;
-        try
-        {
-          included = read_whole(file);
-        }
-        catch (const FileError &error)
-        {
-          throw FileError(fmt::format("{}: {}", place, error.what()));
-        }
         if (!open.empty())
           throw InputError(fmt::format("{}: \"include\" is expected outside of all subsections", place));
-        parse(included, file, depth + 1);
+        include(rest, folder, place, depth);
       }
       else
         throw InputError(
@@ -166,6 +161,29 @@ namespace crawler
     if (!open.empty())
       throw InputError(
         fmt::format("{}, line {}: \"subsection {}\" has no \"end\"", name, open.back().second, open.back().first));
+  }
+
+  void
+  ParameterFile::include(const std::string &file_name,
+                         const std::filesystem::path &folder,
+                         const std::string &place,
+                         const unsigned int depth)
+  {
+    if (depth == 10)
+      throw InputError(fmt::format("{}: files include each other more than 10 deep", place));
+    if (file_name.empty())
+      throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
+    const auto file = (folder / file_name).string();
+    std::string included;
+    try
+    {
+      included = read_whole(file);
+    }
+    catch (const FileError &error)
+    {
+      throw FileError(fmt::format("{}: {}", place, error.what()));
+    }
+    parse(included, file, depth + 1);
   }
 
   void

@@ -83,6 +83,11 @@ namespace crawler
   private:
     void
     parse(const std::string &text, const std::string &name, unsigned int depth);
+    void
+    include(const std::string &file_name,
+            const std::filesystem::path &folder,
+            const std::string &place,
+            unsigned int depth);
 
     std::string name_;
     std::string text_;

@@ -62,58 +62,39 @@ namespace crawler
     }
 
     /// The stress from the balance of forces, see the class.
-    class StressAtPoints : public ActiveStressAtPoints
-    {
-    public:
-      StressAtPoints(const StrainHistory &history,
+    std::unique_ptr<ActiveStressAtPoints>
+    balancing_stress(const StrainHistory &history,
                      const Body &body,
                      const unsigned int n_panels,
                      const std::vector<double> &points)
-        : body_(body)
-        , friction_(1., body.friction_exponent())
-        , panels_(0., body.length, n_panels)
-        , inside_(history.at(panels_.points()))
-        , at_points_(history.at(points))
-        , places_(panels_, points)
-        , e_(panels_.points().size())
-        , e_t_(e_.size())
-        , g_(e_.size())
-        , B_t_(e_.size())
-        , elastic_(points.size())
-      {
-      }
-
-      void
-      values(const double t, const std::span<double> m) override
-      {
-        inside_->strain(t, e_);
-        inside_->rate(t, e_t_);
-        panels_.running_integral(e_t_, B_t_);
-        for (double &w : e_)
+    {
+      const auto panels   = std::make_shared<const GaussPanels>(0., body.length, n_panels);
+      const std::size_t n = panels->points().size();
+      const PowerFriction friction(1., body.friction_exponent());
+      const GaussPanels::Places places(*panels, points);
+      std::vector<double> e(n), e_t(n), g(n), B_t(n), elastic(points.size());
+      return stress_at_points([=, inside = history.at(panels->points()), at_points = history.at(points)](
+                                const double t, const std::span<double> m) mutable {
+        inside->strain(t, e);
+        inside->rate(t, e_t);
+        panels->running_integral(e_t, B_t);
+        for (double &w : e)
           w += 1.;
-        friction_.values(e_, g_);
+        friction.values(e, g);
         double g_sum = 0., gB_sum = 0.;
-        for (std::size_t i = 0; i < g_.size(); ++i)
+        for (std::size_t i = 0; i < n; ++i)
         {
-          g_sum += panels_.weights()[i] * g_[i];
-          gB_sum += panels_.weights()[i] * g_[i] * B_t_[i];
+          g_sum += panels->weights()[i] * g[i];
+          gB_sum += panels->weights()[i] * g[i] * B_t[i];
         }
-        for (std::size_t i = 0; i < g_.size(); ++i)
-          g_[i] *= B_t_[i] - gB_sum / g_sum;
-        places_.running_integral(g_, m);
-        at_points_->strain(t, elastic_);
+        for (std::size_t i = 0; i < n; ++i)
+          g[i] *= B_t[i] - gB_sum / g_sum;
+        places.running_integral(g, m);
+        at_points->strain(t, elastic);
         for (std::size_t i = 0; i < m.size(); ++i)
-          m[i] = body_.friction_coefficient * m[i] - body_.elastic_modulus * elastic_[i];
-      }
-
-    private:
-      const Body body_;
-      const PowerFriction friction_;
-      const GaussPanels panels_;
-      const std::unique_ptr<StrainAtPoints> inside_, at_points_;
-      const GaussPanels::Places places_;
-      std::vector<double> e_, e_t_, g_, B_t_, elastic_;
-    };
+          m[i] = body.friction_coefficient * m[i] - body.elastic_modulus * elastic[i];
+      });
+    }
 
     std::unique_ptr<const StrainHistory>
     create_history(const PrescribedStrainParameters &parameters,
@@ -332,12 +313,13 @@ namespace crawler
     fine.resize(points.size());
     for (n_panels_ = 2; n_panels_ < most; n_panels_ *= 2)
     {
-      StressAtPoints now(*history_, body_, n_panels_, points), next(*history_, body_, 2 * n_panels_, points);
+      const auto now  = balancing_stress(*history_, body_, n_panels_, points),
+                 next = balancing_stress(*history_, body_, 2 * n_panels_, points);
       double change = 0., largest = 0.;
       for (const double part : {0.03, 0.21, 0.47, 0.71, 0.95})
       {
-        now.values(part * end_time, coarse);
-        next.values(part * end_time, fine);
+        now->values(part * end_time, coarse);
+        next->values(part * end_time, fine);
         for (std::size_t i = 0; i < fine.size(); ++i)
         {
           change  = std::max(change, std::abs(fine[i] - coarse[i]));
@@ -352,7 +334,7 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   PrescribedStrain::evaluator(const std::vector<double> &points, bool) const
   {
-    return std::make_unique<StressAtPoints>(*history_, body_, n_panels_, points);
+    return balancing_stress(*history_, body_, n_panels_, points);
   }
 
   void

@@ -242,22 +242,12 @@ namespace crawler
           finest = choice;
           continue;
         }
-        Numerics &n       = finest->numerics;
-        const auto &other = choice->numerics;
-        if (other.n_cells * other.degree > n.n_cells * n.degree)
-        {
-          const Numerics coarser = n;
-          n                      = other;
-          n.tolerance            = std::min(coarser.tolerance, other.tolerance);
-          n.initial_step         = std::min(coarser.initial_step, other.initial_step);
-          n.least_event          = std::min(coarser.least_event, other.least_event);
-        }
-        else
-        {
-          n.tolerance    = std::min(n.tolerance, other.tolerance);
-          n.initial_step = std::min(n.initial_step, other.initial_step);
-          n.least_event  = std::min(n.least_event, other.least_event);
-        }
+        const Numerics a = finest->numerics, &b = choice->numerics;
+        Numerics &n    = finest->numerics;
+        n              = b.n_cells * b.degree > a.n_cells * a.degree ? b : a;
+        n.tolerance    = std::min(a.tolerance, b.tolerance);
+        n.initial_step = std::min(a.initial_step, b.initial_step);
+        n.least_event  = std::min(a.least_event, b.least_event);
       }
       return finest;
     }
@@ -271,6 +261,71 @@ namespace crawler
       task.error   = nullptr;
       task.seconds = 0.;
     }
+
+    /// A task that shares the numerics, and what its run and the finer one take.
+    struct Member
+    {
+      Task *task;
+      Numerics own, finer;
+      TimeParameters finer_time;
+    };
+
+    std::vector<Member>
+    members_of(const std::span<Task> tasks, const std::vector<bool> &wanted, const NumericsChoice &shared)
+    {
+      std::vector<Member> members;
+      for (std::size_t i = 0; i < tasks.size(); ++i)
+      {
+        const TimeParameters &time = tasks[i].parameters.time;
+        const Scene &scene         = *tasks[i].scene;
+        if (!wanted[i] || is_faster_alone(tasks[i]) || !batch_method(scene, time, shared.numerics))
+          continue;
+        // Each stress has events of its own.
+        NumericsChoice own = shared;
+        own.numerics.step_limits =
+          similar_step_limits(scene, own.numerics.step_limits, own.numerics.least_event / least_event);
+        members.push_back({&tasks[i], own.numerics, numerics_of_finer_run(own, time, scene), time_of_finer_run(time)});
+      }
+      return members;
+    }
+
+    /// The runs, and of those that finish the finer ones. Tasks whose answer is as good as it should be have it.
+    void
+    compute_members(const std::vector<Member> &members,
+                    const NumericsChoice &shared,
+                    const Simulation::Options &options,
+                    const std::function<bool()> &is_in_time)
+    {
+      std::vector<BatchRun> runs, finer_runs;
+      for (const Member &member : members)
+        runs.push_back({&*member.task->scene, &member.task->parameters.time, &member.own});
+      auto results = run_batch(runs, options, is_in_time);
+      std::vector<std::size_t> finished;
+      for (std::size_t i = 0; i < members.size(); ++i)
+        if (results[i] && results[i]->time.status == "finished" &&
+            batch_method(*members[i].task->scene, members[i].finer_time, members[i].finer))
+        {
+          finished.push_back(i);
+          finer_runs.push_back({&*members[i].task->scene, &members[i].finer_time, &members[i].finer});
+        }
+      const auto finer_results = run_batch(finer_runs, options, is_in_time);
+      for (std::size_t j = 0; j < finished.size(); ++j)
+      {
+        if (!finer_results[j] || finer_results[j]->time.status != "finished")
+          continue;
+        const Member &member     = members[finished[j]];
+        Task &task               = *member.task;
+        SimulationResult &result = *results[finished[j]];
+        NumericsChoice choice    = shared;
+        choice.numerics          = member.own;
+        choice.wanted_error      = task.parameters.accuracy * std::abs(result.displacement);
+        choice.promised_error    = choice.wanted_error;
+        set_errors(choice, result, &*finer_results[j], task.parameters, *task.scene);
+        check_identities(result, task.parameters);
+        if (result.time.status == "finished" && result.error->total <= choice.wanted_error)
+          task.computed = {std::move(result), choice};
+      }
+    }
   } // namespace
 
   std::vector<bool>
@@ -279,14 +334,13 @@ namespace crawler
                   const double time_limit,
                   const std::function<bool()> &interrupted)
   {
-    const std::vector<bool> none(tasks.size(), false);
+    std::vector<bool> done(tasks.size(), false);
     const double start    = now();
     const auto n_wanted   = std::count(wanted.begin(), wanted.end(), true);
     const auto is_in_time = [&]() { return now() - start <= time_limit && !interrupted(); };
     if (tasks.size() < fewest || n_wanted == 0 ||
         !std::all_of(tasks.begin(), tasks.end(), [](const Task &task) { return may_share(task.parameters); }))
-      return none;
-    std::vector<bool> done = none;
+      return done;
     try
     {
       for (Task &task : tasks)
@@ -294,83 +348,25 @@ namespace crawler
         task.scene.emplace(task.parameters.create_scene());
         choose_model(task.parameters, *task.scene); // refuses what the model cannot compute
       }
-      const auto shared = shared_choice(tasks, is_in_time);
-      if (!shared)
-      {
-        for (Task &task : tasks)
-          forget(task);
-        return none;
-      }
-
-      // The runs, without and with energy balance, and of those that finish the finer ones.
-      struct Member
-      {
-        std::size_t task;
-        Numerics own, finer;
-        TimeParameters finer_time;
-      };
-      std::vector<Member> members;
+      if (const auto shared = shared_choice(tasks, is_in_time))
+        compute_members(
+          members_of(tasks, wanted, *shared),
+          *shared,
+          {.energy_balance = tasks.front().parameters.output.energy_balance, .gait = gait_wish(tasks.front())},
+          is_in_time);
       for (std::size_t i = 0; i < tasks.size(); ++i)
-        if (wanted[i] && !is_faster_alone(tasks[i]) &&
-            batch_method(*tasks[i].scene, tasks[i].parameters.time, shared->numerics))
-        {
-          // Each stress has events of its own.
-          NumericsChoice own = *shared;
-          own.numerics.step_limits =
-            similar_step_limits(*tasks[i].scene, own.numerics.step_limits, own.numerics.least_event / least_event);
-          members.push_back({i,
-                             own.numerics,
-                             numerics_of_finer_run(own, tasks[i].parameters.time, *tasks[i].scene),
-                             time_of_finer_run(tasks[i].parameters.time)});
-        }
-      std::vector<BatchRun> runs;
-      for (const Member &member : members)
-        runs.push_back({&*tasks[member.task].scene, &tasks[member.task].parameters.time, &member.own});
-      const Simulation::Options options = {.energy_balance = tasks.front().parameters.output.energy_balance,
-                                           .gait           = tasks.front().gait ? Simulation::GaitWish::declared
-                                                                                : Simulation::GaitWish::none};
-      auto results                      = run_batch(runs, options, is_in_time);
-      std::vector<std::size_t> finished;
-      std::vector<BatchRun> finer_runs;
-      for (std::size_t i = 0; i < members.size(); ++i)
-        if (results[i] && results[i]->time.status == "finished" &&
-            batch_method(*tasks[members[i].task].scene, members[i].finer_time, members[i].finer))
-        {
-          finished.push_back(i);
-          finer_runs.push_back({&*tasks[members[i].task].scene, &members[i].finer_time, &members[i].finer});
-        }
-      const auto finer_results = run_batch(finer_runs, options, is_in_time);
-      for (std::size_t j = 0; j < finished.size(); ++j)
-      {
-        const std::size_t i = finished[j];
-        Task &task          = tasks[members[i].task];
-        if (!finer_results[j] || finer_results[j]->time.status != "finished")
-          continue;
-        SimulationResult &result = *results[i];
-        NumericsChoice choice    = *shared;
-        choice.numerics          = members[i].own;
-        choice.wanted_error      = task.parameters.accuracy * std::abs(result.displacement);
-        choice.promised_error    = choice.wanted_error;
-        set_errors(choice, result, &*finer_results[j], task.parameters, *task.scene);
-        check_identities(result, task.parameters);
-        if (result.time.status != "finished" || !(result.error->total <= choice.wanted_error))
-          continue;
-        task.computed         = {std::move(result), choice};
-        done[members[i].task] = true;
-      }
-      const double seconds = (now() - start) / static_cast<double>(n_wanted);
-      for (std::size_t i = 0; i < tasks.size(); ++i)
-        if (done[i])
-          tasks[i].seconds = seconds;
-        else
-          forget(tasks[i]);
-      return done;
+        done[i] = !tasks[i].computed.result.time.status.empty();
     }
     catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
     {
-      for (Task &task : tasks)
-        forget(task);
-      return none;
+      done.assign(tasks.size(), false);
     }
+    const double seconds = (now() - start) / static_cast<double>(n_wanted);
+    for (std::size_t i = 0; i < tasks.size(); ++i)
+      if (done[i])
+        tasks[i].seconds = seconds;
+      else
+        forget(tasks[i]);
+    return done;
   }
 } // namespace crawler
