@@ -8,7 +8,7 @@
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/run/run.h>
-#include <crawler/studies/sweep/sweep_check.h>
+#include <crawler/studies/sweep/sweep.h>
 
 #include <fmt/format.h>
 

@@ -104,32 +104,22 @@ namespace crawler
       return fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
     }
 
-    // The default values as they are written.
+    template <typename Value>
+    constexpr bool may_be_automatic = false;
+    template <typename Value>
+    constexpr bool may_be_automatic<std::optional<Value>> = true;
 
+    /// A default value as it is written.
+    template <typename Value>
     std::string
-    default_text(const double value)
+    default_text(const Value &value)
     {
-      return to_text(value);
-    }
-    std::string
-    default_text(const unsigned int value)
-    {
-      return std::to_string(value);
-    }
-    std::string
-    default_text(const bool value)
-    {
-      return value ? "true" : "false";
-    }
-    std::string
-    default_text(const std::string &value)
-    {
-      return value;
-    }
-    std::string
-    default_text(const std::vector<double> &value)
-    {
-      return fmt::format("{}", fmt::join(value, ", "));
+      if constexpr (may_be_automatic<Value>)
+        return value ? default_text(*value) : automatic;
+      else if constexpr (std::is_same_v<Value, std::vector<double>>)
+        return fmt::format("{}", fmt::join(value, ", "));
+      else
+        return fmt::format("{}", value);
     }
 
     // How values are read: nothing if a text is not admissible.
@@ -268,26 +258,20 @@ namespace crawler
   Declarations::entry(
     const std::string &name, Value &value, const std::string &expected, const std::string &unit, const Read &read)
   {
-    Entry result(*this, name, {path_of(name), default_text(value), expected, unit, ""});
-    result.match_  = [read](const std::string &text) { return read(text).has_value(); };
-    result.assign_ = [&value, read](const std::string &text) { value = *read(text); };
-    return result;
-  }
-
-  template <typename Value, typename Read>
-  Declarations::Entry
-  Declarations::entry(const std::string &name,
-                      std::optional<Value> &value,
-                      const std::string &expected,
-                      const std::string &unit,
-                      const Read &read)
-  {
+    constexpr bool is_optional = may_be_automatic<Value>;
     Entry result(
       *this,
       name,
-      {path_of(name), value ? default_text(*value) : automatic, expected + " or the word \"automatic\"", unit, ""});
-    result.match_  = [read](const std::string &text) { return text == automatic || read(text).has_value(); };
-    result.assign_ = [&value, read](const std::string &text) { value = read(text); };
+      {path_of(name), default_text(value), is_optional ? expected + " or the word \"automatic\"" : expected, unit, ""});
+    result.match_ = [read](const std::string &text) {
+      return (is_optional && text == automatic) || read(text).has_value();
+    };
+    result.assign_ = [&value, read](const std::string &text) {
+      if constexpr (is_optional)
+        value = read(text);
+      else
+        value = *read(text);
+    };
     return result;
   }
 

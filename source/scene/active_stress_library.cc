@@ -130,17 +130,11 @@ namespace crawler
     {
       declarations.enter(fmt::format("Term {}", i + 1));
       sum.terms[i].combination.add_parameters(declarations);
-      sum.terms[i].stress.add_parameters_of_term(declarations);
+      sum.terms[i].stress.add_generators(declarations, /*is_term=*/true);
       declarations.leave();
     }
     declarations.leave();
     declarations.leave();
-  }
-
-  void
-  ActiveStressParameters::add_parameters_of_term(Declarations &declarations)
-  {
-    add_generators(declarations, /*is_term=*/true);
   }
 
   void

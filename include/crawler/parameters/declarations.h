@@ -157,13 +157,6 @@ namespace crawler
     Entry
     entry(
       const std::string &name, Value &value, const std::string &expected, const std::string &unit, const Read &read);
-    template <typename Value, typename Read>
-    Entry
-    entry(const std::string &name,
-          std::optional<Value> &value,
-          const std::string &expected,
-          const std::string &unit,
-          const Read &read);
 
     void
     enter_sections(const std::vector<std::string> &path) const;

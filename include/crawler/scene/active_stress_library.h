@@ -8,11 +8,10 @@
 #include <crawler/scene/active_stress/prescribed_strain.h>
 #include <crawler/scene/active_stress/pulse.h>
 #include <crawler/scene/active_stress/segments.h>
-#include <crawler/scene/active_stress/standing_wave.h>
 #include <crawler/scene/active_stress/strain_feedback.h>
 #include <crawler/scene/active_stress/sum.h>
 #include <crawler/scene/active_stress/table.h>
-#include <crawler/scene/active_stress/travelling_wave.h>
+#include <crawler/scene/active_stress/waves.h>
 
 namespace crawler
 {
@@ -44,11 +43,7 @@ namespace crawler
     void
     add_parameters(Declarations &declarations);
 
-    /// The same for a term of a sum, in its section.
-    void
-    add_parameters_of_term(Declarations &declarations);
-
-  private:
+    /// All but the sum, in the present section: also for a term of one.
     void
     add_generators(Declarations &declarations, bool is_term);
   };

@@ -9,8 +9,8 @@
 #include <crawler/base/cubic_spline.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/gauss_panels.h>
-#include <crawler/formula/formula_rate.h>
-#include <crawler/scene/active_stress/strain_table.h>
+#include <crawler/formula/formula_gradient.h>
+#include <crawler/scene/active_stress/prescribed_strain.h>
 
 #include <gtest/gtest.h>
 

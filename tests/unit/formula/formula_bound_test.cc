@@ -2,7 +2,7 @@
 #include "../../verification/random_scenes.h"
 
 #include <crawler/formula/formula_bound.h>
-#include <crawler/formula/formula_rate.h>
+#include <crawler/formula/formula_gradient.h>
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <crawler/base/exceptions.h>
 #include <crawler/scene/active_stress/segments.h>
-#include <crawler/scene/active_stress/travelling_wave.h>
+#include <crawler/scene/active_stress/waves.h>
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crawler
@@ -60,5 +61,58 @@ namespace crawler
   private:
     const std::optional<double> start_, end_;
     const double edge_, ramp_, length_;
+  };
+
+  /// An interval of s or of t, as its entries say it; no numbers: everywhere.
+  struct WindowEntries
+  {
+    std::vector<double> interval; ///< from, to
+    double edge_width = 0.;
+  };
+
+  /**
+   * The factor W(x) that is 1 in the window [from, to] and 0 outside: with smooth steps S (profile.h) of the edge width
+   * inside of both ends, W(x) = S((x - from)/width) S((to - x)/width), or jumps if the width is 0. A window that begins
+   * before 0 by the edge width, or ends as much after the end of the range, has no edge there.
+   */
+  class Window
+  {
+  public:
+    /// For 0 <= x <= @p end. @p variable is "s" or "t"; @p section the path of the entries, with a slash at the end.
+    /// Throws InputError unless there are no or two numbers, increasing, that meet the range and leave room for edges.
+    Window(const WindowEntries &entries, char variable, const std::string &section, double end);
+
+    double
+    value(double x) const;
+
+    /// Its derivative, without the jumps.
+    double
+    rate(double x) const;
+
+    /// The largest value, and a bound of the largest |derivative|, in [from, to].
+    std::pair<double, double>
+    largest(double from, double to) const;
+
+    /// Where it jumps, in (0, end).
+    std::vector<double>
+    breaks() const;
+
+    /// Where it begins and ends, in (0, end), with edges or without; between them nothing can be missed.
+    std::vector<double>
+    ends() const;
+
+    /// Is it 1 on the whole range?
+    bool
+    is_whole() const;
+
+    /// In words, for the log; empty if it is whole.
+    std::string
+    in_words() const;
+
+  private:
+    const char variable_;
+    const double end_;
+    bool is_everywhere_ = true;
+    double from_ = 0., to_ = 0., edge_ = 0.;
   };
 } // namespace crawler

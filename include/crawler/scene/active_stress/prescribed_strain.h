@@ -3,6 +3,7 @@
 
 #include <crawler/base/gauss_panels.h>
 #include <crawler/scene/body.h>
+#include <crawler/scene/evaluators.h>
 #include <crawler/scene/known_stress.h>
 
 #include <string>
@@ -87,5 +88,17 @@ namespace crawler
     std::unique_ptr<const StrainHistory> history_;
     StrainExtremes extremes_{};
     unsigned int n_panels_ = 1;
+  };
+
+  /// A strain given on a grid over s and t, with cubic splines in both directions (tensor product).
+  class StrainTable : public StrainByEvaluators
+  {
+  public:
+    /**
+     * Reads the file @p name, CSV with the header s,t,strain or HDF5 with the dataset strain (base/grid_table.h).
+     * Throws InputError for @p entry if that cannot be read, if there are less than four values of s or t, or if the
+     * grid does not reach from 0 to @p length and from 0 to @p end_time.
+     */
+    StrainTable(const std::string &name, double length, double end_time, const std::string &entry);
   };
 } // namespace crawler

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/scene/active_stress/window.h>
+#include <crawler/scene/active_stress/envelope.h>
 #include <crawler/scene/known_stress.h>
 
 #include <memory>
