@@ -58,14 +58,16 @@ namespace crawler
       return static_cast<unsigned int>(std::stoul(text));
     }
 
-    std::vector<std::optional<double>>
+    std::optional<std::vector<double>>
     to_numbers(const std::string &text)
     {
-      std::vector<std::optional<double>> values;
+      std::vector<double> values;
       std::istringstream in(text + ",");
-      std::string item;
-      while (std::getline(in, item, ','))
-        values.push_back(to_number(trimmed(item)));
+      for (std::string item; std::getline(in, item, ',');)
+        if (const auto number = to_number(trimmed(item)))
+          values.push_back(*number);
+        else
+          return std::nullopt;
       return values;
     }
 
@@ -313,21 +315,10 @@ namespace crawler
   {
     const bool may_be_empty    = value.empty();
     const std::string expected = "a list of numbers separated by commas";
-    return entry(name,
-                 value,
-                 may_be_empty ? expected + ", or nothing" : expected,
-                 unit,
-                 [may_be_empty](const std::string &text) -> std::optional<std::vector<double>> {
-                   std::vector<double> list;
-                   if (may_be_empty && text.empty())
-                     return list;
-                   for (const auto &number : to_numbers(text))
-                     if (number)
-                       list.push_back(*number);
-                     else
-                       return std::nullopt;
-                   return list;
-                 });
+    return entry(
+      name, value, may_be_empty ? expected + ", or nothing" : expected, unit, [may_be_empty](const std::string &text) {
+        return may_be_empty && text.empty() ? std::optional(std::vector<double>()) : to_numbers(text);
+      });
   }
 
   Declarations::Entry
