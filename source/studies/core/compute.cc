@@ -266,7 +266,9 @@ namespace crawler
     struct Member
     {
       Task *task;
-      Numerics own, finer;
+      NumericsChoice own;
+      std::optional<CycleWish> cycles;
+      Numerics finer; ///< once the run has finished
       TimeParameters finer_time;
     };
 
@@ -276,38 +278,43 @@ namespace crawler
       std::vector<Member> members;
       for (std::size_t i = 0; i < tasks.size(); ++i)
       {
-        const TimeParameters &time = tasks[i].parameters.time;
-        const Scene &scene         = *tasks[i].scene;
-        if (!wanted[i] || is_faster_alone(tasks[i]) || !batch_method(scene, time, shared.numerics))
+        const Parameters &parameters = tasks[i].parameters;
+        const Scene &scene           = *tasks[i].scene;
+        if (!wanted[i] || !batch_method(scene, parameters.time, shared.numerics))
           continue;
         // Each stress has events of its own.
         NumericsChoice own = shared;
         own.numerics.step_limits =
           similar_step_limits(scene, own.numerics.step_limits, own.numerics.least_event / least_event);
-        members.push_back({&tasks[i], own.numerics, numerics_of_finer_run(own, time, scene), time_of_finer_run(time)});
+        members.push_back({&tasks[i], own, cycle_wish(parameters, scene, 0), {}, time_of_finer_run(parameters.time)});
       }
       return members;
     }
 
     /// The runs, and of those that finish the finer ones. Tasks whose answer is as good as it should be have it.
     void
-    compute_members(const std::vector<Member> &members,
-                    const NumericsChoice &shared,
+    compute_members(std::vector<Member> members,
                     const Simulation::Options &options,
                     const std::function<bool()> &is_in_time)
     {
       std::vector<BatchRun> runs, finer_runs;
       for (const Member &member : members)
-        runs.push_back({&*member.task->scene, &member.task->parameters.time, &member.own});
+        runs.push_back({&*member.task->scene, &member.task->parameters.time, &member.own.numerics, member.cycles});
       auto results = run_batch(runs, options, is_in_time);
       std::vector<std::size_t> finished;
       for (std::size_t i = 0; i < members.size(); ++i)
-        if (results[i] && results[i]->time.status == "finished" &&
-            batch_method(*members[i].task->scene, members[i].finer_time, members[i].finer))
-        {
-          finished.push_back(i);
-          finer_runs.push_back({&*members[i].task->scene, &members[i].finer_time, &members[i].finer});
-        }
+      {
+        if (!results[i] || results[i]->time.status != "finished")
+          continue;
+        Member &member     = members[i];
+        const Task &task   = *member.task;
+        const bool repeats = results[i]->cycles.has_value();
+        member.finer       = numerics_of_finer_run(member.own, task.parameters.time, *task.scene, repeats);
+        if (!batch_method(*task.scene, member.finer_time, member.finer))
+          continue;
+        finished.push_back(i);
+        finer_runs.push_back({&*task.scene, &member.finer_time, &member.finer, member.cycles});
+      }
       const auto finer_results = run_batch(finer_runs, options, is_in_time);
       for (std::size_t j = 0; j < finished.size(); ++j)
       {
@@ -316,8 +323,7 @@ namespace crawler
         const Member &member     = members[finished[j]];
         Task &task               = *member.task;
         SimulationResult &result = *results[finished[j]];
-        NumericsChoice choice    = shared;
-        choice.numerics          = member.own;
+        NumericsChoice choice    = member.own;
         choice.wanted_error      = task.parameters.accuracy * std::abs(result.displacement);
         choice.promised_error    = choice.wanted_error;
         set_errors(choice, result, &*finer_results[j], task.parameters, *task.scene);
@@ -351,7 +357,6 @@ namespace crawler
       if (const auto shared = shared_choice(tasks, is_in_time))
         compute_members(
           members_of(tasks, wanted, *shared),
-          *shared,
           {.energy_balance = tasks.front().parameters.output.energy_balance, .gait = gait_wish(tasks.front())},
           is_in_time);
       for (std::size_t i = 0; i < tasks.size(); ++i)
