@@ -140,8 +140,8 @@ namespace crawler
   {
     TimeParameters time = run;
     time.integrator     = "automatic";
-    time.engine         = "automatic";
-    time.step_control   = "adaptive";
+    time.engine         = Engine::automatic;
+    time.step_control   = StepControl::adaptive;
     time.max_steps      = TimeParameters().max_steps; // the limit is for the run itself
     time.petsc_prefix   = "second_";                  // options after "--" are for the run itself
     return time;
@@ -186,7 +186,7 @@ namespace crawler
       total = 0.;
     else if (finer != nullptr)
     {
-      if (finer->time.status != "finished" || (finer_mesh != nullptr && finer_mesh->time.status != "finished"))
+      if (finer->time.status != Status::finished || (finer_mesh != nullptr && finer_mesh->time.status != Status::finished))
         return;
       const bool promised = is_promised(choice, scene);
       const double part   = !promised                             ? 0.
@@ -246,7 +246,7 @@ namespace crawler
       try
       {
         finer = finer_run(communicator, parameters, scene, choice, result, keep_going);
-        if (!promised && finer.time.status == "finished")
+        if (!promised && finer.time.status == Status::finished)
           finer_mesh = run_on_finer_mesh(communicator, parameters, scene, choice, result, keep_going);
       }
       catch (...)

@@ -110,7 +110,7 @@ namespace crawler
         if (!possible_)
           return false;
         result    = task_.run(first_step(numerics));
-        possible_ = result.time.status == "finished" && result.min_stretch.value > emptied;
+        possible_ = result.time.status == Status::finished && result.min_stretch.value > emptied;
         return possible_;
       }
 

@@ -101,14 +101,14 @@ namespace crawler
       static bool
       finished(const SimulationResult &result)
       {
-        return result.time.status == "finished";
+        return result.time.status == Status::finished;
       }
 
       /// Does a finer mesh not say more?
       static bool
       is_final(const SimulationResult &result)
       {
-        return result.time.status == "stopped" || result.time.reason == "inverted_at_end" ||
+        return result.time.status == Status::stopped || result.time.reason == "inverted_at_end" ||
                result.time.reason == "law_not_positive" || result.time.reason == "nonfinite";
       }
 
@@ -345,7 +345,7 @@ namespace crawler
             result.error = DisplacementError();
           if (!(result.error->total <= wanted() * (1. + 1e-9)))
           {
-            result.time.status = "failed";
+            result.time.status = Status::failed;
             result.time.reason = accuracy_not_met;
             result.time.message =
               std::isfinite(space_error_)
@@ -367,7 +367,7 @@ namespace crawler
             result.inversion_error = std::max(space_error_, least_part * wanted()) + time_error_;
           if (!(result.inversion_error.value_or(HUGE_VAL) <= believed * latest_.inversion->t))
           {
-            result.time.status  = "failed";
+            result.time.status  = Status::failed;
             result.time.reason  = "under_resolved";
             result.time.message = fmt::format("the stretch was lost at s = {:.6g}, t = {:.6g} with {} cells, but the "
                                               "meshes do not agree on it: more cells or a smaller tolerance are needed",
@@ -406,11 +406,11 @@ namespace crawler
                    const std::function<bool()> &keep_going)
   {
     Answer answer = Family(parameters, scene, choice, options, keep_going).compute();
-    if (!simulate || answer.result.time.status == "stopped")
+    if (!simulate || answer.result.time.status == Status::stopped)
       return answer;
     const SimulationResult files = simulate(answer.choice);
     // Its output times make its steps a little different; the numbers are those that the bounds are for.
-    if (files.time.status == "stopped")
+    if (files.time.status == Status::stopped)
       answer.result = files;
     answer.result.output_seconds = files.output_seconds;
     return answer;

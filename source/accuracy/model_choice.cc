@@ -43,18 +43,18 @@ namespace crawler
     void
     require_fit(const std::string &model, const RunParameters &parameters, const ReducedScene &levels)
     {
-      if (model == "perturbation" && !levels.wave() && parameters.active_stress.generator == "optimal wave")
+      if (model == Model::perturbation && !levels.wave() && parameters.active_stress.generator == "optimal wave")
         throw InputError(
           fmt::format("Model is perturbation, which is a series for Fourier coefficients, but the Shape of "
                       "the optimal wave is {}; Model = kinematic, nonlinear or auto is expected",
                       parameters.active_stress.optimal_wave.shape),
           "Model");
-      if (model == "perturbation" && !levels.wave())
+      if (model == Model::perturbation && !levels.wave())
         throw InputError(fmt::format("Model is perturbation, which is a series for the optimal wave, but the Generator "
                                      "is {}; Model = kinematic, nonlinear or auto is expected",
                                      parameters.active_stress.generator),
                          "Model");
-      if (model == "kinematic" && levels.strain() == nullptr)
+      if (model == Model::kinematic && levels.strain() == nullptr)
         throw InputError(
           fmt::format("Model is kinematic, which needs the rate of the active stress, but that of Generator = "
                       "{} is not known, or jumps; Model = nonlinear or auto is expected",
@@ -106,7 +106,7 @@ namespace crawler
       std::string tried;
       for (const Candidate &candidate : candidates)
       {
-        if (candidate.meets(accuracy, candidate.model == "kinematic" ? model_share : 1.))
+        if (candidate.meets(accuracy, candidate.model == Model::kinematic ? model_share : 1.))
           return {candidate.model,
                   fmt::format("Model {}: its estimated error{} is below {}",
                               candidate.model,
@@ -123,19 +123,19 @@ namespace crawler
   choose_model(const RunParameters &parameters, const Scene &scene)
   {
     ModelChoice choice{parameters.model, "Model " + parameters.model + ": as set"};
-    if (parameters.model == "linear" && scene.body.friction_exponent() != 0.)
+    if (parameters.model == Model::linear && scene.body.friction_exponent() != 0.)
       throw InputError(
         fmt::format("Model is linear, but a = 1 - p is {:g}; a = 0 is expected (Anchoring exponent p = 1)",
                     scene.body.friction_exponent()),
         "Model");
-    if (parameters.model != "linear" && parameters.model != "nonlinear")
+    if (parameters.model != Model::linear && parameters.model != Model::nonlinear)
     {
       if (!scene.is_plain())
         return {"nonlinear",
                 "Model nonlinear: simpler ones are for plain bodies and grounds, and here is " +
                   scene.general_features()};
       const ReducedScene levels(scene);
-      if (parameters.model == "auto")
+      if (parameters.model == Model::automatic)
         choice = choose_by_error(levels, parameters.accuracy);
       require_fit(choice.model, parameters, levels);
     }

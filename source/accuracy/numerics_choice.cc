@@ -27,10 +27,10 @@ namespace crawler
     uses_linear_stepper(const RunParameters &parameters, const Scene &scene)
     {
       const bool fits =
-        parameters.body.friction_exponent() == 0. && scene.is_plain() && parameters.discretization.mesh != "adaptive" &&
-        parameters.discretization.formulation != "stretch" && parameters.time.engine == "automatic" &&
+        parameters.body.friction_exponent() == 0. && scene.is_plain() && parameters.discretization.mesh != MeshKind::adaptive &&
+        parameters.discretization.formulation != FormulationEntry::stretch && parameters.time.engine == Engine::automatic &&
         (parameters.time.integrator == "automatic" || integrator(parameters.time.integrator).petsc_type == "radau");
-      return fits && (parameters.model == "linear" || parameters.model == "auto");
+      return fits && (parameters.model == Model::linear || parameters.model == Model::automatic);
     }
   } // namespace
 
@@ -60,7 +60,7 @@ namespace crawler
         , L_(scene.body.length)
         , accuracy_(parameters.accuracy)
         , scale_(scales_.displacement > 0. ? scales_.displacement : L_)
-        , adaptive_steps_(parameters.time.step_control == "adaptive")
+        , adaptive_steps_(parameters.time.step_control == StepControl::adaptive)
       {
         Numerics &n              = choice_.numerics;
         n.linear                 = uses_linear_stepper(parameters, scene);
@@ -69,7 +69,7 @@ namespace crawler
         n.step_limits            = scales_.step_limits;
         n.least_event            = scales_.jumps_move ? 0. : least_event * scales_.stress;
         pilot_time_              = parameters.time;
-        pilot_time_.step_control = "adaptive";
+        pilot_time_.step_control = StepControl::adaptive;
         if (!integrator(pilot_time_.integrator).adaptive)
         {
           pilot_time_.integrator = "bdf";
@@ -86,29 +86,29 @@ namespace crawler
       NumericsChoice
       choose()
       {
-        const std::string &mesh = parameters_.discretization.mesh;
-        const bool fixed        = parameters_.time.step_control == "fixed";
-        if (parameters_.discretization.formulation == "stretch")
+        const MeshKind mesh = parameters_.discretization.mesh;
+        const bool fixed        = parameters_.time.step_control == StepControl::fixed;
+        if (parameters_.discretization.formulation == FormulationEntry::stretch)
         {
           stretch_form();
           return choice_;
         }
         choice_.is_users = user_cells_ || user_tolerance_ || fixed || parameters_.discretization.mesh_tolerance;
-        if (user_cells_ && (user_tolerance_ || fixed) && mesh != "adaptive")
+        if (user_cells_ && (user_tolerance_ || fixed) && mesh != MeshKind::adaptive)
         {
           choice_.numerics.n_cells   = *user_cells_;
           choice_.numerics.tolerance = user_tolerance_.value_or(1e-10 * L_); // of Newton's method only
           choice_.explanation        = "cells and time steps as set by the user";
           return choice_;
         }
-        if (mesh == "automatic" && scales_.jumps_move && adaptive_steps_ && !user_cells_ && !user_tolerance_ &&
+        if (mesh == MeshKind::automatic && scales_.jumps_move && adaptive_steps_ && !user_cells_ && !user_tolerance_ &&
             !choice_.numerics.linear)
         {
           moving_jumps();
           finish(fixed);
           return choice_;
         }
-        if (mesh == "automatic" && starts_or_jumps() && graded())
+        if (mesh == MeshKind::automatic && starts_or_jumps() && graded())
         {
           finish(fixed);
           return choice_;
@@ -119,9 +119,9 @@ namespace crawler
           return choice_;
         }
         bool enough = false;
-        if (mesh != "adaptive")
+        if (mesh != MeshKind::adaptive)
           enough =
-            uniform(mesh == "uniform" || user_cells_ || choice_.numerics.linear ? most_cells : most_uniform_cells);
+            uniform(mesh == MeshKind::uniform || user_cells_ || choice_.numerics.linear ? most_cells : most_uniform_cells);
         // What no uniform mesh resolves is steep, not fine, if the active stress is smooth: fronts of friction.
         if (!enough && may_be_stretch() && scene_.friction_exponent() < 0. && pilot_.time.reason != "inverted_at_end" &&
             is_cheaper_than_adaptive(L_ / scales_.length, accuracy_))
@@ -129,8 +129,8 @@ namespace crawler
           stretch_form();
           return choice_;
         }
-        if (mesh == "adaptive" ||
-            (mesh == "automatic" && !enough && !is_for_stretch() && !user_cells_ && !choice_.numerics.linear))
+        if (mesh == MeshKind::adaptive ||
+            (mesh == MeshKind::automatic && !enough && !is_for_stretch() && !user_cells_ && !choice_.numerics.linear))
           adaptive();
         if (is_for_stretch())
         {
@@ -156,7 +156,7 @@ namespace crawler
         ++n_pilots_;
         SimulationResult result =
           simulation.run({}, {.energy_balance = false, .resolution = true, .cycles = cycles_}, {}, keep_going_);
-        if (result.time.status == "stopped" && result.time.reason.empty())
+        if (result.time.status == Status::stopped && result.time.reason.empty())
           throw Interrupted();
         return result;
       }
@@ -193,7 +193,7 @@ namespace crawler
       void
       measure_size()
       {
-        const bool finished = pilot_.time.status == "finished";
+        const bool finished = pilot_.time.status == Status::finished;
         size_               = std::max(finished ? std::abs(pilot_.displacement) : 0.,
                          (choice_.numerics.linear ? 1. : displacement_floor) * pilot_.largest_u);
       }
@@ -283,7 +283,7 @@ namespace crawler
           measure_size();
           if (accuracy_ >= 1e-7 && is_for_stretch())
             return;
-          const bool finished = pilot_.time.status == "finished";
+          const bool finished = pilot_.time.status == Status::finished;
           const bool resolves = user_cells_ || pilot_.unresolved <= std::max(resolved, accuracy_) || n_cells >= most;
           // Too coarse a mesh or step can look like an inversion; if finer ones say the same the real run will name it.
           if (!finished && !user_cells_ && n_cells < std::min(most, 64u))
@@ -317,7 +317,7 @@ namespace crawler
         pilots_on_uniform_mesh(pilot_degree, n_cells, most);
         if (accuracy_ >= 1e-7 && is_for_stretch())
           return true;
-        const bool predicts      = pilot_.time.status == "finished";
+        const bool predicts      = pilot_.time.status == Status::finished;
         choice_.numerics.n_cells = n_cells;
         if (!predicts || pilot_.unresolved > std::max(resolved, accuracy_))
           return most == most_cells; // whatever it is, there is no more
@@ -350,7 +350,7 @@ namespace crawler
           if (2 * n_cells > most)
             return false;
           const SimulationResult finer = pilot(pilot_numerics(pilot_degree, 2 * n_cells, 0.01 * tolerance_));
-          if (finer.time.status != "finished" || finer.unresolved == 0.)
+          if (finer.time.status != Status::finished || finer.unresolved == 0.)
             break;
           rate           = rate_of(unresolved, finer.unresolved);
           indicator_rate = rate_of(indicator, finer.largest_indicator);
@@ -400,7 +400,7 @@ namespace crawler
           settings.mesh.most_cells = most_adaptive_pilot_cells;
           pilot_                   = pilot(settings);
           measure_size();
-          const bool finished = pilot_.time.status == "finished";
+          const bool finished = pilot_.time.status == Status::finished;
           const double before = strain;
           if (finished && pilot_.strain > 0.)
             strain = pilot_.strain;
@@ -427,9 +427,9 @@ namespace crawler
       may_be_stretch() const
       {
         const DiscretizationParameters &own = parameters_.discretization;
-        return own.formulation == "automatic" && own.mesh == "automatic" && !own.degree && !user_cells_ &&
+        return own.formulation == FormulationEntry::automatic && own.mesh == MeshKind::automatic && !own.degree && !user_cells_ &&
                !user_tolerance_ && adaptive_steps_ && !choice_.numerics.linear &&
-               parameters_.time.engine == "automatic" &&
+               parameters_.time.engine == Engine::automatic &&
                (parameters_.time.integrator == "automatic" || parameters_.time.integrator.starts_with("radau")) &&
                reason_against_stretch_form(scene_).empty();
       }
@@ -440,7 +440,7 @@ namespace crawler
       {
         // It has few digits; so for a smaller Accuracy only where the position form cannot go on.
         return may_be_stretch() && pilot_.time.reason != "inverted_at_end" &&
-               (accuracy_ >= 1e-7 || pilot_.time.status != "finished") &&
+               (accuracy_ >= 1e-7 || pilot_.time.status != Status::finished) &&
                empties(pilot_.min_stretch.value, scene_.friction_exponent(), accuracy_);
       }
 
@@ -458,7 +458,7 @@ namespace crawler
         n.mesh           = {};
         n.grading        = {};
         n.layer          = m_s > 0. ? std::min(largest_layer * L_, layer_lengths / a * k / m_s) : largest_layer * L_;
-        if (parameters_.discretization.mesh == "uniform")
+        if (parameters_.discretization.mesh == MeshKind::uniform)
           n.layer = 0.;
         n.parts        = 1;
         n.integrator   = "radau 5";
@@ -504,10 +504,10 @@ namespace crawler
           n.step_limits        = {{0., period / (moving_steps * n.n_cells)}};
           tolerance_           = moving_tolerance * scale_ / n.n_cells;
           const double before  = pilot_.displacement;
-          const bool is_second = pilot_.time.status == "finished";
+          const bool is_second = pilot_.time.status == Status::finished;
           pilot_               = pilot(pilot_numerics(n.degree, n.n_cells, tolerance_));
           measure_size();
-          const bool finished = pilot_.time.status == "finished";
+          const bool finished = pilot_.time.status == Status::finished;
           if (!finished && (n.n_cells > first_moving_cells || pilot_.time.reason == "inverted_at_end"))
             return; // the run will say why
           // Each next mesh has twice the cells and up to twice the steps.
@@ -568,7 +568,7 @@ namespace crawler
       finish(const bool fixed)
       {
         Numerics &n         = choice_.numerics;
-        const bool predicts = pilot_.time.status == "finished";
+        const bool predicts = pilot_.time.status == Status::finished;
         if (size_ == 0.)
           size_ = scale_;
         const bool is_graded = n.grading.levels > 0; // then all is chosen already

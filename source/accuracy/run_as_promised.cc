@@ -39,12 +39,12 @@ namespace crawler
         finer.numerics = numerics_of_finer_run(finer, time, scene, /*cycles_repeat=*/false);
         const SimulationResult check =
           Simulation(communicator, scene, time, finer.numerics).run({}, {}, {}, keep_going);
-        if (check.time.status == "stopped")
+        if (check.time.status == Status::stopped)
           return;
         const double before = result.inversion->t;
-        if (check.time.status != "inverted")
+        if (check.time.status != Status::inverted)
         {
-          found = check.time.status == "finished" ? "did not lose it" : "ended with " + check.time.reason;
+          found = check.time.status == Status::finished ? "did not lose it" : "ended with " + check.time.reason;
           break;
         }
         if (std::abs(check.inversion->t - before) <= same * before)
@@ -57,7 +57,7 @@ namespace crawler
         result.inversion->t = check.inversion->t;
         found               = fmt::format("lost it at t = {:.6g}", check.inversion->t);
       }
-      result.time.status = "failed";
+      result.time.status = Status::failed;
       result.time.reason = "under_resolved";
       result.time.message =
         fmt::format("the computed stretch was lost at s = {:.6g}, t = {:.6g}, but a run with {} cells "
@@ -75,7 +75,7 @@ namespace crawler
     is_for_finer_numerics(const TimeOutcome &outcome)
     {
       constexpr const char *reasons[] = {"newton_diverged", "linear_failed", "rejection_limit", "under_resolved"};
-      return outcome.status == "failed" && std::ranges::find(reasons, outcome.reason) != std::end(reasons);
+      return outcome.status == Status::failed && std::ranges::find(reasons, outcome.reason) != std::end(reasons);
     }
   } // namespace
 
@@ -106,11 +106,11 @@ namespace crawler
     for (;;)
     {
       SimulationResult &result = answer.result;
-      if (result.time.status == "inverted" && result.time.reason == "inverted_inside" && choice.is_users)
+      if (result.time.status == Status::inverted && result.time.reason == "inverted_inside" && choice.is_users)
         confirm_inversion(communicator, parameters, scene, choice, result, keep_going);
       const bool retries = std::isfinite(choice.promised_error) && !choice.is_measured &&
                            answer.refinements < most_refinements && is_for_finer_numerics(result.time);
-      if (!retries && (!parameters.error_estimate || result.time.status != "finished"))
+      if (!retries && (!parameters.error_estimate || result.time.status != Status::finished))
         return answer;
       if (retries)
       {
@@ -150,7 +150,7 @@ namespace crawler
         }
       if (is_good)
         return answer;
-      result.time.status = "failed";
+      result.time.status = Status::failed;
       result.time.reason = accuracy_not_met;
       result.time.message =
         std::isnan(total)

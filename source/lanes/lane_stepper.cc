@@ -69,7 +69,7 @@ namespace crawler
     outcome_ = {};
     if (monitor && !monitor({start_time, 0., 0, false, 0, 0}, y))
     {
-      outcome_.status    = "stopped";
+      outcome_.status    = Status::stopped;
       outcome_.time      = start_time;
       outcome_.step_size = initial_step;
       return outcome_;

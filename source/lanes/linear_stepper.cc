@@ -226,7 +226,7 @@ namespace crawler
     const auto goes_on = [&](const double h, const bool is_output_time) {
       if (!monitor || monitor({outcome.time, h, steps_, is_output_time, outcome.rejected_steps, 0}, y))
         return true;
-      outcome.status    = "stopped";
+      outcome.status    = Status::stopped;
       outcome.step_size = plan.next;
       return false;
     };
@@ -243,7 +243,7 @@ namespace crawler
         const double factor = error > 0. ? radau::safety * std::pow(error, -1. / (tableau_.n + 1.)) : most_growth;
         if (!finite || h < least_step)
         {
-          outcome.status  = "failed";
+          outcome.status  = Status::failed;
           outcome.reason  = finite ? "step_underflow" : "nonfinite";
           outcome.message = finite ? "the step size fell below the resolution of the time"
                                    : "a state of the linear model is not finite";
@@ -269,7 +269,7 @@ namespace crawler
         if (!goes_on(h, outcome.time == end))
           return outcome;
       }
-    outcome.status = "finished";
+    outcome.status = Status::finished;
     return outcome;
   }
 

@@ -9,10 +9,10 @@ namespace crawler
   DiscretizationParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Discretization");
-    declarations.choice("Formulation", formulation, {"position", "stretch", "automatic"})
+    declarations.choice("Formulation", formulation)
       .means("The unknowns: position, of high order on bodies that deform smoothly; stretch, for bodies that collapse, "
              "soft ones with thin layers, and fronts; automatic takes the cheaper one.");
-    declarations.choice("Mesh", mesh, {"uniform", "adaptive", "automatic"})
+    declarations.choice("Mesh", mesh)
       .means("Whether the cells have one size, or are divided and joined during the run where an error indicator asks "
              "for it. Automatic: with cells that become smaller towards the ends and the jumps if the active stress "
              "starts or jumps suddenly, else adaptive if a uniform mesh would need more than 256 cells.");
@@ -27,7 +27,7 @@ namespace crawler
     declarations.whole_number("Number of cells", n_cells, 1, 10000000)
       .means("Number of cells of one size along the body; of an adaptive mesh: of the first and coarsest mesh. "
              "Automatic: chosen from Accuracy.");
-    declarations.choice("Share cells", share_cells, {"automatic", "yes", "no"})
+    declarations.choice("Share cells", share_cells)
       .means("Whether the ranks of mpirun share the cells, or each computes the whole body. Automatic: shared from "
              "2000 cells on; below, the messages cost more than they save.");
     declarations.leave();

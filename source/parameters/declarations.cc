@@ -322,6 +322,21 @@ namespace crawler
   }
 
   Declarations::Entry
+  Declarations::choice(const std::string &name,
+                       const std::vector<std::string> &words,
+                       const std::size_t value,
+                       const std::function<void(std::size_t)> &assign)
+  {
+    const auto place = [words](const std::string &text) {
+      return static_cast<std::size_t>(std::find(words.begin(), words.end(), text) - words.begin());
+    };
+    Entry result(*this, name, {path_of(name), words[value], quoted_list(words), "", ""});
+    result.match_  = [place, n = words.size()](const std::string &text) { return place(text) < n; };
+    result.assign_ = [place, assign](const std::string &text) { assign(place(text)); };
+    return result;
+  }
+
+  Declarations::Entry
   Declarations::choice(const std::string &name, std::string &value, const std::vector<std::string> &words)
   {
     return entry(name,

@@ -17,9 +17,9 @@ namespace crawler
   {
     const std::string &name   = time.integrator == "automatic" ? numerics.integrator : time.integrator;
     const Integrator &method  = integrator(name.empty() ? "automatic" : name);
-    const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == "adaptive";
+    const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == StepControl::adaptive;
     const bool is_stretch     = numerics.formulation == Formulation::stretch;
-    if (numerics.linear || time.engine != "automatic" || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
+    if (numerics.linear || time.engine != Engine::automatic || !is_one_of_ours || numerics.mesh.tolerance != 0. ||
         !(is_stretch ? reason_against_stretch_form(scene).empty() : fits_lanes(scene)))
       return std::nullopt;
     LaneMethod result = {numerics.degree,
@@ -349,7 +349,7 @@ namespace crawler
       result_of(Lane &lane, const LaneOutcome &outcome) const
       {
         SimulationResult &result      = lane.recorder->result;
-        result.time.status            = "finished";
+        result.time.status            = Status::finished;
         result.time.step_size         = outcome.step_size;
         result.time.steps             = outcome.steps;
         result.time.rejected_steps    = outcome.rejected;

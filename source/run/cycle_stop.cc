@@ -26,7 +26,7 @@ namespace crawler
   cycle_wish(const RunParameters &parameters, const Scene &scene, const unsigned int n_output_times)
   {
     const std::string &entry = parameters.time.cycle_stop;
-    if (entry == "off" || (entry == "automatic" && (n_output_times > 0 || parameters.time.step_control != "adaptive")))
+    if (entry == "off" || (entry == "automatic" && (n_output_times > 0 || parameters.time.step_control != StepControl::adaptive)))
       return std::nullopt;
     if (!scene.is_plain()) // its cycles need not repeat
       return std::nullopt;

@@ -135,11 +135,11 @@ namespace crawler
   {
     if (cycles_repeat())
     {
-      result.time.status = "finished";
+      result.time.status = Status::finished;
       result.cycles =
         cycle_stop_->extrapolate(result.displacement, result.energy_balance ? &*result.energy_balance : nullptr);
     }
-    if (gait_meter_ && result.time.status == "finished")
+    if (gait_meter_ && result.time.status == Status::finished)
       result.gait = gait_meter_->gait();
     return in_user_units(result, scene_, units_);
   }

@@ -55,14 +55,14 @@ namespace crawler
     n_time_panels_  = motion.n_time_panels;
     if (motion.stopped)
     {
-      result.time.status = "stopped";
+      result.time.status = Status::stopped;
       return;
     }
     result.min_stretch = stretch_of(motion.extremes.smallest);
     result.max_stretch = stretch_of(motion.extremes.largest);
     if (motion.inversion)
     {
-      result.time.status = "inverted";
+      result.time.status = Status::inverted;
       result.inversion   = stretch_of(*motion.inversion);
       result.energy_balance.reset();
       return;
@@ -84,7 +84,7 @@ namespace crawler
     error.total              = error.space + error.time + error.model;
     if (error.total <= std::max(accuracy * std::abs(result.displacement), floor))
       return;
-    result.time.status = "failed";
+    result.time.status = Status::failed;
     result.time.reason = "accuracy_not_met";
     const std::string relative =
       result.displacement == 0. ? "" : fmt::format(" ({:.2g} of it)", error.total / std::abs(result.displacement));
@@ -108,15 +108,15 @@ namespace crawler
     const auto start = std::chrono::steady_clock::now();
     SimulationResult result;
     result.model       = model_;
-    result.time.status = "finished";
-    if (model_ == "perturbation")
+    result.time.status = Status::finished;
+    if (model_ == Model::perturbation)
       compute_perturbation(result);
     else
       compute_kinematic(result, accuracy, keep_going);
     if (result.error)
       judge(result, accuracy);
 
-    const bool is_complete = result.time.status != "stopped" && !result.inversion;
+    const bool is_complete = result.time.status != Status::stopped && !result.inversion;
     result.time.time       = is_complete ? 1. : result.inversion ? result.inversion->t : 0.;
     if (!energy_balance)
       result.energy_balance.reset();
@@ -141,7 +141,7 @@ namespace crawler
                        const std::function<bool(double time, const State &state)> &see) const
   {
     State state;
-    if (model_ == "perturbation")
+    if (model_ == Model::perturbation)
     {
       const Perturbation series(*reduced_scene_.wave());
       KinematicBody body(reduced_scene_.scene(), *reduced_scene_.strain(), 2, points);
@@ -189,7 +189,7 @@ namespace crawler
   ReducedModel::describe_gait(SimulationResult &result) const
   {
     const auto period = stride_of(*reduced_scene_.scene().active_stress, 1., 1.);
-    if (result.time.status != "finished" || !period)
+    if (result.time.status != Status::finished || !period)
       return;
     GaitMeter meter(*period, false);
     std::vector<double> ends;
@@ -209,7 +209,7 @@ namespace crawler
   std::string
   ReducedModel::description() const
   {
-    if (model_ == "perturbation")
+    if (model_ == Model::perturbation)
       return "No mesh and no time steps: the series is a closed form.";
     return fmt::format("No mesh and no time steps: quadrature on {} panels in s and {} in t, of {} points each.",
                        n_space_panels_,

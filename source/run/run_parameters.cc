@@ -43,8 +43,8 @@ namespace crawler
               entry);
         };
       require(
-        p.discretization.mesh != "adaptive", "Discretization/Mesh", p.discretization.mesh, "automatic or uniform");
-      require(p.discretization.formulation != "stretch",
+        p.discretization.mesh != MeshKind::adaptive, "Discretization/Mesh", p.discretization.mesh, "automatic or uniform");
+      require(p.discretization.formulation != FormulationEntry::stretch,
               "Discretization/Formulation",
               p.discretization.formulation,
               "automatic or position");
@@ -52,7 +52,7 @@ namespace crawler
               "Time/Integrator",
               p.time.integrator,
               "automatic, radau 5 or radau 9");
-      require(p.time.engine == "automatic", "Time/Engine", p.time.engine, "automatic");
+      require(p.time.engine == Engine::automatic, "Time/Engine", p.time.engine, "automatic");
     }
     /// The stretch form has meshes and integrators of its own.
     void
@@ -68,15 +68,15 @@ namespace crawler
                              entry);
         };
       const DiscretizationParameters &d = p.discretization;
-      require(d.mesh != "adaptive", "Discretization/Mesh", d.mesh, "automatic or uniform");
+      require(d.mesh != MeshKind::adaptive, "Discretization/Mesh", d.mesh, "automatic or uniform");
       require(!d.degree || *d.degree == 1, "Discretization/Degree", fmt::format("{}", d.degree.value_or(1)), "1");
       require(d.share_cells != "yes", "Discretization/Share cells", d.share_cells, "automatic or no");
       require(p.time.integrator == "automatic" || integrator(p.time.integrator).petsc_type == "radau",
               "Time/Integrator",
               p.time.integrator,
               "automatic, radau 5 or radau 9");
-      require(p.time.engine == "automatic", "Time/Engine", p.time.engine, "automatic");
-      require(p.time.step_control == "adaptive", "Time/Step control", p.time.step_control, "adaptive");
+      require(p.time.engine == Engine::automatic, "Time/Engine", p.time.engine, "automatic");
+      require(p.time.step_control == StepControl::adaptive, "Time/Step control", p.time.step_control, "adaptive");
       require(!p.time.tolerance || *p.time.tolerance <= 1e-3 * p.body.length,
               "Time/Tolerance",
               fmt::format("{:g}", p.time.tolerance.value_or(0.)),
@@ -91,7 +91,7 @@ namespace crawler
     require_general(const RunParameters &p, const Scene &scene)
     {
       const std::string features = scene.general_features();
-      if (p.model != "auto" && p.model != "nonlinear")
+      if (p.model != Model::automatic && p.model != Model::nonlinear)
         throw InputError(
           fmt::format("Model is {}, which is for plain bodies and grounds, but the scene has {}; nonlinear or "
                       "auto is expected",
@@ -104,14 +104,14 @@ namespace crawler
                                      p.active_stress.generator,
                                      features),
                          "Active stress/Generator");
-      if (p.time.cycle_stop == "on")
+      if (p.time.cycle_stop == CycleStopMode::on)
         throw InputError(fmt::format("Cycle stop is on, which is for plain bodies and grounds, but the scene has {}; "
                                      "automatic or off is expected",
                                      features),
                          "Time/Cycle stop");
       const StretchFeedback *feedback = scene.active_stress->feedback();
       const double delay              = feedback != nullptr ? feedback->delay() : 0.;
-      if (delay > 0. && p.time.step_control == "fixed" && p.time.initial_step && *p.time.initial_step > delay)
+      if (delay > 0. && p.time.step_control == StepControl::fixed && p.time.initial_step && *p.time.initial_step > delay)
         throw InputError(
           fmt::format("Initial step is {:g} and Step control is fixed, but no more than the delay of the "
                       "feedback, {:g}, is expected",
@@ -153,7 +153,7 @@ namespace crawler
   void
   RunParameters::add_parameters(Declarations &declarations)
   {
-    declarations.choice("Model", model, {"auto", "perturbation", "kinematic", "linear", "nonlinear"})
+    declarations.choice("Model", model)
       .means("The level of the model's ladder (doc/theory.md): the series for the optimal wave in closed form, a body "
              "whose strain is known, the equation for a = 0, or the full nonlinear equation; auto is the first of "
              "these whose estimated error is at most Accuracy.");
@@ -175,7 +175,7 @@ namespace crawler
   RunParameters::create_scene() const
   {
     time.validate();
-    if (model == "linear")
+    if (model == Model::linear)
       require_linear(*this);
     require_computable(time.tolerance, body.length, "Tolerance", "Length");
     require_computable(time.initial_step, time.end_time, "Initial step", "End time");
@@ -184,7 +184,7 @@ namespace crawler
                                    *discretization.smallest_cell,
                                    body.length),
                        "Discretization/Smallest cell");
-    if (time.cycle_stop == "on" && output.n_snapshots > 0)
+    if (time.cycle_stop == CycleStopMode::on && output.n_snapshots > 0)
       throw InputError(
         fmt::format("Cycle stop is on, but {} snapshots until the end time are wanted; 0 is expected for "
                     "Output/Number of snapshots, or automatic or off here",
@@ -202,7 +202,7 @@ namespace crawler
     require_table_fits(output.active_stress_table, *scene.active_stress);
     if (!scene.is_plain())
       require_general(*this, scene);
-    if (discretization.formulation == "stretch")
+    if (discretization.formulation == FormulationEntry::stretch)
       require_stretch_form(*this, scene);
     return scene;
   }

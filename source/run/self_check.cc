@@ -15,7 +15,7 @@ namespace crawler
   {
     const bool own_numerics = parameters.time.tolerance ||
                               (parameters.time.integrator != "automatic" && parameters.time.integrator != "bdf") ||
-                              parameters.time.order < 4 || parameters.time.step_control == "fixed";
+                              parameters.time.order < 4 || parameters.time.step_control == StepControl::fixed;
     return parameters.output.energy_balance_tolerance.value_or(
       result.jumps_move ? residual_of_moving_jumps
       : own_numerics
@@ -28,7 +28,7 @@ namespace crawler
   void
   check_identities(SimulationResult &result, const RunParameters &parameters)
   {
-    if (result.time.status != "finished" || !result.energy_balance)
+    if (result.time.status != Status::finished || !result.energy_balance)
       return;
     const double tolerance = energy_balance_tolerance(result, parameters);
     std::string problem;
@@ -51,6 +51,6 @@ namespace crawler
     }
     else
       return;
-    result.time.status = "failed";
+    result.time.status = Status::failed;
   }
 } // namespace crawler

@@ -146,7 +146,7 @@ namespace crawler
     past_.history.clear();
     // To look for a period costs a thousand looks at the state.
     constexpr std::size_t most_unknowns = 10000;
-    const bool is_watched               = time_.step_control == "adaptive";
+    const bool is_watched               = time_.step_control == StepControl::adaptive;
     run_.emplace(
       options,
       !observers.empty(),
@@ -184,14 +184,14 @@ namespace crawler
   {
     SimulationResult &result = this->result();
     const bool ends_early    = run_->recorder.cycles_repeat();
-    if (!ends_early && result.time.status == "finished" && !run_->diagnosis && run_->accepted.time < 1.)
+    if (!ends_early && result.time.status == Status::finished && !run_->diagnosis && run_->accepted.time < 1.)
       throw std::logic_error("a run finished without a state at its end");
-    if (!run_->diagnosis && result.time.status == "failed")
+    if (!run_->diagnosis && result.time.status == Status::failed)
       explain_failure();
-    if ((ends_early || result.time.status == "finished") && is_adaptive() &&
+    if ((ends_early || result.time.status == Status::finished) && is_adaptive() &&
         result.largest_indicator > 4. * numerics_.mesh.tolerance)
       run_->diagnosis = {
-        "failed",
+        Status::failed,
         "under_resolved",
         fmt::format("the sum of the error indicators reached {:.2g}, above the mesh tolerance of {:.2g}, and "
                     "no cell may be divided further; a smaller Discretization/Smallest cell is needed",
@@ -316,7 +316,7 @@ namespace crawler
       return true;
     if (step.number < time_.max_steps || step.time >= 1.)
       return false;
-    run_->diagnosis = {"stopped", "step_limit", "the maximum number of steps is reached"};
+    run_->diagnosis = {Status::stopped, "step_limit", "the maximum number of steps is reached"};
     return true;
   }
 

@@ -90,7 +90,7 @@ namespace crawler
   Simulation::inverted_at_end(const double s, const double t, const std::string &reason)
   {
     result().inversion = SimulationResult::Extreme{0., s, t};
-    run_->diagnosis    = {"inverted",
+    run_->diagnosis    = {Status::inverted,
                           "inverted_at_end",
                           fmt::format("the body inverted: its stretch reached 0 at the end s = {:.6g} at t = {:.9g}, {}; "
                                       "the model ends there",
@@ -153,7 +153,7 @@ namespace crawler
       const std::vector<std::string> all = gather(message, communicator_);
       message = broadcast(rank == 0 ? all[static_cast<std::size_t>(first)] : "", communicator_);
     }
-    run_->diagnosis = {"failed", "nonfinite", message};
+    run_->diagnosis = {Status::failed, "nonfinite", message};
     return true;
   }
 
@@ -174,7 +174,7 @@ namespace crawler
     MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, speaker, communicator_);
     const auto end  = text.find('\n');
     run_->diagnosis = {
-      "failed",
+      Status::failed,
       "law_not_positive",
       fmt::format(
         "{}: {}; at t = {:.6g}", text.substr(0, end), text.substr(end + 1), run_->accepted.time * units_.time)};
@@ -229,7 +229,7 @@ namespace crawler
       return;
     }
     result().inversion = SimulationResult::Extreme{std::min(value, 0.), s, t};
-    run_->diagnosis    = {"inverted",
+    run_->diagnosis    = {Status::inverted,
                           "inverted_inside",
                           fmt::format("the body inverted: its stretch reached 0 at s = {:.6g}, t = {:.9g}; the model ends "
                                       "there",
@@ -242,7 +242,7 @@ namespace crawler
   {
     const bool positive = scene_.friction_exponent() <= -1.;
     run_->diagnosis     = {
-          "failed",
+          Status::failed,
           "under_resolved",
           fmt::format("the computed stretch reached {:.3g} at s = {:.6g}, t = {:.6g}, {}: {} cells of degree {} "
                       "are too coarse, or the steps too long; {}a larger Discretization/Number of cells or a smaller "

@@ -32,7 +32,7 @@ namespace crawler
     StretchRange &stretch = run_->stretch = mesh_.assembler->stretch_range(y);
     if (!std::isfinite(stretch.min.value) || !std::isfinite(stretch.max.value))
     {
-      run_->diagnosis = {"failed",
+      run_->diagnosis = {Status::failed,
                          "nonfinite",
                          fmt::format("the stretch at s = {:.6g}, t = {:.6g} is not a finite number",
                                      stretch.min.s * units_.length,
@@ -76,7 +76,7 @@ namespace crawler
       return true;
     if (!law_failed() && !stress_failed())
       run_->diagnosis = {
-        "failed",
+        Status::failed,
         "linear_failed",
         fmt::format("the velocity at t = {:.6g} cannot be computed: the friction matrix is singular", t * units_.time)};
     return false;
@@ -135,7 +135,7 @@ namespace crawler
     }
     if (run_->tiny_steps <= most_tiny_steps)
       return false;
-    run_->diagnosis = {"failed",
+    run_->diagnosis = {Status::failed,
                        "step_underflow",
                        fmt::format("{} steps in succession were smaller than {:g} of the duration, at t = {:.9g}; the "
                                    "smallest stretch is {:.3g} at s = {:.6g}",
@@ -230,7 +230,7 @@ namespace crawler
     if (!std::isfinite(integrals.dissipation))
     {
       run_->diagnosis = {
-        "failed",
+        Status::failed,
         "nonfinite",
         fmt::format("the velocity at t = {:.6g} is not a finite number; the smallest stretch is {:.3g} at s = {:.6g}",
                     step.time * units_.time,

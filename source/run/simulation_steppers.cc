@@ -66,6 +66,6 @@ namespace crawler
         integrator(time_.integrator).petsc_type != "radau")
       throw std::logic_error("the linear model is for a = 0, the position form, uniform meshes and radau");
     integrators_.linear = std::make_unique<LinearStepper>(
-      *mesh_.position, integrator(time_.integrator).n_stages, time_.step_control == "adaptive");
+      *mesh_.position, integrator(time_.integrator).n_stages, time_.step_control == StepControl::adaptive);
   }
 } // namespace crawler

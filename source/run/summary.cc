@@ -110,9 +110,9 @@ namespace crawler
     const std::string steps =
       time.steps > 0 ? fmt::format(" after {} steps ({} rejected)", time.steps, time.rejected_steps) : "";
     lines.push_back(fmt::format("{} at t = {:g}{}, {:.3g} s",
-                                time.status == "finished"   ? "Finished"
-                                : time.status == "inverted" ? "Inverted"
-                                : time.status == "stopped"  ? "Stopped"
+                                time.status == Status::finished   ? "Finished"
+                                : time.status == Status::inverted ? "Inverted"
+                                : time.status == Status::stopped  ? "Stopped"
                                                             : "FAILED (" + time.reason + ")",
                                 time.time,
                                 steps,

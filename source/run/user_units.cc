@@ -12,7 +12,7 @@ namespace crawler
       extreme.s *= units.length;
       extreme.t *= units.time;
     };
-    result.time.time = result.time.status == "finished" ? scene.end_time : result.time.time * units.time;
+    result.time.time = result.time.status == Status::finished ? scene.end_time : result.time.time * units.time;
     result.time.step_size *= units.time;
     for (double *length : {&result.displacement, &result.largest_u, &result.strain, &result.largest_indicator})
       *length *= units.length;
@@ -35,7 +35,7 @@ namespace crawler
     }
     if (result.gait)
       result.gait = result.gait->in_units(units);
-    if (result.time.status == "finished" && result.energy_balance)
+    if (result.time.status == Status::finished && result.energy_balance)
       result.gait_efficiency = gait_efficiency(scene, result);
     return result;
   }

@@ -12,7 +12,7 @@ namespace crawler
   failure_of(const std::exception_ptr &error)
   {
     TimeOutcome outcome;
-    outcome.status           = "failed";
+    outcome.status           = Status::failed;
     const auto out_of_memory = [&]() {
       outcome.reason  = "out_of_memory";
       outcome.message = "out of memory";

@@ -22,12 +22,12 @@ namespace crawler
       .means(
         "Time integrator (PETSc TS). Automatic: radau 5 or 9, bdf or arkimex 4, by accuracy and stretch "
         "(doc/numerics.md). Integrators of PETSc that are not sound for this equation are refused with the reason.");
-    declarations.choice("Engine", engine, {"automatic", "petsc"})
+    declarations.choice("Engine", engine)
       .means("What carries the integrator out. Automatic: the fused engine of the program, which is several times "
              "faster, for the radau integrators in the position form on uniform meshes, and PETSc otherwise and where "
              "that gives up.");
     declarations.whole_number("Order", order, 1, 5).means("Order of bdf; the other integrators have their own.");
-    declarations.choice("Step control", step_control, {"adaptive", "fixed"})
+    declarations.choice("Step control", step_control)
       .means(
         "Whether step sizes follow the estimated error, or all are Initial step (shortened to end on output times).");
     declarations.number("Tolerance", tolerance, positive(), "length")
@@ -35,7 +35,7 @@ namespace crawler
              "Automatic: chosen from Accuracy.");
     declarations.number("Initial step", initial_step, positive(), "time")
       .means("Size of the first step. Automatic: chosen from Accuracy.");
-    declarations.choice("Cycle stop", cycle_stop, {"automatic", "on", "off"})
+    declarations.choice("Cycle stop", cycle_stop)
       .means("Whether a run whose active stress has a period ends when a cycle repeats; the cycles that are left are "
              "extrapolated, with a bound (doc/numerics.md). Automatic: if there are no snapshots and Step control is "
              "adaptive. A table of statistics ends with the cycles that are computed.");
@@ -68,12 +68,12 @@ namespace crawler
                                    near.empty() ? "" : "; the nearest is " + quoted_list(near)),
                        "Time/Integrator");
     }
-    if (step_control == "adaptive" && !crawler::integrator(integrator).adaptive)
+    if (step_control == StepControl::adaptive && !crawler::integrator(integrator).adaptive)
       throw InputError(
         fmt::format("the integrator \"{}\" has no error estimate, so \"fixed\" is expected for Step control",
                     integrator),
         "Time/Integrator");
-    if (step_control == "fixed" && !initial_step)
+    if (step_control == StepControl::fixed && !initial_step)
       throw InputError(
         "Step control is fixed, but the size of the steps is missing: a number is expected for Initial step",
         "Time/Step control");

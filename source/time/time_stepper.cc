@@ -169,7 +169,7 @@ namespace crawler
     }
     TSAdapt adapt = nullptr;
     petsc(TSGetAdapt(stepper, &adapt));
-    petsc(TSAdaptSetType(adapt, parameters.step_control == "fixed" ? TSADAPTNONE : TSADAPTBASIC));
+    petsc(TSAdaptSetType(adapt, parameters.step_control == StepControl::fixed ? TSADAPTNONE : TSADAPTBASIC));
     if (method.petsc_type == radau_type)
       petsc(TSAdaptSetClip(adapt, radau::least_change, radau::most_change));
     petsc(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER)); // before_step() makes steps end where they must
@@ -511,14 +511,14 @@ namespace crawler
     result.rejected_steps    = static_cast<unsigned int>(rejected);
     result.newton_iterations = static_cast<unsigned long>(newton);
     result.linear_iterations = static_cast<unsigned long>(linear);
-    result.status            = "failed";
+    result.status            = Status::failed;
     if (code == 0 && reason == TS_CONVERGED_TIME)
-      result.status = "finished";
+      result.status = Status::finished;
     else if (code == 0 && stopped)
-      result.status = "stopped";
+      result.status = Status::stopped;
     else if (code == 0 && reason == TS_CONVERGED_ITS)
     {
-      result.status  = "stopped";
+      result.status  = Status::stopped;
       result.reason  = "step_limit";
       result.message = "the maximum number of steps is reached";
     }
@@ -601,7 +601,7 @@ namespace crawler
     self.underflow            = false;
     self.tolerance            = self.user_tolerance.value_or(tolerance);
     const double first_step   = self.user_step.value_or(initial_step);
-    self.fixed_step           = self.parameters.step_control == "fixed" ? first_step : 0.;
+    self.fixed_step           = self.parameters.step_control == StepControl::fixed ? first_step : 0.;
     self.last_correction      = 0.;
     self.convergence_constant = std::numeric_limits<double>::infinity();
     {
@@ -634,7 +634,7 @@ namespace crawler
     self.guarded.rethrow();
     TimeOutcome result = self.outcome(code);
     if (!go_on)
-      result.status = "stopped";
+      result.status = Status::stopped;
     return result;
   }
 

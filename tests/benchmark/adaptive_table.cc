@@ -108,11 +108,11 @@ namespace
       const double start = cpu_seconds();
       result             = run(scene.parameters, numerics, limit, integrator);
       seconds.push_back(cpu_seconds() - start);
-      if (result.time.status != "finished" || seconds[0] > 1.)
+      if (result.time.status != Status::finished || seconds[0] > 1.)
         break;
     }
     const double error = std::abs(result.displacement / scene.displacement - 1.);
-    if (result.time.status != "finished" || !(error <= wanted))
+    if (result.time.status != Status::finished || !(error <= wanted))
       return std::nullopt;
     std::sort(seconds.begin(), seconds.end());
     return Trial{"",

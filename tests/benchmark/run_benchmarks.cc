@@ -51,7 +51,7 @@ namespace crawler::test
     double
     error_of(const SimulationResult &result, const double exact)
     {
-      return result.time.status == "finished" ? std::abs(result.displacement / exact - 1.) : HUGE_VAL;
+      return result.time.status == Status::finished ? std::abs(result.displacement / exact - 1.) : HUGE_VAL;
     }
 
     double

@@ -79,7 +79,7 @@ namespace
                std::abs(value - c.reference) / wanted,
                bound / wanted,
                result.formulation == Formulation::stretch ? "stretch" : "position",
-               result.time.status == "finished" || result.time.status == "inverted" ? result.time.status
+               result.time.status == Status::finished || result.time.status == Status::inverted ? result.time.status
                                                                                     : result.time.reason,
                result.mesh ? result.mesh->n_cells : 0,
                result.time.steps,
@@ -105,7 +105,7 @@ namespace
       compute_all({&task, 1}, 20., []() { return false; });
       seconds = std::min(seconds, cpu_seconds() - from);
       least   = task.computed.result.min_stretch.value;
-      if (task.computed.result.time.status != "finished")
+      if (task.computed.result.time.status != Status::finished)
         return std::nullopt;
       if (seconds > 1.)
         break;

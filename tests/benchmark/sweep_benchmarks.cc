@@ -40,7 +40,7 @@ namespace crawler::test
         ++outcome.given_back;
         Simulation simulation(MPI_COMM_WORLD, scenes[members[i]], setting.time, setting.numerics);
         const auto result = simulation.run({}, {});
-        outcome.displacements.push_back(result.time.status == "finished" ? result.displacement : std::nan(""));
+        outcome.displacements.push_back(result.time.status == Status::finished ? result.displacement : std::nan(""));
       }
       return outcome;
     }

@@ -71,7 +71,7 @@ TEST(Jumps, InSpaceKeepTheOrder)
                              declared ? std::vector<double>{0.37} : std::vector<double>(),
                              {});
     const auto result = run->simulate("automatic", {});
-    EXPECT_EQ(result.time.status, "finished") << result.time.message;
+    EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
     EXPECT_EQ(result.most_cells, n);
     return result.displacement;
   };
@@ -166,7 +166,7 @@ TEST(Jumps, AreTheSameForAllMethods)
   const auto reference = test::run_alone(*jumping(test::expression(-1., robot), "radau 9", fine, {0.4}, robot_times));
   ASSERT_TRUE(reference);
   const auto compare = [&](const std::string &name, const SimulationResult &result, const double within) {
-    ASSERT_EQ(result.time.status, "finished") << name << ": " << result.time.message;
+    ASSERT_EQ(result.time.status, Status::finished) << name << ": " << result.time.message;
     fmt::print("{:30} {:7} steps, displacement {:.10g}, off by {:.1e}, energy balance {:.1e}\n",
                name,
                result.time.steps,
@@ -236,7 +236,7 @@ TEST(Jumps, ManyInTime)
     std::vector<std::unique_ptr<Observer>> observers;
     observers.push_back(std::make_unique<Times>(steps, output_times));
     const SimulationResult result = simulation.run(wanted, {.energy_balance = true}, observers);
-    ASSERT_EQ(result.time.status, "finished") << result.time.message;
+    ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
     EXPECT_EQ(result.time.steps + 1, steps.size());
     EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end()));
     for (const double t : switches)
@@ -324,7 +324,7 @@ TEST(Jumps, GetGradedMeshes)
       EXPECT_GE(run->numerics.grading.levels, 2u);
       EXPECT_EQ(run->numerics.mesh.tolerance, 0.);
       const auto result = run->simulate("automatic");
-      ASSERT_EQ(result.time.status, "finished") << result.time.message;
+      ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
       EXPECT_EQ(result.engine, "fused");
       EXPECT_LT(result.most_cells, 60u);
       EXPECT_LT(std::abs(result.displacement / exact->displacement - 1.), accuracy);
@@ -355,7 +355,7 @@ TEST(Jumps, MayEndWhenCyclesRepeat)
                            times);
   const auto all   = run->simulate("automatic");
   const auto early = run->simulate("automatic", {.energy_balance = true, .cycles = CycleWish{1., 1e-6}});
-  ASSERT_EQ(early.time.status, "finished");
+  ASSERT_EQ(early.time.status, Status::finished);
   ASSERT_TRUE(early.cycles);
   EXPECT_EQ(early.cycles->computed + early.cycles->extrapolated, 20u);
   EXPECT_GT(early.cycles->extrapolated, 10u);

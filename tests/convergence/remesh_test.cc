@@ -64,9 +64,9 @@ namespace
       count.steps += outcome.steps;
       count.rejected += outcome.rejected_steps;
       count.newton_iterations += outcome.newton_iterations;
-      if (outcome.status != "stopped")
+      if (outcome.status != Status::stopped)
       {
-        EXPECT_EQ(outcome.status, "finished") << name;
+        EXPECT_EQ(outcome.status, Status::finished) << name;
         const std::vector<double> at_rest(part->mesh->n_owned(), 0.);
         count.displacement = part->form->integrals(1., y, at_rest).displacement;
         return count;

@@ -94,7 +94,7 @@ TEST_P(Space, OrderOnAnExactSolution)
     std::vector<std::unique_ptr<Observer>> observers;
     observers.push_back(std::make_unique<L2Error>(l2));
     const SimulationResult result = simulation.run({}, {}, observers);
-    ASSERT_EQ(result.time.status, "finished");
+    ASSERT_EQ(result.time.status, Status::finished);
     cells.push_back(n);
     displacement_errors.push_back(std::abs(result.displacement - exact.displacement(end_time)));
     l2_errors.push_back(l2);

@@ -49,7 +49,7 @@ TEST(Time, OneStepMethodsReachTheirOrder)
          method.order == 1 ? std::vector<unsigned int>{200, 400, 800} : std::vector<unsigned int>{40, 80, 160})
     {
       const auto result = run(method.name, 1, true, 1e-12, 1. / n);
-      ASSERT_EQ(result.time.status, "finished") << method.name;
+      ASSERT_EQ(result.time.status, Status::finished) << method.name;
       EXPECT_EQ(result.time.steps, n) << method.name;
       steps.push_back(n);
       errors.push_back(std::abs(result.displacement - reference()));
@@ -78,7 +78,7 @@ TEST(Time, ArkimexReachesItsOrder)
     for (const double tolerance : {1e-6, 1e-7, 1e-8, 1e-9})
     {
       const auto result = run(method.name, 1, false, tolerance, 1e-4);
-      ASSERT_EQ(result.time.status, "finished");
+      ASSERT_EQ(result.time.status, Status::finished);
       steps.push_back(result.time.steps);
       errors.push_back(std::abs(result.displacement - reference()));
     }
@@ -103,7 +103,7 @@ TEST(Time, RadauReachesItsOrder)
                              {"Active stress/Generator", "expression"},
                              {"Active stress/Expression/Active stress", "0.4*sin(pi*t)^8*cos(2*pi*(s-t))"}});
     parameters.time.integrator   = name;
-    parameters.time.step_control = "fixed";
+    parameters.time.step_control = StepControl::fixed;
     parameters.time.initial_step = 1. / n;
     if (!krylov.empty())
       PetscOptionsSetValue(nullptr, "-ksp_type", krylov.c_str());
@@ -111,7 +111,7 @@ TEST(Time, RadauReachesItsOrder)
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, {mesh.degree, mesh.n_cells, 1e-13, 1. / n});
     PetscOptionsClearValue(nullptr, "-ksp_type");
     const auto result = simulation.run({}, {});
-    EXPECT_EQ(result.time.status, "finished") << name;
+    EXPECT_EQ(result.time.status, Status::finished) << name;
     EXPECT_EQ(result.time.steps, n) << name;
     return result.displacement;
   };
@@ -145,7 +145,7 @@ TEST(Time, BdfReachesItsOrder)
          order == 1 ? std::vector<double>{1e-6, 1e-7, 1e-8} : std::vector<double>{1e-7, 1e-8, 1e-9, 1e-10})
     {
       const auto result = run("bdf", order, false, tolerance, 1e-6);
-      ASSERT_EQ(result.time.status, "finished");
+      ASSERT_EQ(result.time.status, Status::finished);
       steps.push_back(result.time.steps);
       errors.push_back(std::abs(result.displacement - reference()));
     }
@@ -181,7 +181,7 @@ TEST(Time, AdaptiveMethodsFollowTheTolerance)
                tolerance,
                tight.time.steps,
                e_tight);
-    ASSERT_EQ(tight.time.status, "finished") << method.name;
+    ASSERT_EQ(tight.time.status, Status::finished) << method.name;
     EXPECT_GT(tight.time.steps, loose.time.steps) << method.name;
     EXPECT_LT(e_tight, 0.5 * e_loose) << method.name;
     EXPECT_LT(e_tight, 1000. * tolerance) << method.name;

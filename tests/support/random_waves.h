@@ -54,7 +54,7 @@ namespace crawler::test
   {
     settings.emplace_back("Accuracy", "1e-6");
     const auto outcome = run_with(settings, {});
-    if (outcome.result.time.status != "finished")
+    if (outcome.result.time.status != Status::finished)
       return std::nullopt;
     return outcome.result.displacement;
   }

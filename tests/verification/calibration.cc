@@ -58,11 +58,11 @@ namespace
     Parameters p                 = parameters;
     p.accuracy                   = integrator == "bdf" ? 3e-10 : 1e-9;
     p.time.integrator            = integrator;
-    p.time.engine                = "petsc";
+    p.time.engine                = Engine::petsc;
     p.time.max_steps             = 40000;
-    p.time.cycle_stop            = "off";
-    p.discretization.formulation = "position";
-    p.discretization.mesh        = "uniform";
+    p.time.cycle_stop            = CycleStopMode::off;
+    p.discretization.formulation = FormulationEntry::position;
+    p.discretization.mesh        = MeshKind::uniform;
     p.discretization.degree      = 8;
     p.output.energy_balance      = false;
     const Scene scene            = p.create_scene();
@@ -72,7 +72,7 @@ namespace
       numerics.n_cells += (numerics.n_cells + 2) / 3;
     Simulation simulation(MPI_COMM_SELF, scene, p.time, numerics);
     const SimulationResult result = simulation.run({}, {});
-    return result.time.status == "finished" ? result.displacement : unknown;
+    return result.time.status == Status::finished ? result.displacement : unknown;
   }
 
   Reference
@@ -90,8 +90,8 @@ namespace
   {
     Parameters p                 = parameters;
     p.accuracy                   = accuracy;
-    p.time.cycle_stop            = "off";
-    p.discretization.formulation = "stretch";
+    p.time.cycle_stop            = CycleStopMode::off;
+    p.discretization.formulation = FormulationEntry::stretch;
     p.output.energy_balance      = false;
     const Scene scene            = random.create(p);
     if (!reason_against_stretch_form(scene).empty())
@@ -110,7 +110,7 @@ namespace
   {
     Parameters p      = parameters;
     p.accuracy        = 1e-3;
-    p.time.cycle_stop = "off";
+    p.time.cycle_stop = CycleStopMode::off;
     const Scene scene = random.create(p);
     const double rough =
       std::abs(Simulation(MPI_COMM_SELF, scene, p.time, choose_numerics(MPI_COMM_SELF, p, scene)->numerics)
@@ -132,7 +132,7 @@ namespace
       time.engine                   = engine;
       time.max_steps                = 100000;
       const SimulationResult result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {});
-      if (result.time.status == "finished")
+      if (result.time.status == Status::finished)
         return result.displacement;
       reference.problem += (reference.problem.empty() ? "" : "; ") + integrator + ": " + problem_of(result);
       return unknown;
@@ -157,7 +157,7 @@ namespace
     const Scene scene                = random.create(parameters);
     Parameters rough                 = parameters;
     rough.accuracy                   = 1e-6;
-    rough.discretization.formulation = "position";
+    rough.discretization.formulation = FormulationEntry::position;
     const Numerics by_rule           = choose_numerics(MPI_COMM_SELF, rough, scene)->numerics;
     const auto run = [&](const std::string &integrator, const double tolerance, const unsigned int more) {
       Numerics n   = by_rule;
@@ -172,7 +172,7 @@ namespace
       time.integrator               = integrator;
       time.max_steps                = 400000;
       const SimulationResult result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {});
-      if (result.time.status == "finished")
+      if (result.time.status == Status::finished)
         return result.displacement;
       reference.problem += (reference.problem.empty() ? "" : "; ") + integrator + ": " + problem_of(result);
       return unknown;
@@ -238,7 +238,7 @@ namespace
       const DisplacementError error  = result.error.value_or(DisplacementError());
       rows.push_back({number,
                       random.kind,
-                      result.time.status == "finished" ? "finished" : result.time.reason,
+                      result.time.status == Status::finished ? "finished" : result.time.reason,
                       accuracy,
                       reference.displacement,
                       reference.bar,

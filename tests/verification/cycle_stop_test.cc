@@ -32,8 +32,8 @@ namespace
     Pair pair;
     pair.cycles = simulation.run({}, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, 0)});
     pair.full   = simulation.run({}, {.energy_balance = true});
-    EXPECT_EQ(pair.full.time.status, "finished");
-    EXPECT_EQ(pair.cycles.time.status, "finished");
+    EXPECT_EQ(pair.full.time.status, Status::finished);
+    EXPECT_EQ(pair.cycles.time.status, Status::finished);
     EXPECT_FALSE(pair.full.cycles);
     return pair;
   }
@@ -166,7 +166,7 @@ TEST(CycleStop, BodyThatInvertsLaterInverts)
                              {"Active stress/Expression/Active stress", "(0.1*sin(2*pi*t)+0.12*t)*sin(pi*s)"},
                              {"Time/End time", "20"}};
   const auto result       = compute(test::parameters_with(settings));
-  EXPECT_EQ(result.time.status, "inverted");
+  EXPECT_EQ(result.time.status, Status::inverted);
   EXPECT_FALSE(result.cycles);
 }
 

@@ -59,7 +59,7 @@ main(int argc, char **argv)
     const auto period           = scene.active_stress->period();
     Simulation simulation(MPI_COMM_SELF, scene, parameters.time, choice->numerics);
     const SimulationResult full = simulation.run({}, {});
-    if (full.time.status != "finished" || !period)
+    if (full.time.status != Status::finished || !period)
       continue;
     const double in_time = 2. * choice->wanted_error;
     for (const double accuracy : {1e-2, 1e-4, 1e-6})

@@ -66,7 +66,7 @@ main(int argc, char **argv)
     else
     {
       const double reference = row["displacement"], error = std::abs(result.displacement - reference);
-      ok      = result.time.status == "finished" && error <= outcome.choice.promised_error + row["error"].get<double>();
+      ok      = result.time.status == Status::finished && error <= outcome.choice.promised_error + row["error"].get<double>();
       verdict = fmt::format("{:.10g}, expected {:.10g}: error {:.1e}, reported {:.1e}",
                             result.displacement,
                             reference,

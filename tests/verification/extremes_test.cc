@@ -33,7 +33,7 @@ namespace
 TEST(Extremes, ThousandStrides)
 {
   const auto result = test::run_with(with(test::wave(-1., 0.4, 1., 1000.), {{"Accuracy", "1e-6"}})).result;
-  ASSERT_EQ(result.time.status, "finished");
+  ASSERT_EQ(result.time.status, Status::finished);
   EXPECT_NEAR(result.displacement / 90.0997471196, 1., 1e-6);
 }
 
@@ -51,7 +51,7 @@ TEST(Extremes, OneCell)
                                                {"Discretization/Mesh", "uniform"},
                                                {"Time/Tolerance", "1e-10"}}))
                             .result;
-      ASSERT_EQ(result.time.status, "finished") << formulation << degree;
+      ASSERT_EQ(result.time.status, Status::finished) << formulation << degree;
       EXPECT_LT(result.net_friction, 1e-11) << formulation << degree;
       EXPECT_LT(result.energy_balance->residual(), 1e-6) << formulation << degree;
       const double expected = degree == 1 ? 0. : 5.020242991e-3, error = degree == 1 ? 1e-15 : 5e-7;
@@ -74,7 +74,7 @@ TEST(Extremes, AMillionCells)
                                              {"Time/Initial step", "0.025"}}),
                                        {.energy_balance = false})
                           .result;
-    EXPECT_EQ(result.time.status, "finished");
+    EXPECT_EQ(result.time.status, Status::finished);
     EXPECT_EQ(result.time.steps, 2u);
     return result.displacement;
   };
@@ -110,7 +110,7 @@ TEST(Extremes, StepsAndTolerances)
     const std::string name      = c.settings[0].first + " = " + c.settings[0].second;
     EXPECT_EQ(result.time.status + " " + result.time.reason, c.outcome) << name;
     EXPECT_TRUE(std::isfinite(result.displacement)) << name;
-    if (result.time.status == "finished")
+    if (result.time.status == Status::finished)
       EXPECT_NEAR(result.displacement / fig_s1, 1., c.error) << name;
     else
       EXPECT_NE(result.time.message, "") << name;
@@ -127,7 +127,7 @@ TEST(Extremes, Lengths)
                                              {"Body/Friction coefficient", test::text(gamma)},
                                              {"Active stress/Optimal wave/Sine coefficients", test::text(c)}}))
                           .result;
-    EXPECT_EQ(result.time.status, "finished");
+    EXPECT_EQ(result.time.status, Status::finished);
     return result.displacement / L;
   };
   const double reference = displacement(1., 1.);
@@ -168,7 +168,7 @@ TEST(Extremes, TinyAndHugeInput)
       }
       const auto result     = test::run_with(settings).result;
       const double expected = entry == "Body/Anchoring exponent" ? prograde : 0.;
-      EXPECT_EQ(result.time.status, "finished") << entry << " = " << value;
+      EXPECT_EQ(result.time.status, Status::finished) << entry << " = " << value;
       EXPECT_NEAR(result.displacement, expected, 1e-6 * std::abs(expected)) << entry << " = " << value;
     }
 }
@@ -178,7 +178,7 @@ TEST(Extremes, InversionAtAnEnd)
 {
   const auto expect_inversion = [](const test::Settings &settings, const double t, const double s) {
     const auto result = test::run_with(settings).result;
-    EXPECT_EQ(result.time.status, "inverted");
+    EXPECT_EQ(result.time.status, Status::inverted);
     EXPECT_EQ(result.time.reason, "inverted_at_end");
     ASSERT_TRUE(result.inversion);
     EXPECT_NEAR(result.inversion->t, t, 1e-9);

@@ -46,7 +46,7 @@ namespace
   run(const Settings &settings, const double most_residual = 1e-6)
   {
     const SimulationResult result = test::run_with(settings).result;
-    EXPECT_EQ(result.time.status, "finished") << result.time.message;
+    EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
     EXPECT_LT(result.energy_balance->residual(), most_residual);
     EXPECT_LT(result.net_friction, 1e-9);
     return result;
@@ -324,7 +324,7 @@ TEST(GeneralScenes, LawsThatAreNotPositiveEndTheRunWithTheirName)
 {
   const auto message = [](const Settings &settings) {
     const auto result = test::run_with(settings).result;
-    EXPECT_EQ(result.time.status, "failed");
+    EXPECT_EQ(result.time.status, Status::failed);
     EXPECT_EQ(result.time.reason, "law_not_positive");
     return result.time.message;
   };

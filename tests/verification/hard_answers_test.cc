@@ -36,7 +36,7 @@ namespace
   void
   expect_within(const SimulationResult &result, const double exact, const double accuracy, const std::string &what)
   {
-    EXPECT_EQ(result.time.status, "finished") << what << ": " << result.time.message;
+    EXPECT_EQ(result.time.status, Status::finished) << what << ": " << result.time.message;
     ASSERT_TRUE(result.error) << what;
     EXPECT_LE(std::abs(result.displacement - exact), result.error->total) << what;
     EXPECT_LE(result.error->total, accuracy * std::abs(exact) * 1.01) << what;
@@ -201,7 +201,7 @@ TEST(HardAnswers, ACoarseMeshDoesNotInvertABody)
   const SimulationResult coarse = answer(3, 0.302, 0.346);
   EXPECT_EQ(coarse.time.reason, "under_resolved") << coarse.time.message;
   EXPECT_FALSE(coarse.inversion);
-  EXPECT_EQ(answer(24, 0.302, 0.346).time.status, "finished");
+  EXPECT_EQ(answer(24, 0.302, 0.346).time.status, Status::finished);
   // One that does is believed.
   EXPECT_EQ(answer_to({{"Body/Anchoring exponent", "0"},
                        {"Active stress/Optimal wave/Perturbation parameter", "0.6"},
@@ -227,7 +227,7 @@ TEST(HardAnswers, NumericsOfTheUser)
                        {"Time/Tolerance", tolerance},
                        {"Time/Integrator", "radau 5"}});
       const SimulationResult result = answer_to(settings);
-      ASSERT_EQ(result.time.status, "finished");
+      ASSERT_EQ(result.time.status, Status::finished);
       ++n;
       n_missed += std::abs(result.displacement - 4.764510e-2) > result.error->total + 1e-8;
       EXPECT_NEAR(result.error->space + result.error->time, result.error->total, 1e-12);

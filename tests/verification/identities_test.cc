@@ -30,7 +30,7 @@ TEST(Identities, NetFrictionAndLedger)
   for (const double p : {-20., -3., 0., 0.5, 1., 2., 2.5, 4., 21.})
   {
     const auto result = test::run_with(with(test::wave(1. - p, 0.1, 0.7), numerics)).result;
-    ASSERT_EQ(result.time.status, "finished") << p;
+    ASSERT_EQ(result.time.status, Status::finished) << p;
     EXPECT_LT(result.net_friction, 1e-11) << p;
     EXPECT_LT(result.energy_balance->residual(), 1e-6) << p;
     EXPECT_GT(result.energy_balance->dissipation, 0.) << p;
@@ -48,7 +48,7 @@ TEST(Identities, NewtonianFrictionNeverMoves)
                                              {"Active stress/Expression/Active stress", m}},
                                             numerics))
                           .result;
-    ASSERT_EQ(result.time.status, "finished");
+    ASSERT_EQ(result.time.status, Status::finished);
     EXPECT_LT(std::abs(result.displacement), 1e-14) << m;
   }
 }
@@ -62,7 +62,7 @@ TEST(Identities, LedgerWhereFrictionVanishes)
     const auto settings = with(test::wave(11., 0.53), {{"Accuracy", "1e-3"}, {"Discretization/Mesh", mesh}});
     const auto outcome  = test::run_with(settings);
     const auto &result  = outcome.result;
-    ASSERT_EQ(result.time.status, "finished") << mesh;
+    ASSERT_EQ(result.time.status, Status::finished) << mesh;
     EXPECT_LT(result.net_friction, 1e-10) << mesh;
     EXPECT_LT(result.energy_balance->residual(), 1e-2) << mesh;
     EXPECT_NEAR(result.energy_balance->stress_work, 0.129086, 1e-3) << mesh;
@@ -86,7 +86,7 @@ TEST(Identities, LedgerOfStiffBodies)
         const auto &result  = test::run_with(settings).result;
         const std::string what =
           fmt::format("k = {:g}, a = {:g}, {}", k, a, more.empty() ? "automatic" : more.front().first);
-        ASSERT_EQ(result.time.status, "finished") << what;
+        ASSERT_EQ(result.time.status, Status::finished) << what;
         EXPECT_LT(result.energy_balance->residual(), 1e-7) << what;
         EXPECT_LT(result.net_friction, 1e-7) << what;
       }
@@ -142,7 +142,7 @@ TEST(Identities, StrainModesDecay)
     const Scene scene = parameters.create_scene();
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, {5, 6, 1e-14, 1e-7});
     const auto result = simulation.run({}, {.energy_balance = true});
-    EXPECT_EQ(result.time.status, "finished");
+    EXPECT_EQ(result.time.status, Status::finished);
     return std::sqrt(result.energy_balance->elastic_energy);
   };
   const double rate = 0.8 * std::pow(std::numbers::pi / 2., 2) / 1.7;
@@ -172,6 +172,6 @@ TEST(Identities, AdaptiveRunsReachTheEnd)
   settings.emplace_back("Accuracy", "1e-4");
   settings.emplace_back("Time/Integrator", "radau 5");
   const auto outcome = test::run_with(settings);
-  EXPECT_EQ(outcome.result.time.status, "finished");
+  EXPECT_EQ(outcome.result.time.status, Status::finished);
   EXPECT_NEAR(outcome.result.displacement, 0.2936926, 3e-4 * 0.2936926);
 }

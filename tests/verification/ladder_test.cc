@@ -68,8 +68,8 @@ TEST(Ladder, NonlinearFollowsAPrescribedStrain)
       {"Active stress/Prescribed strain/Strain", "0.25*(sin(2*pi*(s+t)) - sin(2*pi*s)) + 0.1*s*t^2"}};
     const auto full   = test::run_with(settings).result;
     const auto motion = on_level(settings, "kinematic", 1e-10);
-    ASSERT_EQ(full.time.status, "finished");
-    ASSERT_EQ(motion.time.status, "finished");
+    ASSERT_EQ(full.time.status, Status::finished);
+    ASSERT_EQ(motion.time.status, Status::finished);
     EXPECT_NEAR(full.displacement / motion.displacement, 1., 1e-8) << "a = " << a;
     EXPECT_NEAR(full.energy_balance->stress_work / motion.energy_balance->stress_work, 1., 1e-7);
     EXPECT_NEAR(full.energy_balance->dissipation / motion.energy_balance->dissipation, 1., 1e-7);
@@ -136,7 +136,7 @@ TEST(Ladder, ScenesThatDoNotFitAreRefused)
 TEST(Ladder, AccuracyThatIsNotMet)
 {
   const auto result = on_level(test::wave(-1., 0.2), "perturbation", 1e-4);
-  EXPECT_EQ(result.time.status, "failed");
+  EXPECT_EQ(result.time.status, Status::failed);
   EXPECT_EQ(result.time.reason, "accuracy_not_met");
   EXPECT_NEAR(result.displacement, 0.02, 1e-15);
   EXPECT_GE(result.error->model, 2.04422750e-2 - 2e-2);
@@ -155,7 +155,7 @@ TEST(Ladder, ManyRunsAtOnce)
       with(test::wave(-1., chi[i]), {{"Model", i < 2 ? "auto" : "nonlinear"}, {"Accuracy", "1e-2"}}));
   compute_all(tasks, 100., []() { return false; });
   for (const Task &task : tasks)
-    EXPECT_EQ(task.computed.result.time.status, "finished") << task.computed.result.time.message;
+    EXPECT_EQ(task.computed.result.time.status, Status::finished) << task.computed.result.time.message;
   EXPECT_EQ(tasks[0].parameters.model, "perturbation");
   EXPECT_NEAR(tasks[0].computed.result.displacement, 1.25e-3, 1e-15);
   EXPECT_EQ(tasks[1].parameters.model, "nonlinear");

@@ -20,7 +20,7 @@ namespace
     auto settings = test::wave(a, chi, speed);
     settings.emplace_back("Accuracy", "1e-9");
     const auto result = test::run_with(settings, {}).result;
-    EXPECT_EQ(result.time.status, "finished");
+    EXPECT_EQ(result.time.status, Status::finished);
     return result.displacement;
   }
 } // namespace

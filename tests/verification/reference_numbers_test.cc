@@ -45,7 +45,7 @@ TEST(ReferenceNumbers, Displacements)
   for (const Row &row : rows)
   {
     const auto result = accurate(test::wave(row.a, row.chi, row.speed, row.end_time, row.k));
-    ASSERT_EQ(result.time.status, "finished");
+    ASSERT_EQ(result.time.status, Status::finished);
     fmt::print("a = {:2g}, chi = {:5g}, c = {:2g}, T = {:2g}, k = {:4g}: {:.12g}, reference {:.12g}\n",
                row.a,
                row.chi,

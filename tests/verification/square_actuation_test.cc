@@ -79,7 +79,7 @@ namespace
     const Parameters parameters   = test::parameters_with(settings);
     const Scene scene             = parameters.create_scene();
     const SimulationResult result = Simulation(MPI_COMM_SELF, scene, parameters.time, numerics).run({}, {});
-    EXPECT_EQ(result.time.status, "finished") << result.time.message;
+    EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
     return result;
   }
 
@@ -125,7 +125,7 @@ TEST(SquareActuation, MovingJumpsHaveAnHonestBar)
   };
   const double fine = on_mesh(512), limit = 2. * fine - on_mesh(256);
   const auto good = answer(test::with(settings, {{"Accuracy", "1e-2"}}));
-  EXPECT_EQ(good.result.time.status, "finished") << good.result.time.message;
+  EXPECT_EQ(good.result.time.status, Status::finished) << good.result.time.message;
   EXPECT_LT(std::abs(good.result.displacement - limit), good.result.error->total);
   EXPECT_LT(good.result.error->total, 1e-2 * std::abs(limit));
 
@@ -143,7 +143,7 @@ TEST(SquareActuation, SegmentsGetGradedMeshes)
   {
     const auto settings = test::with(segments(n, gap, 0.3), {{"Accuracy", "1e-5"}});
     const auto outcome  = answer(settings);
-    ASSERT_EQ(outcome.result.time.status, "finished") << outcome.result.time.message;
+    ASSERT_EQ(outcome.result.time.status, Status::finished) << outcome.result.time.message;
     EXPECT_GE(outcome.choice.numerics.grading.levels, 2u);
     EXPECT_GE(outcome.choice.numerics.n_cells, pieces);
     const double error = std::abs(outcome.result.displacement - exact(settings, pieces));
@@ -156,7 +156,7 @@ TEST(SquareActuation, SegmentsGetGradedMeshes)
 TEST(SquareActuation, LedgerClosesOnTinyCells)
 {
   const auto outcome = answer(test::with(standing_wave(1.5), {{"Accuracy", "1e-8"}}));
-  EXPECT_EQ(outcome.result.time.status, "finished") << outcome.result.time.message;
+  EXPECT_EQ(outcome.result.time.status, Status::finished) << outcome.result.time.message;
   EXPECT_LT(outcome.result.energy_balance->residual(), 1e-7);
   EXPECT_LT(outcome.result.error->total, 1e-8 * std::abs(outcome.result.displacement));
 }

@@ -63,7 +63,7 @@ main(int argc, char **argv)
       const double error = std::abs(result.displacement / reference - 1.);
       // At a = 0 the body never moves. The extremes are not promised; they may end as under_resolved, by name.
       const bool still    = std::abs(reference) < 1e-12;
-      const bool finished = result.time.status == "finished";
+      const bool finished = result.time.status == Status::finished;
       const bool ok       = row["name"] == "extreme"
                               ? finished || result.time.reason == "under_resolved"
                               : finished && (still ? std::abs(result.displacement) < 1e-12 : error <= accuracy);

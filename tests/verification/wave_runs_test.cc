@@ -28,7 +28,7 @@ namespace
   displacement(const Settings &settings)
   {
     const auto outcome = run_with(settings);
-    EXPECT_EQ(outcome.result.time.status, "finished");
+    EXPECT_EQ(outcome.result.time.status, Status::finished);
     return outcome.result.displacement;
   }
 
@@ -86,7 +86,7 @@ TEST(WaveRuns, AllNumericsAgree)
   {
     const auto result =
       run_with(test::with(test::with(two_pulses, {{"Accuracy", "1e-5"}}), numerics), {.energy_balance = true}).result;
-    EXPECT_EQ(result.time.status, "finished") << numerics.front().second;
+    EXPECT_EQ(result.time.status, Status::finished) << numerics.front().second;
     EXPECT_NEAR(result.displacement, reference, 5e-5 * std::abs(reference)) << numerics.front().second;
   }
 }

@@ -10,14 +10,14 @@ namespace crawler
   /// The level of the ladder on which a scene is computed (doc/theory.md, "The ladder"), and why.
   struct ModelChoice
   {
-    std::string model; ///< perturbation, kinematic, linear or nonlinear
+    Model model;
     std::string explanation;
 
     /// Perturbation and kinematic need neither mesh nor time stepper (run/reduced_model.h).
     bool
     needs_mesh() const
     {
-      return model == "linear" || model == "nonlinear";
+      return model == Model::linear || model == Model::nonlinear;
     }
   };
 

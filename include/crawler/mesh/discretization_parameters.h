@@ -1,23 +1,61 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/words.h>
+
 #include <optional>
-#include <string>
 
 namespace crawler
 {
   class Declarations;
 
+  /// In which unknowns the user wants the equation solved.
+  enum class FormulationEntry
+  {
+    position,
+    stretch,
+    automatic
+  };
+  template <>
+  struct Words<FormulationEntry>
+  {
+    static constexpr const char *list[] = {"position", "stretch", "automatic"};
+  };
+
+  enum class MeshKind
+  {
+    uniform,
+    adaptive,
+    automatic
+  };
+  template <>
+  struct Words<MeshKind>
+  {
+    static constexpr const char *list[] = {"uniform", "adaptive", "automatic"};
+  };
+
+  enum class ShareCells
+  {
+    automatic,
+    yes,
+    no
+  };
+  template <>
+  struct Words<ShareCells>
+  {
+    static constexpr const char *list[] = {"automatic", "yes", "no"};
+  };
+
   /// Section "Discretization"; what is left empty is chosen from the wanted accuracy.
   struct DiscretizationParameters
   {
-    std::string formulation = "automatic";
-    std::string mesh        = "automatic";
+    FormulationEntry formulation = FormulationEntry::automatic;
+    MeshKind mesh = MeshKind::automatic;
     std::optional<double> mesh_tolerance; ///< relative [1]
     std::optional<double> smallest_cell;  ///< [length]
     std::optional<unsigned int> degree;
     std::optional<unsigned int> n_cells;
-    std::string share_cells = "automatic";
+    ShareCells share_cells = ShareCells::automatic;
 
     void
     add_parameters(Declarations &declarations);

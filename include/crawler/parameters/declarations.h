@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/words.h>
+
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
@@ -106,6 +108,15 @@ namespace crawler
     numbers(const std::string &name, std::vector<double> &value, const std::string &unit);
     Entry
     choice(const std::string &name, std::string &value, const std::vector<std::string> &words);
+    /// The words of an enum (base/words.h).
+    template <HasWords Enum>
+    Entry
+    choice(const std::string &name, Enum &value)
+    {
+      return choice(name, all_words<Enum>(), static_cast<std::size_t>(value), [&value](const std::size_t i) {
+        value = static_cast<Enum>(i);
+      });
+    }
     Entry
     flag(const std::string &name, bool &value);
     Entry
@@ -153,6 +164,11 @@ namespace crawler
     print_markdown(std::ostream &out) const;
 
   private:
+    Entry
+    choice(const std::string &name,
+           const std::vector<std::string> &words,
+           std::size_t value,
+           const std::function<void(std::size_t)> &assign);
     template <typename Value, typename Read>
     Entry
     entry(

@@ -18,7 +18,7 @@ namespace crawler
   {
   public:
     /// @p scene is in the user's units and must outlive it; it must fit the level @p model (model_choice.h).
-    ReducedModel(const Scene &scene, const std::string &model);
+    ReducedModel(const Scene &scene, Model model);
 
     /**
      * What the level gives, in the user's units. If the error is not known, or larger than @p accuracy times the
@@ -70,7 +70,7 @@ namespace crawler
 
     const Scene &scene_; ///< in the user's units
     const ReducedScene reduced_scene_;
-    const std::string model_;
+    const Model model_;
     unsigned int n_space_panels_ = 0, n_time_panels_ = 0; ///< of the kinematic level
   };
 } // namespace crawler

@@ -3,6 +3,7 @@
 
 #include <crawler/mesh/discretization_parameters.h>
 #include <crawler/output/output_parameters.h>
+#include <crawler/reduced_models/model.h>
 #include <crawler/scene/active_stress_library.h>
 #include <crawler/scene/scene.h>
 #include <crawler/time/time_parameters.h>
@@ -17,7 +18,7 @@ namespace crawler
   /// What the parameter file says of one run, in file order.
   struct RunParameters
   {
-    std::string model   = "nonlinear";
+    Model model         = Model::nonlinear;
     double accuracy     = 1e-6;
     bool error_estimate = true;
     Body body;

@@ -109,7 +109,8 @@ namespace crawler
     /// Replaces what the time stepper says about the end.
     struct Diagnosis
     {
-      std::string status, reason, message;
+      Status status;
+      std::string reason, message;
     };
 
     /// One run().

@@ -3,6 +3,7 @@
 
 #include <crawler/base/extreme_history.h>
 #include <crawler/equation/stretch_form.h>
+#include <crawler/reduced_models/model.h>
 #include <crawler/run/cycle_stop.h>
 #include <crawler/run/displacement_error.h>
 #include <crawler/run/gait.h>
@@ -20,7 +21,7 @@ namespace crawler
   struct SimulationResult
   {
     TimeOutcome time;                ///< its status is "inverted" too
-    std::string model = "nonlinear"; ///< level of the model hierarchy
+    Model model = Model::nonlinear;
 
     /// Of the centre of mass, (1/L) int u ds [length]; not a number if it was not looked at before the run broke off.
     double displacement = std::numeric_limits<double>::quiet_NaN();

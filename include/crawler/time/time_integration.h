@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/base/step_limits.h>
+#include <crawler/base/words.h>
 
 #include <functional>
 #include <span>
@@ -21,11 +22,25 @@ namespace crawler
     unsigned long newton_iterations;
   };
 
+  /// How a computation ended.
+  enum class Status
+  {
+    none, ///< it has not ended yet
+    finished,
+    inverted, ///< the body did, where the model ends
+    failed,
+    stopped ///< on request, by the monitor or a limit
+  };
+  template <>
+  struct Words<Status>
+  {
+    static constexpr const char *list[] = {"", "finished", "inverted", "failed", "stopped"};
+  };
+
   /// How a time integration ended.
   struct TimeOutcome
   {
-    /// finished, stopped (by the monitor or the step limit) or failed
-    std::string status;
+    Status status = Status::none;
     std::string reason; ///< one of the names of doc/user_guide.md, empty if finished
     std::string message;
     bool domain_error  = false; ///< failed because implicit_function refused every state tried

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/words.h>
+
 #include <optional>
 #include <string>
 
@@ -8,18 +10,54 @@ namespace crawler
 {
   class Declarations;
 
+  /// What carries an integrator out.
+  enum class Engine
+  {
+    automatic,
+    petsc ///< never the fused engine
+  };
+  template <>
+  struct Words<Engine>
+  {
+    static constexpr const char *list[] = {"automatic", "petsc"};
+  };
+
+  enum class StepControl
+  {
+    adaptive,
+    fixed
+  };
+  template <>
+  struct Words<StepControl>
+  {
+    static constexpr const char *list[] = {"adaptive", "fixed"};
+  };
+
+  /// Whether a run ends when its cycles repeat.
+  enum class CycleStopMode
+  {
+    automatic,
+    on,
+    off
+  };
+  template <>
+  struct Words<CycleStopMode>
+  {
+    static constexpr const char *list[] = {"automatic", "on", "off"};
+  };
+
   /// Section "Time"; what is left empty is chosen from the wanted accuracy.
   struct TimeParameters
   {
     double end_time          = 1.;
     std::string integrator   = "automatic";
-    std::string engine       = "automatic"; ///< or petsc: never the fused engine
+    Engine engine            = Engine::automatic;
     unsigned int order       = 5;
-    std::string step_control = "adaptive";
+    StepControl step_control = StepControl::adaptive;
     std::optional<double> tolerance;    ///< absolute, in the displacement [length]
     std::optional<double> initial_step; ///< [time]
     unsigned int max_steps = 100000000;
-    std::string cycle_stop = "automatic";
+    CycleStopMode cycle_stop = CycleStopMode::automatic;
 
     std::string petsc_prefix; ///< of PETSc's options; not an entry of the file
 

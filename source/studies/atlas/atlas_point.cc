@@ -216,7 +216,7 @@ namespace crawler
       add_runs(points, which, own, interrupted);
     };
     const auto both_forms = [&](const std::size_t i) {
-      return parameters[i].discretization.formulation == "automatic";
+      return parameters[i].discretization.formulation == FormulationEntry::automatic;
     };
     add(AtlasPoint::automatic, [&](const std::size_t i) { return parameters[i]; });
     add(AtlasPoint::position, [&](const std::size_t i) -> std::optional<Parameters> {

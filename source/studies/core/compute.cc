@@ -110,14 +110,14 @@ namespace crawler
         if (choice)
           task.computed.choice = *choice;
         else
-          task.computed.result.time.status = "stopped";
+          task.computed.result.time.status = Status::stopped;
       });
     }
 
     bool
     is_ready(const Task &task)
     {
-      return !task.error && task.computed.result.time.status.empty();
+      return !task.error && task.computed.result.time.status == Status::none;
     }
 
     /// Runs that fit, side by side.
@@ -169,7 +169,7 @@ namespace crawler
         task.is_out_of_time = before + clock.seconds() > time_limit;
         return !task.is_out_of_time && !interrupted();
       };
-      bool is_computed = !task.computed.result.time.status.empty();
+      bool is_computed = !task.computed.result.time.status == Status::none;
       Answer answer    = run_as_promised(
         MPI_COMM_SELF,
         task.parameters,
@@ -195,7 +195,7 @@ namespace crawler
     compute_batches(tasks, time_limit, interrupted);
     for (Task &task : tasks)
     {
-      if (task.scene && !task.error && task.computed.result.time.status != "stopped" && !task.computed.result.error)
+      if (task.scene && !task.error && task.computed.result.time.status != Status::stopped && !task.computed.result.error)
         guarded(task, [&]() { finish(task, time_limit, interrupted); });
       if (!task.error)
         check_identities(task.computed.result, task.parameters);
@@ -211,8 +211,8 @@ namespace crawler
     bool
     may_share(const Parameters &p)
     {
-      return p.model == "nonlinear" && p.error_estimate && p.time.engine == "automatic" &&
-             p.time.step_control == "adaptive";
+      return p.model == Model::nonlinear && p.error_estimate && p.time.engine == Engine::automatic &&
+             p.time.step_control == StepControl::adaptive;
     }
 
     /// The choice for one scene, if it is one that others can share.
@@ -304,7 +304,7 @@ namespace crawler
       std::vector<std::size_t> finished;
       for (std::size_t i = 0; i < members.size(); ++i)
       {
-        if (!results[i] || results[i]->time.status != "finished")
+        if (!results[i] || results[i]->time.status != Status::finished)
           continue;
         Member &member     = members[i];
         const Task &task   = *member.task;
@@ -318,7 +318,7 @@ namespace crawler
       const auto finer_results = run_batch(finer_runs, options, is_in_time);
       for (std::size_t j = 0; j < finished.size(); ++j)
       {
-        if (!finer_results[j] || finer_results[j]->time.status != "finished")
+        if (!finer_results[j] || finer_results[j]->time.status != Status::finished)
           continue;
         const Member &member     = members[finished[j]];
         Task &task               = *member.task;
@@ -328,7 +328,7 @@ namespace crawler
         choice.promised_error    = choice.wanted_error;
         set_errors(choice, result, &*finer_results[j], task.parameters, *task.scene);
         check_identities(result, task.parameters);
-        if (result.time.status == "finished" && result.error->total <= choice.wanted_error)
+        if (result.time.status == Status::finished && result.error->total <= choice.wanted_error)
           task.computed = {std::move(result), choice};
       }
     }
@@ -360,7 +360,7 @@ namespace crawler
           {.energy_balance = tasks.front().parameters.output.energy_balance, .gait = gait_wish(tasks.front())},
           is_in_time);
       for (std::size_t i = 0; i < tasks.size(); ++i)
-        done[i] = !tasks[i].computed.result.time.status.empty();
+        done[i] = !tasks[i].computed.result.time.status == Status::none;
     }
     catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
     {

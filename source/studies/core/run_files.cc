@@ -64,16 +64,16 @@ namespace crawler
     const TimeOutcome &outcome = result.time;
     for (const std::string &line : summary_lines(result))
       log.line(line);
-    if (outcome.status != "finished")
+    if (outcome.status != Status::finished)
       log.warn(outcome.reason + ": " + outcome.message);
     log.line(fmt::format("Results are in {}/{}.",
                          folder.string(),
                          has_pictures ? fmt::format("; open {} in ParaView", (folder / "solution.pvd").string()) : ""));
-    if (outcome.status == "finished")
+    if (outcome.status == Status::finished)
       return ExitCode::finished;
-    if (outcome.status == "inverted")
+    if (outcome.status == Status::inverted)
       return ExitCode::inverted;
-    if (outcome.status == "stopped")
+    if (outcome.status == Status::stopped)
       return ExitCode::stopped;
     if (outcome.reason == "ledger_residual" || outcome.reason == "net_friction")
       return ExitCode::self_check_failed;

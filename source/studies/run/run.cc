@@ -69,14 +69,14 @@ namespace crawler
     agree_on_failure(MPI_Comm communicator, TimeOutcome &outcome)
     {
       const int n = static_cast<int>(size_of(communicator));
-      int speaker = outcome.status.empty() ? n : static_cast<int>(rank_of(communicator));
+      int speaker = outcome.status == Status::none ? n : static_cast<int>(rank_of(communicator));
       MPI_Allreduce(MPI_IN_PLACE, &speaker, 1, MPI_INT, MPI_MIN, communicator);
       if (speaker == n)
         return;
       const auto texts        = gather(outcome.reason + "\n" + outcome.message, communicator);
       const std::string text  = broadcast(texts.empty() ? "" : texts[static_cast<std::size_t>(speaker)], communicator);
       const std::size_t split = text.find('\n');
-      outcome.status          = "failed";
+      outcome.status          = Status::failed;
       outcome.reason          = text.substr(0, split);
       outcome.message         = text.substr(split + 1);
     }
@@ -130,7 +130,7 @@ namespace crawler
     const auto guarded = [&](const auto &work) {
       try
       {
-        if (result.time.status.empty())
+        if (result.time.status == Status::none)
           work();
       }
       catch (...)
@@ -213,7 +213,7 @@ namespace crawler
         build(choice.numerics);
       else if (++n_runs > 1)
       {
-        log.line((latest.status == "failed" ? latest.reason + ": " + latest.message
+        log.line((latest.status == Status::failed ? latest.reason + ": " + latest.message
                                                               : "The error is larger than Accuracy asks for") +
                  ": once more, finer.");
         build(choice.numerics);
@@ -239,13 +239,13 @@ namespace crawler
       result.refinements      = answer.refinements;
     });
     result.setup_seconds = setup_seconds;
-    if (result.time.status == "stopped" && result.time.reason.empty())
+    if (result.time.status == Status::stopped && result.time.reason.empty())
     {
       result.time.reason  = "signal";
       result.time.message = fmt::format("stopped by a signal at t = {:.6g}", result.time.time);
     }
     check_identities(result, parameters);
-    if (result.time.status == "finished" && parameters.error_estimate && !std::isfinite(result.error->total))
+    if (result.time.status == Status::finished && parameters.error_estimate && !std::isfinite(result.error->total))
       log.warn("the error of the displacement is not known: the second run, which measures it, did not finish");
     report_unused_options(log);
 
@@ -388,14 +388,14 @@ namespace crawler
         const auto before = Clock::now();
         if (result.error && (output.n_snapshots > 0 || output.statistics) &&
             !write_pictures(level, input, folder, stop_signal))
-          result.time.status = "stopped";
+          result.time.status = Status::stopped;
         result.output_seconds = seconds_from(before);
       }
       catch (...)
       {
         result.time = failure_of(std::current_exception());
       }
-      if (result.time.status == "stopped")
+      if (result.time.status == Status::stopped)
       {
         result.time.reason  = "signal";
         result.time.message = "stopped by a signal";

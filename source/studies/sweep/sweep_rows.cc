@@ -102,11 +102,11 @@ namespace crawler
       return {
         "stopped",
         time_limit_reason,
-        task.computed.result.time.status == "finished"
+        task.computed.result.time.status == Status::finished
           ? "it took longer than Sweep/Time limit per point when its errors were measured; the run itself is whole"
           : "it took longer than Sweep/Time limit per point"};
     const TimeOutcome &time = task.computed.result.time;
-    return time.status == "finished" ? PointStatus{time.status, "", ""}
+    return time.status == Status::finished ? PointStatus{time.status, "", ""}
                                      : PointStatus{time.status, time.reason, time.message};
   }
 
@@ -114,7 +114,7 @@ namespace crawler
   sweep_row(const Task &task)
   {
     const PointStatus status = status_of(task);
-    const bool has_result    = !task.error && !task.computed.result.time.status.empty();
+    const bool has_result    = !task.error && !task.computed.result.time.status == Status::none;
     RowFile::Row row;
     for (const ResultEntry &entry : result_table())
       if (!entry.of_process)

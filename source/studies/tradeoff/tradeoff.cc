@@ -166,7 +166,7 @@ namespace crawler
       {
         // The reference needs the whole equation.
         Parameters whole = input.parameters;
-        whole.model      = "nonlinear";
+        whole.model      = Model::nonlinear;
         choose_model(whole, input.scene);
         return read_lists(input.parameters);
       }

@@ -101,7 +101,7 @@ namespace crawler
     if (results[0])
       return std::move(*results[0]);
     SimulationResult given_up;
-    given_up.time.status  = "failed";
+    given_up.time.status  = Status::failed;
     given_up.time.reason  = "gave_up";
     given_up.time.message = "the batch engine gave the run up, which then is for a single run";
     return given_up;

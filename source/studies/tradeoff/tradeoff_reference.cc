@@ -158,13 +158,13 @@ namespace crawler
         const auto keep_going       = [&]() { return now() < end && !interrupted_(); };
         const auto choice           = choose_numerics(MPI_COMM_SELF, parameters, scene_, keep_going);
         SimulationResult result;
-        result.time.status = "stopped";
+        result.time.status = Status::stopped;
         if (choice)
         {
           Simulation simulation(MPI_COMM_SELF, scene_, parameters.time, choice->numerics);
           result = simulation.run({}, {.energy_balance = false, .resolution = largest_u_ == 0.}, {}, keep_going);
         }
-        if (result.time.status == "stopped" && result.time.message.empty())
+        if (result.time.status == Status::stopped && result.time.message.empty())
           result.time.message = fmt::format("stopped after {:g} s", parameters.tradeoff.run_time_limit);
         return result;
       }
@@ -200,11 +200,11 @@ namespace crawler
           setting.mesh_tolerance        = method.setting.mesh_tolerance * smaller;
           setting.tolerance             = std::max(method.first_tolerance * smaller, last_tolerance);
           const SimulationResult result = guarded_run(setting);
-          if (result.time.status != "finished")
+          if (result.time.status != Status::finished)
           {
             reference_.status  = result.time.status;
             reference_.message = in_words(setting) + ": " + result.time.message;
-            if (result.time.status == "stopped")
+            if (result.time.status == Status::stopped)
               break;
             continue;
           }
@@ -241,10 +241,10 @@ namespace crawler
         const auto add = [&](const unsigned int cells) {
           setting.cells              = cells;
           const SimulationResult run = guarded_run(setting);
-          const bool finished        = run.time.status == "finished";
+          const bool finished        = run.time.status == Status::finished;
           const double error         = std::abs(run.displacement - reference_.first.displacement) / reference_.size;
           result.emplace_back(cells, finished ? error : std::numeric_limits<double>::infinity());
-          return run.time.status != "stopped";
+          return run.time.status != Status::stopped;
         };
         if (!lists_.cells.empty())
         {

@@ -108,7 +108,7 @@ namespace crawler
             throw InputError("\"automatic\" is no integrator, but the name of one is expected");
           TimeParameters time = parameters.time;
           time.integrator     = value;
-          time.step_control   = "adaptive";
+          time.step_control   = StepControl::adaptive;
           time.initial_step.reset();
           time.validate();
         }
@@ -329,8 +329,8 @@ namespace crawler
       result.discretization.n_cells = setting.cells;
     result.time.integrator   = setting.integrator;
     result.time.engine       = setting.engine == "petsc" ? "petsc" : "automatic";
-    result.time.step_control = "adaptive";
-    result.time.cycle_stop   = "off"; // its error is no matter of the setting
+    result.time.step_control = StepControl::adaptive;
+    result.time.cycle_stop   = CycleStopMode::off; // its error is no matter of the setting
     result.time.tolerance    = std::stod(fmt::format("{:.5e}", setting.tolerance * size));
     if (!result.time.initial_step)
       result.time.initial_step =

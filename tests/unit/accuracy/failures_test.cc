@@ -113,7 +113,7 @@ TEST(Failures, EndARunInOrder)
       for (int i = 0; i < 2; ++i) // the object stays usable
       {
         const SimulationResult result = simulation.run({}, {.energy_balance = true});
-        EXPECT_EQ(result.time.status, "failed") << engine;
+        EXPECT_EQ(result.time.status, Status::failed) << engine;
         EXPECT_EQ(result.time.reason, memory ? "out_of_memory" : "exception");
         EXPECT_NE(result.time.message.find(memory ? "out of memory" : "the valve is shut"), std::string::npos);
         EXPECT_GT(result.time.steps, 3u);
@@ -145,7 +145,7 @@ TEST(Failures, OfTheSecondRunLeaveTheAnswer)
     run_as_promised(MPI_COMM_SELF, parameters, scene, choice, simulate, {.energy_balance = true}, /*writes=*/false, {});
   EXPECT_EQ(answer.result.displacement, first.displacement);
   EXPECT_EQ(answer.result.time.steps, first.time.steps);
-  EXPECT_EQ(answer.result.time.status, "failed");
+  EXPECT_EQ(answer.result.time.status, Status::failed);
   EXPECT_EQ(answer.result.time.reason, "accuracy_not_met");
   EXPECT_NE(answer.result.time.message.find("out of memory"), std::string::npos);
 }

@@ -29,7 +29,7 @@ namespace
   void
   expect_true(const SimulationResult &result, const double exact, const double half_digit, const double accuracy)
   {
-    ASSERT_EQ(result.time.status, "finished") << result.time.message;
+    ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
     ASSERT_TRUE(result.error);
     EXPECT_EQ(result.formulation, Formulation::stretch);
     EXPECT_LE(std::abs(result.displacement - exact), result.error->total + half_digit);
@@ -50,7 +50,7 @@ TEST(MeshFamily, IsOfSecondOrder)
       test::run_with(test::with(test::with(test::wave(-1., 0.4), stretch),
                                 {{"Discretization/Number of cells", test::text(n)}, {"Time/Tolerance", "1e-9"}}))
         .result;
-    ASSERT_EQ(result.time.status, "finished");
+    ASSERT_EQ(result.time.status, Status::finished);
     EXPECT_EQ(result.mesh->n_cells, n);
     displacements.push_back(result.displacement);
     errors.push_back(std::abs(result.displacement - exact));
@@ -104,7 +104,7 @@ TEST(MeshFamily, TimeOfAnInversion)
   for (const double accuracy : {1e-3, 1e-4})
   {
     const auto result = test::run_with(test::with(test::wave(-0.8, 0.77), {{"Accuracy", test::text(accuracy)}})).result;
-    EXPECT_EQ(result.time.status, "inverted");
+    EXPECT_EQ(result.time.status, Status::inverted);
     EXPECT_EQ(result.time.reason, "inverted_inside");
     EXPECT_EQ(result.formulation, Formulation::stretch);
     ASSERT_TRUE(result.inversion && result.inversion_error && result.inverted_places);
@@ -119,7 +119,7 @@ TEST(MeshFamily, TimeOfAnInversion)
 TEST(MeshFamily, SymmetricBodiesStay)
 {
   const auto result = test::run_with(test::with(test::expression(-1., "0.3*sin(pi*t)^2*sin(pi*s)"), stretch)).result;
-  EXPECT_EQ(result.time.status, "finished") << result.time.message;
+  EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
   EXPECT_GT(result.largest_u, 1e-3);
   EXPECT_LT(std::abs(result.displacement), 1e-12);
   ASSERT_TRUE(result.error);
@@ -173,6 +173,6 @@ TEST(MeshFamily, CanBeStopped)
   unsigned int n_steps  = 0;
   const auto keep_going = [&]() { return ++n_steps < 100; };
   const Answer answer   = answer_of_family(parameters, scene, *choice, {}, {}, keep_going);
-  EXPECT_EQ(answer.result.time.status, "stopped");
+  EXPECT_EQ(answer.result.time.status, Status::stopped);
   EXPECT_EQ(n_steps, 100u);
 }

@@ -261,6 +261,6 @@ TEST(ShapedWave, HasNoPerturbationSeries)
   {
     EXPECT_NE(std::string(error.what()).find("the Shape of the optimal wave is expression"), std::string::npos);
   }
-  parameters.model = "auto";
+  parameters.model = Model::automatic;
   EXPECT_NE(choose_model(parameters, parameters.create_scene()).model, "perturbation");
 }

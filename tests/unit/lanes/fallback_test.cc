@@ -96,7 +96,7 @@ TEST_P(FallbackTest, EndsAsWithPetsc)
         EXPECT_NEAR(fused.inversion->t, petsc.inversion->t, now.error_of_time * run.scene.end_time) << integrator;
         EXPECT_NEAR(fused.inversion->s, petsc.inversion->s, 1e-2) << integrator;
       }
-      if (petsc.time.status == "finished")
+      if (petsc.time.status == Status::finished)
       {
         EXPECT_NEAR(fused.displacement, petsc.displacement, run.numerics.tolerance) << integrator;
       }
@@ -155,7 +155,7 @@ TEST(Fallback, ABatchSaysNothingThatASimulationDenies)
       continue;
     ++finished;
     const SimulationResult petsc = runs[i]->simulate("petsc");
-    EXPECT_EQ(petsc.time.status, "finished") << i << ": " << petsc.time.message;
+    EXPECT_EQ(petsc.time.status, Status::finished) << i << ": " << petsc.time.message;
     EXPECT_NEAR(results[i]->displacement, petsc.displacement, 10. * runs[i]->numerics.tolerance) << i;
   }
   EXPECT_GT(finished, runs.size() / 3);

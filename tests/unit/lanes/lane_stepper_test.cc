@@ -78,7 +78,7 @@ TEST_P(LaneStepperTest, GivesWhatPetscGives)
   EXPECT_EQ(single.time.linear_iterations, 0u) << "PETSc had to help";
   for (const SimulationResult &fused : {single, *batch})
   {
-    ASSERT_EQ(fused.time.status, "finished");
+    ASSERT_EQ(fused.time.status, Status::finished);
     EXPECT_EQ(fused.time.time, petsc.time.time);
     EXPECT_NEAR(fused.time.steps, petsc.time.steps, 0.1 * petsc.time.steps);
     EXPECT_NEAR(fused.displacement, petsc.displacement, 1e-3 * tolerance);
@@ -149,7 +149,7 @@ namespace
     observers.push_back(std::make_unique<Recorder>(seen));
     const auto result =
       Simulation(MPI_COMM_WORLD, run.scene, time, run.numerics).run(output_times, {.energy_balance = true}, observers);
-    EXPECT_EQ(result.time.status, "finished");
+    EXPECT_EQ(result.time.status, Status::finished);
     return seen;
   }
 } // namespace
@@ -197,7 +197,7 @@ TEST(LaneStepper, ARunStopsAtOnce)
       Simulation simulation(MPI_COMM_WORLD, run.scene, time, run.numerics);
       unsigned int asked = 0;
       const auto stopped = simulation.run({}, {.energy_balance = true}, {}, [&] { return ++asked < most; });
-      EXPECT_EQ(stopped.time.status, "stopped") << engine;
+      EXPECT_EQ(stopped.time.status, Status::stopped) << engine;
       EXPECT_EQ(asked, most) << engine; // the initial state asks, too
       EXPECT_EQ(stopped.time.steps, most - 1) << engine;
       EXPECT_LT(stopped.time.time, 1.);

@@ -97,7 +97,7 @@ TEST(LinearStepper, OrdersInTime)
 TEST(LinearStepper, FactorizesOnce)
 {
   const FixedRun run = with_fixed_steps("0.3*sin(7*t)*sin(pi*s)", 5, 32.);
-  EXPECT_EQ(run.outcome.status, "finished");
+  EXPECT_EQ(run.outcome.status, Status::finished);
   EXPECT_EQ(run.outcome.steps, 32u);
   EXPECT_EQ(run.outcome.newton_iterations, 0u);
   EXPECT_EQ(run.n_factorizations, 1u);
@@ -118,7 +118,7 @@ TEST(LinearStepper, AdaptiveStepsHaveFewSizes)
   };
   const std::vector<double> output_times = {0.2, 0.4, 0.6, 0.8, 1.};
   const auto outcome                     = stepper.solve(u, output_times, 1e-10, 0.01, {}, 0.);
-  EXPECT_EQ(outcome.status, "finished");
+  EXPECT_EQ(outcome.status, Status::finished);
   EXPECT_EQ(times, output_times);
   fmt::print("{} steps, {} factorizations\n", outcome.steps, stepper.n_factorizations());
   EXPECT_LE(2 * stepper.n_factorizations(), outcome.steps);
@@ -135,7 +135,7 @@ TEST(LinearLevel, ClosedForm)
                               1.3,
                               k,
                               {{"Accuracy", test::text(accuracy)}}));
-      ASSERT_EQ(outcome.result.time.status, "finished");
+      ASSERT_EQ(outcome.result.time.status, Status::finished);
       EXPECT_TRUE(outcome.choice.numerics.linear);
       const double U = driven(0.3 * std::min(std::max(k, 0.3), 3.), 7., k, 1.3, 2);
       EXPECT_NEAR(outcome.result.energy_balance->elastic_energy,
@@ -168,8 +168,8 @@ TEST(LinearLevel, EqualsTheNonlinearLevel)
   const auto nonlinear = test::run_with(settings).result;
   settings.emplace_back("Model", "linear");
   const auto result = test::run_with(settings).result;
-  ASSERT_EQ(nonlinear.time.status, "finished");
-  ASSERT_EQ(result.time.status, "finished");
+  ASSERT_EQ(nonlinear.time.status, Status::finished);
+  ASSERT_EQ(result.time.status, Status::finished);
   EXPECT_NEAR(result.energy_balance->stress_work / nonlinear.energy_balance->stress_work, 1., 1e-7);
   EXPECT_NEAR(result.energy_balance->dissipation / nonlinear.energy_balance->dissipation, 1., 1e-7);
   EXPECT_NEAR(result.energy_balance->elastic_energy / nonlinear.energy_balance->elastic_energy, 1., 1e-7);

@@ -85,7 +85,7 @@ TEST(GeneratedStrain, ItsActiveStressAsATableDrivesTheFullModel)
   const double kinematic = kinematic_displacement(settings);
   EXPECT_GT(std::abs(kinematic), 0.01);
   const auto full = test::run_with(settings).result;
-  EXPECT_EQ(full.time.status, "finished");
+  EXPECT_EQ(full.time.status, Status::finished);
   EXPECT_NEAR(full.displacement, kinematic, 1e-6 * std::abs(kinematic));
 
   const test::TemporaryFolder folder;
@@ -94,7 +94,7 @@ TEST(GeneratedStrain, ItsActiveStressAsATableDrivesTheFullModel)
   EXPECT_EQ(write_active_stress_table(file, *scene.active_stress, 2., 1.5, 129, 513), "");
   settings.insert(settings.end(), {{"Active stress/Generator", "table"}, {"Active stress/Table/File", file.string()}});
   const auto by_table = test::run_with(settings).result;
-  EXPECT_EQ(by_table.time.status, "finished");
+  EXPECT_EQ(by_table.time.status, Status::finished);
   EXPECT_NEAR(by_table.displacement, kinematic, 2e-6 * std::abs(kinematic));
 }
 

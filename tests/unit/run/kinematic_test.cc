@@ -42,7 +42,7 @@ TEST(Kinematic, SineWaveOfStrain)
 {
   const double exact = 1. - std::sqrt(1. - 0.09);
   const auto result  = compute(strain(-1., "0.3*sin(2*pi*(s+t))"));
-  EXPECT_EQ(result.time.status, "finished");
+  EXPECT_EQ(result.time.status, Status::finished);
   EXPECT_NEAR(result.displacement, exact, 1e-11);
   EXPECT_LE(std::abs(result.displacement - exact), result.error->total + 1e-15);
   EXPECT_EQ(result.error->model, 0.);
@@ -128,7 +128,7 @@ TEST(Kinematic, StiffBody)
 TEST(Kinematic, InvertedByTheStrainItAssumes)
 {
   const auto result = compute(test::wave(-1., 0.6));
-  EXPECT_EQ(result.time.status, "inverted");
+  EXPECT_EQ(result.time.status, Status::inverted);
   ASSERT_TRUE(result.inversion);
   EXPECT_LE(result.inversion->value, 0.);
   EXPECT_FALSE(result.error);
@@ -138,10 +138,10 @@ TEST(Kinematic, InvertedByTheStrainItAssumes)
 TEST(Kinematic, AccuracyThatIsNotMetIsSaid)
 {
   const auto result = compute(strain(-1., "0.3*(s > 1/3 ? 1 : 0)*sin(2*pi*t)*cos(2*pi*(s-t))"), "kinematic", 1e-10);
-  EXPECT_EQ(result.time.status, "failed");
+  EXPECT_EQ(result.time.status, Status::failed);
   EXPECT_EQ(result.time.reason, "accuracy_not_met");
   EXPECT_GT(result.error->space, 0.);
   const auto coarse = compute(strain(-1., "0.3*(s > 1/3 ? 1 : 0)*sin(2*pi*t)*cos(2*pi*(s-t))"), "kinematic", 1e-3);
-  EXPECT_EQ(coarse.time.status, "finished");
+  EXPECT_EQ(coarse.time.status, Status::finished);
   EXPECT_LE(std::abs(coarse.displacement - result.displacement), coarse.error->total + result.error->total);
 }

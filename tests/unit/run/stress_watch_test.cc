@@ -59,7 +59,7 @@ TEST(StressWatch, LetsAStepBeMadeAgain)
                                        {"Accuracy", "1e-8"}})
                          .result.displacement;
   const auto without = run(active, 0.), with = run(active, 0.03);
-  EXPECT_EQ(with.time.status, "finished");
+  EXPECT_EQ(with.time.status, Status::finished);
   EXPECT_GT(with.time.steps, without.time.steps);
   EXPECT_GE(with.time.rejected_steps, 1u);
   EXPECT_LT(std::abs(with.displacement - exact), 0.05 * std::abs(exact));

@@ -94,7 +94,7 @@ TEST(Scene, TheSameMotionInAllUnits)
   for (const auto &[length, time, friction] : all_units)
   {
     const auto result = test::run_with(in_user_units(length, time, friction)).result;
-    ASSERT_EQ(result.time.status, "finished") << result.time.message;
+    ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
     const double relative = result.displacement / length;
     if (reference == 0.)
       reference = relative;

@@ -383,6 +383,6 @@ TEST(Sum, RunsAsItsFormula)
     {{"Active stress/Generator", "expression"},
      {"Active stress/Expression/Active stress", "(0.2*sin(2*pi*(s-t)) + 0.1*sin(pi*s))*(1-exp(-t/0.2))"}});
   const auto a = crawler::test::run_with(of_sum), b = crawler::test::run_with(of_formula);
-  EXPECT_EQ(a.result.time.status, "finished");
+  EXPECT_EQ(a.result.time.status, Status::finished);
   EXPECT_NEAR(a.result.displacement, b.result.displacement, 1e-10 * std::abs(b.result.displacement));
 }

@@ -130,7 +130,7 @@ TEST(TimeStepper, EveryIntegratorReachesItsOrder)
          method.order == 9 ? std::vector<unsigned int>{2, 3, 4} : std::vector<unsigned int>{12, 24, 48})
     {
       ScalarEquation equation(parameters_for(method.name, "fixed"));
-      ASSERT_EQ(equation.solve(1e-12, 1.5 / n).status, "finished") << method.name;
+      ASSERT_EQ(equation.solve(1e-12, 1.5 / n).status, Status::finished) << method.name;
       n_steps.push_back(n);
       errors.push_back(std::abs(equation.y[0] - std::sin(1.5)));
     }
@@ -145,7 +145,7 @@ TEST(TimeStepper, StepsEndExactlyAtOutputTimes)
   {
     ScalarEquation equation(parameters_for("bdf", control));
     const std::vector<double> output_times = {0.1, 1. / 3., 0.7, 0.7000001, 1.5};
-    ASSERT_EQ(equation.solve(1e-9, 1e-3, output_times).status, "finished");
+    ASSERT_EQ(equation.solve(1e-9, 1e-3, output_times).status, Status::finished);
     std::vector<double> found;
     for (const Step &step : equation.steps)
       if (step.is_output_time)
@@ -179,7 +179,7 @@ TEST(TimeStepper, KnowsStatesFromStartToEndOfEachStep)
       start  = step.time;
       return true;
     };
-    EXPECT_EQ(equation.solve(1e-3, 1e-5 / i).status, "finished");
+    EXPECT_EQ(equation.solve(1e-3, 1e-5 / i).status, Status::finished);
   }
   EXPECT_GT(n_below, 0u); // else nothing was tested
 }
@@ -201,7 +201,7 @@ TEST(TimeStepper, TheMonitorCanStop)
   ScalarEquation equation(parameters_for("bdf"));
   equation.stop_at   = 0.5;
   const auto outcome = equation.solve(1e-8, 1e-4);
-  EXPECT_EQ(outcome.status, "stopped");
+  EXPECT_EQ(outcome.status, Status::stopped);
   EXPECT_GE(outcome.time, 0.5);
   EXPECT_LT(outcome.time, 0.7);
   EXPECT_NEAR(equation.y[0], std::sin(outcome.time), 1e-6);
@@ -220,7 +220,7 @@ TEST(TimeStepper, ARefusedStateIsADomainError)
   ScalarEquation equation(parameters_for("bdf"));
   equation.largest_admissible = 0.5;
   const auto outcome          = equation.solve(1e-9, 1e-4);
-  EXPECT_EQ(outcome.status, "failed");
+  EXPECT_EQ(outcome.status, Status::failed);
   EXPECT_TRUE(outcome.domain_error);
   EXPECT_NEAR(outcome.time, std::asin(0.5), 1e-8);
   EXPECT_LT(equation.y[0], 0.5);
@@ -242,7 +242,7 @@ TEST(TimeStepper, FailuresHaveNames)
     ScalarEquation equation(parameters_for("bdf"));
     equation.wrong_direction = true;
     const auto outcome       = equation.solve(1e-8, 1e-4);
-    EXPECT_EQ(outcome.status, "failed");
+    EXPECT_EQ(outcome.status, Status::failed);
     EXPECT_NE(outcome.reason, "");
   }
   {
@@ -250,7 +250,7 @@ TEST(TimeStepper, FailuresHaveNames)
     parameters.max_steps      = 3;
     ScalarEquation equation(parameters);
     const auto outcome = equation.solve(1e-8, 1e-4);
-    EXPECT_EQ(outcome.status, "stopped");
+    EXPECT_EQ(outcome.status, Status::stopped);
     EXPECT_EQ(outcome.reason, "step_limit");
     EXPECT_EQ(outcome.steps, 3u);
   }

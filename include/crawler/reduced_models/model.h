@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/words.h>
+
+namespace crawler
+{
+  /// A level of the model hierarchy (doc/theory.md, "The ladder").
+  enum class Model
+  {
+    automatic, ///< to be chosen
+    perturbation,
+    kinematic,
+    linear,
+    nonlinear
+  };
+  template <>
+  struct Words<Model>
+  {
+    static constexpr const char *list[] = {"auto", "perturbation", "kinematic", "linear", "nonlinear"};
+  };
+} // namespace crawler
