@@ -43,7 +43,7 @@ namespace crawler
       missing[i] = missing[i] && !one[i];
 
     // The rest a few at a time, or one by one where one takes long: what is finished shall be on the disk soon. With a
-    // time limit for each, no one may use up that of its neighbours.
+    // time limit for each, no point may use up that of its neighbours.
     const unsigned long most_together = std::isfinite(limit) ? 1 : 8;
     constexpr double long_time        = 1.; // seconds
     unsigned long together            = most_together;
