@@ -456,7 +456,7 @@ namespace crawler
     const std::vector<std::string> words = split_path(entries_[index].path);
     for (std::size_t i = 0; i + 1 < words.size(); ++i)
       handler_->enter_subsection(words[i]);
-    const std::string result = handler_->get(words.back());
+    std::string result = handler_->get(words.back());
     for (std::size_t i = 0; i + 1 < words.size(); ++i)
       handler_->leave_subsection();
     return result;
@@ -531,7 +531,7 @@ namespace crawler
     while (std::getline(in, word, '/'))
       words.push_back(trimmed(word));
     if (words.empty())
-      words.push_back("");
+      words.emplace_back();
     return words;
   }
 
