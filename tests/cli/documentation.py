@@ -101,7 +101,7 @@ def bad_references():
             words = " ".join(match.group(2).split())
             if not any(place.startswith(words) for place in places.get(match.group(1), [])):
                 yield path, text.count("\n", 0, match.start()) + 1, f"{match.group(1)}.md has no \"{words}\""
-        for match in re.finditer(r"@cite (\w+)", text):
+        for match in re.finditer(r"[@\\]cite (\w+)", text):
             if match.group(1) not in keys:
                 yield path, text.count("\n", 0, match.start()) + 1, f"references.bib has no \"{match.group(1)}\""
 
