@@ -120,7 +120,7 @@ def draw_fronts(axes, tradeoff):
 
 
 def draw_bar(axes, tradeoff):
-    """The errors that nobody can tell from 0."""
+    """The errors that cannot be told from 0."""
     from matplotlib.patches import Patch
 
     bar = tradeoff.summary.get("reference", {}).get("relative_bar")

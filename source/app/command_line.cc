@@ -262,7 +262,7 @@ namespace crawler
   int
   run_command_line(int argc, char **argv)
   {
-    std::signal(SIGPIPE, SIG_IGN); // a run goes on when nobody reads any more what it prints
+    std::signal(SIGPIPE, SIG_IGN); // a run goes on when the reader of its output has ended
     // What stands behind "--" is for PETSc, everything before it for us.
     char **separator = std::find_if(argv, argv + argc, [](const char *text) { return std::strcmp(text, "--") == 0; });
     const std::vector<std::string> arguments(argv + 1, separator);

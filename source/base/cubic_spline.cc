@@ -54,9 +54,9 @@ namespace crawler
   }
 
   std::vector<double>
-  CubicSpline::curvatures(const std::span<const double> y) const
+  CubicSpline::curvatures(const std::span<const double> values) const
   {
-    return curvatures(y, 1);
+    return curvatures(values, 1);
   }
 
   std::vector<double>

@@ -82,8 +82,8 @@ namespace crawler
 
   /**
    * The increments z_i = u(t + c_i h) - u(t), from  M sum_j (A^-1)_ij z_j/h + K z_i + F(t + c_i h, u, 0) = 0. In the
-   * basis of the eigenvectors of A^-1 the stages do not depend on each other (Hairer and Wanner, section IV.8). Returns
-   * false if the result is not finite.
+   * basis of the eigenvectors of A^-1 the stages do not depend on each other (@cite HairerWanner1996, section IV.8).
+   * Returns false if the result is not finite.
    */
   bool
   LinearStepper::make_step(const double t, const double h, const ConstVector y)

@@ -493,8 +493,8 @@ namespace crawler
   Declarations::value(const unsigned int index) const
   {
     const std::vector<std::string> words = split_path(entries_[index].path);
-    enter_sections(words);
-    const std::string result = handler_->get(words.back());
+enter_sections(words);
+    std::string result = handler_->get(words.back());
     leave_sections(words);
     return result;
   }
@@ -568,7 +568,7 @@ namespace crawler
     while (std::getline(in, word, '/'))
       words.push_back(trimmed(word));
     if (words.empty())
-      words.push_back("");
+      words.emplace_back();
     return words;
   }
 

@@ -683,7 +683,7 @@ INSTANTIATE_TEST_SUITE_P(Tradeoffs, BadInputTest, testing::ValuesIn(tradeoffs())
 INSTANTIATE_TEST_SUITE_P(Files, BadInputTest, testing::ValuesIn(files()), name_of);
 INSTANTIATE_TEST_SUITE_P(CommandLines, BadInputTest, testing::ValuesIn(command_lines()), name_of);
 
-/// A link to itself is a file that nobody can read; one without permissions is that for everybody but root.
+/// A link to itself is a file that cannot be read; one without permissions can be read by root only.
 TEST(BadInput, UnreadableFile)
 {
   const TemporaryFolder folder;

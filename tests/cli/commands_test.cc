@@ -468,7 +468,7 @@ TEST_F(Commands, SizeDoesNotMatter)
   EXPECT_NEAR(small / large, 1., 1e-12);
 }
 
-/// Two long steps on a mesh as fine as anybody asks for give what a coarse one of high degree gives.
+/// Two long steps on a mesh as fine as allowed give what a coarse one of high degree gives.
 TEST_F(Commands, AMillionCells)
 {
   const auto displacement = [&](const std::string &cells, const std::string &degree) {

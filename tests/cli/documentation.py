@@ -2,8 +2,9 @@
 """Is the documentation up to date?  documentation.py PATH_TO_CRAWLER
 
 Fails, naming file and line, if a generated file differs from what the program prints, if a relative link in a
-Markdown file points to nothing, if a text names an entry "Section/Entry" that does not exist, or if a parameter file
-shown in a block marked "prm" is refused by "crawler check".
+Markdown file points to nothing or two headings of a file are alike, if a text names an entry "Section/Entry" that does
+not exist, or if a parameter file shown in a block marked "prm" is refused by "crawler check"; if a document or a
+comment in the code names a heading (doc/theory.md, "Energies") or a publication (@cite) that does not exist.
 """
 import json
 import pathlib
@@ -77,6 +78,34 @@ def bad_links(path, lines):
                 yield number, f"the link \"{target}\" points to no heading"
 
 
+def repeated_headings(lines):
+    """Headings that a link could not tell apart."""
+    seen = set()
+    for number, line in lines:
+        if line.startswith("#") and line.lstrip("#") in seen:
+            yield number, f"a second heading \"{line.lstrip('# ')}\""
+        elif line.startswith("#"):
+            seen.add(line.lstrip("#"))
+
+
+def bad_references():
+    """Headings and publications that comments and documents name and that do not exist."""
+    keys = set(re.findall(r"@\w+\{([^,]+),", (ROOT / "doc/references.bib").read_text(encoding="utf-8")))
+    places = {path.stem: path.read_text(encoding="utf-8") for path in (ROOT / "doc").glob("*.md")}
+    # A heading, or the bold beginning of a paragraph.
+    places = {stem: re.findall(r"^(?:#+ (?:\d+\. )?|\W*\*\*)(.*)", text, re.M) for stem, text in places.items()}
+    code = [p for folder in ("include", "source", "tests") for end in ("h", "cc") for p in (ROOT / folder).rglob(f"*.{end}")]
+    for path in sorted([*code, *markdown_files()]):
+        text = re.sub(r"\n *(?:\*|///?)(?= )", "\n", path.read_text(encoding="utf-8"))  # without marks of comments
+        for match in re.finditer(r"\b(\w+)\.md,\s+\"([^\"]+)\"", text):
+            words = " ".join(match.group(2).split())
+            if not any(place.startswith(words) for place in places.get(match.group(1), [])):
+                yield path, text.count("\n", 0, match.start()) + 1, f"{match.group(1)}.md has no \"{words}\""
+        for match in re.finditer(r"[@\\]cite (\w+)", text):
+            if match.group(1) not in keys:
+                yield path, text.count("\n", 0, match.start()) + 1, f"references.bib has no \"{match.group(1)}\""
+
+
 def bad_entries(text, names):
     """Entries that the program does not have."""
     for number, line in enumerate(text.splitlines(), 1):
@@ -102,7 +131,7 @@ def main():
     for path in markdown_files():
         text = path.read_text(encoding="utf-8")
         lines, blocks = split_blocks(text)
-        found = [*bad_links(path, lines), *bad_entries(text, names)]
+        found = [*bad_links(path, lines), *repeated_headings(lines), *bad_entries(text, names)]
         for number, language, block in blocks:
             if language == "prm":
                 try:
@@ -110,6 +139,7 @@ def main():
                 except RuntimeError as error:
                     found.append((number, f"the program refuses this parameter file: {error}"))
         problems += [f"{path.relative_to(ROOT)}, line {number}: {problem}" for number, problem in sorted(found)]
+    problems += [f"{path.relative_to(ROOT)}, line {number}: {problem}" for path, number, problem in bad_references()]
     print("\n".join(problems) if problems else "the documentation is up to date")
     return len(problems)
 

@@ -121,7 +121,7 @@ def check_rows(rows, summary):
 
 
 def check_pareto(rows):
-    """By the definition: nobody is as cheap and as good, and better in one."""
+    """By the definition: no other row is as cheap and as good, and better in one."""
     good = True
     for batch in False, True:
         own = [(number(row["seconds"]), number(row["shown error"]), row["pareto"] == "true") for row in rows

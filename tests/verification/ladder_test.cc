@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// The levels of the ladder (doc/theory.md, "The ladder") against each other, and the choice among them.
+// The levels of the model (doc/theory.md, "The model hierarchy") against each other, and the choice among them.
 #include "../support/run_text.h"
 
 #include <crawler/accuracy/model_choice.h>

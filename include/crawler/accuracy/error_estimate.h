@@ -37,7 +37,7 @@ namespace crawler
   /// The finer run that measures the errors of a run with @p choice: what it does with entries of section Time, its
   /// numerics, and what it computes.
   TimeParameters
-  time_of_finer_run(const TimeParameters &time);
+  time_of_finer_run(const TimeParameters &run);
   Numerics
   numerics_of_finer_run(const NumericsChoice &choice,
                         const TimeParameters &time,

@@ -7,7 +7,7 @@
 
 namespace crawler
 {
-  /// The level of the ladder on which a scene is computed (doc/theory.md, "The ladder"), and why.
+  /// The level on which a scene is computed (doc/theory.md, "The model hierarchy"), and why.
   struct ModelChoice
   {
     Model model;

@@ -3,8 +3,8 @@
 
 /**
  * The loops over cells are templates that several files compile, some of them for instruction sets that not every
- * processor has (source/fused). Each instruction set has a namespace of its own, or the linker could give a function
- * that was compiled for one of them to everybody.
+ * processor has (source/lanes). Each instruction set has a namespace of its own, or the linker could take a function
+ * that was compiled for one of them for the whole program.
  */
 #ifndef CRAWLER_INSTRUCTION_SET
 #  define CRAWLER_INSTRUCTION_SET generic

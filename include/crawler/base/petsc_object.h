@@ -83,7 +83,7 @@ namespace crawler
     void
     operator()(Handle handle) const
     {
-      auto object = reinterpret_cast<PetscObject>(handle);
+      auto *object = reinterpret_cast<PetscObject>(handle);
       PetscObjectDestroy(&object);
     }
   };

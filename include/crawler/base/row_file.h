@@ -107,12 +107,12 @@ namespace crawler
 
     /// The number of the column of this name. Throws FileError if there is none.
     std::size_t
-    index_of(const std::string &column) const;
+    index_of(const std::string &name) const;
 
-    /// @p n rows from row @p first on, of one column or of all in the order in which they were made (this rank alone).
-    /// Throws FileError.
+    /// @p n rows from row @p first on, of one column (by its number) or of all in the order in which they were made
+    /// (this rank alone). Throws FileError.
     crawler::Column
-    read(std::size_t column, unsigned long first, unsigned long n) const;
+    read(std::size_t number, unsigned long first, unsigned long n) const;
     Table
     read(unsigned long first, unsigned long n) const;
 

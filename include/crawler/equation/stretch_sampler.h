@@ -11,7 +11,7 @@ namespace crawler
   class StretchSampler
   {
   public:
-    /// @param places from 0 (left end of the cell) to 1.
+    /// @p places from 0 (left end of the cell) to 1.
     StretchSampler(const ReferenceElement &element, const std::vector<double> &places)
       : places_(places)
       , n_(element.n)

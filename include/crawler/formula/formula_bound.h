@@ -7,7 +7,7 @@ namespace crawler
 {
   /**
    * Encloses a formula of s and t and its derivative by t in boxes: intervals of both are handed on from operation to
-   * operation (interval arithmetic with forward-mode automatic differentiation; R. E. Moore, Interval Analysis, 1966),
+   * operation (interval arithmetic with forward-mode automatic differentiation; Moore @cite Moore1966),
    * without directed rounding. Nothing in the box can be missed, however short it is, but the enclosure may be too
    * wide: the less so the smaller the box.
    */

@@ -17,7 +17,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   added(const Pack &a, const Pack &b)
   {
     if constexpr (largest)
-      return (a > b) | (a != a) ? a : b;
+      return ((a > b) | (a != a)) ? a : b;
     else
       return a + b;
   }

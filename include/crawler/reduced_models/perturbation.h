@@ -9,8 +9,9 @@
 namespace crawler
 {
   /**
-   * The level "perturbation": the optimal wave to leading order in chi, in closed form (doc/theory.md, "The ladder";
-   * Santhosh and Serra, Phys. Rev. E 106, 024610). In natural units, with A_n^2 = a_n^2 + b_n^2 of the strain:
+   * The level "perturbation": the optimal wave to leading order in chi, in closed form (doc/theory.md, "The model
+   * hierarchy"; Santhosh and Serra @cite SanthoshSerra2022). In natural units, with A_n^2 = a_n^2 + b_n^2 of the
+   * strain:
    *
    *   D(t) = -(a c/2) sum A_n^2 t + (a/(4 pi)) sum (A_n^2/n) sin(2 pi n c t),
    *   Q(t) = (c^2/2) sum A_n^2 t,   E(t) = (k/2) sum A_n^2 (1 - cos 2 pi n c t),   W = Q + E, which is chi^2 H.

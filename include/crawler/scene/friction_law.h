@@ -33,7 +33,7 @@ namespace crawler
     exponent(double w) const;
   };
 
-  /// The p-model of Santhosh and Serra, Phys. Rev. E 106, 024610 (2022): g(w) = gamma w^a, a = 1 - p.
+  /// The p-model g(w) = gamma w^a, a = 1 - p, of Santhosh and Serra @cite SanthoshSerra2022 .
   class PowerFriction : public FrictionLaw
   {
   public:

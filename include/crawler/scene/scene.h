@@ -50,7 +50,7 @@ namespace crawler
 
   /**
    * The units in which L = T = gamma = 1: length L, time T, force gamma L^2/T. What is left of the body is one number,
-   * its stiffness k T/(gamma L^2) (doc/theory.md, "Five numbers"). Throws InputError if these are beyond what double
+   * its stiffness k T/(gamma L^2) (doc/numerics.md, "Natural units"). Throws InputError if these are beyond what double
    * precision can carry.
    */
   Units

@@ -15,8 +15,8 @@ namespace crawler
    * Registers the type: a one-step method for F(t, y, y') = 0 of order 2s-1 with s = 3 or 5 stages, an embedded error
    * estimate of order s, and the collocation polynomial as dense output and as first guess of the next step. The
    * stages are solved together by SNES; their system is preconditioned by one real and (s-1)/2 complex systems of the
-   * size of y, to which it reduces where K and M are the same in all stages (Hairer and Wanner, Solving Ordinary
-   * Differential Equations II, section IV.8). `-ksp_type preonly` makes this the simplified Newton method, anything
+   * size of y, to which it reduces where K and M are the same in all stages (Hairer and Wanner @cite HairerWanner1996,
+   * section IV.8). `-ksp_type preonly` makes this the simplified Newton method, anything
    * else a Newton-Krylov method with exact products.
    */
   PetscErrorCode

@@ -9,7 +9,7 @@
  * side by side (lanes/pack.h). Used by the PETSc type (time/radau.cc), the linear stepper and the lanes.
  *
  * Arrays of stages are [stage][unknown], increments z_i relative to the start of the step. The number of stages @p s is
- * an int, or Stages<s> where the compiler is to know it. Nothing here may come from the C++ library (base/
+ * an int, or `Stages<s>` where the compiler is to know it. Nothing here may come from the C++ library (base/
  * instruction_set.h).
  */
 namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET

@@ -8,7 +8,7 @@ namespace crawler
 {
   /**
    * The Radau IIA method with s = 3 or 5 stages, collocation at the Radau points 0 < c_1 < ... < c_s = 1, of order
-   * 2s-1 (Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.5 and IV.8). Matrices row by row.
+   * 2s-1 (Hairer and Wanner @cite HairerWanner1996, sections IV.5 and IV.8). Matrices row by row.
    */
   struct RadauTableau
   {

@@ -199,7 +199,7 @@ namespace crawler
       return {to_text(ends[0]), to_text(ends[1])};
     }
 
-    /// The generator SplitMix64 (Steele, Lea, Flood 2014), whose n-th number is computed without the ones before it.
+    /// The generator SplitMix64 (@cite SteeleLeaFlood2014), whose n-th number is computed without the ones before it.
     std::uint64_t
     mixed(std::uint64_t x)
     {

@@ -274,7 +274,7 @@ namespace crawler
       log.line(note);
     if (earlier.reference.empty())
     {
-      // On every rank alike, that no one has an idle core beside it; what counts is the first one's.
+      // On every rank alike, so that none has an idle core beside it; the first one's is used.
       const auto report = [&log](const std::string &line) { log.line(line); };
       earlier.reference =
         broadcast(pack(make_reference(parameters, input.scene, lists, interrupted, report)), communicator);

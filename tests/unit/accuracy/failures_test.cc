@@ -150,8 +150,8 @@ TEST(Failures, OfTheSecondRunLeaveTheAnswer)
   EXPECT_NE(answer.result.time.message.find("out of memory"), std::string::npos);
 }
 
-/// The samples of a gait lie so densely that each change of mesh comes near one; a step that nobody sees must not pass
-/// it, or the integrator would be asked for a state of the step before (PETSc's error 63).
+/// The samples of a gait lie so densely that each change of mesh comes near one; a step that no observer sees must not
+/// pass it, or the integrator would be asked for a state of the step before (PETSc's error 63).
 TEST(Failures, MeshesThatChangeLoseNoSample)
 {
   auto settings = test::wave(17., 0.37, 1., 2e4);

@@ -4,7 +4,7 @@
     lane_symbols.py NM NAMESPACE=OBJECT...
 
 What an object file defines for others is in crawler::NAMESPACE: a function that is inline somewhere else as well could be
-given to everybody by the linker, who keeps one of many. And nothing of it runs before the program asks what the
+given to the whole program by the linker, which keeps one of many. And nothing of it runs before the program asks what the
 processor can do. Of two objects one must fail for the other's name, or this test sees nothing.
 """
 import re

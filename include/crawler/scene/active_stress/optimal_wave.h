@@ -33,7 +33,7 @@ namespace crawler
   };
 
   /**
-   * The optimal wave of Santhosh and Serra, Phys. Rev. E 106, 024610 (2022), to leading order in chi:
+   * The optimal wave of Santhosh and Serra @cite SanthoshSerra2022, to leading order in chi:
    *
    *   m = chi sum_n [ gamma ( a_n (cos q c t - cos q(s+ct)) + b_n (sin q(s+ct) - sin q c t) )/q
    *                   - (k/c) ( a_n (sin q(s+ct) - sin q s) + b_n (cos q(s+ct) - cos q s) ) ],   q = 2 pi n/L,

@@ -8,7 +8,7 @@
 namespace crawler
 {
   /**
-   * The optimal wave for a velocity wave V of any shape (Santhosh and Serra, Phys. Rev. E 106, 024610 (2022); their
+   * The optimal wave for a velocity wave V of any shape (Santhosh and Serra @cite SanthoshSerra2022; their
    * f = alpha V, alpha = a/(L gamma c)), also one that does not repeat after the length of the body:
    *
    *   m = chi [ gamma ( int_0^s V(s'+ct) ds' - (s/L) int_0^L V(s'+ct) ds' ) - (k/c) ( V(s+ct) - V(s) ) ].

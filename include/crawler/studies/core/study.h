@@ -27,7 +27,7 @@ namespace crawler
   class StudyProgress
   {
   public:
-    /// @param parts names the @p n_parts parts, as "points".
+    /// @p parts names the @p n_parts parts, as "points".
     StudyProgress(Log &log, unsigned long n_parts, std::string parts);
 
     /// Whether report() would write.

@@ -83,7 +83,7 @@ namespace crawler
 
   /**
    * The number of the tolerance that is to be tried after those in @p tried, nothing if there is none left or if
-   * - the error, the distance to @p reference, is at most the @p bar: nobody could tell it from the reference;
+   * - the error, the distance to @p reference, is at most the @p bar, within which the reference is known;
    * - it changed twice by less than a tenth of itself: it is that of the mesh, which no tolerance reduces;
    * - a run took too long: the others would take longer;
    * - three runs failed in succession.

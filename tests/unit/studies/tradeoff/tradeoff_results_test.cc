@@ -79,7 +79,7 @@ TEST(Tradeoff, ErrorsBelowTheBarCountAsTheBar)
   EXPECT_EQ(results.rows[0].index, 0);
   EXPECT_NEAR(results.errors[1], 1e-9, 1e-15);
   EXPECT_EQ(results.shown[1], 1e-6);
-  EXPECT_EQ(results.on_front, (std::vector<bool>{true, true, false})); // nobody can tell the last one from the middle
+  EXPECT_EQ(results.on_front, (std::vector<bool>{true, true, false})); // the last one cannot be told from the middle
   ASSERT_FALSE(results.recommendations.empty());
   EXPECT_EQ(results.recommendations.back().exponent, 6); // nothing is said about 1e-7
 }

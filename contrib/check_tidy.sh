@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Runs clang-tidy with the checks of .clang-tidy; fails, naming the lines, if it finds something.
+# Usage: contrib/check_tidy.sh                    all headers, and the sources that differ from the branch main
+#        contrib/check_tidy.sh --since COMMIT     the same for another commit
+#        contrib/check_tidy.sh --headers          all headers (the test unit/tidy_headers: a quarter of a minute)
+#        contrib/check_tidy.sh FILE|FOLDER...     these sources (5 s each)
+# Compile commands are those of the build folder BUILD (default: build).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+build=${BUILD:-build}
+[ -f "$build/compile_commands.json" ] || { echo "There is no build in $build/: run contrib/setup.sh" >&2; exit 1; }
+
+headers=yes files=()
+case "${1:---since}" in
+  --headers) ;;
+  --since) mapfile -t files < <(git diff --name-only --diff-filter=d "${2:-main}" -- 'source/*.cc' 'tests/*.cc') ;;
+  *) headers=no; mapfile -t files < <(find "$@" -name '*.cc' | sort) ;;
+esac
+
+work=$(mktemp -d)
+trap 'rm -r "$work"' EXIT
+cp .clang-tidy "$work"
+if [ $headers = yes ]; then
+  # One source includes all headers but those of the lanes, which lanes.cc includes.
+  (cd include; find crawler -name '*.h' -exec grep -L 'crawler::CRAWLER_INSTRUCTION_SET' {} +) | sort |
+    sed 's/.*/#include <&>/' >"$work/headers.cc"
+  files+=("$work/headers.cc" source/lanes/lanes.cc)
+fi
+# The compile commands, that of headers.cc like that of main.cc, without the options of g++ that clang does not know.
+python3 - "$build/compile_commands.json" "$work" <<'END'
+import json, sys
+commands = json.load(open(sys.argv[1]))
+main = next(c for c in commands if c["file"].endswith("source/main.cc"))
+headers = sys.argv[2] + "/headers.cc"
+commands.append(main | {"file": headers, "command": main["command"].replace(main["file"], headers)})
+lanes = [c for c in commands if c["file"].endswith("lanes.cc")]
+commands = [c for c in commands if c not in lanes[1:]]  # of one instruction set
+for c in commands:
+    c["command"] = " ".join(w for w in c["command"].split() if w not in ("-fcx-limited-range", "-funroll-all-loops"))
+json.dump(commands, open(sys.argv[2] + "/compile_commands.json", "w"))
+END
+echo "clang-tidy: ${#files[@]} sources"
+printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 4 \
+  clang-tidy --quiet -p "$work" --warnings-as-errors='*' --extra-arg=-Wno-unknown-warning-option 2>/dev/null
+echo "clang-tidy: nothing found"
