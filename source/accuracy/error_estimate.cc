@@ -186,7 +186,8 @@ namespace crawler
       total = 0.;
     else if (finer != nullptr)
     {
-      if (finer->time.status != Status::finished || (finer_mesh != nullptr && finer_mesh->time.status != Status::finished))
+      if (finer->time.status != Status::finished ||
+          (finer_mesh != nullptr && finer_mesh->time.status != Status::finished))
         return;
       const bool promised = is_promised(choice, scene);
       const double part   = !promised                             ? 0.

@@ -18,7 +18,7 @@ namespace crawler
 
     /// A body that starts from rest starts with the stretch 1.
     void
-    require_start_at_rest(const Scene &scene, const std::string &model)
+    require_start_at_rest(const Scene &scene, const Model model)
     {
       constexpr double round_off   = 1e-8; // also of numbers in a table
       const StrainHistory *history = scene.active_stress->prescribed_strain();
@@ -36,12 +36,12 @@ namespace crawler
                                      "the {} model starts from rest (Model = kinematic does not)",
                                      worst.strain,
                                      worst.s,
-                                     model),
+                                     word_of(model)),
                          "Active stress/Generator");
     }
 
     void
-    require_fit(const std::string &model, const RunParameters &parameters, const ReducedScene &levels)
+    require_fit(const Model model, const RunParameters &parameters, const ReducedScene &levels)
     {
       if (model == Model::perturbation && !levels.wave() && parameters.active_stress.generator == "optimal wave")
         throw InputError(
@@ -65,7 +65,7 @@ namespace crawler
     /// An approximate level that was tried.
     struct Candidate
     {
-      std::string model;
+      Model model;
       bool known;
       double error, displacement; ///< in natural units
 
@@ -92,37 +92,37 @@ namespace crawler
     choose_by_error(const ReducedScene &levels, const double accuracy)
     {
       if (levels.is_prescribed())
-        return {"kinematic", "Model kinematic: the strain is prescribed, so there is no equation to solve"};
+        return {Model::kinematic, "Model kinematic: the strain is prescribed, so there is no equation to solve"};
       if (levels.scene().body.friction_exponent() == 0.)
-        return {"linear", "Model linear: a = 0, where the equation is linear and the displacement 0"};
+        return {Model::linear, "Model linear: a = 0, where the equation is linear and the displacement 0"};
       if (levels.strain() == nullptr)
-        return {"nonlinear", "Model nonlinear: no simpler one fits this active stress"};
+        return {Model::nonlinear, "Model nonlinear: no simpler one fits this active stress"};
       const ModelErrors errors = levels.model_errors();
       std::vector<Candidate> candidates;
       if (levels.wave())
         candidates.push_back(
-          {"perturbation", errors.known, errors.perturbation, Perturbation(*levels.wave()).displacement(1.)});
-      candidates.push_back({"kinematic", errors.known, errors.kinematic, errors.displacement});
+          {Model::perturbation, errors.known, errors.perturbation, Perturbation(*levels.wave()).displacement(1.)});
+      candidates.push_back({Model::kinematic, errors.known, errors.kinematic, errors.displacement});
       std::string tried;
       for (const Candidate &candidate : candidates)
       {
         if (candidate.meets(accuracy, candidate.model == Model::kinematic ? model_share : 1.))
           return {candidate.model,
                   fmt::format("Model {}: its estimated error{} is below {}",
-                              candidate.model,
+                              word_of(candidate.model),
                               candidate.error <= floor ? "" : fmt::format(" {:.2g}", candidate.relative()),
                               candidate.error <= floor ? fmt::format("{:g} of the length", floor)
                                                        : fmt::format("Accuracy {:g}", accuracy))};
-        tried += fmt::format("{}{} {}, ", candidate.model, tried.empty() ? " has" : "", candidate.in_words());
+        tried += fmt::format("{}{} {}, ", word_of(candidate.model), tried.empty() ? " has" : "", candidate.in_words());
       }
-      return {"nonlinear", fmt::format("Model nonlinear: {}Accuracy is {:g}", tried, accuracy)};
+      return {Model::nonlinear, fmt::format("Model nonlinear: {}Accuracy is {:g}", tried, accuracy)};
     }
   } // namespace
 
   ModelChoice
   choose_model(const RunParameters &parameters, const Scene &scene)
   {
-    ModelChoice choice{parameters.model, "Model " + parameters.model + ": as set"};
+    ModelChoice choice{parameters.model, fmt::format("Model {}: as set", word_of(parameters.model))};
     if (parameters.model == Model::linear && scene.body.friction_exponent() != 0.)
       throw InputError(
         fmt::format("Model is linear, but a = 1 - p is {:g}; a = 0 is expected (Anchoring exponent p = 1)",
@@ -131,7 +131,7 @@ namespace crawler
     if (parameters.model != Model::linear && parameters.model != Model::nonlinear)
     {
       if (!scene.is_plain())
-        return {"nonlinear",
+        return {Model::nonlinear,
                 "Model nonlinear: simpler ones are for plain bodies and grounds, and here is " +
                   scene.general_features()};
       const ReducedScene levels(scene);

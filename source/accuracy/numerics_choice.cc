@@ -27,8 +27,10 @@ namespace crawler
     uses_linear_stepper(const RunParameters &parameters, const Scene &scene)
     {
       const bool fits =
-        parameters.body.friction_exponent() == 0. && scene.is_plain() && parameters.discretization.mesh != MeshKind::adaptive &&
-        parameters.discretization.formulation != FormulationEntry::stretch && parameters.time.engine == Engine::automatic &&
+        parameters.body.friction_exponent() == 0. && scene.is_plain() &&
+        parameters.discretization.mesh != MeshKind::adaptive &&
+        parameters.discretization.formulation != FormulationEntry::stretch &&
+        parameters.time.engine == Engine::automatic &&
         (parameters.time.integrator == "automatic" || integrator(parameters.time.integrator).petsc_type == "radau");
       return fits && (parameters.model == Model::linear || parameters.model == Model::automatic);
     }
@@ -87,7 +89,7 @@ namespace crawler
       choose()
       {
         const MeshKind mesh = parameters_.discretization.mesh;
-        const bool fixed        = parameters_.time.step_control == StepControl::fixed;
+        const bool fixed    = parameters_.time.step_control == StepControl::fixed;
         if (parameters_.discretization.formulation == FormulationEntry::stretch)
         {
           stretch_form();
@@ -120,8 +122,8 @@ namespace crawler
         }
         bool enough = false;
         if (mesh != MeshKind::adaptive)
-          enough =
-            uniform(mesh == MeshKind::uniform || user_cells_ || choice_.numerics.linear ? most_cells : most_uniform_cells);
+          enough = uniform(mesh == MeshKind::uniform || user_cells_ || choice_.numerics.linear ? most_cells
+                                                                                               : most_uniform_cells);
         // What no uniform mesh resolves is steep, not fine, if the active stress is smooth: fronts of friction.
         if (!enough && may_be_stretch() && scene_.friction_exponent() < 0. && pilot_.time.reason != "inverted_at_end" &&
             is_cheaper_than_adaptive(L_ / scales_.length, accuracy_))
@@ -427,8 +429,8 @@ namespace crawler
       may_be_stretch() const
       {
         const DiscretizationParameters &own = parameters_.discretization;
-        return own.formulation == FormulationEntry::automatic && own.mesh == MeshKind::automatic && !own.degree && !user_cells_ &&
-               !user_tolerance_ && adaptive_steps_ && !choice_.numerics.linear &&
+        return own.formulation == FormulationEntry::automatic && own.mesh == MeshKind::automatic && !own.degree &&
+               !user_cells_ && !user_tolerance_ && adaptive_steps_ && !choice_.numerics.linear &&
                parameters_.time.engine == Engine::automatic &&
                (parameters_.time.integrator == "automatic" || parameters_.time.integrator.starts_with("radau")) &&
                reason_against_stretch_form(scene_).empty();

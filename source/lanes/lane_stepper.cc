@@ -134,9 +134,9 @@ namespace crawler
   LaneStepper::done(void *context, unsigned int, const LaneOutcome &outcome)
   {
     auto &self                      = *static_cast<LaneStepper *>(context);
-    self.outcome_.status            = outcome.status == LaneOutcome::finished  ? "finished"
-                                      : outcome.status == LaneOutcome::stopped ? "stopped"
-                                                                               : "failed";
+    self.outcome_.status            = outcome.status == LaneOutcome::finished  ? Status::finished
+                                      : outcome.status == LaneOutcome::stopped ? Status::stopped
+                                                                               : Status::failed;
     self.outcome_.reason            = outcome.status == LaneOutcome::gave_up ? gave_up : "";
     self.outcome_.time              = outcome.time;
     self.outcome_.step_size         = outcome.step_size;

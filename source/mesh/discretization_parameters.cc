@@ -37,6 +37,6 @@ namespace crawler
   DiscretizationParameters::shares(const unsigned int cells) const
   {
     constexpr unsigned int worth_sharing = 2000; // measured, doc/numerics.md
-    return share_cells == "yes" || (share_cells == "automatic" && cells >= worth_sharing);
+    return share_cells == ShareCells::yes || (share_cells == ShareCells::automatic && cells >= worth_sharing);
   }
 } // namespace crawler

@@ -493,7 +493,7 @@ namespace crawler
   Declarations::value(const unsigned int index) const
   {
     const std::vector<std::string> words = split_path(entries_[index].path);
-enter_sections(words);
+    enter_sections(words);
     std::string result = handler_->get(words.back());
     leave_sections(words);
     return result;

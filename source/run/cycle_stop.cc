@@ -25,8 +25,9 @@ namespace crawler
   std::optional<CycleWish>
   cycle_wish(const RunParameters &parameters, const Scene &scene, const unsigned int n_output_times)
   {
-    const std::string &entry = parameters.time.cycle_stop;
-    if (entry == "off" || (entry == "automatic" && (n_output_times > 0 || parameters.time.step_control != StepControl::adaptive)))
+    const TimeParameters &time = parameters.time;
+    if (time.cycle_stop == CycleStopMode::off || (time.cycle_stop == CycleStopMode::automatic &&
+                                                  (n_output_times > 0 || time.step_control != StepControl::adaptive)))
       return std::nullopt;
     if (!scene.is_plain()) // its cycles need not repeat
       return std::nullopt;

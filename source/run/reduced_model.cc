@@ -23,7 +23,7 @@ namespace crawler
     }
   } // namespace
 
-  ReducedModel::ReducedModel(const Scene &scene, const std::string &model)
+  ReducedModel::ReducedModel(const Scene &scene, const Model model)
     : scene_(scene)
     , reduced_scene_(scene)
     , model_(model)
@@ -99,7 +99,7 @@ namespace crawler
         : fmt::format(
             "the error of the {} model cannot be estimated for this scene, since its corrections do not become "
             "smaller; Model = auto is needed",
-            model_);
+            word_of(model_));
   }
 
   SimulationResult

@@ -67,7 +67,7 @@ namespace crawler
     numbers_and_words()
     {
       std::vector<ResultEntry> list = {
-        of_process(word("status", "how the run ended", CRAWLER_VALUE(r.time.status))),
+        of_process(word("status", "how the run ended", CRAWLER_VALUE(std::string(word_of(r.time.status))))),
         of_process(word("reason",
                         "name of what went wrong",
                         CRAWLER_VALUE(r.time.status == Status::finished ? std::string() : r.time.reason))),
@@ -87,7 +87,7 @@ namespace crawler
                "cycles that were extrapolated",
                CRAWLER_PART(cycles, (unsigned long)part.extrapolated)),
         number("cycles.error", length, "bound of the error by extrapolation", CRAWLER_PART(cycles, part.bound)),
-        word("model", "level of the model hierarchy", CRAWLER_VALUE(r.model)),
+        word("model", "level of the model hierarchy", CRAWLER_VALUE(std::string(word_of(r.model)))),
         number("stress_power",
                energy,
                "work of the active stress",

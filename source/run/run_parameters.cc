@@ -42,17 +42,19 @@ namespace crawler
                 "Model is linear and {} is {}, but {} is expected", entry.substr(entry.find('/') + 1), found, expected),
               entry);
         };
-      require(
-        p.discretization.mesh != MeshKind::adaptive, "Discretization/Mesh", p.discretization.mesh, "automatic or uniform");
+      require(p.discretization.mesh != MeshKind::adaptive,
+              "Discretization/Mesh",
+              word_of(p.discretization.mesh),
+              "automatic or uniform");
       require(p.discretization.formulation != FormulationEntry::stretch,
               "Discretization/Formulation",
-              p.discretization.formulation,
+              word_of(p.discretization.formulation),
               "automatic or position");
       require(p.time.integrator == "automatic" || integrator(p.time.integrator).petsc_type == "radau",
               "Time/Integrator",
               p.time.integrator,
               "automatic, radau 5 or radau 9");
-      require(p.time.engine == Engine::automatic, "Time/Engine", p.time.engine, "automatic");
+      require(p.time.engine == Engine::automatic, "Time/Engine", word_of(p.time.engine), "automatic");
     }
     /// The stretch form has meshes and integrators of its own.
     void
@@ -68,15 +70,17 @@ namespace crawler
                              entry);
         };
       const DiscretizationParameters &d = p.discretization;
-      require(d.mesh != MeshKind::adaptive, "Discretization/Mesh", d.mesh, "automatic or uniform");
+      require(d.mesh != MeshKind::adaptive, "Discretization/Mesh", word_of(d.mesh), "automatic or uniform");
       require(!d.degree || *d.degree == 1, "Discretization/Degree", fmt::format("{}", d.degree.value_or(1)), "1");
-      require(d.share_cells != "yes", "Discretization/Share cells", d.share_cells, "automatic or no");
+      require(
+        d.share_cells != ShareCells::yes, "Discretization/Share cells", word_of(d.share_cells), "automatic or no");
       require(p.time.integrator == "automatic" || integrator(p.time.integrator).petsc_type == "radau",
               "Time/Integrator",
               p.time.integrator,
               "automatic, radau 5 or radau 9");
-      require(p.time.engine == Engine::automatic, "Time/Engine", p.time.engine, "automatic");
-      require(p.time.step_control == StepControl::adaptive, "Time/Step control", p.time.step_control, "adaptive");
+      require(p.time.engine == Engine::automatic, "Time/Engine", word_of(p.time.engine), "automatic");
+      require(
+        p.time.step_control == StepControl::adaptive, "Time/Step control", word_of(p.time.step_control), "adaptive");
       require(!p.time.tolerance || *p.time.tolerance <= 1e-3 * p.body.length,
               "Time/Tolerance",
               fmt::format("{:g}", p.time.tolerance.value_or(0.)),
@@ -95,7 +99,7 @@ namespace crawler
         throw InputError(
           fmt::format("Model is {}, which is for plain bodies and grounds, but the scene has {}; nonlinear or "
                       "auto is expected",
-                      p.model,
+                      word_of(p.model),
                       features),
           "Model");
       if (scene.active_stress->prescribed_strain() != nullptr)
@@ -111,7 +115,8 @@ namespace crawler
                          "Time/Cycle stop");
       const StretchFeedback *feedback = scene.active_stress->feedback();
       const double delay              = feedback != nullptr ? feedback->delay() : 0.;
-      if (delay > 0. && p.time.step_control == StepControl::fixed && p.time.initial_step && *p.time.initial_step > delay)
+      if (delay > 0. && p.time.step_control == StepControl::fixed && p.time.initial_step &&
+          *p.time.initial_step > delay)
         throw InputError(
           fmt::format("Initial step is {:g} and Step control is fixed, but no more than the delay of the "
                       "feedback, {:g}, is expected",

@@ -159,7 +159,7 @@ namespace crawler
                   *scene_.active_stress,
                   is_watched ? numerics_.least_event : 0.));
     run_->n_failures     = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0;
-    result().model       = numerics_.linear ? "linear" : "nonlinear";
+    result().model       = numerics_.linear ? Model::linear : Model::nonlinear;
     result().jumps_move  = numerics_.jumps_move;
     result().formulation = numerics_.formulation;
     mesh_.assembler->set_initial_state(y_);

@@ -113,7 +113,7 @@ namespace crawler
                                 time.status == Status::finished   ? "Finished"
                                 : time.status == Status::inverted ? "Inverted"
                                 : time.status == Status::stopped  ? "Stopped"
-                                                            : "FAILED (" + time.reason + ")",
+                                                                  : "FAILED (" + time.reason + ")",
                                 time.time,
                                 steps,
                                 result.solve_seconds + result.output_seconds));

@@ -24,11 +24,11 @@ namespace crawler::test
       SimulationResult result;
       for (auto ignored : state)
       {
-        result = ReducedModel(scene, model).compute(accuracy, true);
+        result = ReducedModel(scene, from_word<Model>(model).value()).compute(accuracy, true);
         benchmark::DoNotOptimize(result.displacement);
       }
       state.SetItemsProcessed(state.iterations());
-      state.SetLabel(result.time.status);
+      state.SetLabel(word_of(result.time.status));
     }
 
     /// The estimate of the models' errors alone.

@@ -36,7 +36,7 @@ namespace crawler::test
     {
       Setting setting;
       setting.time.integrator       = integrator;
-      setting.time.engine           = space.engine;
+      setting.time.engine           = from_word<Engine>(space.engine).value();
       setting.time.end_time         = space.end_time;
       setting.numerics.degree       = degree;
       setting.numerics.n_cells      = n_cells;

@@ -79,8 +79,9 @@ namespace
                std::abs(value - c.reference) / wanted,
                bound / wanted,
                result.formulation == Formulation::stretch ? "stretch" : "position",
-               result.time.status == Status::finished || result.time.status == Status::inverted ? result.time.status
-                                                                                    : result.time.reason,
+               result.time.status == Status::finished || result.time.status == Status::inverted
+                 ? word_of(result.time.status)
+                 : result.time.reason.c_str(),
                result.mesh ? result.mesh->n_cells : 0,
                result.time.steps,
                inverted != c.inverts ? ", WRONG" : "");

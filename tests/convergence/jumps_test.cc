@@ -70,7 +70,7 @@ TEST(Jumps, InSpaceKeepTheOrder)
                              {.degree = q, .n_cells = n, .tolerance = 1e-13, .initial_step = 1e-3, .formulation = form},
                              declared ? std::vector<double>{0.37} : std::vector<double>(),
                              {});
-    const auto result = run->simulate("automatic", {});
+    const auto result = run->simulate(Engine::automatic, {});
     EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
     EXPECT_EQ(result.most_cells, n);
     return result.displacement;
@@ -187,14 +187,14 @@ TEST(Jumps, AreTheSameForAllMethods)
     Numerics numerics       = fine;
     numerics.tolerance      = first_orders ? 1e-7 : 1e-9;
     const auto run          = jumping(test::expression(-1., robot), method.name, numerics, {0.4}, robot_times);
-    compare(method.name, run->simulate("petsc"), first_orders ? 1e-4 : 1e-5);
+    compare(method.name, run->simulate(Engine::petsc), first_orders ? 1e-4 : 1e-5);
   }
   const auto with = [&](const auto &change) {
     Numerics numerics = fine;
     change(numerics);
     return jumping(test::expression(-1., robot), "radau 5", numerics, {0.4}, robot_times);
   };
-  compare("fused", with([](Numerics &) {})->simulate("automatic"), 1e-7);
+  compare("fused", with([](Numerics &) {})->simulate(Engine::automatic), 1e-7);
   const auto stretch =
     jumping(test::with(test::expression(-1., robot), {{"Discretization/Formulation", "stretch"}, {"Accuracy", "1e-5"}}),
             "automatic",
@@ -209,7 +209,7 @@ TEST(Jumps, AreTheSameForAllMethods)
             n.n_cells   = 10;
             n.mesh      = {1e-7, 1e-6};
             n.tolerance = 1e-8;
-          })->simulate("petsc"),
+          })->simulate(Engine::petsc),
           1e-4);
 }
 
@@ -250,7 +250,7 @@ TEST(Jumps, ManyInTime)
   }
   const auto batch = test::run_alone(*run);
   ASSERT_TRUE(batch);
-  EXPECT_NEAR(run->simulate("automatic").displacement / batch->displacement, 1., 1e-12);
+  EXPECT_NEAR(run->simulate(Engine::automatic).displacement / batch->displacement, 1., 1e-12);
   for (const double displacement : displacements) // output times make other steps
     EXPECT_NEAR(displacement / batch->displacement, 1., 1e-5);
 }
@@ -323,7 +323,7 @@ TEST(Jumps, GetGradedMeshes)
       run->numerics            = choose_numerics(MPI_COMM_WORLD, run->parameters, run->scene)->numerics;
       EXPECT_GE(run->numerics.grading.levels, 2u);
       EXPECT_EQ(run->numerics.mesh.tolerance, 0.);
-      const auto result = run->simulate("automatic");
+      const auto result = run->simulate(Engine::automatic);
       ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
       EXPECT_EQ(result.engine, "fused");
       EXPECT_LT(result.most_cells, 60u);
@@ -353,8 +353,8 @@ TEST(Jumps, MayEndWhenCyclesRepeat)
                            {.degree = 6, .n_cells = 5, .tolerance = 1e-7, .initial_step = 1e-8, .grading = {3, 0.25}},
                            {0.4},
                            times);
-  const auto all   = run->simulate("automatic");
-  const auto early = run->simulate("automatic", {.energy_balance = true, .cycles = CycleWish{1., 1e-6}});
+  const auto all   = run->simulate(Engine::automatic);
+  const auto early = run->simulate(Engine::automatic, {.energy_balance = true, .cycles = CycleWish{1., 1e-6}});
   ASSERT_EQ(early.time.status, Status::finished);
   ASSERT_TRUE(early.cycles);
   EXPECT_EQ(early.cycles->computed + early.cycles->extrapolated, 20u);

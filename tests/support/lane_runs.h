@@ -36,9 +36,9 @@ namespace crawler::test
       return {&scene, &parameters.time, &numerics};
     }
 
-    /// By a Simulation, on the fused engine ("automatic") or on PETSc ("petsc").
+    /// By a Simulation, on the fused engine or on PETSc.
     SimulationResult
-    simulate(const std::string &engine, const Simulation::Options &options = {.energy_balance = true}) const
+    simulate(const Engine engine, const Simulation::Options &options = {.energy_balance = true}) const
     {
       TimeParameters time = parameters.time;
       time.engine         = engine;

@@ -46,7 +46,7 @@ namespace
   problem_of(const SimulationResult &result)
   {
     return fmt::format("{} at t = {:.4g}, smallest stretch {:.3g}",
-                       result.time.reason.empty() ? result.time.status : result.time.reason,
+                       result.time.reason.empty() ? word_of(result.time.status) : result.time.reason.c_str(),
                        result.time.time,
                        result.min_stretch.value);
   }
@@ -129,7 +129,7 @@ namespace
       n.initial_step                = first_step_on_graded_mesh(scene, n);
       TimeParameters time           = p.time;
       time.integrator               = integrator;
-      time.engine                   = engine;
+      time.engine                   = from_word<Engine>(engine).value();
       time.max_steps                = 100000;
       const SimulationResult result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {});
       if (result.time.status == Status::finished)

@@ -66,7 +66,8 @@ main(int argc, char **argv)
     else
     {
       const double reference = row["displacement"], error = std::abs(result.displacement - reference);
-      ok      = result.time.status == Status::finished && error <= outcome.choice.promised_error + row["error"].get<double>();
+      ok =
+        result.time.status == Status::finished && error <= outcome.choice.promised_error + row["error"].get<double>();
       verdict = fmt::format("{:.10g}, expected {:.10g}: error {:.1e}, reported {:.1e}",
                             result.displacement,
                             reference,
@@ -76,7 +77,7 @@ main(int argc, char **argv)
     failures += !ok;
     fmt::print("{:<36} {:<9} {:<16} {} ({} cells, {} steps, {:.2f} s){}\n",
                row["name"].get<std::string>(),
-               result.time.status,
+               word_of(result.time.status),
                result.time.reason,
                verdict,
                result.most_cells,

@@ -188,7 +188,7 @@ TEST(GaitNumbers, SideBySideTheyAreTheSame)
   const auto together = run_batch(test::entries(runs), options);
   for (std::size_t i = 0; i < runs.size(); ++i)
   {
-    const auto alone = runs[i]->simulate("automatic", options);
+    const auto alone = runs[i]->simulate(Engine::automatic, options);
     ASSERT_TRUE(together[i]) << i;
     ASSERT_EQ(together[i]->gait.has_value(), alone.gait.has_value()) << i;
     EXPECT_EQ(alone.gait.has_value(), i < 6) << i;

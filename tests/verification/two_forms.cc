@@ -90,7 +90,7 @@ namespace
     std::string refused;
 
     bool
-    is(const char *status) const
+    is(const Status status) const
     {
       return result.time.status == status;
     }
@@ -129,7 +129,7 @@ namespace
   bool
   has_answer(const FormAnswer &a)
   {
-    return a.is("inverted") || a.is("finished") ||
+    return a.is(Status::inverted) || a.is(Status::finished) ||
            (a.result.time.reason == accuracy_not_met && a.result.error && std::isfinite(a.result.error->total));
   }
 
@@ -184,10 +184,11 @@ main(int argc, char **argv)
     ++verdicts[verdict];
     n_wrong += verdict.starts_with("WRONG");
     n_slow += own.seconds > 3.;
-    if (!own.is("finished") && !own.is("inverted"))
+    if (!own.is(Status::finished) && !own.is(Status::inverted))
     {
       ++n_failed;
-      ++failures[own.result.time.reason.empty() ? own.result.time.status + own.refused : own.result.time.reason];
+      ++failures[own.result.time.reason.empty() ? word_of(own.result.time.status) + own.refused
+                                                : own.result.time.reason];
     }
     const auto numbers = [&](const FormAnswer &a) {
       return fmt::format("{},{},{:.3g},{:.12g},{:.3g},{:.8g}",

@@ -96,7 +96,7 @@ TEST(WaveRuns, Batch)
 {
   const Numerics numerics{.degree = 6, .n_cells = 24, .tolerance = 1e-7, .initial_step = 1e-4};
   const test::LaneRun run(two_pulses, "radau 9", numerics);
-  const auto alone = run.simulate("petsc");
+  const auto alone = run.simulate(Engine::petsc);
   const auto batch = test::run_alone(run);
   ASSERT_TRUE(batch.has_value());
   EXPECT_NEAR(batch->displacement, alone.displacement, 2. * numerics.tolerance);

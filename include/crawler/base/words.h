@@ -16,7 +16,10 @@ namespace crawler
   struct Words;
 
   template <typename Enum>
-  concept HasWords = requires { Words<Enum>::list; };
+  concept HasWords = requires
+  {
+    Words<Enum>::list;
+  };
 
   template <HasWords Enum>
   constexpr const char *

@@ -50,7 +50,7 @@ namespace crawler
   struct DiscretizationParameters
   {
     FormulationEntry formulation = FormulationEntry::automatic;
-    MeshKind mesh = MeshKind::automatic;
+    MeshKind mesh                = MeshKind::automatic;
     std::optional<double> mesh_tolerance; ///< relative [1]
     std::optional<double> smallest_cell;  ///< [length]
     std::optional<unsigned int> degree;

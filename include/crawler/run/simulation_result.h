@@ -20,7 +20,7 @@ namespace crawler
   /// What one simulation gives.
   struct SimulationResult
   {
-    TimeOutcome time;                ///< its status is "inverted" too
+    TimeOutcome time; ///< its status is "inverted" too
     Model model = Model::nonlinear;
 
     /// Of the centre of mass, (1/L) int u ds [length]; not a number if it was not looked at before the run broke off.

@@ -48,11 +48,11 @@ namespace crawler
         if (axes.first.entry == axes.second.entry)
           throw InputError(fmt::format("\"{}\" is on both axes; two different entries are expected", axes.first.entry),
                            second_name);
-        if (const std::string &model = parameters.model; model != "nonlinear")
+        if (parameters.model != Model::nonlinear)
           throw InputError(
             fmt::format("Model is {}, but an atlas compares formulations of the nonlinear model; Model = "
                         "nonlinear is expected",
-                        model),
+                        word_of(parameters.model)),
             "Model");
         if (parameters.active_stress.generator == "strain feedback")
           throw InputError("Generator is strain feedback, but an atlas must know the stretch of the ends beforehand; "

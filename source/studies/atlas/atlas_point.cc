@@ -59,7 +59,7 @@ namespace crawler
     }
 
     Parameters
-    with_formulation(const Parameters &parameters, const std::string &formulation)
+    with_formulation(const Parameters &parameters, const FormulationEntry formulation)
     {
       Parameters result                 = parameters;
       result.discretization.formulation = formulation;
@@ -71,7 +71,7 @@ namespace crawler
     {
       const SimulationResult &result = computed.result;
       AtlasRun run;
-      run.status         = result.time.status;
+      run.status         = word_of(result.time.status);
       run.reason         = result.time.reason;
       run.message        = result.time.message;
       run.promised_error = computed.choice.promised_error; // not a number if nothing is promised
@@ -222,14 +222,14 @@ namespace crawler
     add(AtlasPoint::position, [&](const std::size_t i) -> std::optional<Parameters> {
       if (!both_forms(i))
         return std::nullopt;
-      return with_formulation(parameters[i], "position");
+      return with_formulation(parameters[i], FormulationEntry::position);
     });
     add(AtlasPoint::stretch, [&](const std::size_t i) -> std::optional<Parameters> {
       // For a >= 0 its inversions are located less well than those of the position form.
       if (!both_forms(i) || points[i].runs[AtlasPoint::automatic].is_stretch ||
           parameters[i].body.friction_exponent() >= 0.)
         return std::nullopt;
-      return with_formulation(parameters[i], "stretch");
+      return with_formulation(parameters[i], FormulationEntry::stretch);
     });
     for (std::size_t i = 0; i < points.size(); ++i)
       if (both_forms(i) && points[i].runs[AtlasPoint::automatic].is_stretch) // the automatic choice was this very run

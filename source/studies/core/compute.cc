@@ -169,7 +169,7 @@ namespace crawler
         task.is_out_of_time = before + clock.seconds() > time_limit;
         return !task.is_out_of_time && !interrupted();
       };
-      bool is_computed = !task.computed.result.time.status == Status::none;
+      bool is_computed = task.computed.result.time.status != Status::none;
       Answer answer    = run_as_promised(
         MPI_COMM_SELF,
         task.parameters,
@@ -195,7 +195,8 @@ namespace crawler
     compute_batches(tasks, time_limit, interrupted);
     for (Task &task : tasks)
     {
-      if (task.scene && !task.error && task.computed.result.time.status != Status::stopped && !task.computed.result.error)
+      if (task.scene && !task.error && task.computed.result.time.status != Status::stopped &&
+          !task.computed.result.error)
         guarded(task, [&]() { finish(task, time_limit, interrupted); });
       if (!task.error)
         check_identities(task.computed.result, task.parameters);
@@ -360,7 +361,7 @@ namespace crawler
           {.energy_balance = tasks.front().parameters.output.energy_balance, .gait = gait_wish(tasks.front())},
           is_in_time);
       for (std::size_t i = 0; i < tasks.size(); ++i)
-        done[i] = !tasks[i].computed.result.time.status == Status::none;
+        done[i] = tasks[i].computed.result.time.status != Status::none;
     }
     catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
     {

@@ -69,7 +69,7 @@ namespace crawler
         {strain, {"Strain", "Constants"}, "Given by", given_by, {"expression"}},
         {strain, {"File"}, "Given by", given_by, {"table"}},
         {strain, {"Mean strain", "Amplitude", "Wave", "Phase"}, "Given by", given_by, {"wave"}},
-        {"Discretization/", {""}, "Model", p.model, {"auto", "linear", "nonlinear"}},
+        {"Discretization/", {""}, "Model", word_of(p.model), {"auto", "linear", "nonlinear"}},
         {optimal, {"Sine coefficients", "Cosine coefficients"}, "Shape", wave.shape, {"Fourier"}},
         {optimal, {"Shape formula", "Shape constants"}, "Shape", wave.shape, {"expression"}},
         {optimal, {"Shape file"}, "Shape", wave.shape, {"table"}},

@@ -214,7 +214,7 @@ namespace crawler
       else if (++n_runs > 1)
       {
         log.line((latest.status == Status::failed ? latest.reason + ": " + latest.message
-                                                              : "The error is larger than Accuracy asks for") +
+                                                                    : "The error is larger than Accuracy asks for") +
                  ": once more, finer.");
         build(choice.numerics);
         if (writes)

@@ -106,15 +106,15 @@ namespace crawler
           ? "it took longer than Sweep/Time limit per point when its errors were measured; the run itself is whole"
           : "it took longer than Sweep/Time limit per point"};
     const TimeOutcome &time = task.computed.result.time;
-    return time.status == Status::finished ? PointStatus{time.status, "", ""}
-                                     : PointStatus{time.status, time.reason, time.message};
+    return time.status == Status::finished ? PointStatus{word_of(time.status), "", ""}
+                                           : PointStatus{word_of(time.status), time.reason, time.message};
   }
 
   RowFile::Row
   sweep_row(const Task &task)
   {
     const PointStatus status = status_of(task);
-    const bool has_result    = !task.error && !task.computed.result.time.status == Status::none;
+    const bool has_result    = !task.error && task.computed.result.time.status != Status::none;
     RowFile::Row row;
     for (const ResultEntry &entry : result_table())
       if (!entry.of_process)

@@ -135,7 +135,7 @@ namespace crawler
     catch (...)
     {
       const TimeOutcome failure = failure_of(std::current_exception());
-      not_computed(row, failure.status, failure.reason, failure.message);
+      not_computed(row, word_of(failure.status), failure.reason, failure.message);
     }
     return row;
   }
@@ -179,7 +179,7 @@ namespace crawler
     if (interrupted_())
       return false;
     check_identities(result, own);
-    row.status  = result.time.status;
+    row.status  = word_of(result.time.status);
     row.reason  = result.time.reason;
     row.message = result.time.message;
     if (choice_)

@@ -202,7 +202,7 @@ namespace crawler
           const SimulationResult result = guarded_run(setting);
           if (result.time.status != Status::finished)
           {
-            reference_.status  = result.time.status;
+            reference_.status  = word_of(result.time.status);
             reference_.message = in_words(setting) + ": " + result.time.message;
             if (result.time.status == Status::stopped)
               break;

@@ -162,7 +162,7 @@ namespace crawler
       try
       {
         Parameters own = parameters;
-        own.model      = model;
+        own.model      = from_word<Model>(model).value();
         choose_model(own, scene);
         if (model == "kinematic") // a closed form has no tolerance
           for (const double tolerance : lists.tolerances)
@@ -314,21 +314,21 @@ namespace crawler
   with_setting(const Parameters &parameters, const TradeoffSetting &setting, const double size)
   {
     Parameters result = parameters;
-    result.model      = setting.model;
+    result.model      = from_word<Model>(setting.model).value();
     if (setting.has_no_mesh())
     {
       result.accuracy = setting.tolerance;
       return result;
     }
-    result.discretization.formulation = setting.formulation;
-    result.discretization.mesh        = setting.mesh;
+    result.discretization.formulation = from_word<FormulationEntry>(setting.formulation).value();
+    result.discretization.mesh        = from_word<MeshKind>(setting.mesh).value();
     result.discretization.degree      = setting.degree;
     if (setting.mesh == "adaptive")
       result.discretization.mesh_tolerance = setting.mesh_tolerance;
     else
       result.discretization.n_cells = setting.cells;
     result.time.integrator   = setting.integrator;
-    result.time.engine       = setting.engine == "petsc" ? "petsc" : "automatic";
+    result.time.engine       = setting.engine == "petsc" ? Engine::petsc : Engine::automatic;
     result.time.step_control = StepControl::adaptive;
     result.time.cycle_stop   = CycleStopMode::off; // its error is no matter of the setting
     result.time.tolerance    = std::stod(fmt::format("{:.5e}", setting.tolerance * size));

@@ -85,7 +85,8 @@ TEST_P(FallbackTest, EndsAsWithPetsc)
       const Simulation::Options options = {.energy_balance = energy_balance};
       ASSERT_TRUE(lane_method(run.scene, run.parameters.time, run.numerics));
       EXPECT_FALSE(test::run_alone(run, options)) << integrator;
-      const SimulationResult petsc = run.simulate("petsc", options), fused = run.simulate("automatic", options);
+      const SimulationResult petsc = run.simulate(Engine::petsc, options),
+                             fused = run.simulate(Engine::automatic, options);
       EXPECT_EQ(petsc.time.status, now.status) << integrator;
       EXPECT_EQ(petsc.time.reason, now.reason) << integrator;
       EXPECT_EQ(fused.time.status, now.status) << integrator << ": " << fused.time.message;
@@ -111,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(All, FallbackTest, ::testing::ValuesIn(cases()), [](con
 TEST(Fallback, AnEndInvertsWhenItsStressReachesTheModulus)
 {
   const auto inversion = [](const std::string &formula) {
-    return LaneRun(expression(-1., formula), "radau 5", short_steps).simulate("automatic").inversion.value();
+    return LaneRun(expression(-1., formula), "radau 5", short_steps).simulate(Engine::automatic).inversion.value();
   };
   EXPECT_NEAR(inversion("1.5*t*s^8").t, 1. / 1.5, 1e-9);
   EXPECT_EQ(inversion("1.5*t*s^8").s, 1.);
@@ -154,7 +155,7 @@ TEST(Fallback, ABatchSaysNothingThatASimulationDenies)
     if (!results[i])
       continue;
     ++finished;
-    const SimulationResult petsc = runs[i]->simulate("petsc");
+    const SimulationResult petsc = runs[i]->simulate(Engine::petsc);
     EXPECT_EQ(petsc.time.status, Status::finished) << i << ": " << petsc.time.message;
     EXPECT_NEAR(results[i]->displacement, petsc.displacement, 10. * runs[i]->numerics.tolerance) << i;
   }

@@ -198,7 +198,7 @@ TEST(LaneEngine, ASimulationTakesTheStepsOfABatchWithOneLane)
     {
       if (!results[i])
         continue;
-      const SimulationResult simulated = runs[i]->simulate("automatic");
+      const SimulationResult simulated = runs[i]->simulate(Engine::automatic);
       const TimeOutcome &a = results[i]->time, &b = simulated.time;
       EXPECT_TRUE(test::same_bits({a.time, a.step_size}, {b.time, b.step_size})) << i;
       EXPECT_EQ(a.steps, b.steps) << i;

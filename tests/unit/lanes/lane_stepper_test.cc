@@ -71,7 +71,7 @@ TEST_P(LaneStepperTest, GivesWhatPetscGives)
   const LaneRun run(in_other_units(is_wave ? test::wave(exponent, 0.25) : test::expression(exponent, formula)),
                     integrator,
                     {.degree = 5, .n_cells = 6, .tolerance = tolerance, .initial_step = 1e-4});
-  const SimulationResult petsc = run.simulate("petsc"), single = run.simulate("automatic");
+  const SimulationResult petsc = run.simulate(Engine::petsc), single = run.simulate(Engine::automatic);
   const auto batch = test::run_alone(run);
   ASSERT_TRUE(batch);
   EXPECT_GT(petsc.time.linear_iterations, 0u);
@@ -188,7 +188,7 @@ TEST(LaneStepper, ARunStopsAtOnce)
 {
   const LaneRun run(
     test::wave(-1., 0.3), "radau 5", {.degree = 5, .n_cells = 5, .tolerance = 1e-7, .initial_step = 1e-4});
-  const SimulationResult whole = run.simulate("automatic");
+  const SimulationResult whole = run.simulate(Engine::automatic);
   for (const std::string engine : {"petsc", "automatic"})
     for (const unsigned int most : {1u, 2u, 17u})
     {
