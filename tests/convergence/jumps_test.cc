@@ -116,7 +116,8 @@ TEST(Jumps, InTimeKeepTheOrder)
                   {.degree = 4, .n_cells = 1, .tolerance = 1e3, .initial_step = 1. / n, .step_limits = {{0., 1. / n}}},
                   {},
                   declared ? std::vector<double>{0.375} : std::vector<double>());
-        const auto result = engine == "batch" ? *test::run_alone(*run) : run->simulate(engine);
+        const auto result =
+          engine == "batch" ? *test::run_alone(*run) : run->simulate(from_word<Engine>(engine).value());
         EXPECT_LE(result.time.steps, n + 1) << integrator << " " << engine;
         return result.energy_balance->elastic_energy;
       };
@@ -227,7 +228,7 @@ TEST(Jumps, ManyInTime)
                            switches);
   const std::vector<double> wanted = {0.1, 0.5, 0.7001, 1., 2.};
   std::vector<double> displacements;
-  for (const std::string engine : {"automatic", "petsc"})
+  for (const Engine engine : {Engine::automatic, Engine::petsc})
   {
     TimeParameters time = run->parameters.time;
     time.engine         = engine;
@@ -246,7 +247,7 @@ TEST(Jumps, ManyInTime)
       EXPECT_EQ(output_times[i + 1], wanted[i]);
     EXPECT_LT(result.energy_balance->residual(), 1e-5);
     displacements.push_back(result.displacement);
-    fmt::print("{}: {} steps, {:.3f} s\n", engine, result.time.steps, result.solve_seconds);
+    fmt::print("{}: {} steps, {:.3f} s\n", word_of(engine), result.time.steps, result.solve_seconds);
   }
   const auto batch = test::run_alone(*run);
   ASSERT_TRUE(batch);
@@ -258,7 +259,7 @@ TEST(Jumps, ManyInTime)
 /// An end inverts at the moment when the stress jumps there, and that is what is reported.
 TEST(Jumps, InvertAnEndWhenTheyHappen)
 {
-  for (const std::string engine : {"automatic", "petsc"})
+  for (const Engine engine : {Engine::automatic, Engine::petsc})
   {
     const auto run    = jumping(test::expression(1., "(t<0.3 ? 0.1*t : 1.2)*(1-s)^2"),
                              "radau 5",

@@ -22,7 +22,7 @@ namespace
     auto parameters              = test::parameters_with(test::wave(-1., 0.3));
     parameters.time.integrator   = name;
     parameters.time.order        = order;
-    parameters.time.step_control = fixed ? "fixed" : "adaptive";
+    parameters.time.step_control = fixed ? StepControl::fixed : StepControl::adaptive;
     parameters.time.initial_step = step;
     const Scene scene            = parameters.create_scene();
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, {mesh.degree, mesh.n_cells, tolerance, step});

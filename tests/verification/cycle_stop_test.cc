@@ -21,7 +21,7 @@ namespace
 
   /// The same numerics with and without the stop; @p accuracy is that of the stop.
   Pair
-  run_both(const test::Settings &settings, const double accuracy, const std::string &engine = "automatic")
+  run_both(const test::Settings &settings, const double accuracy, const Engine engine = Engine::automatic)
   {
     auto parameters        = test::parameters_with(settings);
     parameters.time.engine = engine;

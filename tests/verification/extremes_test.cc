@@ -108,7 +108,7 @@ TEST(Extremes, StepsAndTolerances)
   {
     const auto [result, choice] = test::run_with(with(test::wave(-1., 0.4), c.settings));
     const std::string name      = c.settings[0].first + " = " + c.settings[0].second;
-    EXPECT_EQ(result.time.status + " " + result.time.reason, c.outcome) << name;
+    EXPECT_EQ(std::string(word_of(result.time.status)) + " " + result.time.reason, c.outcome) << name;
     EXPECT_TRUE(std::isfinite(result.displacement)) << name;
     if (result.time.status == Status::finished)
       EXPECT_NEAR(result.displacement / fig_s1, 1., c.error) << name;

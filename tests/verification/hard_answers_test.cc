@@ -210,7 +210,7 @@ TEST(HardAnswers, ACoarseMeshDoesNotInvertABody)
                        {"Discretization/Number of cells", "12"},
                        {"Discretization/Degree", "6"}})
               .time.status,
-            "inverted");
+            Status::inverted);
 }
 
 /// Errors in space and time may cancel in two runs, but not in three.

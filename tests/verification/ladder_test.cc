@@ -17,7 +17,7 @@ using namespace crawler;
 namespace
 {
   SimulationResult
-  on_level(const test::Settings &settings, const std::string &model, const double accuracy)
+  on_level(const test::Settings &settings, const Model model, const double accuracy)
   {
     const Parameters parameters = test::parameters_with(settings);
     const Scene scene           = parameters.create_scene();
@@ -67,7 +67,7 @@ TEST(Ladder, NonlinearFollowsAPrescribedStrain)
       {"Active stress/Generator", "prescribed strain"},
       {"Active stress/Prescribed strain/Strain", "0.25*(sin(2*pi*(s+t)) - sin(2*pi*s)) + 0.1*s*t^2"}};
     const auto full   = test::run_with(settings).result;
-    const auto motion = on_level(settings, "kinematic", 1e-10);
+    const auto motion = on_level(settings, Model::kinematic, 1e-10);
     ASSERT_EQ(full.time.status, Status::finished);
     ASSERT_EQ(motion.time.status, Status::finished);
     EXPECT_NEAR(full.displacement / motion.displacement, 1., 1e-8) << "a = " << a;
@@ -88,7 +88,8 @@ TEST(Ladder, EachLevelAgainstTheOneAbove)
   for (const double a : {-1., 1., -3., 2.})
   {
     auto settings     = test::wave(a, 0.15, a > 0. ? -1. : 1.);
-    const auto series = on_level(settings, "perturbation", 1e-1), motion = on_level(settings, "kinematic", 1e-1);
+    const auto series = on_level(settings, Model::perturbation, 1e-1),
+               motion = on_level(settings, Model::kinematic, 1e-1);
     settings.emplace_back("Accuracy", "1e-8");
     const double full = test::run_with(settings).result.displacement;
     EXPECT_LE(std::abs(series.displacement - motion.displacement),
@@ -106,17 +107,17 @@ TEST(Ladder, AutomaticChoice)
   const auto model = [](const test::Settings &settings, const double accuracy) {
     return choice(with(settings, {{"Model", "auto"}, {"Accuracy", test::text(accuracy)}})).model;
   };
-  EXPECT_EQ(model(test::wave(-1., 0.05), 1e-2), "perturbation");
-  EXPECT_EQ(model(test::wave(-1., 0.05), 1e-6), "nonlinear");
-  EXPECT_EQ(model(test::wave(-1., 0.4), 1e-2), "nonlinear");
-  EXPECT_EQ(model(test::wave(0., 0.4), 1e-6), "linear");
-  EXPECT_EQ(model({{"Active stress/Generator", "prescribed strain"}}, 1e-10), "kinematic");
+  EXPECT_EQ(model(test::wave(-1., 0.05), 1e-2), Model::perturbation);
+  EXPECT_EQ(model(test::wave(-1., 0.05), 1e-6), Model::nonlinear);
+  EXPECT_EQ(model(test::wave(-1., 0.4), 1e-2), Model::nonlinear);
+  EXPECT_EQ(model(test::wave(0., 0.4), 1e-6), Model::linear);
+  EXPECT_EQ(model({{"Active stress/Generator", "prescribed strain"}}, 1e-10), Model::kinematic);
   // A stiff body follows its active stress.
   const test::Settings stiff = {{"Active stress/Generator", "expression"},
                                 {"Active stress/Expression/Active stress", "2e4*(sin(2*pi*(s+t)) - sin(2*pi*s))"},
                                 {"Body/Elastic modulus", "1e5"}};
-  EXPECT_EQ(model(stiff, 1e-2), "kinematic");
-  EXPECT_EQ(model(stiff, 1e-9), "nonlinear");
+  EXPECT_EQ(model(stiff, 1e-2), Model::kinematic);
+  EXPECT_EQ(model(stiff, 1e-9), Model::nonlinear);
   EXPECT_EQ(choice(with(test::wave(-1., 0.05), {{"Model", "auto"}, {"Accuracy", "1e-2"}})).explanation.substr(0, 44),
             "Model perturbation: its estimated error 0.00");
 }
@@ -135,12 +136,12 @@ TEST(Ladder, ScenesThatDoNotFitAreRefused)
 /// A level that was asked for gives its answer and its error, also if that is too large.
 TEST(Ladder, AccuracyThatIsNotMet)
 {
-  const auto result = on_level(test::wave(-1., 0.2), "perturbation", 1e-4);
+  const auto result = on_level(test::wave(-1., 0.2), Model::perturbation, 1e-4);
   EXPECT_EQ(result.time.status, Status::failed);
   EXPECT_EQ(result.time.reason, "accuracy_not_met");
   EXPECT_NEAR(result.displacement, 0.02, 1e-15);
   EXPECT_GE(result.error->model, 2.04422750e-2 - 2e-2);
-  const auto unknown = on_level(test::wave(-1., 0.6), "perturbation", 1e-4);
+  const auto unknown = on_level(test::wave(-1., 0.6), Model::perturbation, 1e-4);
   EXPECT_EQ(unknown.time.reason, "accuracy_not_met");
   EXPECT_TRUE(std::isnan(unknown.error->total));
 }
@@ -156,8 +157,8 @@ TEST(Ladder, ManyRunsAtOnce)
   compute_all(tasks, 100., []() { return false; });
   for (const Task &task : tasks)
     EXPECT_EQ(task.computed.result.time.status, Status::finished) << task.computed.result.time.message;
-  EXPECT_EQ(tasks[0].parameters.model, "perturbation");
+  EXPECT_EQ(tasks[0].parameters.model, Model::perturbation);
   EXPECT_NEAR(tasks[0].computed.result.displacement, 1.25e-3, 1e-15);
-  EXPECT_EQ(tasks[1].parameters.model, "nonlinear");
+  EXPECT_EQ(tasks[1].parameters.model, Model::nonlinear);
   EXPECT_NEAR(tasks[2].computed.result.displacement, 1.2505e-3, 1.25e-5);
 }

@@ -192,7 +192,7 @@ main(int argc, char **argv)
     }
     const auto numbers = [&](const FormAnswer &a) {
       return fmt::format("{},{},{:.3g},{:.12g},{:.3g},{:.8g}",
-                         a.result.time.status,
+                         word_of(a.result.time.status),
                          a.is_out_of_time ? "time_limit" : a.result.time.reason,
                          a.seconds,
                          a.result.displacement,

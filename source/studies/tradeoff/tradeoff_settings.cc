@@ -342,28 +342,30 @@ namespace crawler
   as_prm(const Parameters &parameters, const TradeoffSetting &setting)
   {
     if (setting.has_no_mesh())
-      return fmt::format("set Model    = {}\nset Accuracy = {}\n", parameters.model, to_text(parameters.accuracy));
+      return fmt::format(
+        "set Model    = {}\nset Accuracy = {}\n", word_of(parameters.model), to_text(parameters.accuracy));
     const DiscretizationParameters &d = parameters.discretization;
     const TimeParameters &t           = parameters.time;
     std::string text                  = fmt::format("# with Model = {}\nsubsection Discretization\n"
                                                     "  set Formulation     = {}\n  set Mesh            = {}\n"
                                                     "  set Degree          = {}\n",
-                                   parameters.model,
-                                   d.formulation,
-                                   d.mesh,
+                                   word_of(parameters.model),
+                                   word_of(d.formulation),
+                                   word_of(d.mesh),
                                    d.degree.value());
     if (setting.mesh == "adaptive")
       text += fmt::format("  set Mesh tolerance  = {}\n", to_text(d.mesh_tolerance.value()));
     if (d.n_cells)
       text += fmt::format("  set Number of cells = {}\n", *d.n_cells);
-    text += fmt::format(
-      "end\nsubsection Time\n  set Integrator      = {}\n  set Engine          = {}\n", t.integrator, t.engine);
+    text += fmt::format("end\nsubsection Time\n  set Integrator      = {}\n  set Engine          = {}\n",
+                        t.integrator,
+                        word_of(t.engine));
     if (t.integrator == "bdf")
       text += fmt::format("  set Order           = {}\n", t.order);
     return text + fmt::format("  set Step control    = {}\n  set Cycle stop      = {}\n  set Tolerance       = {}\n  "
                               "set Initial step    = {}\nend\n",
-                              t.step_control,
-                              t.cycle_stop,
+                              word_of(t.step_control),
+                              word_of(t.cycle_stop),
                               to_text(t.tolerance.value()),
                               to_text(t.initial_step.value()));
   }

@@ -262,5 +262,5 @@ TEST(ShapedWave, HasNoPerturbationSeries)
     EXPECT_NE(std::string(error.what()).find("the Shape of the optimal wave is expression"), std::string::npos);
   }
   parameters.model = Model::automatic;
-  EXPECT_NE(choose_model(parameters, parameters.create_scene()).model, "perturbation");
+  EXPECT_NE(choose_model(parameters, parameters.create_scene()).model, Model::perturbation);
 }

@@ -19,7 +19,7 @@ namespace
     std::string name;
     test::Settings settings;
     Numerics numerics = fine;
-    std::string status;
+    Status status;
     std::string reason   = "";
     double error_of_time = 1e-4; ///< of an inversion, in parts of the duration
   };
@@ -32,40 +32,40 @@ namespace
   cases()
   {
     return {
-      {"SqueezedToNothing", wave(-1., 0.5), fine, "finished"},
-      {"InvertsAtAnEnd", expression(-1., "1.5*t"), fine, "inverted", "inverted_at_end"},
-      {"InvertsAtTheRightEnd", expression(-1., "1.5*t*s^8"), fine, "inverted", "inverted_at_end"},
+      {"SqueezedToNothing", wave(-1., 0.5), fine, Status::finished},
+      {"InvertsAtAnEnd", expression(-1., "1.5*t"), fine, Status::inverted, "inverted_at_end"},
+      {"InvertsAtTheRightEnd", expression(-1., "1.5*t*s^8"), fine, Status::inverted, "inverted_at_end"},
       {"AnEndInvertsForAMoment",
        expression(-1., "1.5*exp(-((t-0.5)/0.05)^2)*cos(pi*s)"),
        short_steps,
-       "inverted",
+       Status::inverted,
        "inverted_at_end"},
       {"AnEndInvertsUnseenByTheMesh",
        expression(-0.1, "1.2*((t>0.2)-(t>0.25))", 0.3),
        one_jump,
-       "inverted",
+       Status::inverted,
        "inverted_at_end"},
-      {"IsInvertedFromTheStart", expression(-1., "1.2+0*t"), fine, "inverted", "inverted_at_end"},
+      {"IsInvertedFromTheStart", expression(-1., "1.2+0*t"), fine, Status::inverted, "inverted_at_end"},
       {"InvertsInsideWithConstantFriction",
        expression(0., "2*t*exp(-((s-0.5)/0.2)^2)"),
        fine,
-       "inverted",
+       Status::inverted,
        "inverted_inside"},
       {"MeshIsTooCoarse",
        wave(-1., 0.8),
        {.degree = 2, .n_cells = 3, .tolerance = 1e-6, .initial_step = 1e-4},
-       "failed",
+       Status::failed,
        "under_resolved"},
       {"StepsTooMany",
        test::with(wave(-1., 0.3), {{"Time/Maximum number of steps", "7"}}),
        fine,
-       "stopped",
+       Status::stopped,
        "step_limit"},
       // Newton's method fails in every second step, and the steps become no longer.
       {"NewtonsMethodGetsStuck",
        expression(12., "0.94*t", 3., 0.133),
        {.degree = 1, .n_cells = 7, .tolerance = 6e-10, .initial_step = 8e-3},
-       "inverted",
+       Status::inverted,
        "inverted_at_end"},
     };
   }

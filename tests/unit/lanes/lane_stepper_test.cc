@@ -140,7 +140,7 @@ namespace
   };
 
   Seen
-  watch(const LaneRun &run, const std::string &engine, const std::vector<double> &output_times)
+  watch(const LaneRun &run, const Engine engine, const std::vector<double> &output_times)
   {
     TimeParameters time = run.parameters.time;
     time.engine         = engine;
@@ -167,7 +167,7 @@ TEST(LaneStepper, ObserversSeeTheOutputTimesOfPetsc)
       const LaneRun run(in_other_units(test::wave(a, 0.25)),
                         integrator,
                         {.degree = 5, .n_cells = 6, .tolerance = tolerance, .initial_step = 1e-4});
-      const Seen petsc = watch(run, "petsc", output_times), fused = watch(run, "automatic", output_times);
+      const Seen petsc = watch(run, Engine::petsc, output_times), fused = watch(run, Engine::automatic, output_times);
       EXPECT_EQ(fused.times, output_times); // exactly
       ASSERT_EQ(fused.computed_times.size(), output_times.size());
       for (std::size_t i = 0; i + 1 < output_times.size(); ++i)
@@ -189,7 +189,7 @@ TEST(LaneStepper, ARunStopsAtOnce)
   const LaneRun run(
     test::wave(-1., 0.3), "radau 5", {.degree = 5, .n_cells = 5, .tolerance = 1e-7, .initial_step = 1e-4});
   const SimulationResult whole = run.simulate(Engine::automatic);
-  for (const std::string engine : {"petsc", "automatic"})
+  for (const Engine engine : {Engine::petsc, Engine::automatic})
     for (const unsigned int most : {1u, 2u, 17u})
     {
       TimeParameters time = run.parameters.time;

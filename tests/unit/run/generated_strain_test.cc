@@ -31,7 +31,7 @@ namespace
   kinematic_displacement(const Settings &settings)
   {
     const Scene scene = test::parameters_with(settings).create_scene();
-    return ReducedModel(scene, "kinematic").compute(1e-10, true).displacement;
+    return ReducedModel(scene, Model::kinematic).compute(1e-10, true).displacement;
   }
 
   std::string

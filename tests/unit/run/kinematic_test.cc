@@ -15,7 +15,7 @@ using namespace crawler;
 namespace
 {
   SimulationResult
-  compute(const test::Settings &settings, const std::string &model = "kinematic", const double accuracy = 1e-9)
+  compute(const test::Settings &settings, const Model model = Model::kinematic, const double accuracy = 1e-9)
   {
     const Parameters parameters = test::parameters_with(settings);
     const Scene scene           = parameters.create_scene();
@@ -96,7 +96,7 @@ TEST(Kinematic, IsTheSeriesForAEqualToOne)
     auto settings = test::wave(1., 0.2, c, 0.9);
     settings.emplace_back("Active stress/Optimal wave/Sine coefficients", "1, 0.3");
     settings.emplace_back("Active stress/Optimal wave/Cosine coefficients", "0.2, -0.1");
-    const auto series = compute(settings, "perturbation", 1e-1), motion = compute(settings);
+    const auto series = compute(settings, Model::perturbation, 1e-1), motion = compute(settings);
     EXPECT_NEAR(motion.displacement, series.displacement, 1e-12 + 1e-10 * std::abs(series.displacement));
   }
 }
@@ -106,7 +106,7 @@ TEST(Kinematic, TendsToTheSeries)
 {
   const auto gap = [](const double chi) {
     const auto settings = test::wave(-2.5, chi, 1.3, 0.8);
-    return std::abs(compute(settings).displacement / compute(settings, "perturbation").displacement - 1.);
+    return std::abs(compute(settings).displacement / compute(settings, Model::perturbation).displacement - 1.);
   };
   EXPECT_NEAR(std::log2(gap(0.04) / gap(0.02)), 2., 0.1);
 }
@@ -137,11 +137,12 @@ TEST(Kinematic, InvertedByTheStrainItAssumes)
 /// A strain that is not smooth in s, whose kink is on the edge of no panel: the quadrature says how far it has come.
 TEST(Kinematic, AccuracyThatIsNotMetIsSaid)
 {
-  const auto result = compute(strain(-1., "0.3*(s > 1/3 ? 1 : 0)*sin(2*pi*t)*cos(2*pi*(s-t))"), "kinematic", 1e-10);
+  const auto result =
+    compute(strain(-1., "0.3*(s > 1/3 ? 1 : 0)*sin(2*pi*t)*cos(2*pi*(s-t))"), Model::kinematic, 1e-10);
   EXPECT_EQ(result.time.status, Status::failed);
   EXPECT_EQ(result.time.reason, "accuracy_not_met");
   EXPECT_GT(result.error->space, 0.);
-  const auto coarse = compute(strain(-1., "0.3*(s > 1/3 ? 1 : 0)*sin(2*pi*t)*cos(2*pi*(s-t))"), "kinematic", 1e-3);
+  const auto coarse = compute(strain(-1., "0.3*(s > 1/3 ? 1 : 0)*sin(2*pi*t)*cos(2*pi*(s-t))"), Model::kinematic, 1e-3);
   EXPECT_EQ(coarse.time.status, Status::finished);
   EXPECT_LE(std::abs(coarse.displacement - result.displacement), coarse.error->total + result.error->total);
 }

@@ -108,7 +108,7 @@ namespace
   };
 
   TimeParameters
-  parameters_for(const std::string &name, const std::string &control = "adaptive")
+  parameters_for(const std::string &name, const StepControl control = StepControl::adaptive)
   {
     TimeParameters parameters;
     parameters.end_time     = 1.5;
@@ -129,7 +129,7 @@ TEST(TimeStepper, EveryIntegratorReachesItsOrder)
     for (const unsigned int n :
          method.order == 9 ? std::vector<unsigned int>{2, 3, 4} : std::vector<unsigned int>{12, 24, 48})
     {
-      ScalarEquation equation(parameters_for(method.name, "fixed"));
+      ScalarEquation equation(parameters_for(method.name, StepControl::fixed));
       ASSERT_EQ(equation.solve(1e-12, 1.5 / n).status, Status::finished) << method.name;
       n_steps.push_back(n);
       errors.push_back(std::abs(equation.y[0] - std::sin(1.5)));
@@ -141,7 +141,7 @@ TEST(TimeStepper, EveryIntegratorReachesItsOrder)
 
 TEST(TimeStepper, StepsEndExactlyAtOutputTimes)
 {
-  for (const std::string control : {"adaptive", "fixed"})
+  for (const StepControl control : {StepControl::adaptive, StepControl::fixed})
   {
     ScalarEquation equation(parameters_for("bdf", control));
     const std::vector<double> output_times = {0.1, 1. / 3., 0.7, 0.7000001, 1.5};
@@ -153,7 +153,7 @@ TEST(TimeStepper, StepsEndExactlyAtOutputTimes)
     EXPECT_EQ(found, output_times); // exactly
     EXPECT_EQ(equation.steps.back().time, 1.5);
     EXPECT_EQ(equation.steps.front().number, 0u);
-    EXPECT_NEAR(equation.y[0], std::sin(1.5), control == "fixed" ? 1e-4 : 1e-7);
+    EXPECT_NEAR(equation.y[0], std::sin(1.5), control == StepControl::fixed ? 1e-4 : 1e-7);
   }
 }
 
@@ -270,8 +270,9 @@ TEST(TimeStepper, UnsoundIntegratorsAreRefusedWithTheReason)
     const std::string petsc_name = method.petsc_type + (method.subtype.empty() ? "" : " " + method.subtype);
     EXPECT_EQ(reason_against(petsc_name), "");
     EXPECT_TRUE(is_offered(petsc_name));
-    TimeParameters parameters = parameters_for(method.name, method.adaptive ? "adaptive" : "fixed");
-    parameters.initial_step   = 0.1;
+    TimeParameters parameters =
+      parameters_for(method.name, method.adaptive ? StepControl::adaptive : StepControl::fixed);
+    parameters.initial_step = 0.1;
     EXPECT_NO_THROW(parameters.validate());
   }
 }

@@ -180,12 +180,12 @@ TEST(TradeoffSetting, AsTextIsWhatWasMeasured)
   ParameterFile::from_text(as_prm(own, setting), "pasted.prm").apply(declarations);
   EXPECT_EQ(pasted.discretization.n_cells, 7u);
   EXPECT_EQ(pasted.discretization.degree, 4u);
-  EXPECT_EQ(pasted.discretization.formulation, "position");
+  EXPECT_EQ(pasted.discretization.formulation, FormulationEntry::position);
   EXPECT_EQ(pasted.time.tolerance, 3.33333e-4);
   EXPECT_EQ(pasted.time.tolerance, own.time.tolerance);
   EXPECT_EQ(pasted.time.initial_step, own.time.initial_step);
   EXPECT_EQ(pasted.time.integrator, "bdf");
-  EXPECT_EQ(pasted.time.engine, "petsc");
+  EXPECT_EQ(pasted.time.engine, Engine::petsc);
   EXPECT_EQ(as_prm(pasted, setting), as_prm(own, setting));
 }
 
