@@ -223,14 +223,31 @@ TEST(CycleStop, WhenItIsWished)
   EXPECT_FALSE(wish({{"Active stress/Generator", "none"}, {"Time/End time", "20"}}, 0));
 }
 
-/// Many runs at once: long ones that repeat are taken out of the batch, and give what compute() gives.
+/// Many runs at once end when their cycles repeat, each at its own, as they do alone.
 TEST(CycleStop, AmongManyRuns)
 {
-  std::vector<Task> tasks(2);
-  tasks[0].parameters = test::parameters_with(test::wave(-1., 0.2, 1., 40.));
-  tasks[1].parameters = test::parameters_with(test::wave(-1., 0.2, 1., 4.));
+  std::vector<Task> tasks(3);
+  tasks[0].parameters                 = test::parameters_with(test::wave(-1., 0.2, 1., 40.));
+  tasks[1].parameters                 = test::parameters_with(test::wave(-1., 0.2, 1., 4.));
+  tasks[2].parameters                 = test::parameters_with(test::wave(-1., 0.2, 1., 40.));
+  tasks[2].parameters.time.cycle_stop = CycleStopMode::off;
   compute_all(tasks, 1e3, []() { return false; });
-  ASSERT_TRUE(tasks[0].computed.result.cycles);
-  EXPECT_FALSE(tasks[1].computed.result.cycles);
-  EXPECT_EQ(tasks[0].computed.result.displacement, compute(tasks[0].parameters).displacement);
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+  {
+    const SimulationResult &together = tasks[i].computed.result, alone = compute(tasks[i].parameters);
+    EXPECT_EQ(together.engine, "fused") << i;
+    ASSERT_TRUE(together.error) << i;
+    ASSERT_EQ(together.cycles.has_value(), i < 2) << i;
+    if (together.cycles)
+    {
+      EXPECT_EQ(together.cycles->computed + together.cycles->extrapolated, i == 0 ? 40u : 4u) << i;
+      EXPECT_LE(together.cycles->bound, together.error->total) << i;
+      EXPECT_EQ(together.time.time, i == 0 ? 40. : 4.) << i;
+    }
+    EXPECT_LE(std::abs(together.displacement - alone.displacement), together.error->total) << i;
+    EXPECT_NEAR(together.energy_balance->stress_work / alone.energy_balance->stress_work, 1., 1e-5) << i;
+  }
+  EXPECT_LE(std::abs(tasks[0].computed.result.displacement - tasks[2].computed.result.displacement),
+            tasks[0].computed.result.error->total + tasks[2].computed.result.error->total);
+  EXPECT_LT(5 * tasks[0].computed.result.time.steps, tasks[2].computed.result.time.steps);
 }

@@ -210,7 +210,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return relative(square, s * n_);
     }
 
-    /// The error of the embedded formula (time/radau.cc, estimate_error).
+    /// The error of the embedded formula, filtered as in time/radau.cc.
     void
     estimate_error()
     {

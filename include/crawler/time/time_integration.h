@@ -43,7 +43,7 @@ namespace crawler
     Status status = Status::none;
     std::string reason; ///< one of the names of doc/user_guide.md, empty if finished
     std::string message;
-    bool domain_error  = false; ///< failed because implicit_function refused every state tried
+    bool domain_error  = false; ///< failed because every state tried was refused
     double time        = 0.;    ///< of the last accepted state
     double step_size   = 0.;    ///< that was tried last; if the monitor stopped: that would come next
     unsigned int steps = 0, rejected_steps = 0;
