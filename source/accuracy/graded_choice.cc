@@ -73,7 +73,6 @@ namespace crawler
           refine(time_change_, [](Numerics &n) { n.tolerance *= finer_tolerance; });
         for (bool again = true; again && possible_;)
         {
-          again                = false;
           double levels_change = 0., cells_change = 0., ratio_change = 0.;
           refine(levels_change, [](Numerics &n) { ++n.grading.levels; });
           if (now_.grading.ratio > fine_ratio * 0.99 ||

@@ -43,8 +43,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static std::size_t
     memory(const LaneSetup &setup)
     {
-      const LaneHost nobody{};
-      return RadauLanes(setup, nobody, nullptr).memory_.size();
+      const LaneHost none{};
+      return RadauLanes(setup, none, nullptr).memory_.size();
     }
 
     void
