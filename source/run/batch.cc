@@ -178,8 +178,8 @@ namespace crawler
           }
         }
         lane.recorder->see_stretch({}, {});
-        const std::vector<double> rest(Recorder::n_pieces + 1, 0.);
-        lane.recorder->see_step(0., false, 1., 1., [&rest](double) { return Recorder::BodySample{rest, 0.}; });
+        static const std::vector<double> rest(Recorder::n_pieces + 1, 0.);
+        lane.recorder->see_step(0., false, 1., 1., [](double) { return Recorder::BodySample{rest, 0.}; });
       }
 
       /// The engine asks for m at the start of a run or segment, and then in all stages of each step that it tries.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace crawler
 {
@@ -141,6 +142,6 @@ namespace crawler
     }
     if (gait_meter_ && result.time.status == Status::finished)
       result.gait = gait_meter_->gait();
-    return in_user_units(result, scene_, units_);
+    return in_user_units(std::move(result), scene_, units_);
   }
 } // namespace crawler

@@ -96,7 +96,7 @@ namespace crawler
     }
 
     /// The result in the user's units, of a run that has ended as result.time says; that of the end time if its cycles
-    /// repeat.
+    /// repeat. The last call.
     SimulationResult
     finish();
 
