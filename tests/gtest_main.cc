@@ -5,6 +5,13 @@
 
 #ifdef __SANITIZE_ADDRESS__
 #  include <sanitizer/lsan_interface.h>
+
+/// What the runtime of MPI keeps to the end of a program on several ranks.
+extern "C" const char *
+__lsan_default_suppressions()
+{
+  return "leak:libpmix\nleak:libopen-pal\nleak:libopen-rte\nleak:libmpi\n";
+}
 #endif
 
 /// Starts MPI and PETSc for all tests of a program; only rank 0 prints, and all ranks fail together.
