@@ -58,11 +58,15 @@ namespace crawler
             largest = now_.tolerance *= finer_tolerance;
         }
         // The tolerance is relative to a size that the runs tell.
+        double size = 0.;
         for (unsigned int i = 0; i < 2; ++i)
         {
-          const double size = task_.size(result_);
+          const double before = size;
+          size                = task_.size(result_);
           if (!(size > 0.))
             return std::nullopt;
+          if (std::abs(size - before) < same_size * size)
+            break;
           wanted_ = task_.accuracy * size;
           if (task_.choose_tolerance)
             now_.tolerance = std::min(largest, task_.tolerance_factor * wanted_);

@@ -33,7 +33,7 @@ namespace crawler
         , accuracy_(parameters.accuracy)
       {
         answer_.choice      = choice;
-        options_.resolution = true; // the size of the deformation
+        options_.resolution = ResolutionWish::size; // the size of the deformation
         if (options_.cycles)
           options_.cycles->accuracy *= 0.1; // displacements are compared
       }

@@ -152,12 +152,12 @@ namespace crawler
       }
 
       SimulationResult
-      pilot(const Numerics &numerics)
+      pilot(const Numerics &numerics, const ResolutionWish resolution)
       {
         Simulation simulation(communicator_, scene_, pilot_time_, numerics);
         ++n_pilots_;
         SimulationResult result =
-          simulation.run({}, {.energy_balance = false, .resolution = true, .cycles = cycles_}, {}, keep_going_);
+          simulation.run({}, {.energy_balance = false, .resolution = resolution, .cycles = cycles_}, {}, keep_going_);
         if (result.time.status == Status::stopped && result.time.reason.empty())
           throw Interrupted();
         return result;
@@ -244,23 +244,24 @@ namespace crawler
         const auto cycles      = cycles_;
         if (cycles_)
           cycles_->accuracy = accuracy_; // the displacements are compared here
-        const auto found = find_graded_mesh({.scene             = scene_,
-                                             .start             = start,
-                                             .accuracy          = accuracy_,
-                                             .scale             = scale_,
-                                             .choose_tolerance  = !user_tolerance_,
-                                             .choose_first_step = !parameters_.time.initial_step,
-                                             .tolerance_factor  = name == "radau 9"   ? graded_radau_9
-                                                                  : name == "radau 5" ? graded_radau_5
-                                                                                      : graded_others,
-                                             .run = [this](const Numerics &numerics) { return pilot(numerics); },
-                                             .size =
-                                               [this](const SimulationResult &result) {
-                                                 pilot_ = result;
-                                                 measure_size();
-                                                 return size_;
-                                               }});
-        cycles_          = cycles;
+        const auto found =
+          find_graded_mesh({.scene             = scene_,
+                            .start             = start,
+                            .accuracy          = accuracy_,
+                            .scale             = scale_,
+                            .choose_tolerance  = !user_tolerance_,
+                            .choose_first_step = !parameters_.time.initial_step,
+                            .tolerance_factor  = name == "radau 9"   ? graded_radau_9
+                                                 : name == "radau 5" ? graded_radau_5
+                                                                     : graded_others,
+                            .run = [this](const Numerics &numerics) { return pilot(numerics, ResolutionWish::size); },
+                            .size =
+                              [this](const SimulationResult &result) {
+                                pilot_ = result;
+                                measure_size();
+                                return size_;
+                              }});
+        cycles_ = cycles;
         if (!found)
         {
           size_ = 0.;
@@ -281,7 +282,7 @@ namespace crawler
         bool good = false;
         while (!good && n_pilots_ < 20)
         {
-          pilot_ = pilot(pilot_numerics(degree, n_cells, tolerance_));
+          pilot_ = pilot(pilot_numerics(degree, n_cells, tolerance_), ResolutionWish::all);
           measure_size();
           if (accuracy_ >= 1e-7 && is_for_stretch())
             return;
@@ -351,7 +352,8 @@ namespace crawler
         {
           if (2 * n_cells > most)
             return false;
-          const SimulationResult finer = pilot(pilot_numerics(pilot_degree, 2 * n_cells, 0.01 * tolerance_));
+          const SimulationResult finer =
+            pilot(pilot_numerics(pilot_degree, 2 * n_cells, 0.01 * tolerance_), ResolutionWish::all);
           if (finer.time.status != Status::finished || finer.unresolved == 0.)
             break;
           rate           = rate_of(unresolved, finer.unresolved);
@@ -400,7 +402,7 @@ namespace crawler
           Numerics settings        = pilot_numerics(n.degree, n.n_cells, tolerance_);
           settings.mesh.tolerance  = tighter * resolved * strain;
           settings.mesh.most_cells = most_adaptive_pilot_cells;
-          pilot_                   = pilot(settings);
+          pilot_                   = pilot(settings, ResolutionWish::all);
           measure_size();
           const bool finished = pilot_.time.status == Status::finished;
           const double before = strain;
@@ -507,7 +509,7 @@ namespace crawler
           tolerance_           = moving_tolerance * scale_ / n.n_cells;
           const double before  = pilot_.displacement;
           const bool is_second = pilot_.time.status == Status::finished;
-          pilot_               = pilot(pilot_numerics(n.degree, n.n_cells, tolerance_));
+          pilot_               = pilot(pilot_numerics(n.degree, n.n_cells, tolerance_), ResolutionWish::size);
           measure_size();
           const bool finished = pilot_.time.status == Status::finished;
           if (!finished && (n.n_cells > first_moving_cells || pilot_.time.reason == "inverted_at_end"))

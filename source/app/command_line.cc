@@ -279,6 +279,7 @@ namespace crawler
     std::optional<PetscErrorWords> petsc_error(std::in_place);
     try
     {
+      const QuickStart quick_start;
       guard = std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(petsc_argc, petsc_argv, /*max_num_threads=*/1);
     }
     catch (const std::exception &)

@@ -2,7 +2,12 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 
+#include <unistd.h>
+
+#include <cstdlib>
 #include <filesystem>
+#include <string_view>
+#include <utility>
 
 namespace crawler
 {
@@ -87,5 +92,26 @@ namespace crawler
     if (kind == "file")
       throw FileError(text, /*on_all_ranks=*/true);
     return text;
+  }
+
+  QuickStart::QuickStart()
+  {
+    constexpr std::string_view launchers[] = {
+      "OMPI_COMM_WORLD_", "PMIX_", "PMI_", "SLURM_PROCID=", "SLURM_STEP_ID=", "FLUX_", "JSM_", "PALS_", "ALPS_"};
+    for (char **variable = environ; *variable != nullptr; ++variable)
+      for (const std::string_view launcher : launchers)
+        if (std::string_view(*variable).starts_with(launcher))
+          return;
+    constexpr std::pair<const char *, const char *> settings[] = {
+      {"OMPI_MCA_ess_singleton_isolated", "1"}, {"OMPI_MCA_btl", "self"}, {"OMPI_MCA_pml", "ob1"}};
+    for (const auto &[name, value] : settings)
+      if (std::getenv(name) == nullptr && setenv(name, value, /*overwrite=*/0) == 0)
+        set_.push_back(name);
+  }
+
+  QuickStart::~QuickStart()
+  {
+    for (const char *const name : set_)
+      unsetenv(name);
   }
 } // namespace crawler

@@ -43,42 +43,6 @@ namespace crawler
       };
       using Plain = PlainLaws<n, double, Friction>;
 
-      /// Laws whose values at the points of the cell are known.
-      struct General
-      {
-        static constexpr bool has_one_modulus = false, has_place = true, has_rate = true;
-        const PointLaws &all;
-        std::size_t first; ///< point of the cell
-
-        void
-        forces(const double *, const double *, const double *, double *N, double *f) const
-        {
-          std::copy_n(all.N + first, n, N);
-          std::copy_n(all.f + first, n, f);
-        }
-        template <bool>
-        void
-        derivatives(const double *, const double *w, const double *, PointDerivatives<n, double> &D) const
-        {
-          for (int p = 0; p < n; ++p)
-          {
-            D.f_v[p]    = all.f_v[first + p];
-            D.f_u[p]    = all.f_u[first + p];
-            D.f_w[p]    = all.w_f_w[first + p] / w[p];
-            D.N_w[p]    = all.N_w[first + p];
-            D.N_rate[p] = all.N_rate != nullptr ? all.N_rate[first + p] : 0.;
-          }
-        }
-        void
-        densities(const double *e, const double *, const double *, const double *v_s, PointDensities<double> *at) const
-        {
-          for (int p = 0; p < n; ++p)
-            at[p] = {equation::elastic_energy(e[p], all.k[first + p]),
-                     equation::stress_power(all.m[first + p], v_s[p]),
-                     all.f[first + p]};
-        }
-      };
-
       /// Calls @p use(laws, c) for each cell.
       template <typename Use>
       static void
@@ -86,7 +50,7 @@ namespace crawler
       {
         if (in.laws != nullptr)
           for (unsigned int c = 0; c < in.n_cells; ++c)
-            use(General{*in.laws, static_cast<std::size_t>(c) * n}, c);
+            use(KnownLaws<n, double>{*in.laws, static_cast<std::size_t>(c) * n}, c);
         else
           for (unsigned int c = 0; c < in.n_cells; ++c)
             use(Plain{in.k, in.m + c * n, {*in.friction}}, c);
@@ -103,10 +67,10 @@ namespace crawler
       {
         long bad = -1;
         for_cells(in, [&](const auto &laws, const unsigned int c) {
-          double w[n];
-          cell_residual<n>(tables_of(*in.element), in.cell_size[c], laws, in.u + c * q, velocity(in, c), w, F + c * q);
+          const auto at = cell_residual<n, double>(
+            tables_of(*in.element), in.cell_size[c], laws, in.u + c * q, velocity(in, c), F + c * q);
           for (int p = 0; p < n; ++p)
-            if (!(w[p] > 0.) && bad < 0)
+            if (!(at.w[p] > 0.) && bad < 0)
               bad = static_cast<long>(c) * n + p;
         });
         return bad;
@@ -152,23 +116,16 @@ namespace crawler
       static void
       states(const CellInput &in, double *u, double *v, double *e, double *rate)
       {
-        const ElementTables tables = tables_of(*in.element);
+        static constexpr double rest[n] = {};
         for (unsigned int c = 0; c < in.n_cells; ++c)
-        {
-          const double by_h = 1. / in.cell_size[c];
-          evaluate<n>(tables.values, in.u + c * q, 1., 0., u + c * n);
-          evaluate<n>(tables.derivatives, in.u + c * q, by_h, 0., e + c * n);
-          if (in.v != nullptr)
-          {
-            evaluate<n>(tables.values, in.v + c * q, 1., 0., v + c * n);
-            evaluate<n>(tables.derivatives, in.v + c * q, by_h, 0., rate + c * n);
-          }
-          else
-          {
-            std::fill_n(v + c * n, n, 0.);
-            std::fill_n(rate + c * n, n, 0.);
-          }
-        }
+          cell_states<n, double>(tables_of(*in.element),
+                                 in.cell_size[c],
+                                 in.u + c * q,
+                                 in.v != nullptr ? in.v + c * q : rest,
+                                 u + c * n,
+                                 v + c * n,
+                                 e + c * n,
+                                 rate + c * n);
       }
 
       static constexpr CellKernels table = {residual, blocks, integrals, forces, states};

@@ -9,18 +9,6 @@
 
 namespace crawler
 {
-  namespace
-  {
-    std::vector<double>
-    profile_at(const std::shared_ptr<const Profile> &profile, const std::vector<double> &points)
-    {
-      std::vector<double> values(points.size(), 1.);
-      if (profile)
-        profile->values(points, values);
-      return values;
-    }
-  } // namespace
-
   SlidingAtPoints::SlidingAtPoints(const Scene &scene, std::vector<double> points)
     : force(points.size())
     , by_v(points.size())
@@ -50,9 +38,11 @@ namespace crawler
     for (std::size_t i = 0; i < n; ++i)
     {
       const double factor = directional ? ground.direction.factor(v[i]) : 1.;
-      force[i]            = b_[i] * c_[i] * factor * v[i];
-      by_v[i]             = b_[i] * c_[i] * (directional ? ground.direction.force_slope(v[i]) : 1.);
-      by_u[i]             = b_[i] * slope_[i] * factor * v[i];
+      const double slope  = directional ? ground.direction.force_slope(v[i]) : 1.;
+      const auto here     = equation::sliding(b_[i], c_[i], slope_[i], factor, slope, v[i]);
+      force[i]            = here.force;
+      by_v[i]             = here.by_v;
+      by_u[i]             = here.by_u;
       if (bad < 0 && !(c_[i] > 0. && std::isfinite(c_[i])))
         bad = static_cast<long>(i);
     }

@@ -49,7 +49,7 @@ namespace crawler
     }
     laws_   = {force_.N.data(),
                f_.data(),
-               f_u_.data(),
+             scene_.ground.profile ? f_u_.data() : nullptr,
                f_v_.data(),
                w_f_w_.data(),
                force_.by_w.data(),

@@ -59,14 +59,12 @@ namespace crawler
     , mobility(middles.size())
     , mobility_by_w(middles.size())
     , scene_(scene)
-    , profile_(middles.size(), 1.)
+    , profile_(profile_at(scene.profiles.friction, middles))
     , w_(middles.size())
     , w_dg_(middles.size())
     , strain_(middles.size())
     , force_(scene, middles)
   {
-    if (scene.profiles.friction)
-      scene.profiles.friction->values(middles, profile_);
   }
 
   long

@@ -19,16 +19,16 @@ namespace crawler
   {
     if (method.is_stretch)
     {
-      const StretchMethod stretch     = stretch_method(scene, method.other_rule);
-      const StretchFeedback *feedback = scene.active_stress->feedback();
-      setup_.node_rule                = stretch.node_rule;
-      setup_.is_power                 = stretch.is_power;
-      setup_.sees_rate                = feedback != nullptr && feedback->uses_rate();
-      setup_.backward_ratio           = scene.ground.direction.ratio;
-      setup_.switching_velocity       = scene.ground.direction.switching_velocity;
+      const StretchMethod stretch = stretch_method(scene, method.other_rule);
+      setup_.node_rule            = stretch.node_rule;
+      setup_.is_power             = stretch.is_power;
+      setup_.backward_ratio       = scene.ground.direction.ratio;
+      setup_.switching_velocity   = scene.ground.direction.switching_velocity;
       if (!scene.is_plain())
-        laws_.emplace(scene, tables_.points);
+        cell_laws_.emplace(scene, tables_.points);
     }
+    else if (!scene.is_plain())
+      laws_.emplace(scene, tables_.points);
     memory_ = lane_storage(single_engine().memory(setup_));
     for (unsigned int i = 0; i < tableau_.n; ++i)
       quadrature_.push_back({tableau_.c[i], tableau_.b[i]});
@@ -46,23 +46,25 @@ namespace crawler
     output_times_             = output_times;
     if (output_times_.empty() || output_times_.back() < end_time)
       output_times_.push_back(end_time);
-    job_     = {.k         = scene_.body.elastic_modulus,
-                .a         = scene_.body.friction_exponent(),
-                .tolerance = tolerance,
-                // On a stiff body an error of the stretch is one of the forces, k times as large.
-                .newton_factor = setup_.is_stretch ? std::min(1., 10. / scene_.body.elastic_modulus) : 1.,
-                .initial_step  = initial_step,
-                .limits        = limits.data(),
-                .n_limits      = static_cast<unsigned int>(limits.size()),
-                .most_steps    = std::numeric_limits<unsigned int>::max(), // the monitor's business
-                // Cells may be empty where friction then holds them.
-                .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
-                .is_last_resort = setup_.is_stretch,
-                .start_time     = start_time,
-                .start          = y.data(),
-                .output_times   = output_times_.data(),
-                .n_output_times = static_cast<unsigned int>(output_times_.size()),
-                .restarts       = nullptr}; // a solve for each piece
+    job_ = {.k         = scene_.body.elastic_modulus,
+            .a         = scene_.body.friction_exponent(),
+            .tolerance = tolerance,
+            // On a stiff body an error of the stretch is one of the forces, k times as large.
+            .newton_factor = setup_.is_stretch ? std::min(1., 10. / scene_.body.elastic_modulus) : 1.,
+            .initial_step  = initial_step,
+            .limits        = limits.data(),
+            .n_limits      = static_cast<unsigned int>(limits.size()),
+            .most_steps    = std::numeric_limits<unsigned int>::max(), // the monitor's business
+            // Cells may be empty where friction then holds them.
+            .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
+            .is_last_resort = setup_.is_stretch,
+            .start_time     = start_time,
+            .start          = y.data(),
+            .output_times   = output_times_.data(),
+            .n_output_times = static_cast<unsigned int>(output_times_.size()),
+            .restarts       = nullptr}; // a solve for each piece
+    if (laws_)
+      laws_->set(job_);
     started_ = false;
     bad_friction_.reset();
     y_       = &y;
@@ -74,7 +76,8 @@ namespace crawler
       outcome_.step_size = initial_step;
       return outcome_;
     }
-    const LaneHost host = {this, next, stress, accepted, done, /*look_inside=*/false, laws_ ? laws : nullptr};
+    const LaneHost host = {
+      this, next, stress, accepted, done, /*look_inside=*/false, laws, cell_laws_ ? cell_laws : nullptr};
     single_engine().run(setup_, host, memory_.get());
     return outcome_;
   }
@@ -96,11 +99,17 @@ namespace crawler
     self.stress_->values(t, {m, self.tables_.points.size()});
   }
 
-  LaneLaws
-  LaneStepper::laws(void *context, const double t, const double *m, const double *w, const double *rate)
+  bool
+  LaneStepper::laws(void *context, unsigned int, const LanePoints &points)
+  {
+    return static_cast<LaneStepper *>(context)->laws_->evaluate(points);
+  }
+
+  LaneCellLaws
+  LaneStepper::cell_laws(void *context, const double t, const double *m, const double *w, const double *rate)
   {
     auto &self          = *static_cast<LaneStepper *>(context);
-    StretchLaws &laws   = *self.laws_;
+    StretchLaws &laws   = *self.cell_laws_;
     const std::size_t n = self.tables_.points.size();
     const long bad      = laws.evaluate(t, {w, n}, {rate, n}, m);
     if (bad >= 0)
@@ -140,6 +149,7 @@ namespace crawler
     self.outcome_.reason            = outcome.status == LaneOutcome::gave_up ? gave_up : "";
     self.outcome_.time              = outcome.time;
     self.outcome_.step_size         = outcome.step_size;
+    self.outcome_.start_size        = outcome.start_size;
     self.outcome_.steps             = outcome.steps;
     self.outcome_.rejected_steps    = outcome.rejected;
     self.outcome_.newton_iterations = outcome.newton_iterations;

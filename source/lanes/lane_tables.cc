@@ -49,6 +49,7 @@ namespace crawler
                         parts(tableau.vectors),
                         parts(tableau.rows)};
     setup.is_stretch = method.is_stretch;
+    setup.laws       = method.laws;
   }
 
   double
@@ -110,6 +111,23 @@ namespace crawler
   bool
   fits_lanes(const Scene &scene)
   {
-    return scene.is_plain();
+    const StretchFeedback *feedback = scene.active_stress->feedback();
+    return feedback == nullptr || (!feedback->sees_near() && feedback->delay() == 0.);
+  }
+
+  unsigned int
+  lane_laws(const Scene &scene)
+  {
+    if (scene.is_plain())
+      return LaneLaws::plain;
+    const StretchFeedback *feedback = scene.active_stress->feedback();
+    unsigned int bits               = LaneLaws::general;
+    const auto add = [&bits](const bool has, const LaneLaws::Bits bit) { bits |= has ? bit : LaneLaws::plain; };
+    add(scene.ground.direction.ratio != 1., LaneLaws::direction);
+    add(!scene.has_power_law(), LaneLaws::host_friction);
+    add(scene.ground.profile != nullptr, LaneLaws::host_ground);
+    add(feedback != nullptr, LaneLaws::feedback);
+    add(feedback != nullptr && feedback->uses_rate(), LaneLaws::rate);
+    return bits;
   }
 } // namespace crawler

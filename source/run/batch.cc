@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/lanes/host_laws.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/lane_sampler.h>
 #include <crawler/run/recorder.h>
@@ -27,7 +28,8 @@ namespace crawler
                          method.n_stages,
                          first_cell_ends(scene, numerics),
                          is_stretch,
-                         numerics.other_rule};
+                         numerics.other_rule,
+                         lane_laws(scene)};
     if (!result.cell_ends.empty())
       result.n_cells = static_cast<unsigned int>(result.cell_ends.size() - 1);
     return result;
@@ -36,7 +38,9 @@ namespace crawler
   std::optional<LaneMethod>
   batch_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {
-    return numerics.formulation == Formulation::position ? lane_method(scene, time, numerics) : std::nullopt;
+    return numerics.formulation == Formulation::position && !scene.profiles.initial_stretch
+             ? lane_method(scene, time, numerics)
+             : std::nullopt;
   }
 
   namespace
@@ -73,7 +77,7 @@ namespace crawler
       compute(const LaneEngine &engine)
       {
         lanes_.resize(engine.lanes);
-        const LaneHost host = {this, next, stress, accepted, done, options_.energy_balance};
+        const LaneHost host = {this, next, stress, accepted, done, options_.energy_balance, laws};
         const auto memory   = lane_storage(engine.memory(tables_.setup));
         engine.run(tables_.setup, host, memory.get());
         return !interrupted_;
@@ -84,12 +88,16 @@ namespace crawler
       {
         std::size_t run         = 0;
         bool given_up           = false;
-        double stretch_at_start = 1.; ///< of the ends
-        double k                = 0.; ///< in natural units
+        double stretch_at_start = 1.;         ///< of the ends
+        std::pair<double, double> end_moduli; ///< in natural units
+        bool has_known_ends = true;           ///< see Assembler
         Units units;
         TimeSegments segments;
-        std::vector<double> output_times;    ///< ends of the segments, and those that the record needs
-        std::vector<unsigned char> restarts; ///< which of them are where a new segment starts
+        std::optional<Scene> scene; ///< in natural units, if it is general
+        std::optional<HostLaws> laws;
+        std::unique_ptr<FeedbackAtPoints> end_feedback; ///< at the ends of the body, if there is one
+        std::vector<double> output_times;               ///< ends of the segments, and those that the record needs
+        std::vector<unsigned char> restarts;            ///< which of them are where a new segment starts
         std::vector<StepLimit> limits;
         std::optional<Recorder> recorder;
         std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
@@ -138,8 +146,11 @@ namespace crawler
         lane.end_stress.resize(tableau_.n);
         lane.n_stress_calls = 0;
         lane.given_up       = false;
-        lane.k              = scene.body.elastic_modulus / lane.units.force;
-        job                 = {.k              = lane.k,
+        lane.end_moduli     = scene.end_moduli();
+        lane.end_moduli.first /= lane.units.force;
+        lane.end_moduli.second /= lane.units.force;
+        lane.has_known_ends = scene.active_stress->feedback() == nullptr;
+        job                 = {.k              = scene.body.elastic_modulus / lane.units.force,
                                .a              = scene.body.friction_exponent(),
                                .tolerance      = numerics.tolerance / lane.units.length,
                                .newton_factor  = 1.,
@@ -154,6 +165,21 @@ namespace crawler
                                .output_times   = lane.output_times.data(),
                                .n_output_times = static_cast<unsigned int>(lane.output_times.size()),
                                .restarts       = lane.restarts.data()};
+        lane.laws.reset();
+        lane.end_feedback.reset();
+        if (scene.is_plain())
+          return;
+        lane.scene.emplace(in_units(scene, lane.units, &lane.segments));
+        lane.laws.emplace(*lane.scene, tables_.points);
+        lane.laws->set(job);
+        if (const StretchFeedback *feedback = lane.scene->active_stress->feedback())
+          lane.end_feedback = feedback->at({0., 1.});
+      }
+
+      static bool
+      laws(void *context, const unsigned int l, const LanePoints &points)
+      {
+        return self(context).lanes_[l].laws->evaluate(points);
       }
 
       /// The run starts from rest.
@@ -206,7 +232,7 @@ namespace crawler
       static double
       end_stretch(const Lane &lane, const std::array<double, 2> &m)
       {
-        return 1. - std::max(m[0], m[1]) / lane.k;
+        return 1. - std::max(m[0] / lane.end_moduli.first, m[1] / lane.end_moduli.second);
       }
 
       /// Does an end invert (Simulation::end_inverts)? A coarse mesh may not have followed it. The ends are looked at
@@ -214,6 +240,8 @@ namespace crawler
       static bool
       end_inverts(const Lane &lane)
       {
+        if (!lane.has_known_ends)
+          return false;
         double smallest = lane.stretch_at_start;
         for (const auto &m : lane.end_stress)
           smallest = std::min(smallest, end_stretch(lane, m));
@@ -325,8 +353,11 @@ namespace crawler
       void
       add_rates(Lane &lane, const LaneStep &step, const unsigned int i) const
       {
-        const LaneStage &stage = step.stages[i];
-        const auto &m          = lane.end_stress[i];
+        const LaneStage &stage  = step.stages[i];
+        std::array<double, 2> m = lane.end_stress[i];
+        if (lane.end_feedback)
+          lane.end_feedback->values(
+            step.time - (1. - tableau_.c[i]) * step.size, {stage.end_stretch, stage.end_rate, {}, {}}, {m, {}, {}, {}});
         const double end_power = m[1] * stage.right_velocity - m[0] * stage.left_velocity;
         Rates works{{stage.stress_power, stage.dissipation, stage.positive_power, stage.absolute_power, end_power}};
         for (double &work : works)

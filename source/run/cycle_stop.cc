@@ -29,7 +29,9 @@ namespace crawler
     if (time.cycle_stop == CycleStopMode::off || (time.cycle_stop == CycleStopMode::automatic &&
                                                   (n_output_times > 0 || time.step_control != StepControl::adaptive)))
       return std::nullopt;
-    if (!scene.is_plain()) // its cycles need not repeat
+    // Cycles need not repeat where the place or the past counts.
+    const StretchFeedback *feedback = scene.active_stress->feedback();
+    if (scene.ground.profile || (feedback != nullptr && feedback->delay() > 0.))
       return std::nullopt;
     const auto period = scene.active_stress->period();
     if (!period || !CycleStop::fits(*period / scene.end_time))

@@ -57,7 +57,7 @@ namespace crawler
     if (!compute_integrals(step, y))
       return false;
     look_at_extremes(step.time, stretch);
-    if (run_->options.resolution)
+    if (run_->options.resolution != ResolutionWish::none)
       look_at_resolution(step, y);
     if (leads_nowhere(step))
       return false;
@@ -106,6 +106,9 @@ namespace crawler
       result.largest_u = std::max(result.largest_u, std::sqrt(square / static_cast<double>(u.size())));
       return;
     }
+    result.largest_u = std::max(result.largest_u, mesh_.position->root_mean_square(y));
+    if (run_->options.resolution != ResolutionWish::all)
+      return;
     if (!is_adaptive() && mesh_.velocity->compute(step.time, step.size, y, v_))
     {
       const auto indicators = all_indicators(mesh_.position->error_indicators(step.time, y, v_), *mesh_.discretization);
@@ -118,7 +121,6 @@ namespace crawler
     largest.strain       = std::max(largest.strain, now.strain);
     result.unresolved    = largest.strain > 0. ? largest.highest_mode / largest.strain : 0.;
     result.strain        = largest.strain;
-    result.largest_u     = std::max(result.largest_u, mesh_.position->root_mean_square(y));
   }
 
   /// Are there too many small steps? Then the diagnosis says so.

@@ -177,6 +177,15 @@ namespace crawler
     }
   } // namespace
 
+  std::vector<double>
+  profile_at(const std::shared_ptr<const Profile> &profile, const std::vector<double> &places)
+  {
+    std::vector<double> values(places.size(), 1.);
+    if (profile)
+      profile->values(places, values);
+    return values;
+  }
+
   double
   Profile::value(const double x) const
   {

@@ -146,14 +146,6 @@ namespace crawler
       std::optional<KnownFeedback> feedback_;
     };
 
-    /// Asked for in every residual, and a comparison of types is faster than dynamic_cast.
-    bool
-    has_power_law(const Scene &scene)
-    {
-      const FrictionLaw &law = *scene.friction;
-      return typeid(law) == typeid(PowerFriction);
-    }
-
     void
     require(const char *name, const double value, const double least, const double most)
     {
@@ -192,10 +184,18 @@ namespace crawler
     }
   } // namespace
 
+  /// Asked for in every residual, and a comparison of types is faster than dynamic_cast.
+  bool
+  Scene::has_power_law() const
+  {
+    const FrictionLaw &law = *friction;
+    return typeid(law) == typeid(PowerFriction);
+  }
+
   bool
   Scene::is_plain() const
   {
-    return profiles.is_plain() && ground.is_plain() && active_stress->feedback() == nullptr && has_power_law(*this);
+    return profiles.is_plain() && ground.is_plain() && active_stress->feedback() == nullptr && has_power_law();
   }
 
   std::string
@@ -210,7 +210,7 @@ namespace crawler
     add(profiles.friction != nullptr, "Body/Friction profile");
     add(profiles.initial_stretch != nullptr, "Body/Initial stretch");
     add(ground.profile != nullptr, "Ground/Profile");
-    add(!has_power_law(*this), "Ground/Friction law");
+    add(!has_power_law(), "Ground/Friction law");
     add(ground.direction.ratio != 1., "Ground/Backward ratio");
     add(active_stress && active_stress->feedback() != nullptr, "an active stress with feedback");
     return names;

@@ -108,8 +108,13 @@ namespace crawler
       double weights[radau::most_stages];
       for (int i = 0; i < radau.n_stages(); ++i)
       {
-        radau::guess_weights(
-          radau.n_stages(), radau.tableau->c.data(), radau.tableau->inverse.data(), i, radau.h / radau.old_h, weights);
+        radau::guess_weights(radau.n_stages(),
+                             radau.tableau->c.data(),
+                             radau.tableau->inverse.data(),
+                             i,
+                             /*start=*/1.,
+                             radau.h / radau.old_h,
+                             weights);
         radau::combine(radau.n_stages(), weights, radau.old_z.data(), radau.n(), &z.span[i * radau.n_owned]);
       }
       return true;

@@ -29,4 +29,20 @@ namespace crawler
    */
   std::string
   on_first_rank(MPI_Comm communicator, const std::function<std::string()> &action);
+
+  /**
+   * Open MPI in a process that no launcher has started runs a daemon and looks for networks, which takes longer than
+   * most runs. While this object lives, when MPI is initialized, it does neither; what the user has set in the
+   * environment stays. Where a launcher is seen nothing is changed.
+   */
+  class QuickStart
+  {
+  public:
+    QuickStart();
+    ~QuickStart();
+    QuickStart(const QuickStart &) = delete;
+
+  private:
+    std::vector<const char *> set_; ///< variables that programs started by this one do not inherit
+  };
 } // namespace crawler

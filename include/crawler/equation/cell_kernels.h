@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/equation/point_laws.h>
 #include <crawler/mesh/reference_element.h>
 
 #include <vector>
@@ -9,13 +10,6 @@ namespace crawler
 {
   class FrictionLaw;
 
-  /// What general laws say at the points [cell][point] of a run of cells, for the state at hand; f is the friction per
-  /// reference length, N the force in the body. Null: the body's force does not depend on the rate of the stretch.
-  struct PointLaws
-  {
-    const double *N, *f, *f_u, *f_v, *w_f_w, *N_w, *N_rate, *k, *m;
-  };
-
   /// What the integrals over a run of cells need. Arrays over nodes are local ones (discretization.h).
   struct CellInput
   {
@@ -23,11 +17,11 @@ namespace crawler
     const double *cell_size;
     const ReferenceElement *element;
     const FrictionLaw *friction;
-    double k;                        ///< elastic modulus
-    const double *u;                 ///< displacement at the nodes
-    const double *v;                 ///< velocity at the nodes; may be null in residual(): then without friction
-    const double *m;                 ///< active stress at the quadrature points
-    const PointLaws *laws = nullptr; ///< of a general scene, in place of k, m and friction
+    double k;        ///< elastic modulus
+    const double *u; ///< displacement at the nodes
+    const double *v; ///< velocity at the nodes; may be null in residual(): then without friction
+    const double *m; ///< active stress at the quadrature points
+    const PointLaws<double> *laws = nullptr; ///< of a general scene, in place of k, m and friction
   };
 
   /// Integrals over the body that the energy balance is made of; see theory.md section 1 for their relations.

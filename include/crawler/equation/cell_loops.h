@@ -3,6 +3,9 @@
 
 #include <crawler/base/instruction_set.h>
 #include <crawler/equation/crawler_equation.h>
+#include <crawler/equation/point_laws.h>
+
+#include <cstddef>
 
 /**
  * The integrals over one cell in the position form, for one body (Number is double) or for several side by side
@@ -48,8 +51,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     Number f_v[n], f_w[n]; ///< of the friction by velocity and stretch
     Number N_w[n];         ///< of the force in the body by the stretch; not set if the laws have one modulus k
-    Number f_u[n];         ///< of the friction by the place; not set unless the laws have_place
-    Number N_rate[n];      ///< of the force in the body by the rate of the stretch; not set unless they have_rate
+    Number f_u[n];         ///< of the friction by the place; not set unless the laws have_place()
+    Number N_rate[n];      ///< of the force in the body by the rate of the stretch; not set unless they have_rate()
   };
 
   template <typename Number>
@@ -57,6 +60,44 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     Number elastic_energy, power, force; ///< power of the active stress, friction force
   };
+
+  /// Strain, stretch and velocity at the points of a cell.
+  template <int n, typename Number>
+  struct StateAtPoints
+  {
+    Number e[n], w[n], v[n];
+
+    /// Without a velocity @p v at the nodes the body is at rest.
+    [[gnu::always_inline]] StateAtPoints(const ElementTables &tables, const double h, const Number *u, const Number *v)
+    {
+      evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
+      for (int p = 0; p < n; ++p)
+        w[p] = 1. + e[p];
+      if (v != nullptr)
+        evaluate<n>(tables.values, v, 1., 0., this->v);
+      else
+        for (int p = 0; p < n; ++p)
+          this->v[p] = Number{};
+    }
+  };
+
+  /// Place, velocity, strain and rate of the stretch at the points of a cell.
+  template <int n, typename Number>
+  inline void
+  cell_states(const ElementTables &tables,
+              const double h,
+              const Number *u,
+              const Number *v,
+              Number *u_at,
+              Number *v_at,
+              Number *e,
+              Number *rate)
+  {
+    evaluate<n>(tables.values, u, 1., 0., u_at);
+    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
+    evaluate<n>(tables.values, v, 1., 0., v_at);
+    evaluate<n>(tables.derivatives, v, 1. / h, 0., rate);
+  }
 
   /// Adds int N phi_i,s, and int f phi_i unless @p f is null.
   template <int n, typename Number>
@@ -80,30 +121,17 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           F[i] += force[p] * tables.derivatives[p * n + i];
   }
 
-  /// Adds the residual of a cell to @p F, without friction if @p v is null; the stretches are left in @p w.
+  /// Adds the residual of a cell to @p F, without friction if @p v is null; returns the state.
   template <int n, typename Number, typename Laws>
-  inline void
-  cell_residual(const ElementTables &tables,
-                const double h,
-                const Laws &laws,
-                const Number *u,
-                const Number *v,
-                Number *w,
-                Number *F)
+  inline StateAtPoints<n, Number>
+  cell_residual(
+    const ElementTables &tables, const double h, const Laws &laws, const Number *u, const Number *v, Number *F)
   {
-    Number e[n], N[n], f[n], v_at[n];
-    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
-    for (int p = 0; p < n; ++p)
-      w[p] = 1. + e[p];
-    if (v == nullptr)
-    {
-      laws.forces(e, w, v, N, f);
-      add_forces<n, Number>(tables, h, N, nullptr, F);
-      return;
-    }
-    evaluate<n>(tables.values, v, 1., 0., v_at);
-    laws.forces(e, w, v_at, N, f);
-    add_forces<n>(tables, h, N, f, F);
+    const StateAtPoints<n, Number> at(tables, h, u, v);
+    Number N[n], f[n];
+    laws.forces(at.e, at.w, v != nullptr ? at.v : nullptr, N, f);
+    add_forces<n, Number>(tables, h, N, v != nullptr ? f : nullptr, F);
+    return at;
   }
 
   /// The force in the body @p N and the friction @p f at the points of a cell.
@@ -117,12 +145,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
               Number *N,
               Number *f)
   {
-    Number e[n], w[n], v_at[n];
-    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
-    for (int p = 0; p < n; ++p)
-      w[p] = 1. + e[p];
-    evaluate<n>(tables.values, v, 1., 0., v_at);
-    laws.forces(e, w, v_at, N, f);
+    const StateAtPoints<n, Number> at(tables, h, u, v);
+    laws.forces(at.e, at.w, at.v, N, f);
   }
 
   /// The derivatives at the points of a cell.
@@ -130,17 +154,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   inline PointDerivatives<n, Number>
   cell_derivatives(const ElementTables &tables, const double h, const Laws &laws, const Number *u, const Number *v)
   {
-    Number e[n], w[n], v_at[n];
-    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
-    for (int p = 0; p < n; ++p)
-      w[p] = 1. + e[p];
-    if (v != nullptr)
-      evaluate<n>(tables.values, v, 1., 0., v_at);
-    else
-      for (int p = 0; p < n; ++p)
-        v_at[p] = Number{};
+    const StateAtPoints<n, Number> at(tables, h, u, v);
     PointDerivatives<n, Number> D;
-    laws.template derivatives<by_state>(e, w, v_at, D);
+    laws.template derivatives<by_state>(at.e, at.w, at.v, D);
     return D;
   }
 
@@ -162,11 +178,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       D.f_v[p] = ds * D.f_v[p];
       if constexpr (by_state)
         D.f_w[p] = tables.weights[p] * D.f_w[p]; // h * (1/h)
-      if constexpr (Laws::has_place)
+      if (laws.has_place())
         D.f_u[p] = ds * D.f_u[p];
       if constexpr (!Laws::has_one_modulus)
         D.N_w[p] = d_by_s * D.N_w[p];
-      if constexpr (Laws::has_rate)
+      if (laws.has_rate())
         D.N_rate[p] = d_by_s * D.N_rate[p];
     }
     const auto add = [](const Number &factor, const double *trial, Number *row) {
@@ -190,13 +206,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         if constexpr (by_state)
         {
           add(phi[i] * D.f_w[p], phi_s, row_K);
-          if constexpr (Laws::has_place)
+          if (laws.has_place())
             add(phi[i] * D.f_u[p], phi, row_K);
           if constexpr (!Laws::has_one_modulus)
             add(phi_s[i] * D.N_w[p], phi_s, row_K);
         }
         add(phi[i] * D.f_v[p], phi, row_M);
-        if constexpr (Laws::has_rate)
+        if (laws.has_rate())
           add(phi_s[i] * D.N_rate[p], phi_s, row_M);
       }
       for (int j = 0; j < n; ++j)
@@ -231,20 +247,17 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   cell_integrals(
     const ElementTables &tables, const double h, const Laws &laws, const Number *u, const Number *v, Sums &sum)
   {
-    Number e[n], w[n], u_at[n], v_at[n], v_s[n];
-    evaluate<n>(tables.derivatives, u, 1. / h, 0., e);
-    for (int p = 0; p < n; ++p)
-      w[p] = 1. + e[p];
+    const StateAtPoints<n, Number> at(tables, h, u, v);
+    Number u_at[n], v_s[n];
     evaluate<n>(tables.values, u, 1., 0., u_at);
-    evaluate<n>(tables.values, v, 1., 0., v_at);
     evaluate<n>(tables.derivatives, v, 1. / h, 0., v_s);
-    PointDensities<Number> at[n];
-    laws.densities(e, w, v_at, v_s, at);
+    PointDensities<Number> densities[n];
+    laws.densities(at.e, at.w, at.v, v_s, densities);
     for (int p = 0; p < n; ++p)
     {
       const double ds = h * tables.weights[p];
       sum.displacement += ds * u_at[p];
-      add_densities(ds, at[p], v_at[p], sum);
+      add_densities(ds, densities[p], at.v[p], sum);
     }
   }
 
@@ -253,10 +266,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   template <int n, typename Number, typename Friction>
   struct PlainLaws
   {
-    static constexpr bool has_one_modulus = true, has_place = false, has_rate = false;
+    static constexpr bool has_one_modulus = true;
     Number k;
     const Number *m; ///< at the points
     Friction friction;
+
+    static constexpr bool
+    has_place()
+    {
+      return false;
+    }
+    static constexpr bool
+    has_rate()
+    {
+      return false;
+    }
 
     void
     forces(const Number *e, const Number *w, const Number *v, Number *N, Number *f) const
@@ -290,6 +314,57 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         at[p] = {equation::elastic_energy(e[p], k),
                  equation::stress_power(m[p], v_s[p]),
                  equation::friction_force(g[p], v[p])};
+    }
+  };
+
+  /// Laws of general bodies and grounds whose values at the points are known.
+  template <int n, typename Number>
+  struct KnownLaws
+  {
+    static constexpr bool has_one_modulus = false;
+    const PointLaws<Number> &all;
+    std::size_t first; ///< point of the cell
+
+    bool
+    has_place() const
+    {
+      return all.f_u != nullptr;
+    }
+    bool
+    has_rate() const
+    {
+      return all.N_rate != nullptr;
+    }
+
+    void
+    forces(const Number *, const Number *, const Number *, Number *N, Number *f) const
+    {
+      for (int p = 0; p < n; ++p)
+      {
+        N[p] = all.N[first + p];
+        f[p] = all.f[first + p];
+      }
+    }
+    template <bool>
+    void
+    derivatives(const Number *, const Number *w, const Number *, PointDerivatives<n, Number> &D) const
+    {
+      for (int p = 0; p < n; ++p)
+      {
+        D.f_v[p]    = all.f_v[first + p];
+        D.f_w[p]    = all.w_f_w[first + p] / w[p];
+        D.N_w[p]    = all.N_w[first + p];
+        D.f_u[p]    = has_place() ? all.f_u[first + p] : Number{};
+        D.N_rate[p] = has_rate() ? all.N_rate[first + p] : Number{};
+      }
+    }
+    void
+    densities(const Number *e, const Number *, const Number *, const Number *v_s, PointDensities<Number> *at) const
+    {
+      for (int p = 0; p < n; ++p)
+        at[p] = {equation::elastic_energy(e[p], all.k[first + p]),
+                 equation::stress_power(all.m[first + p], v_s[p]),
+                 all.f[first + p]};
     }
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

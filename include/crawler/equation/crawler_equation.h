@@ -47,6 +47,23 @@ namespace crawler::equation::inline CRAWLER_INSTRUCTION_SET
     return g * v;
   }
 
+  /// What the friction of a general scene has besides g(w): b(s) c(x) d(v) v [velocity], and its derivatives by the
+  /// velocity and by the place.
+  template <typename Number>
+  struct Sliding
+  {
+    Number force, by_v, by_u;
+  };
+
+  /// @p b of the body; @p c of the ground and its slope @p c_x; @p d of the direction and the derivative @p dv_v of
+  /// d(v) v.
+  template <typename Number>
+  inline Sliding<Number>
+  sliding(const Number b, const Number c, const Number c_x, const Number d, const Number dv_v, const Number v)
+  {
+    return {b * c * d * v, b * c * dv_v, b * c_x * d * v};
+  }
+
   /// Power of the active stress per reference length [force/time], for the stretch rate v_s.
   template <typename Number>
   inline Number

@@ -52,7 +52,7 @@ namespace crawler
     BodyForceAtPoints force_;
     StretchElsewhere elsewhere_;
     std::vector<double> e_, w_, u_, v_, rate_, g_, w_dg_, f_, f_u_, f_v_, w_f_w_;
-    PointLaws laws_;
+    PointLaws<double> laws_;
     Far jacobian_far_;
     std::vector<Far> stage_far_;
   };

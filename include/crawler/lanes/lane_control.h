@@ -30,10 +30,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     LaneJob job;
     bool busy = false, has_old = false, just_rejected = false;
+    bool is_retry  = false; ///< of a step whose failed try is the guess
     bool iterating = false, failed = false, accepted = false;
     double t = 0., h = 1., next = 1., old_h = 1.;
     double error = 0.; ///< of the step, relative to the tolerance
     double rate = 0., known_rate = 1., last_correction = 0.;
+    bool is_starting   = true; ///< have all steps since the last start grown as much as they may?
+    double start_size  = 0.;   ///< of the first one that did not, after the last start where one did not
     unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, output_time = 0, limit = 0;
     unsigned int first_step = 0; ///< steps before the last start
     unsigned long newton    = 0;
@@ -118,15 +121,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       error              = filtered < least ? least : filtered;
     }
 
-    /// Accepts or rejects the step, and finds the size of the next one.
+    /// Accepts or rejects the step, and finds the size of the next one. @p keeps_try: what Newton's method has found
+    /// before it became too slow is the next guess, since it tells the direction of the friction.
     void
-    control_step(const int n_stages)
+    control_step(const int n_stages, const bool keeps_try)
     {
       accepted = !failed && error <= 1.;
       if (failed)
       {
         next    = failure_factor * h;
-        has_old = false; // it was no good guess
+        has_old = is_retry = keeps_try && rate > 0. && rate < 1.; // what was there was no good guess
+        if (is_retry)
+          old_h = h;
         ++failures;
         ++all_failures;
         ++rejected;
@@ -137,6 +143,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       factor = factor < radau::least_change  ? radau::least_change
                : factor > radau::most_change ? radau::most_change
                                              : factor;
+      if (is_starting && accepted && factor < radau::most_change)
+      {
+        start_size  = h;
+        is_starting = false;
+      }
       // Newton's method converges the more slowly the longer the step is, about in proportion.
       if (rate > 0. && factor * rate > wanted_rate)
         factor = rate > wanted_rate ? 1. : wanted_rate / rate;
@@ -159,8 +170,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     start_anew()
     {
-      next          = job.initial_step;
+      next          = start_size > job.initial_step ? start_size : job.initial_step;
+      is_starting   = true;
       has_old       = false;
+      is_retry      = false;
       just_rejected = false;
       known_rate    = 1.;
       first_step    = steps;
@@ -173,6 +186,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       t                         = end_of_step();
       old_h                     = h;
       has_old                   = true;
+      is_retry                  = false;
       const bool is_output_time = t == job.output_times[output_time];
       ++steps;
       if (is_output_time)

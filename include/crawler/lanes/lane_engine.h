@@ -17,6 +17,22 @@
  */
 namespace crawler
 {
+  /// What bodies and grounds have besides the numbers of a plain scene: bits.
+  namespace LaneLaws
+  {
+    enum Bits : unsigned int
+    {
+      plain                 = 0,
+      general               = 1,  ///< anything of what follows, k(s) or gamma(s)
+      direction             = 2,  ///< friction depends on the direction
+      host_friction         = 4,  ///< another friction law than the power law: the host evaluates it
+      host_ground           = 8,  ///< c(x): the host evaluates it
+      feedback              = 16, ///< m depends on the stretch: the host evaluates it
+      rate                  = 32, ///< and on its rate
+      nonlinear_in_velocity = direction | rate
+    };
+  }
+
   /// What all lanes share: the mesh, the element (mesh/reference_element.h) and the method
   /// (time/radau_tableau.h). All arrays belong to the caller.
   struct LaneSetup
@@ -33,10 +49,12 @@ namespace crawler
     const double *vectors;     ///< [stages][1 + pairs][real, imaginary]
     const double *rows;        ///< [1 + pairs][stages][real, imaginary]
 
+    unsigned int laws = LaneLaws::plain; ///< what the bodies and grounds of a run have
+
     // The stretch form (lane_stretch.h), whose points are the middles of its cells.
-    bool is_stretch = false, is_power = false, sees_rate = false; ///< see StretchSystem; does m depend on w_t?
-    unsigned char node_rule = 0;                                  ///< NodeRule of equation/stretch_loops.h
-    double backward_ratio = 1., switching_velocity = 1.;          ///< of the ground (scene/ground.h)
+    bool is_stretch = false, is_power = false;           ///< see StretchSystem
+    unsigned char node_rule = 0;                         ///< NodeRule of equation/stretch_loops.h
+    double backward_ratio = 1., switching_velocity = 1.; ///< of the ground (scene/ground.h)
   };
 
   /// One body to compute.
@@ -58,6 +76,21 @@ namespace crawler
     /// [n_output_times] is the output time a time when the active stress jumps, so the body starts anew there? Null:
     /// none is.
     const unsigned char *restarts;
+
+    // Of a general body in the position form.
+    const double *k_profile = nullptr, *friction_profile = nullptr; ///< [points] k(s)/k and b(s)
+    double backward_ratio = 1., switching_velocity = 1.;            ///< of the ground (scene/ground.h)
+  };
+
+  /// The state of a lane at all quadrature points, and where the host writes what the laws say there. What LaneLaws
+  /// does not ask for is null.
+  struct LanePoints
+  {
+    double t;
+    const double *u, *v, *w, *rate; ///< displacement, velocity, stretch and its rate
+    double *g, *w_dg;               ///< friction law and its derivative by log w
+    double *c, *c_x;                ///< profile of the ground at s + u, and its slope
+    double *m, *m_w, *m_rate;       ///< active stress with feedback, and its derivatives by the stretch and its rate
   };
 
   /// Of a stage of an accepted step (the last one is its end).
@@ -68,6 +101,8 @@ namespace crawler
     // If rates are asked for (CellIntegrals).
     double stress_power, positive_power, absolute_power, dissipation, net_friction, abs_friction;
     double left_velocity, right_velocity; ///< of the ends of the body
+    // If the active stress depends on it, too: the stretch at both ends and its rate.
+    double end_stretch[2], end_rate[2];
   };
 
   /// An accepted step of a lane. The pointers are good until the host returns; element i is at [i*stride].
@@ -97,11 +132,12 @@ namespace crawler
     unsigned int steps, rejected;
     unsigned long newton_iterations;
     double displacement; ///< int u ds at that time
+    double start_size;   ///< a first step that would have been small enough; 0: not known
   };
 
   /// The laws of a general body in the stretch form, at all cells: the mobility 1/(g b), the force N, and their
   /// derivatives by w and w_t. The arrays belong to the host and are good until it is asked again.
-  struct LaneLaws
+  struct LaneCellLaws
   {
     const double *mobility, *mobility_by_w, *force, *force_by_w, *force_by_rate;
     double least; ///< not positive if one of them has no meaning
@@ -120,8 +156,11 @@ namespace crawler
     bool (*accepted)(void *context, unsigned int lane, const LaneStep &step);
     void (*done)(void *context, unsigned int lane, const LaneOutcome &outcome);
     bool look_inside; ///< stretch and rates in all stages, of the position form
-    /// For the stretch @p w and its rate at each cell, for an engine with one lane. Null: the laws of a plain body.
-    LaneLaws (*laws)(void *context, double t, const double *m, const double *w, const double *rate) = nullptr;
+    /// The laws that the engine leaves to the host; false if one of them has no meaning for this state.
+    bool (*laws)(void *context, unsigned int lane, const LanePoints &points) = nullptr;
+    /// In the stretch form, for the stretch @p w and its rate at each cell, for an engine with one lane. Null: the laws
+    /// of a plain body.
+    LaneCellLaws (*cell_laws)(void *context, double t, const double *m, const double *w, const double *rate) = nullptr;
   };
 
   /// The engine as compiled for one instruction set and one number of lanes.

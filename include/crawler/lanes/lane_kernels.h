@@ -2,71 +2,12 @@
 #pragma once
 
 #include <crawler/equation/cell_loops.h>
-#include <crawler/lanes/pack.h>
+#include <crawler/lanes/lane_friction.h>
 #include <crawler/mesh/block_tridiagonal_loops.h>
 
 /// The loops over all cells, for a pack of bodies and one degree q (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
-  /// The p-model of friction with gamma = 1, g = w^a: by products where a is a small whole number. Each lane is
-  /// computed the same way whatever the others are.
-  template <typename Pack>
-  struct LaneFriction
-  {
-    using Mask = typename PackTraits<Pack>::Mask;
-
-    Pack a;
-    static constexpr int most_bits = 4;
-    Mask whole, negative, bits[most_bits]; ///< is |a| a whole number, is a < 0; binary digits of |a|
-    bool any_whole, any_other;
-    int n_bits;
-
-    /// To be called when an exponent has changed.
-    void
-    sort()
-    {
-      any_whole           = false;
-      any_other           = false;
-      n_bits              = 0;
-      constexpr int bound = (1 << most_bits) - 1;
-      Pack is_whole{}, is_negative{}, has_bit[most_bits] = {};
-      for (int l = 0; l < PackTraits<Pack>::size; ++l)
-      {
-        const double exponent = get_lane(a, l), size = exponent < 0. ? -exponent : exponent;
-        const bool is = size <= bound && size == static_cast<int>(size);
-        set_lane(is_whole, l, is);
-        set_lane(is_negative, l, exponent < 0.);
-        any_whole = any_whole || is;
-        any_other = any_other || !is;
-        for (int b = 0; b < most_bits; ++b)
-          if (is && (static_cast<int>(size) >> b & 1) != 0)
-          {
-            set_lane(has_bit[b], l, 1.);
-            n_bits = b + 1 > n_bits ? b + 1 : n_bits;
-          }
-      }
-      whole    = is_whole > 0.;
-      negative = is_negative > 0.;
-      for (int b = 0; b < most_bits; ++b)
-        bits[b] = has_bit[b] > 0.;
-    }
-
-    void
-    operator()(const Pack *w, Pack *g, const int n) const
-    {
-      if (any_other)
-        power_at_points(w, a, g, n);
-      if (any_whole)
-        for (int p = 0; p < n; ++p)
-        {
-          Pack by_products = broadcast<Pack>(1.), x = negative ? 1. / w[p] : w[p];
-          for (int b = 0; b < n_bits; ++b, x *= x)
-            by_products *= bits[b] ? x : broadcast<Pack>(1.);
-          g[p] = any_other ? (whole ? by_products : g[p]) : by_products;
-        }
-    }
-  };
-
   template <typename Pack>
   struct LaneMesh
   {
@@ -75,6 +16,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     ElementTables tables;
     Pack k;
     LaneFriction<Pack> friction;
+    const PointLaws<Pack> *laws = nullptr; ///< of general bodies, for the state at hand: in place of k and friction
   };
 
   /// CellIntegrals of a pack of bodies.
@@ -91,6 +33,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   {
     Pack least = broadcast<Pack>(HUGE_VAL), most = broadcast<Pack>(-HUGE_VAL), least_at{}, most_at{};
     LaneIntegrals<Pack> sums;
+    Pack end_stretch[2] = {}, end_rate[2] = {}; ///< at both ends, and its rate
   };
 
   template <typename Pack, int q>
@@ -120,10 +63,26 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     using Laws = PlainLaws<n, Pack, CellFriction>;
 
-    static Laws
-    laws_of(const LaneMesh<Pack> &mesh, const Pack *m, const int c)
+    /// Calls @p use(laws, c) for each cell.
+    template <typename Use>
+    [[gnu::always_inline]] static inline void
+    for_cells(const LaneMesh<Pack> &mesh, const Pack *m, const Use &use)
     {
-      return {mesh.k, m != nullptr ? m + c * n : nullptr, {mesh.friction}};
+      if (mesh.laws != nullptr)
+        for (int c = 0; c < mesh.n_cells; ++c)
+          use(KnownLaws<n, Pack>{*mesh.laws, static_cast<std::size_t>(c) * n}, c);
+      else
+        for (int c = 0; c < mesh.n_cells; ++c)
+          use(Laws{mesh.k, m != nullptr ? m + c * n : nullptr, {mesh.friction}}, c);
+    }
+
+    /// What the laws of general bodies are evaluated for, at all points.
+    [[gnu::flatten]] static void
+    states(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, Pack *u_at, Pack *v_at, Pack *e, Pack *rate)
+    {
+      for (int c = 0; c < mesh.n_cells; ++c)
+        cell_states<n, Pack>(
+          mesh.tables, mesh.sizes[c], u + c * q, v + c * q, u_at + c * n, v_at + c * n, e + c * n, rate + c * n);
     }
 
     /// Of the nodes of cell @p c those that no cell before it has.
@@ -137,41 +96,37 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     /// Overwrites @p F; returns the smallest stretch at a quadrature point.
-    static Pack
+    [[gnu::flatten]] static Pack
     residual(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, Pack *F)
     {
       Pack least = broadcast<Pack>(HUGE_VAL);
-      for (int c = 0; c < mesh.n_cells; ++c)
-      {
-        Pack w[n];
+      for_cells(mesh, m, [&](const auto &laws, const int c) {
         set_to_zero(c, F);
-        cell_residual<n>(mesh.tables, mesh.sizes[c], laws_of(mesh, m, c), u + c * q, v + c * q, w, F + c * q);
+        const auto at = cell_residual<n, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q, F + c * q);
         for (int p = 0; p < n; ++p)
-          least = smaller(w[p], least); // a stretch that is not a number makes F one, too
-      }
+          least = smaller(at.w[p], least); // a stretch that is not a number makes F one, too
+      });
       return least;
     }
 
-    /// The right-hand side of M v = F for the velocity v in which all forces balance, and the factors of M.
-    static void
-    balance(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *m, Pack *F, Pack *blocks, Pack *schur)
+    /// The right-hand side of M x = F for the correction x of the velocity @p v to that in which all forces balance,
+    /// and the factors of M. Without @p v, of plain bodies, x is the velocity.
+    [[gnu::flatten]] static void
+    balance(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, Pack *F, Pack *blocks, Pack *schur)
     {
-      for (int c = 0; c < mesh.n_cells; ++c)
-      {
-        Pack w[n];
+      for_cells(mesh, m, [&](const auto &laws, const int c) {
         set_to_zero(c, F);
-        const Laws laws          = laws_of(mesh, m, c);
-        constexpr Pack *no_speed = nullptr;
-        cell_residual<n, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, no_speed, w, F + c * q);
-        cell_blocks<n, false, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, no_speed, nullptr, blocks + c * n * n);
+        const Pack *const own = v != nullptr ? v + c * q : nullptr;
+        cell_residual<n, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, own, F + c * q);
+        cell_blocks<n, false, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, own, nullptr, blocks + c * n * n);
         condense_cell<q>(blocks + c * n * n, schur + 4 * c, [](const auto &) {});
-      }
+      });
       for (int i = 0; i <= mesh.n_cells * q; ++i)
         F[i] = -F[i];
     }
 
     /// The factors of K + real M, and of K + (re + i im) M for each pair.
-    static void
+    [[gnu::flatten]] static void
     factorize(const LaneMesh<Pack> &mesh,
               const Pack *u,
               const Pack *v,
@@ -184,10 +139,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
               Complex<Pack> *complex_schur)
     {
       const auto any_pivot = [](const auto &) {}; // what is not finite is seen in the solution
-      for (int c = 0; c < mesh.n_cells; ++c)
-      {
+      for_cells(mesh, nullptr, [&](const auto &laws, const int c) {
         Pack K[n * n], M[n * n];
-        cell_blocks<n, true>(mesh.tables, mesh.sizes[c], laws_of(mesh, nullptr, c), u + c * q, v + c * q, K, M);
+        cell_blocks<n, true>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q, K, M);
         Pack *A = blocks + c * n * n;
         for (int i = 0; i < n * n; ++i)
           A[i] = K[i] + real * M[i];
@@ -199,7 +153,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
             B[i] = {K[i] + shifts[j].re * M[i], shifts[j].im * M[i]};
           condense_cell<q>(B, complex_schur + 4 * (j * mesh.n_cells + c), any_pivot);
         }
-      }
+      });
     }
 
     template <typename Number>
@@ -218,11 +172,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         backward_cell<q>(blocks + c * n * n, x + c * q);
     }
 
-    static void
+    [[gnu::flatten]] static void
     integrals(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const Pack *m, LaneIntegrals<Pack> &sum)
     {
-      for (int c = 0; c < mesh.n_cells; ++c)
-        cell_integrals<n>(mesh.tables, mesh.sizes[c], laws_of(mesh, m, c), u + c * q, v + c * q, sum);
+      for_cells(mesh, m, [&](const auto &laws, const int c) {
+        cell_integrals<n>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q, sum);
+      });
     }
 
     /// int u ds.
@@ -238,6 +193,20 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           sum += mesh.sizes[c] * mesh.tables.weights[p] * at[p];
       }
       return sum;
+    }
+
+    /// The derivative by s at both ends, from a table of derivatives at @p n_samples places that begin and end there.
+    static void
+    end_derivatives(
+      const LaneMesh<Pack> &mesh, const int n_samples, const double *sample_derivatives, const Pack *u, Pack *ends)
+    {
+      const int last = mesh.n_cells - 1;
+      ends[0] = ends[1] = Pack{};
+      for (int j = 0; j < n; ++j)
+      {
+        ends[0] += sample_derivatives[j] / mesh.sizes[0] * u[j];
+        ends[1] += sample_derivatives[(n_samples - 1) * n + j] / mesh.sizes[last] * u[last * q + j];
+      }
     }
 
     /// Smallest and largest stretch among the samples of all cells.
@@ -279,7 +248,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   struct LaneKernelTable
   {
     Pack (*residual)(const LaneMesh<Pack> &, const Pack *, const Pack *, const Pack *, Pack *);
-    void (*balance)(const LaneMesh<Pack> &, const Pack *, const Pack *, Pack *, Pack *, Pack *);
+    void (*states)(const LaneMesh<Pack> &, const Pack *, const Pack *, Pack *, Pack *, Pack *, Pack *);
+    void (*balance)(const LaneMesh<Pack> &, const Pack *, const Pack *, const Pack *, Pack *, Pack *, Pack *);
     void (*integrals)(const LaneMesh<Pack> &, const Pack *, const Pack *, const Pack *, LaneIntegrals<Pack> &);
     void (*factorize)(const LaneMesh<Pack> &,
                       const Pack *,
@@ -296,11 +266,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void (*complex_forward)(int, const Complex<Pack> *, Complex<Pack> *);
     void (*complex_backward)(int, const Complex<Pack> *, Complex<Pack> *);
     Pack (*integral)(const LaneMesh<Pack> &, const Pack *);
+    void (*end_derivatives)(const LaneMesh<Pack> &, int, const double *, const Pack *, Pack *);
     void (*extremes)(const LaneMesh<Pack> &, int, const double *, const Pack *, Pack *, Pack *, Pack *, Pack *);
   };
 
   template <typename Pack, int q>
   constexpr LaneKernelTable<Pack> lane_kernel_table = {LaneKernels<Pack, q>::residual,
+                                                       LaneKernels<Pack, q>::states,
                                                        LaneKernels<Pack, q>::balance,
                                                        LaneKernels<Pack, q>::integrals,
                                                        LaneKernels<Pack, q>::factorize,
@@ -309,6 +281,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                                        LaneKernels<Pack, q>::template forward<Complex<Pack>>,
                                                        LaneKernels<Pack, q>::template backward<Complex<Pack>>,
                                                        LaneKernels<Pack, q>::integral,
+                                                       LaneKernels<Pack, q>::end_derivatives,
                                                        LaneKernels<Pack, q>::extremes};
 
   template <typename Pack>

@@ -52,15 +52,15 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         set_lane(old_z[i], l, 0.);
     }
 
-    /// The polynomial of the last step continued where @p use is 1, or rest where it is 0. @p ratio: of the step to the
-    /// last one.
+    /// The polynomial of the last step continued where @p use is 1, or rest where it is 0. @p start and @p ratio as in
+    /// radau::guess_weights.
     void
-    guess(const Pack &ratio, const Pack &use)
+    guess(const Pack &start, const Pack &ratio, const Pack &use)
     {
       for (int i = 0; i < s; ++i)
       {
         Pack weights[s];
-        radau::guess_weights(stages, setup.c, setup.inverse, i, ratio, weights);
+        radau::guess_weights(stages, setup.c, setup.inverse, i, start, ratio, weights);
         for (int j = 0; j < s; ++j)
           weights[j] = use * weights[j];
         radau::combine(stages, weights, old_z, n, z + i * n);
@@ -73,6 +73,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       for (int d = 0; d < n; ++d)
         u[d] = y[d] + z[i * n + d];
+      go_to_rate(i, inverse_h);
+    }
+
+    void
+    go_to_rate(const int i, const Pack &inverse_h)
+    {
       radau::stage_rate(stages, setup.inverse, i, inverse_h, z, n, v);
     }
 
@@ -101,6 +107,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       radau::error_rate(stages, setup.error_weights, setup.real_eigenvalue, inverse_h, z, n, v);
       for (int d = 0; d < n; ++d)
         u[d] = y[d];
+    }
+
+    /// The next guess of these bodies is the try that failed.
+    void
+    keep_try(const typename PackTraits<Pack>::Mask &failed)
+    {
+      for (int i = 0; i < s * n; ++i)
+        old_z[i] = failed ? z[i] : old_z[i];
     }
 
     void

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/equation/stretch_form.h>
+#include <crawler/lanes/host_laws.h>
 #include <crawler/lanes/lane_tables.h>
 #include <crawler/time/time_integration.h>
 
@@ -46,8 +47,10 @@ namespace crawler
     accepted(void *context, unsigned int lane, const LaneStep &step);
     static void
     done(void *context, unsigned int lane, const LaneOutcome &outcome);
-    static LaneLaws
-    laws(void *context, double t, const double *m, const double *w, const double *rate);
+    static bool
+    laws(void *context, unsigned int lane, const LanePoints &points);
+    static LaneCellLaws
+    cell_laws(void *context, double t, const double *m, const double *w, const double *rate);
     void
     show_rates();
 
@@ -55,7 +58,8 @@ namespace crawler
     const std::shared_ptr<const LaneTables> tables_owner_;
     const LaneTables &tables_;
     LaneSetup setup_;
-    std::optional<StretchLaws> laws_; ///< of a general body in the stretch form
+    std::optional<HostLaws> laws_;         ///< of a general body in the position form
+    std::optional<StretchLaws> cell_laws_; ///< and in the stretch form
     const RadauTableau &tableau_;
     const std::unique_ptr<ActiveStressAtPoints> stress_;
     LaneStorage memory_;

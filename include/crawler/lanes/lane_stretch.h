@@ -29,6 +29,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     static constexpr int lanes    = PackTraits<Pack>::size;
     static constexpr bool largest = true; ///< is the size of a vector that of its largest element, else the mean square
     static constexpr bool gives_rates = false; ///< for LaneHost::look_inside
+    static constexpr bool keeps_tries = false;
 
     StretchSystem(const LaneSetup &setup, const LaneHost &host)
       : setup_(setup)
@@ -71,7 +72,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     void
-    set_body(const int l, const LaneJob &job)
+    set_body(const int l, const LaneJob &job, const bool)
     {
       set_lane(k_, l, job.k);
       set_lane(a_, l, job.a);
@@ -109,7 +110,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int p = 0; p < pairs; ++p)
         shifts_[p] = {setup_.eigenvalues[2 * p] * inverse_h, setup_.eigenvalues[2 * p + 1] * inverse_h};
       shift_                 = setup_.real_eigenvalue * inverse_h;
-      const bool sees_rate   = setup_.sees_rate;
+      const bool sees_rate   = (setup_.laws & LaneLaws::rate) != 0;
       const double *h        = setup_.sizes;
       const auto derivatives = [&](const int i, Node &node) {
         const NodeForce<Pack> f = node_force(rule_, n_, h, mobility_, force_, i);
@@ -179,7 +180,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     /// The smallest and the largest stretch.
     void
-    look(const Pack *q, const Pack *, const Pack *, const bool, LaneLook<Pack> &result)
+    look(const double *, const Pack *q, const Pack *, const Pack *, const bool, LaneLook<Pack> &result)
     {
       find_stretch(q);
       for (int j = 0; j < n_; ++j)
@@ -259,16 +260,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       find_stretch(q);
       Pack least = broadcast<Pack>(1.);
       if constexpr (lanes == 1)
-        if (host_.laws != nullptr)
+        if (host_.cell_laws != nullptr)
         {
           for (int j = 0; j < n_; ++j)
             rate_[j] = q_dot[j] * slope_[j];
-          const LaneLaws laws = host_.laws(host_.context, *t, m, w_, rate_);
-          mobility_           = laws.mobility;
-          mobility_slope_     = laws.mobility_by_w;
-          force_              = laws.force;
-          force_by_w_         = laws.force_by_w;
-          force_by_rate_      = laws.force_by_rate;
+          const LaneCellLaws laws = host_.cell_laws(host_.context, *t, m, w_, rate_);
+          mobility_               = laws.mobility;
+          mobility_slope_         = laws.mobility_by_w;
+          force_                  = laws.force;
+          force_by_w_             = laws.force_by_w;
+          force_by_rate_          = laws.force_by_rate;
           return laws.least;
         }
       for (int j = 0; j < n_; ++j)

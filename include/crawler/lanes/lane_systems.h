@@ -3,6 +3,7 @@
 
 #include <crawler/lanes/lane_engine.h>
 #include <crawler/lanes/lane_kernels.h>
+#include <crawler/lanes/lane_laws.h>
 #include <crawler/lanes/lane_memory.h>
 
 #include <cstddef>
@@ -20,15 +21,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     using Number                      = Complex<Pack>;
     static constexpr bool largest     = false; ///< the size of a vector is its mean square
     static constexpr bool gives_rates = true;  ///< for LaneHost::look_inside
+    static constexpr bool keeps_tries = true;  ///< is a failed try a guess, see Lane::control_step?
 
-    PositionSystem(const LaneSetup &setup, const LaneHost &)
+    PositionSystem(const LaneSetup &setup, const LaneHost &host)
       : setup_(setup)
+      , is_general_((setup.laws & LaneLaws::general) != 0)
+      , general_(setup, host)
       , kernels_(lane_kernels<Pack>(setup.degree))
     {
       mesh_.n_cells = static_cast<int>(setup.n_cells);
       mesh_.sizes   = setup.sizes;
       mesh_.tables  = {setup.values, setup.derivatives, setup.weights, setup.stiffness};
+      if (is_general_)
+        mesh_.laws = &general_.laws;
     }
+    PositionSystem(const PositionSystem &) = delete;
 
     int
     n_unknowns() const
@@ -47,10 +54,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     void
-    set_body(const int l, const LaneJob &job)
+    set_body(const int l, const LaneJob &job, const bool is_busy)
     {
       set_lane(mesh_.k, l, job.k);
       set_lane(mesh_.friction.a, l, job.a);
+      general_.set_body(l, job, is_busy);
     }
 
     void
@@ -60,14 +68,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     Pack
-    residual(const double *, const Pack *u, const Pack *v, const Pack *m, Pack *F) const
+    residual(const double *t, const Pack *u, const Pack *v, const Pack *m, Pack *F)
     {
-      return kernels_.residual(mesh_, u, v, m, F);
+      if (!is_general_)
+        return kernels_.residual(mesh_, u, v, m, F);
+      const Pack least = evaluate(t, u, v, m);
+      kernels_.residual(mesh_, u, v, m, F);
+      return least;
     }
 
     /// The extreme stretches, and if @p rates the integrals for the velocity @p v.
     void
-    look(const Pack *u, const Pack *v, const Pack *m, const bool rates, LaneLook<Pack> &result) const
+    look(const double *t, const Pack *u, const Pack *v, const Pack *m, const bool rates, LaneLook<Pack> &result)
     {
       kernels_.extremes(mesh_,
                         static_cast<int>(setup_.n_samples),
@@ -77,8 +89,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                         &result.least_at,
                         &result.most,
                         &result.most_at);
-      if (rates)
-        kernels_.integrals(mesh_, u, v, m, result.sums);
+      if (!rates)
+        return;
+      if (is_general_)
+        evaluate(t, u, v, m);
+      kernels_.integrals(mesh_, u, v, m, result.sums);
+      if ((setup_.laws & LaneLaws::feedback) == 0)
+        return;
+      const int n_samples = static_cast<int>(setup_.n_samples);
+      kernels_.end_derivatives(mesh_, n_samples, setup_.sample_derivatives, u, result.end_stretch);
+      kernels_.end_derivatives(mesh_, n_samples, setup_.sample_derivatives, v, result.end_rate);
+      for (Pack &w : result.end_stretch)
+        w = 1. + w;
     }
 
     Pack
@@ -90,6 +112,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     lay_out(LaneMemory &memory)
     {
+      general_.lay_out(memory);
       const std::size_t cells = setup_.n_cells, block = block_size(), corners = cells + 1;
       memory.piece(blocks_, block);
       memory.piece(schur_, 4 * cells);
@@ -105,8 +128,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 
     /// For the state (@p u, @p v).
     void
-    factorize(const double *, const Pack *u, const Pack *v, const Pack *, const Pack &inverse_h)
+    factorize(const double *t, const Pack *u, const Pack *v, const Pack *m, const Pack &inverse_h)
     {
+      if (is_general_)
+        evaluate(t, u, v, m);
       Number shifts[pairs];
       for (int j = 0; j < pairs; ++j)
         shifts[j] = {setup_.eigenvalues[2 * j] * inverse_h, setup_.eigenvalues[2 * j + 1] * inverse_h};
@@ -158,16 +183,56 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         solve_complex(p, y + p * n_unknowns());
     }
 
-    /// The velocity @p v in which all forces balance. Takes the place of the real factors.
-    void
-    velocity(const Pack *u, const Pack *m, Pack *v)
+    /// The velocity @p v in which all forces balance; of general bodies by Newton's method from what @p v is before.
+    /// Takes the place of the real factors, and of @p correction. Returns how much it has not settled.
+    Pack
+    velocity(const double *t, const Pack *u, const Pack *m, Pack *v, Pack *correction)
     {
-      kernels_.balance(mesh_, u, m, v, blocks_, schur_);
-      factorize_corners(schur_, lower_, pivot_, upper_);
-      solve(v);
+      constexpr int most_corrections = 30;
+      constexpr double settled = 1e-10, tiny = 1e-13;
+      if (!is_general_)
+      {
+        kernels_.balance(mesh_, u, nullptr, m, v, blocks_, schur_);
+        factorize_corners(schur_, lower_, pivot_, upper_);
+        solve(v);
+        return Pack{};
+      }
+      Pack left = broadcast<Pack>(HUGE_VAL);
+      for (int i = 0; i < most_corrections; ++i)
+      {
+        evaluate(t, u, v, m);
+        kernels_.balance(mesh_, u, v, m, correction, blocks_, schur_);
+        factorize_corners(schur_, lower_, pivot_, upper_);
+        solve(correction);
+        const auto is_done = left <= 1.; // a lane does not move because others do
+        Pack change{}, size{};
+        for (int d = 0; d < n_unknowns(); ++d)
+        {
+          v[d]   = is_done ? v[d] : v[d] + correction[d];
+          change = added<true>(change, correction[d] < 0. ? -correction[d] : correction[d]);
+          size   = added<true>(size, v[d] < 0. ? -v[d] : v[d]);
+        }
+        if (general_.are_linear_in_velocity())
+          return Pack{};
+        left     = is_done ? left : change / (settled * size + tiny);
+        bool all = true;
+        for (int l = 0; l < PackTraits<Pack>::size; ++l)
+          all = all && get_lane(left, l) <= 1.;
+        if (all)
+          break;
+      }
+      return left;
     }
 
   private:
+    /// The laws for a state.
+    Pack
+    evaluate(const double *t, const Pack *u, const Pack *v, const Pack *m)
+    {
+      kernels_.states(mesh_, u, v, general_.u, general_.v, general_.e, general_.rate);
+      return general_.evaluate(t, mesh_.friction, m);
+    }
+
     std::size_t
     block_size() const
     {
@@ -211,6 +276,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     const LaneSetup &setup_;
+    const bool is_general_;
+    GeneralLaws<Pack> general_;
     LaneMesh<Pack> mesh_;
     const LaneKernelTable<Pack> &kernels_;
     Pack *blocks_, *schur_, *lower_, *pivot_, *upper_;

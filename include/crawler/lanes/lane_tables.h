@@ -18,6 +18,7 @@ namespace crawler
     std::vector<double> cell_ends = {};    ///< of a body of length 1 (mesh/graded_mesh.h)
     bool is_stretch               = false; ///< the stretch form, of degree 1
     bool other_rule               = false; ///< see stretch_method()
+    unsigned int laws             = 0;     ///< LaneLaws::Bits of the scene
 
     auto
     operator<=>(const LaneMethod &) const = default;
@@ -70,4 +71,8 @@ namespace crawler
   /// Can the engine compute this scene in the position form?
   bool
   fits_lanes(const Scene &scene);
+
+  /// What it has, LaneLaws::Bits.
+  unsigned int
+  lane_laws(const Scene &scene);
 } // namespace crawler

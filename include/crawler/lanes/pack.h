@@ -74,34 +74,55 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   }
 #endif
 
-  /// x^y = exp(y log x) in each lane, x > 0: half the cost of pow, whose last digits it lacks where y log x is large.
   template <typename Pack>
   inline Pack
-  power(const Pack &x, const Pack &y)
+  exponential(const Pack &x)
   {
 #ifdef __x86_64__
     if constexpr (PackTraits<Pack>::size == 2)
-      return _ZGVbN2v_exp(y * _ZGVbN2v_log(x));
+      return _ZGVbN2v_exp(x);
 #  ifdef __AVX2__
     if constexpr (PackTraits<Pack>::size == 4)
-      return _ZGVdN4v_exp(y * _ZGVdN4v_log(x));
+      return _ZGVdN4v_exp(x);
 #  endif
 #  ifdef __AVX512F__
     if constexpr (PackTraits<Pack>::size == 8)
-      return _ZGVeN8v_exp(y * _ZGVeN8v_log(x));
+      return _ZGVeN8v_exp(x);
 #  endif
 #endif
     Pack result{};
     for (int l = 0; l < PackTraits<Pack>::size; ++l)
-      set_lane(result, l, ::exp(get_lane(y, l) * ::log(get_lane(x, l))));
+      set_lane(result, l, ::exp(get_lane(x, l)));
     return result;
   }
 
-  /// x^y at n points. For one body the points take the place of lanes, so that its powers are those of a batch to the
-  /// last bit.
   template <typename Pack>
+  inline Pack
+  logarithm(const Pack &x)
+  {
+#ifdef __x86_64__
+    if constexpr (PackTraits<Pack>::size == 2)
+      return _ZGVbN2v_log(x);
+#  ifdef __AVX2__
+    if constexpr (PackTraits<Pack>::size == 4)
+      return _ZGVdN4v_log(x);
+#  endif
+#  ifdef __AVX512F__
+    if constexpr (PackTraits<Pack>::size == 8)
+      return _ZGVeN8v_log(x);
+#  endif
+#endif
+    Pack result{};
+    for (int l = 0; l < PackTraits<Pack>::size; ++l)
+      set_lane(result, l, ::log(get_lane(x, l)));
+    return result;
+  }
+
+  /// @p function of x and y at n points, for any pack. For one body the points take the place of lanes, so that its
+  /// values are those of a batch to the last bit.
+  template <typename Pack, typename Function>
   inline void
-  power_at_points(const Pack *x, const Pack &y, Pack *result, const int n)
+  at_points(const Function &function, const Pack *x, const Pack &y, Pack *result, const int n)
   {
     if constexpr (PackTraits<Pack>::size == 1)
     {
@@ -112,14 +133,37 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         Points some = broadcast<Points>(1.);
         for (int j = 0; j < width && i + j < n; ++j)
           some[j] = x[i + j];
-        some = power(some, broadcast<Points>(y));
+        some = function(some, broadcast<Points>(y));
         for (int j = 0; j < width && i + j < n; ++j)
           result[i + j] = some[j];
       }
     }
     else
       for (int i = 0; i < n; ++i)
-        result[i] = power(x[i], y);
+        result[i] = function(x[i], y);
+  }
+
+  /// x^y = exp(y log x) at n points, x > 0: half the cost of pow, whose last digits it lacks where y log x is large.
+  template <typename Pack>
+  inline void
+  power_at_points(const Pack *x, const Pack &y, Pack *result, const int n)
+  {
+    at_points(
+      [](const auto &base, const auto &exponent) { return exponential(exponent * logarithm(base)); }, x, y, result, n);
+  }
+
+  /// tanh(x/y) at n points.
+  template <typename Pack>
+  inline void
+  tanh_at_points(const Pack *x, const Pack &y, Pack *result, const int n)
+  {
+    const auto function = [](const auto &numerator, const auto &denominator) {
+      constexpr double far = 20.; // tanh is 1 to the last bit
+      const auto ratio = numerator / denominator, none = ratio - ratio;
+      const auto inside = ratio < -far ? none - far : ratio > far ? none + far : ratio;
+      return 1. - 2. / (exponential(2. * inside) + 1.);
+    };
+    at_points(function, x, y, result, n);
   }
 
   /// A complex number in each lane; without the checks for infinities of std::complex.

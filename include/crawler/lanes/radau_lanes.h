@@ -102,7 +102,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         lane.job = {1., 0., 1., 1., 1., nullptr, 0, 0, 0., false, 0., nullptr, nullptr, 0, nullptr};
       lane.t    = lane.job.start_time;
       lane.next = lane.job.initial_step;
-      system_.set_body(l, lane.job);
+      system_.set_body(l, lane.job, lane.busy);
       set_lane(tolerance_, l, lane.job.tolerance);
       friction_changed_ = true;
       states_.start(l, lane.job.start);
@@ -144,13 +144,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     guess()
     {
-      Pack ratio{}, use{};
+      Pack start{}, ratio{}, use{};
       for (int l = 0; l < lanes; ++l)
       {
+        set_lane(start, l, lanes_[l].is_retry ? 0. : 1.);
         set_lane(ratio, l, lanes_[l].h / lanes_[l].old_h);
         set_lane(use, l, lanes_[l].has_old);
       }
-      states_.guess(ratio, use);
+      states_.guess(start, ratio, use);
     }
 
     void
@@ -245,17 +246,21 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     decide()
     {
-      Pack accepted{};
-      bool any = false;
+      Pack accepted{}, tried{};
+      bool any = false, any_tried = false;
       for (int l = 0; l < lanes; ++l)
       {
         Lane &lane = lanes_[l];
         if (!lane.busy)
           continue;
-        lane.control_step(s);
+        lane.control_step(s, System<Pack, pairs>::keeps_tries && (setup_.laws & LaneLaws::nonlinear_in_velocity) != 0);
         set_lane(accepted, l, lane.accepted);
         any = any || lane.accepted;
+        set_lane(tried, l, lane.failed && lane.is_retry);
+        any_tried = any_tried || (lane.failed && lane.is_retry);
       }
+      if (any_tried)
+        states_.keep_try(tried > 0.);
       if (any)
         advance(accepted > 0.);
       for (int l = 0; l < lanes; ++l)
@@ -277,9 +282,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (int i = 0; i < n_points_; ++i)
         m_start_[i] = accepted ? m_[(s - 1) * n_points_ + i] : m_start_[i];
       if constexpr (System<Pack, pairs>::gives_rates)
-        if (host_.look_inside)
-          system_.velocity(
-            states_.y, m_ + (s - 1) * n_points_, states_.v); // that of the stage is Newton's, with its error
+        if (host_.look_inside) // that of the stage is Newton's, with its error
+        {
+          states_.go_to_rate(s - 1, inverse_h_);
+          unsettled_ = system_.velocity(times_[s - 1], states_.y, m_ + (s - 1) * n_points_, states_.v, real_);
+        }
       look_at_stage(s - 1, states_.y);
       for (int l = 0; l < lanes; ++l)
         if (lanes_[l].busy && lanes_[l].accepted)
@@ -291,7 +298,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     look_at_stage(const int i, const Pack *u)
     {
       LaneLook<Pack> look;
-      system_.look(u, states_.v, m_ + i * n_points_, host_.look_inside, look);
+      system_.look(times_[i], u, states_.v, m_ + i * n_points_, host_.look_inside, look);
       const LaneIntegrals<Pack> &sums = look.sums;
       for (int l = 0; l < lanes; ++l)
         stages_[l][i] = {get_lane(look.least, l),
@@ -305,7 +312,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                          get_lane(sums.net_friction, l),
                          get_lane(sums.abs_friction, l),
                          get_lane(states_.v[0], l),
-                         get_lane(states_.v[n_ - 1], l)};
+                         get_lane(states_.v[n_ - 1], l),
+                         {get_lane(look.end_stretch[0], l), get_lane(look.end_stretch[1], l)},
+                         {get_lane(look.end_rate[0], l), get_lane(look.end_rate[1], l)}};
       elastic_energy_ = sums.elastic_energy;
     }
 
@@ -315,7 +324,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       Lane &lane                = lanes_[l];
       const bool is_output_time = lane.arrive();
-      if (!(stages_[l][s - 1].min_stretch > lane.job.least_stretch))
+      if (!(stages_[l][s - 1].min_stretch > lane.job.least_stretch && get_lane(unsettled_, l) <= 1e3))
       {
         end(l, LaneOutcome::gave_up);
         return;
@@ -351,10 +360,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     end(const int l, const LaneOutcome::Status status)
     {
       const Lane &lane = lanes_[l];
-      host_.done(
-        host_.context,
-        static_cast<unsigned int>(l),
-        {status, lane.t, lane.next, lane.steps, lane.rejected, lane.newton, get_lane(system_.integral(states_.y), l)});
+      host_.done(host_.context,
+                 static_cast<unsigned int>(l),
+                 {status,
+                  lane.t,
+                  lane.next,
+                  lane.steps,
+                  lane.rejected,
+                  lane.newton,
+                  get_lane(system_.integral(states_.y), l),
+                  lane.start_size});
       take_next(l);
     }
 
@@ -370,6 +385,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     bool friction_changed_ = true;
     LaneStage stages_[lanes][s]; ///< what the host gets to see
     Pack elastic_energy_{};
+    Pack unsettled_{}; ///< of the velocity at the end of the step, relative to what is asked for
 
     Pack *F_;            ///< [stage][unknown] residuals
     Pack *real_;         ///< [unknown] right-hand side of the real system, and its solution

@@ -78,6 +78,8 @@ namespace crawler::accuracy_rule
     inline constexpr double coarse_ratio = 0.25, fine_ratio = 0.4;
     /// A refinement that changes the displacement by less than this part of the wanted error was not needed.
     inline constexpr double part = 0.25;
+    /// The tolerance is set anew if the displacement differs by more than this part from what it was set for.
+    inline constexpr double same_size = 0.1;
     /// The search is given up beyond these.
     inline constexpr unsigned int most_runs = 40, most_cells = 96, most_cells_of_piece = 12;
     inline constexpr double smallest_cell = 1e-7, emptied = 1e-3;

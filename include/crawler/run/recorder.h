@@ -24,12 +24,20 @@ namespace crawler
     any
   };
 
+  /// What is looked at for the choice of the numerics.
+  enum class ResolutionWish
+  {
+    none,
+    size, ///< SimulationResult::largest_u
+    all   ///< and SimulationResult::unresolved, strain and largest_indicator, which cost as much as a short step
+  };
+
   /// What is computed at each accepted step besides the state.
   struct RecordOptions
   {
     bool energy_balance             = false; ///< works, energies, net friction
-    bool resolution                 = false; ///< SimulationResult::unresolved
-    std::optional<CycleWish> cycles = {};    ///< end the run when its cycles repeat; not with output times
+    ResolutionWish resolution       = ResolutionWish::none;
+    std::optional<CycleWish> cycles = {}; ///< end the run when its cycles repeat; not with output times
     GaitWish gait                   = GaitWish::none;
   };
 

@@ -43,6 +43,10 @@ namespace crawler
     evaluate(std::span<const double> x, std::span<double> f, std::span<double> slope) const = 0;
   };
 
+  /// The factor at places; 1 where there is no profile.
+  std::vector<double>
+  profile_at(const std::shared_ptr<const Profile> &profile, const std::vector<double> &places);
+
   /// A profile as the user writes it: a formula, or the name of a CSV file with two columns.
   struct ProfileInput
   {

@@ -30,6 +30,10 @@ namespace crawler
     bool
     is_plain() const;
 
+    /// Is the friction law the power law?
+    bool
+    has_power_law() const;
+
     /// What is_plain() misses, in words; empty if nothing.
     std::string
     general_features() const;

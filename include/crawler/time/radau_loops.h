@@ -105,15 +105,21 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
   }
 
   /// The increments of stage @p i of a step that is @p ratio times as long as the last one, from those of the last one,
-  /// as weights: its polynomial continued, and far from it its tangent.
+  /// as weights: its polynomial continued, and far from it its tangent. @p start: where the step starts on it, 1 at the
+  /// end of the last one, or 0 if that was a try of the same step.
   template <typename Count, typename Number>
   inline void
-  guess_weights(
-    const Count s, const double *c, const double *inverse, const int i, const Number &ratio, Number *weights)
+  guess_weights(const Count s,
+                const double *c,
+                const double *inverse,
+                const int i,
+                const Number &start,
+                const Number &ratio,
+                Number *weights)
   {
     const auto is_near = ratio <= Number{} + longest_extrapolation;
-    collocation_weights(s, c, Number(1. + c[i] * ratio), weights);
-    weights[s - 1] -= 1.; // its value at the end of the last step
+    collocation_weights(s, c, Number(start + c[i] * ratio), weights);
+    weights[s - 1] -= start; // its value there
     for (int j = 0; j < s; ++j)
     {
       const Number tangent = c[i] * ratio * inverse[(s - 1) * s + j];

@@ -22,10 +22,8 @@ namespace crawler
     Simulation::Options
     options_of(const Parameters &parameters, const Scene &scene, const Simulation::GaitWish gait)
     {
-      return {.energy_balance = parameters.output.energy_balance,
-              .resolution     = false,
-              .cycles         = cycle_wish(parameters, scene, 0),
-              .gait           = gait};
+      return {
+        .energy_balance = parameters.output.energy_balance, .cycles = cycle_wish(parameters, scene, 0), .gait = gait};
     }
 
     SimulationResult

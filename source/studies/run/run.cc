@@ -205,7 +205,6 @@ namespace crawler
     unsigned int n_runs        = 0;
     TimeOutcome latest;
     const Simulation::Options run_options = {.energy_balance = output.energy_balance,
-                                             .resolution     = false,
                                              .cycles         = cycle_wish(parameters, input.scene, output.n_snapshots),
                                              .gait           = Simulation::GaitWish::any};
     const auto simulate                   = [&](const NumericsChoice &choice) {

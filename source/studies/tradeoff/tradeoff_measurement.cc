@@ -88,7 +88,7 @@ namespace crawler
   SimulationResult
   TradeoffMeasurement::run(const Parameters &own, const Numerics &numerics, const KeepGoing &keep_going) const
   {
-    const Simulation::Options options = {.energy_balance = own.output.energy_balance, .resolution = false};
+    const Simulation::Options options = {.energy_balance = own.output.energy_balance};
     if (family_.setting.has_no_mesh())
       return ReducedModel(scene_, own.model).compute(own.accuracy, own.output.energy_balance, keep_going);
     if (!family_.setting.is_batch())

@@ -162,7 +162,11 @@ namespace crawler
         if (choice)
         {
           Simulation simulation(MPI_COMM_SELF, scene_, parameters.time, choice->numerics);
-          result = simulation.run({}, {.energy_balance = false, .resolution = largest_u_ == 0.}, {}, keep_going);
+          result = simulation.run(
+            {},
+            {.energy_balance = false, .resolution = largest_u_ == 0. ? ResolutionWish::size : ResolutionWish::none},
+            {},
+            keep_going);
         }
         if (result.time.status == Status::stopped && result.time.message.empty())
           result.time.message = fmt::format("stopped after {:g} s", parameters.tradeoff.run_time_limit);

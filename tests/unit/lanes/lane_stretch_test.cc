@@ -85,21 +85,20 @@ namespace
       , y_dot(n + 1)
       , m(n)
     {
-      const StretchMethod method      = stretch_method(scene, other);
-      const StretchFeedback *feedback = scene.active_stress->feedback();
-      setup.n_cells                   = static_cast<unsigned int>(n);
-      setup.sizes                     = d.cell_size().data();
-      setup.real_eigenvalue           = real_shift;
-      setup.eigenvalues               = complex_shift;
-      setup.is_stretch                = true;
-      setup.is_power                  = method.is_power;
-      setup.sees_rate                 = feedback != nullptr && feedback->uses_rate();
-      setup.node_rule                 = method.node_rule;
-      setup.backward_ratio            = scene.ground.direction.ratio;
-      setup.switching_velocity        = scene.ground.direction.switching_velocity;
-      host.context                    = this;
-      host.laws                       = scene.is_plain() ? nullptr : evaluate;
-      const double power              = 1. + scene.friction_exponent();
+      const StretchMethod method = stretch_method(scene, other);
+      setup.n_cells              = static_cast<unsigned int>(n);
+      setup.sizes                = d.cell_size().data();
+      setup.real_eigenvalue      = real_shift;
+      setup.eigenvalues          = complex_shift;
+      setup.is_stretch           = true;
+      setup.is_power             = method.is_power;
+      setup.laws                 = lane_laws(scene);
+      setup.node_rule            = method.node_rule;
+      setup.backward_ratio       = scene.ground.direction.ratio;
+      setup.switching_velocity   = scene.ground.direction.switching_velocity;
+      host.context               = this;
+      host.cell_laws             = scene.is_plain() ? nullptr : evaluate;
+      const double power         = 1. + scene.friction_exponent();
       for (int j = 0; j < n; ++j)
       {
         const double w = 1. + 0.35 * std::cos(5. * (j + 0.5) / n + 0.4);
@@ -116,7 +115,7 @@ namespace
     }
     Case(const Case &) = delete;
 
-    static LaneLaws
+    static LaneCellLaws
     evaluate(void *context, const double time, const double *known_m, const double *w, const double *rate)
     {
       auto &self         = *static_cast<Case *>(context);
@@ -161,7 +160,7 @@ namespace
       LaneJob job{};
       job.k = k;
       job.a = a;
-      system.set_body(lane, job);
+      system.set_body(lane, job, true);
       system.sort_bodies();
     }
 

@@ -34,9 +34,20 @@ namespace
   template <typename Number>
   struct Laws
   {
-    static constexpr bool has_one_modulus = false, has_place = false, has_rate = false;
+    static constexpr bool has_one_modulus = false;
     const Number *m;
     double with_term;
+
+    static constexpr bool
+    has_place()
+    {
+      return false;
+    }
+    static constexpr bool
+    has_rate()
+    {
+      return false;
+    }
 
     void
     forces(const Number *e, const Number *w, const Number *v, Number *N, Number *f) const
@@ -72,8 +83,8 @@ namespace
   State
   residual(const State &u, const double *v, const State &m, const double with_term = 1.)
   {
-    State w{}, F{};
-    cell_residual<n>(tables, h, Laws<double>{m.data(), with_term}, u.data(), v, w.data(), F.data());
+    State F{};
+    cell_residual<n>(tables, h, Laws<double>{m.data(), with_term}, u.data(), v, F.data());
     return F;
   }
 
@@ -146,7 +157,7 @@ namespace
 
   TEST(NewTerm, IsInTheLanes)
   {
-    pack2 u_pack[n], v_pack[n], m_pack[n], w[n], F[n] = {}, K[n * n], M[n * n];
+    pack2 u_pack[n], v_pack[n], m_pack[n], F[n] = {}, K[n * n], M[n * n];
     for (int i = 0; i < n; ++i)
     {
       u_pack[i] = pack2{0., u[i]};
@@ -154,7 +165,7 @@ namespace
       m_pack[i] = pack2{m_at[i], m_at[i]};
     }
     const Laws<pack2> laws{m_pack, 1.};
-    cell_residual<n>(tables, h, laws, u_pack, v_pack, w, F);
+    cell_residual<n>(tables, h, laws, u_pack, v_pack, F);
     cell_blocks<n, true>(tables, h, laws, u_pack, v_pack, K, M);
     const State expected = residual(u, v.data(), m_at), at_rest = residual(State{}, State{}.data(), m_at);
     const auto columns = blocks();

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+namespace crawler
+{
+  /// What general laws say at the points [cell][point] of a run of cells, for the state at hand; f is the friction per
+  /// reference length, N the force in the body. The first two, k and m are always there; without @p f_u friction does
+  /// not depend on the place, without @p N_rate the force does not depend on the rate of the stretch.
+  template <typename Number>
+  struct PointLaws
+  {
+    const Number *N, *f, *f_u, *f_v, *w_f_w, *N_w, *N_rate, *k, *m;
+  };
+} // namespace crawler

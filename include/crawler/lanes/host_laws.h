@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/lanes/lane_engine.h>
+#include <crawler/scene/scene.h>
+
+#include <memory>
+#include <vector>
+
+namespace crawler
+{
+  /// What the engine needs of a general scene in the position form, at fixed points.
+  class HostLaws
+  {
+  public:
+    /// @p scene is in natural units and must outlive it.
+    HostLaws(const Scene &scene, const std::vector<double> &points);
+
+    /// Sets what @p job has of the scene.
+    void
+    set(LaneJob &job) const;
+
+    /// Writes what the engine asks for; false if a law is not a positive number there.
+    bool
+    evaluate(const LanePoints &points);
+
+  private:
+    const Scene &scene_;
+    const std::vector<double> points_;
+    std::vector<double> k_, b_; ///< k(s)/k and b(s)
+    std::vector<double> x_;
+    std::unique_ptr<FeedbackAtPoints> feedback_;
+  };
+} // namespace crawler

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/equation/crawler_equation.h>
+#include <crawler/equation/point_laws.h>
+#include <crawler/lanes/lane_engine.h>
+#include <crawler/lanes/lane_friction.h>
+#include <crawler/lanes/lane_memory.h>
+
+#include <cstddef>
+
+/// The laws of general bodies and grounds in the position form (included by lane_systems.h).
+namespace crawler::CRAWLER_INSTRUCTION_SET
+{
+  /**
+   * f = g(w) b(s) c(x) d(v) v and N = m(s, t, w, w_t) + k(s) (w - 1) at all quadrature points of a pack of bodies, and
+   * their derivatives. What the engine does not know the host is asked for, one lane after the other.
+   */
+  template <typename Pack>
+  class GeneralLaws
+  {
+  public:
+    static constexpr int lanes = PackTraits<Pack>::size;
+
+    GeneralLaws(const LaneSetup &setup, const LaneHost &host)
+      : bits_(setup.laws)
+      , host_(host)
+      , n_(static_cast<int>(setup.n_cells * (setup.degree + 1)))
+    {
+    }
+
+    void
+    lay_out(LaneMemory &memory)
+    {
+      if (!has(LaneLaws::general))
+        return;
+      Pack **const always[]    = {&u, &v, &e, &rate, &w_, &k_, &b_, &g_, &w_dg_, &N_, &f_, &f_v_, &w_f_w_};
+      Pack **const of_ground[] = {&c_, &c_x_, &f_u_}, **const of_feedback[] = {&m_, &N_w_};
+      for (Pack **const array : always)
+        memory.piece(*array, n_);
+      if (has(LaneLaws::direction))
+        memory.piece(tanh_, n_);
+      if (has(LaneLaws::host_ground))
+        for (Pack **const array : of_ground)
+          memory.piece(*array, n_);
+      if (has(LaneLaws::feedback))
+        for (Pack **const array : of_feedback)
+          memory.piece(*array, n_);
+      if (has(LaneLaws::rate))
+        memory.piece(N_rate_, n_);
+      if (lanes > 1 && asks_host())
+        for (double *&array : scratch_)
+          memory.piece(array, n_);
+    }
+
+    void
+    set_body(const int l, const LaneJob &job, const bool is_busy)
+    {
+      if (!has(LaneLaws::general))
+        return;
+      is_busy_[l] = is_busy;
+      set_lane(ratio_, l, job.backward_ratio);
+      set_lane(switching_velocity_, l, job.switching_velocity);
+      for (int p = 0; p < n_; ++p)
+      {
+        set_lane(k_[p], l, is_busy ? job.k * job.k_profile[p] : 1.);
+        set_lane(b_[p], l, is_busy ? job.friction_profile[p] : 1.);
+        // The host does not write where a lane is at rest.
+        set_lane(g_[p], l, 1.);
+        set_lane(w_dg_[p], l, 0.);
+        if (has(LaneLaws::host_ground))
+        {
+          set_lane(c_[p], l, 1.);
+          set_lane(c_x_[p], l, 0.);
+        }
+        if (has(LaneLaws::feedback))
+        {
+          set_lane(m_[p], l, 0.);
+          set_lane(N_w_[p], l, job.k);
+        }
+        if (has(LaneLaws::rate))
+          set_lane(N_rate_[p], l, 0.);
+      }
+    }
+
+    /// Is the friction linear in the velocity, and the force independent of it?
+    bool
+    are_linear_in_velocity() const
+    {
+      return (bits_ & LaneLaws::nonlinear_in_velocity) == 0;
+    }
+
+    /// For the states in u, v, e and rate at the times @p t, with the active stress @p m where that is known. Returns
+    /// a number that is not positive where they have no meaning.
+    Pack
+    evaluate(const double *t, const LaneFriction<Pack> &friction, const Pack *m)
+    {
+      Pack least = broadcast<Pack>(HUGE_VAL);
+      for (int p = 0; p < n_; ++p)
+      {
+        w_[p] = 1. + e[p];
+        least = smaller(w_[p], least);
+      }
+      if (!has(LaneLaws::host_friction))
+      {
+        friction(w_, g_, n_);
+        for (int p = 0; p < n_; ++p)
+          w_dg_[p] = friction.a * g_[p];
+      }
+      if (asks_host())
+        for (int l = 0; l < lanes; ++l)
+          if (is_busy_[l] && get_lane(least, l) > 0. && !ask_host(l, t[l]))
+            set_lane(least, l, -1.);
+      if (has(LaneLaws::direction))
+        tanh_at_points(v, switching_velocity_, tanh_, n_);
+      add_up(has(LaneLaws::feedback) ? m_ : m);
+      return least;
+    }
+
+    PointLaws<Pack> laws{}; ///< what was evaluated
+
+    Pack *u, *v, *e, *rate; ///< [points] displacement, velocity, strain and its rate: to be written before
+
+  private:
+    bool
+    has(const LaneLaws::Bits bit) const
+    {
+      return (bits_ & bit) != 0;
+    }
+
+    bool
+    asks_host() const
+    {
+      return (bits_ & (LaneLaws::host_friction | LaneLaws::host_ground | LaneLaws::feedback)) != 0;
+    }
+
+    void
+    add_up(const Pack *m)
+    {
+      const Pack one = broadcast<Pack>(1.), none{}, mean = 0.5 * (1. + ratio_), half = 0.5 * (1. - ratio_);
+      const bool has_ground = has(LaneLaws::host_ground), has_direction = has(LaneLaws::direction);
+      for (int p = 0; p < n_; ++p)
+      {
+        Pack d = one, dv_v = one;
+        if (has_direction)
+        {
+          const Pack th = tanh_[p];
+          d             = mean + half * th;
+          dv_v          = mean + half * (th + v[p] / switching_velocity_ * (1. - th * th));
+        }
+        const auto here =
+          equation::sliding<Pack>(b_[p], has_ground ? c_[p] : one, has_ground ? c_x_[p] : none, d, dv_v, v[p]);
+        f_[p]     = equation::friction_force<Pack>(g_[p], here.force);
+        f_v_[p]   = g_[p] * here.by_v;
+        w_f_w_[p] = w_dg_[p] * here.force;
+        if (has_ground)
+          f_u_[p] = g_[p] * here.by_u;
+        N_[p] = equation::body_force<Pack>(e[p], m != nullptr ? m[p] : none, k_[p]);
+      }
+      laws = {N_,
+              f_,
+              has_ground ? f_u_ : nullptr,
+              f_v_,
+              w_f_w_,
+              has(LaneLaws::feedback) ? N_w_ : k_,
+              has(LaneLaws::rate) ? N_rate_ : nullptr,
+              k_,
+              m};
+    }
+
+    bool
+    ask_host(const int l, const double t)
+    {
+      const bool friction = has(LaneLaws::host_friction), ground = has(LaneLaws::host_ground),
+                 force = has(LaneLaws::feedback), by_rate = has(LaneLaws::rate);
+      Pack *const read[]  = {u, v, w_, rate};
+      Pack *const write[] = {friction ? g_ : nullptr,
+                             friction ? w_dg_ : nullptr,
+                             ground ? c_ : nullptr,
+                             ground ? c_x_ : nullptr,
+                             force ? m_ : nullptr,
+                             force ? N_w_ : nullptr,
+                             by_rate ? N_rate_ : nullptr};
+      double *own[n_arrays];
+      for (int i = 0; i < n_arrays; ++i)
+      {
+        Pack *const array = i < n_read ? read[i] : write[i - n_read];
+        if constexpr (lanes == 1)
+          own[i] = array;
+        else
+          own[i] = array != nullptr ? scratch_[i] : nullptr;
+      }
+      if constexpr (lanes > 1)
+        for (int i = 0; i < n_read; ++i)
+          for (int p = 0; p < n_; ++p)
+            own[i][p] = get_lane(read[i][p], l);
+      const bool good =
+        host_.laws(host_.context,
+                   static_cast<unsigned int>(l),
+                   {t, own[0], own[1], own[2], own[3], own[4], own[5], own[6], own[7], own[8], own[9], own[10]});
+      if constexpr (lanes > 1)
+        for (int i = n_read; i < n_arrays; ++i)
+          if (own[i] != nullptr)
+            for (int p = 0; p < n_; ++p)
+              set_lane(write[i - n_read][p], l, own[i][p]);
+      if (force)
+        for (int p = 0; p < n_; ++p)
+          set_lane(N_w_[p], l, get_lane(N_w_[p], l) + get_lane(k_[p], l));
+      return good;
+    }
+
+    static constexpr int n_read = 4, n_arrays = 11; ///< of LanePoints
+
+    const unsigned int bits_;
+    const LaneHost &host_;
+    const int n_; ///< points
+    bool is_busy_[lanes] = {};
+    Pack ratio_, switching_velocity_;
+    Pack *w_, *k_, *b_, *g_, *w_dg_, *N_, *f_, *f_v_, *w_f_w_, *tanh_, *c_, *c_x_, *f_u_, *m_, *N_w_, *N_rate_;
+    double *scratch_[n_arrays]; ///< of one lane
+  };
+} // namespace crawler::CRAWLER_INSTRUCTION_SET

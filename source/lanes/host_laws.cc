@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/lanes/host_laws.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace crawler
+{
+  namespace
+  {
+    bool
+    are_positive(const std::span<const double> values)
+    {
+      return std::ranges::all_of(values, [](const double value) { return value > 0. && std::isfinite(value); });
+    }
+  } // namespace
+
+  HostLaws::HostLaws(const Scene &scene, const std::vector<double> &points)
+    : scene_(scene)
+    , points_(points)
+    , k_(profile_at(scene.profiles.elastic_modulus, points))
+    , b_(profile_at(scene.profiles.friction, points))
+    , x_(points.size())
+    , feedback_(scene.active_stress->feedback() != nullptr ? scene.active_stress->feedback()->at(points) : nullptr)
+  {
+  }
+
+  void
+  HostLaws::set(LaneJob &job) const
+  {
+    job.k_profile          = k_.data();
+    job.friction_profile   = b_.data();
+    job.backward_ratio     = scene_.ground.direction.ratio;
+    job.switching_velocity = scene_.ground.direction.switching_velocity;
+  }
+
+  bool
+  HostLaws::evaluate(const LanePoints &at)
+  {
+    const std::size_t n = points_.size();
+    bool good           = true;
+    if (at.g != nullptr)
+    {
+      scene_.friction->values_and_log_derivatives({at.w, n}, {at.g, n}, {at.w_dg, n});
+      good = are_positive({at.g, n});
+    }
+    if (at.c != nullptr)
+    {
+      for (std::size_t i = 0; i < n; ++i)
+        x_[i] = points_[i] + at.u[i];
+      scene_.ground.profile->values_and_slopes(x_, {at.c, n}, {at.c_x, n});
+      good = good && are_positive({at.c, n});
+    }
+    if (at.m != nullptr)
+      feedback_->values(
+        at.t,
+        {{at.w, n}, at.m_rate != nullptr ? std::span(at.rate, n) : std::span<const double>(), {}, {}},
+        {{at.m, n}, {at.m_w, n}, at.m_rate != nullptr ? std::span(at.m_rate, n) : std::span<double>(), {}});
+    return good;
+  }
+} // namespace crawler
