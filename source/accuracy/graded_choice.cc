@@ -43,7 +43,7 @@ namespace crawler
       std::optional<GradedChoice>
       find()
       {
-        now_.grading = {first_levels, coarse_ratio};
+        now_.grading = {task_.accuracy < accurate ? first_levels_if_accurate : first_levels, coarse_ratio};
         if (task_.choose_tolerance)
           now_.tolerance = 1e-3 * task_.scale;
         // Too coarse a mesh or step can lose a stretch that is not lost.
@@ -75,18 +75,33 @@ namespace crawler
         }
         if (task_.choose_tolerance)
           refine(time_change_, [](Numerics &n) { n.tolerance *= finer_tolerance; });
-        for (bool again = true; again && possible_;)
+        const auto one_more_level   = [](Numerics &n) { ++n.grading.levels; };
+        const auto with_finer_ratio = [](Numerics &n) { n.grading = finer(n.grading); };
+        const auto with_more_cells  = [this](Numerics &n) {
+          // One more in each piece between breaks, at least: else the mesh may stay as it is.
+          n.n_cells = std::max(static_cast<unsigned int>(std::ceil(more_cells * n.n_cells)),
+                               n.n_cells + (n_pieces_ > 1 ? n_pieces_ : 0));
+        };
+        const auto is_ratio_fine = [this]() {
+          return task_.accuracy >= coarse_ratio_is_enough || now_.grading.ratio > fine_ratio * 0.99;
+        };
+        // All together first; one by one where that matters.
+        Numerics next = now_;
+        SimulationResult result;
+        one_more_level(next);
+        with_more_cells(next);
+        if (!is_ratio_fine())
+          with_finer_ratio(next);
+        bool again = possible_ && matters(next, result, space_change_);
+        if (!possible_ && n_runs_ <= most_runs) // too much at once
+          again = possible_ = true;
+        while (again && possible_)
         {
           double levels_change = 0., cells_change = 0., ratio_change = 0.;
-          refine(levels_change, [](Numerics &n) { ++n.grading.levels; });
-          if (now_.grading.ratio > fine_ratio * 0.99 ||
-              try_one(ratio_change, [](Numerics &n) { n.grading = finer(n.grading); }))
+          refine(levels_change, one_more_level);
+          if (is_ratio_fine() || try_one(ratio_change, with_finer_ratio))
             ratio_change = 0.;
-          again         = refine(cells_change, [this](Numerics &n) {
-            // One more in each piece between breaks, at least: else the mesh may stay as it is.
-            n.n_cells = std::max(static_cast<unsigned int>(std::ceil(more_cells * n.n_cells)),
-                                 n.n_cells + (n_pieces_ > 1 ? n_pieces_ : 0));
-          });
+          again         = refine(cells_change, with_more_cells);
           space_change_ = levels_change + ratio_change + cells_change;
         }
         if (!possible_)
@@ -117,7 +132,17 @@ namespace crawler
         return possible_;
       }
 
-      /// Takes one refinement if it matters; @p change is how much it changed.
+      /// Is the displacement with numerics @p next another one? @p change is by how much.
+      bool
+      matters(const Numerics &next, SimulationResult &result, double &change)
+      {
+        if (!run(next, result))
+          return false;
+        change = std::abs(result.displacement - result_.displacement);
+        return change > part * wanted_;
+      }
+
+      /// Takes one refinement if it matters.
       template <typename Refinement>
       bool
       try_one(double &change, const Refinement &refinement)
@@ -125,10 +150,7 @@ namespace crawler
         Numerics next = now_;
         refinement(next);
         SimulationResult result;
-        if (!run(next, result))
-          return false;
-        change = std::abs(result.displacement - result_.displacement);
-        if (change <= part * wanted_)
+        if (!matters(next, result, change))
           return false;
         now_    = next;
         result_ = result;

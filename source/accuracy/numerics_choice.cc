@@ -238,7 +238,7 @@ namespace crawler
         const std::string &own = parameters_.time.integrator;
         // Each piece between breaks has a cell at least.
         start.n_cells          = std::max(start.n_cells, static_cast<unsigned int>(scales_.in_space) + 1);
-        start.integrator       = accuracy_ < radau_9_accuracy ? "radau 9" : "radau 5";
+        start.integrator       = accuracy_ < radau_9_accuracy_if_graded ? "radau 9" : "radau 5";
         const std::string name = own == "automatic" ? start.integrator : own;
         start.tolerance        = user_tolerance_.value_or(0.);
         const auto cycles      = cycles_;
@@ -576,7 +576,8 @@ namespace crawler
         if (size_ == 0.)
           size_ = scale_;
         const bool is_graded = n.grading.levels > 0; // then all is chosen already
-        if (!jumps_move_ && n.integrator == "radau 5" && n.mesh.tolerance == 0. && accuracy_ < radau_9_accuracy)
+        if (!jumps_move_ && !is_graded && n.integrator == "radau 5" && n.mesh.tolerance == 0. &&
+            accuracy_ < radau_9_accuracy)
           n.integrator = "radau 9";
         if (!parameters_.time.initial_step && !is_graded)
           n.initial_step = first_step(parameters_.time);

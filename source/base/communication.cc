@@ -104,6 +104,8 @@ namespace crawler
           return;
     constexpr std::pair<const char *, const char *> settings[] = {
       {"OMPI_MCA_ess_singleton_isolated", "1"}, {"OMPI_MCA_btl", "self"}, {"OMPI_MCA_pml", "ob1"}};
+    // Shared memory for file pointers would need the daemon's folder. Read when the first file is opened, so it stays.
+    setenv("OMPI_MCA_sharedfp", "^sm", /*overwrite=*/0);
     for (const auto &[name, value] : settings)
       if (std::getenv(name) == nullptr && setenv(name, value, /*overwrite=*/0) == 0)
         set_.push_back(name);

@@ -149,7 +149,6 @@ namespace crawler
     self.outcome_.reason            = outcome.status == LaneOutcome::gave_up ? gave_up : "";
     self.outcome_.time              = outcome.time;
     self.outcome_.step_size         = outcome.step_size;
-    self.outcome_.start_size        = outcome.start_size;
     self.outcome_.steps             = outcome.steps;
     self.outcome_.rejected_steps    = outcome.rejected;
     self.outcome_.newton_iterations = outcome.newton_iterations;

@@ -29,9 +29,7 @@ namespace crawler
     if (time.cycle_stop == CycleStopMode::off || (time.cycle_stop == CycleStopMode::automatic &&
                                                   (n_output_times > 0 || time.step_control != StepControl::adaptive)))
       return std::nullopt;
-    // Cycles need not repeat where the place or the past counts.
-    const StretchFeedback *feedback = scene.active_stress->feedback();
-    if (scene.ground.profile || (feedback != nullptr && feedback->delay() > 0.))
+    if (!scene.is_alike_everywhere())
       return std::nullopt;
     const auto period = scene.active_stress->period();
     if (!period || !CycleStop::fits(*period / scene.end_time))

@@ -108,9 +108,9 @@ namespace crawler
                                      p.active_stress.generator,
                                      features),
                          "Active stress/Generator");
-      if (p.time.cycle_stop == CycleStopMode::on)
-        throw InputError(fmt::format("Cycle stop is on, which is for plain bodies and grounds, but the scene has {}; "
-                                     "automatic or off is expected",
+      if (p.time.cycle_stop == CycleStopMode::on && !scene.is_alike_everywhere())
+        throw InputError(fmt::format("Cycle stop is on, but what the body does depends on its place or its past, since "
+                                     "the scene has {}; automatic or off is expected",
                                      features),
                          "Time/Cycle stop");
       const StretchFeedback *feedback = scene.active_stress->feedback();

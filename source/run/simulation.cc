@@ -271,8 +271,6 @@ namespace crawler
     TimeOutcome outcome = integrators_.present->solve(
       y_, ends, numerics_.tolerance, run_->accepted.next_step, run_->limiter.limits(), run_->accepted.time);
     integrators_.present->monitor = nullptr;
-    if (outcome.start_size > 0.)
-      run_->start_size = outcome.start_size;
     outcome.steps += run_->before.steps;
     outcome.rejected_steps += run_->before.rejected_steps;
     outcome.newton_iterations += run_->before.newton_iterations;
@@ -393,7 +391,7 @@ namespace crawler
     run_->quadrature = {};
     run_->recorder.interrupt();
     const double t           = run_->accepted.time;
-    run_->accepted.next_step = std::max(numerics_.initial_step, run_->start_size);
+    run_->accepted.next_step = numerics_.initial_step;
     if (end_inverts(t, t))
       return;
     y_ = run_->accepted.y;

@@ -198,6 +198,13 @@ namespace crawler
     return profiles.is_plain() && ground.is_plain() && active_stress->feedback() == nullptr && has_power_law();
   }
 
+  bool
+  Scene::is_alike_everywhere() const
+  {
+    const StretchFeedback *feedback = active_stress->feedback();
+    return !ground.profile && (feedback == nullptr || feedback->delay() == 0.);
+  }
+
   std::string
   Scene::general_features() const
   {

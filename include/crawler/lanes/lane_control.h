@@ -35,8 +35,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     double t = 0., h = 1., next = 1., old_h = 1.;
     double error = 0.; ///< of the step, relative to the tolerance
     double rate = 0., known_rate = 1., last_correction = 0.;
-    bool is_starting   = true; ///< have all steps since the last start grown as much as they may?
-    double start_size  = 0.;   ///< of the first one that did not, after the last start where one did not
     unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, output_time = 0, limit = 0;
     unsigned int first_step = 0; ///< steps before the last start
     unsigned long newton    = 0;
@@ -143,11 +141,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       factor = factor < radau::least_change  ? radau::least_change
                : factor > radau::most_change ? radau::most_change
                                              : factor;
-      if (is_starting && accepted && factor < radau::most_change)
-      {
-        start_size  = h;
-        is_starting = false;
-      }
       // Newton's method converges the more slowly the longer the step is, about in proportion.
       if (rate > 0. && factor * rate > wanted_rate)
         factor = rate > wanted_rate ? 1. : wanted_rate / rate;
@@ -170,8 +163,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     start_anew()
     {
-      next          = start_size > job.initial_step ? start_size : job.initial_step;
-      is_starting   = true;
+      next          = job.initial_step;
       has_old       = false;
       is_retry      = false;
       just_rejected = false;

@@ -18,7 +18,7 @@
 namespace crawler
 {
   /// What bodies and grounds have besides the numbers of a plain scene: bits.
-  namespace LaneLaws
+  struct LaneLaws
   {
     enum Bits : unsigned int
     {
@@ -31,7 +31,7 @@ namespace crawler
       rate                  = 32, ///< and on its rate
       nonlinear_in_velocity = direction | rate
     };
-  }
+  };
 
   /// What all lanes share: the mesh, the element (mesh/reference_element.h) and the method
   /// (time/radau_tableau.h). All arrays belong to the caller.
@@ -132,7 +132,6 @@ namespace crawler
     unsigned int steps, rejected;
     unsigned long newton_iterations;
     double displacement; ///< int u ds at that time
-    double start_size;   ///< a first step that would have been small enough; 0: not known
   };
 
   /// The laws of a general body in the stretch form, at all cells: the mobility 1/(g b), the force N, and their

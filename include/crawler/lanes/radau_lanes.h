@@ -360,16 +360,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     end(const int l, const LaneOutcome::Status status)
     {
       const Lane &lane = lanes_[l];
-      host_.done(host_.context,
-                 static_cast<unsigned int>(l),
-                 {status,
-                  lane.t,
-                  lane.next,
-                  lane.steps,
-                  lane.rejected,
-                  lane.newton,
-                  get_lane(system_.integral(states_.y), l),
-                  lane.start_size});
+      host_.done(
+        host_.context,
+        static_cast<unsigned int>(l),
+        {status, lane.t, lane.next, lane.steps, lane.rejected, lane.newton, get_lane(system_.integral(states_.y), l)});
       take_next(l);
     }
 

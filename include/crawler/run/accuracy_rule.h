@@ -46,6 +46,8 @@ namespace crawler::accuracy_rule
     inline constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
     /// On uniform meshes runs for a smaller Accuracy than this are by radau 9, others by radau 5.
     inline constexpr double radau_9_accuracy = 1.1e-4;
+    /// The same on graded meshes, where starts take many steps that are short for any method.
+    inline constexpr double radau_9_accuracy_if_graded = 3e-5;
     /// A stress that starts or jumps by more than this times the root of Accuracy, relative to the largest, makes
     /// layers that count. Graded meshes have this degree, the higher one for a smaller Accuracy than that.
     inline constexpr double sudden_part         = 0.1;
@@ -74,8 +76,11 @@ namespace crawler::accuracy_rule
   // tests/verification/jump_study.cc.
   namespace graded
   {
-    inline constexpr unsigned int first_levels = 2;
+    inline constexpr double accurate           = 1e-4; ///< from here on
+    inline constexpr unsigned int first_levels = 1, first_levels_if_accurate = 2;
     inline constexpr double coarse_ratio = 0.25, fine_ratio = 0.4;
+    /// From this Accuracy on the coarse ratio has never mattered.
+    inline constexpr double coarse_ratio_is_enough = 1e-5;
     /// A refinement that changes the displacement by less than this part of the wanted error was not needed.
     inline constexpr double part = 0.25;
     /// The tolerance is set anew if the displacement differs by more than this part from what it was set for.

@@ -140,7 +140,6 @@ namespace crawler
       Request request = Request::none;
       std::vector<CellChange> changes;
       std::vector<double> indicators; ///< of all cells, for the present state of an adaptive mesh
-      double start_size        = 0.;  ///< see TimeOutcome
       unsigned int tiny_steps  = 0;
       unsigned long n_failures = 0; ///< of the active stress before this run
     };

@@ -34,6 +34,10 @@ namespace crawler
     bool
     has_power_law() const;
 
+    /// Does what a body does depend on its shape alone, not on its place or its past? Then strides may repeat.
+    bool
+    is_alike_everywhere() const;
+
     /// What is_plain() misses, in words; empty if nothing.
     std::string
     general_features() const;

@@ -46,7 +46,6 @@ namespace crawler
     bool domain_error  = false; ///< failed because every state tried was refused
     double time        = 0.;    ///< of the last accepted state
     double step_size   = 0.;    ///< that was tried last; if the monitor stopped: that would come next
-    double start_size  = 0.;    ///< a first step that would have been small enough; 0: not known
     unsigned int steps = 0, rejected_steps = 0;
     unsigned long newton_iterations = 0, linear_iterations = 0;
   };

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Which scene has which fast paths and numbers? Every cell of the table "What each scene has" in the developer guide is
+// a run here; the guide must have the lines that come out.
+#include "../support/lane_runs.h"
+
+#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/run/cycle_stop.h>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+using namespace crawler;
+using test::Settings;
+
+namespace
+{
+  struct Row
+  {
+    std::string name;
+    Settings settings;
+    std::string reason = ""; ///< of what is missing
+  };
+
+  const Settings wave = test::with(test::wave(-1., 0.3, 1., 20.), {{"Accuracy", "1e-3"}});
+
+  Settings
+  feedback(const std::string &formula)
+  {
+    return {{"Active stress/Generator", "strain feedback"},
+            {"Active stress/Strain feedback/Active stress", "0.2*sin(2*pi*(s+t))*s*(1-s)*4" + formula},
+            {"Time/End time", "4"}};
+  }
+
+  const std::vector<Row> rows = {
+    {"plain", {}},
+    {"a = 0", {{"Body/Anchoring exponent", "1"}}, "no displacement"},
+    {"k(s), gamma(s)",
+     {{"Body/Elastic modulus profile", "1+0.3*s"}, {"Body/Friction profile", "1.2-0.3*s"}},
+     "the bound of the efficiency is for plain scenes"},
+    {"friction law",
+     {{"Ground/Friction law", "expression"}, {"Ground/Expression", "0.3+0.7/w^1.5"}},
+     "the bound of the efficiency is for plain scenes"},
+    {"direction",
+     {{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.2"}},
+     "the bound of the efficiency is for plain scenes"},
+    {"gamma(x)", {{"Ground/Profile", "1+0.1*tanh(x)"}}, "strides depend on the place"},
+    {"initial stretch", {{"Body/Initial stretch", "1+0.1*sin(pi*s)^2"}}, "batches start from rest"},
+    {"feedback by w, w_t", feedback("-0.1*(w-1)+0.05*w_t"), "no period is declared"},
+    {"feedback by w_near", {feedback("+0.1*(w_near-1)")}, "cells that are no neighbours are coupled"},
+    {"feedback by w_delayed", {feedback("+0.1*(w_delayed-1)")}, "the past is a part of the state"},
+    {"stretch form",
+     {{"Discretization/Formulation", "stretch"}, {"Accuracy", "1e-2"}},
+     "batches are in the position form"},
+    {"adaptive mesh", {{"Discretization/Mesh", "adaptive"}, {"Time/End time", "4"}}, "the lanes have one mesh"},
+    {"jumps in s and t",
+     {{"Active stress/Generator", "segments"},
+      {"Active stress/Segments/Number of segments", "3"},
+      {"Active stress/Segments/Phase lag", "0.3"},
+      {"Active stress/Segments/Amplitude", "0.1"}}},
+    {"jumps that move",
+     {{"Active stress/Generator", "travelling wave"},
+      {"Active stress/Travelling wave/Profile", "square"},
+      {"Accuracy", "0.1"},
+      {"Time/End time", "4"}}},
+    {"bdf", {{"Time/Integrator", "bdf"}, {"Time/End time", "4"}}, "the lanes have radau 5 and 9"},
+  };
+
+  std::string
+  cell(const bool has)
+  {
+    return has ? " yes |" : "  |";
+  }
+
+  /// The line of a row.
+  std::string
+  line(const Row &row)
+  {
+    Settings settings = test::with(wave, row.settings);
+    if (row.name == "feedback by w_near")
+      settings.emplace_back("Active stress/Strain feedback/Distance", "0.2");
+    if (row.name == "feedback by w_delayed")
+      settings.emplace_back("Active stress/Strain feedback/Delay", "0.2");
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, parameters, scene);
+    Simulation::Options options = {
+      .energy_balance = true, .cycles = cycle_wish(parameters, scene, 0), .gait = Simulation::GaitWish::any};
+    const Answer answer =
+      run_as_promised(MPI_COMM_SELF,
+                      parameters,
+                      scene,
+                      choice,
+                      [&](const NumericsChoice &chosen) {
+                        return Simulation(MPI_COMM_SELF, scene, parameters.time, chosen.numerics).run({}, options);
+                      },
+                      options,
+                      /*writes=*/false,
+                      {});
+    const SimulationResult &result = answer.result;
+    EXPECT_EQ(result.time.status, Status::finished) << row.name << ": " << result.time.message;
+    bool in_batches = false;
+    if (batch_method(scene, parameters.time, answer.choice.numerics))
+    {
+      const BatchRun run = {&scene, &parameters.time, &answer.choice.numerics};
+      in_batches         = run_batch({&run, 1}, options).front().has_value();
+    }
+    std::string text = "| " + row.name + " |";
+    for (const bool has : {result.engine == "fused",
+                           in_batches,
+                           result.error && std::isfinite(result.error->total),
+                           result.cycles.has_value(),
+                           result.gait.has_value(),
+                           result.gait_efficiency.has_value()})
+      text += cell(has);
+    return text + " " + row.reason + " |";
+  }
+} // namespace
+
+TEST(Capabilities, AreThoseOfTheGuide)
+{
+  std::set<std::string> guide;
+  std::ifstream file(CRAWLER_SOURCE_DIR "/doc/developer_guide.md");
+  ASSERT_TRUE(file);
+  for (std::string text; std::getline(file, text);)
+    guide.insert(text);
+  for (const Row &row : rows)
+  {
+    const std::string text = line(row);
+    fmt::print("{}\n", text);
+    EXPECT_TRUE(guide.contains(text)) << text;
+  }
+}
