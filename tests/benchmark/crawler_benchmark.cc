@@ -16,6 +16,8 @@
 //   run/pilot/1e-4 ...   What choosing them costs (set-up of all objects included).
 //   case/fig2/1e-6/...   20 strides (T = 20), by petsc, fused and batch.
 //   case/stiff/1e-6/...  The stiff body (a = -1, chi = 0.3, k = 100).
+//   general/*/...        Bodies and grounds that are not plain, and the plain one, with one setting: one body (fused),
+//                        256 side by side (batch).
 //   level/linear/1e-4 ... A body at a = 0 by the linear level, and level/nonlinear/... the same by the fused engine,
 //   both
 //                        with that tolerance on the same mesh; "error" is that of the work of its actuators.

@@ -6,6 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -216,6 +217,61 @@ namespace crawler::test
       state.SetItemsProcessed(state.iterations());
     }
 
+    /// Bodies and grounds that are not plain, all with the same setting, to be compared with the plain one.
+    std::map<std::string, Settings>
+    general_bodies()
+    {
+      Settings feedback = {
+        {"Active stress/Generator", "strain feedback"},
+        {"Active stress/Strain feedback/Active stress", "0.3*sin(2*pi*(s+t))*s*(1-s)*4-0.1*(w-1)+0.05*w_t"}};
+      return {{"plain", {}},
+              {"profiles", {{"Body/Elastic modulus profile", "1+0.3*s"}, {"Body/Friction profile", "1.2-0.3*s"}}},
+              {"friction_law", {{"Ground/Friction law", "expression"}, {"Ground/Expression", "0.3+0.7/w^1.5"}}},
+              {"direction", {{"Ground/Backward ratio", "3"}, {"Ground/Switching velocity", "0.5"}}},
+              {"ground", {{"Ground/Profile", "1+0.2*tanh(x)"}}},
+              {"feedback", std::move(feedback)}};
+    }
+
+    Setting
+    setting_of_general_bodies(const Parameters &parameters)
+    {
+      Setting setting{parameters.time,
+                      {.degree = 6, .n_cells = 5, .tolerance = 1e-6, .initial_step = 1e-3, .integrator = "radau 5"}};
+      setting.time.integrator = "radau 5";
+      return setting;
+    }
+
+    void
+    run_general(benchmark::State &state, const Settings &laws)
+    {
+      Settings settings = wave(-1., 0.3);
+      settings.insert(settings.end(), laws.begin(), laws.end());
+      const Case body{"general", settings, 1., 1., 0, {}};
+      OneBody own(body, setting_of_general_bodies(parameters_with(settings)));
+      SimulationResult result;
+      for (auto _ : state)
+        result = own.simulation.run({}, {});
+      state.counters["steps"] = result.time.steps;
+      if (result.engine != "fused")
+        state.SkipWithError("not by the fused engine");
+    }
+
+    void
+    run_general_batch(benchmark::State &state, const Settings &laws)
+    {
+      Settings settings = wave(-1., 0.3);
+      settings.insert(settings.end(), laws.begin(), laws.end());
+      const Parameters parameters = parameters_with(settings);
+      const auto scenes           = BatchScenes::similar(parameters, 256);
+      const Setting setting       = setting_of_general_bodies(parameters);
+      BatchScenes::Results results;
+      for (auto _ : state)
+        results = scenes.run(setting, {}, batch_engine());
+      state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scenes.size()));
+      if (std::count(results.begin(), results.end(), std::nullopt) > 0)
+        state.SkipWithError("runs were given back");
+    }
+
     template <typename... Arguments>
     void
     add(const std::string &name, const Arguments &...arguments)
@@ -256,6 +312,11 @@ namespace crawler::test
       benchmark::RegisterBenchmark(
         (name + "/batch").c_str(), run_many, body, 1e-6, Simulation::Options(), batch_engine())
         ->Unit(benchmark::kMillisecond);
+    }
+    for (const auto &[name, laws] : general_bodies())
+    {
+      add("general/" + name + "/fused", run_general, laws);
+      add("general/" + name + "/batch", run_general_batch, laws);
     }
   }
 } // namespace crawler::test

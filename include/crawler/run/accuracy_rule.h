@@ -56,7 +56,7 @@ namespace crawler::accuracy_rule
     /// More breaks would make graded meshes too large, or too many starts where nothing happens suddenly.
     inline constexpr std::size_t most_graded_places = 200, most_gentle_breaks = 200;
     /// First tolerances on graded meshes, relative to the wanted error.
-    inline constexpr double graded_radau_5 = 2., graded_radau_9 = 10., graded_others = 0.1;
+    inline constexpr double graded_radau_5 = 4., graded_radau_9 = 10., graded_others = 0.1;
     /// Meshes for jumps that move: from the coarsest, doubled until the displacement settles, which it does like the
     /// size of a cell, with tolerances that fall like it too; at most so many cells, and cells times steps.
     inline constexpr unsigned int moving_degree = 2, first_moving_cells = 64, last_moving_cells = 2048;
