@@ -42,21 +42,26 @@ namespace crawler
     bool good           = true;
     if (at.g != nullptr)
     {
-      scene_.friction->values_and_log_derivatives({at.w, n}, {at.g, n}, {at.w_dg, n});
+      if (at.w_dg != nullptr)
+        scene_.friction->values_and_log_derivatives({at.w, n}, {at.g, n}, {at.w_dg, n});
+      else
+        scene_.friction->values({at.w, n}, {at.g, n});
       good = are_positive({at.g, n});
     }
     if (at.c != nullptr)
     {
       for (std::size_t i = 0; i < n; ++i)
         x_[i] = points_[i] + at.u[i];
-      scene_.ground.profile->values_and_slopes(x_, {at.c, n}, {at.c_x, n});
+      if (at.c_x != nullptr)
+        scene_.ground.profile->values_and_slopes(x_, {at.c, n}, {at.c_x, n});
+      else
+        scene_.ground.profile->values(x_, {at.c, n});
       good = good && are_positive({at.c, n});
     }
+    const auto span = [n](auto *values) { return std::span(values, values != nullptr ? n : 0); };
     if (at.m != nullptr)
       feedback_->values(
-        at.t,
-        {{at.w, n}, at.m_rate != nullptr ? std::span(at.rate, n) : std::span<const double>(), {}, {}},
-        {{at.m, n}, {at.m_w, n}, at.m_rate != nullptr ? std::span(at.m_rate, n) : std::span<double>(), {}});
+        at.t, {span(at.w), span(at.rate), {}, {}}, {span(at.m), span(at.m_w), span(at.m_rate), std::span<double>()});
     return good;
   }
 } // namespace crawler

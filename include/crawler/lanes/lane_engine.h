@@ -83,7 +83,7 @@ namespace crawler
   };
 
   /// The state of a lane at all quadrature points, and where the host writes what the laws say there. What LaneLaws
-  /// does not ask for is null.
+  /// does not ask for is null, and derivatives that are not wanted.
   struct LanePoints
   {
     double t;

@@ -90,10 +90,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       return (bits_ & LaneLaws::nonlinear_in_velocity) == 0;
     }
 
-    /// For the states in u, v, e and rate at the times @p t, with the active stress @p m where that is known. Returns
-    /// a number that is not positive where they have no meaning.
+    /// For the states in u, v, e and rate at the times @p t, with the active stress @p m where that is known; the
+    /// derivatives if @p slopes are wanted. Returns a number that is not positive where they have no meaning.
     Pack
-    evaluate(const double *t, const LaneFriction<Pack> &friction, const Pack *m)
+    evaluate(const double *t, const LaneFriction<Pack> &friction, const Pack *m, const bool slopes)
     {
       Pack least = broadcast<Pack>(HUGE_VAL);
       for (int p = 0; p < n_; ++p)
@@ -104,16 +104,16 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       if (!has(LaneLaws::host_friction))
       {
         friction(w_, g_, n_);
-        for (int p = 0; p < n_; ++p)
+        for (int p = 0; p < n_ && slopes; ++p)
           w_dg_[p] = friction.a * g_[p];
       }
       if (asks_host())
         for (int l = 0; l < lanes; ++l)
-          if (is_busy_[l] && get_lane(least, l) > 0. && !ask_host(l, t[l]))
+          if (is_busy_[l] && get_lane(least, l) > 0. && !ask_host(l, t[l], slopes))
             set_lane(least, l, -1.);
       if (has(LaneLaws::direction))
         tanh_at_points(v, switching_velocity_, tanh_, n_);
-      add_up(has(LaneLaws::feedback) ? m_ : m);
+      add_up(has(LaneLaws::feedback) ? m_ : m, slopes);
       return least;
     }
 
@@ -135,7 +135,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     void
-    add_up(const Pack *m)
+    add_up(const Pack *m, const bool slopes)
     {
       const Pack one = broadcast<Pack>(1.), none{}, mean = 0.5 * (1. + ratio_), half = 0.5 * (1. - ratio_);
       const bool has_ground = has(LaneLaws::host_ground), has_direction = has(LaneLaws::direction);
@@ -150,12 +150,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         }
         const auto here =
           equation::sliding<Pack>(b_[p], has_ground ? c_[p] : one, has_ground ? c_x_[p] : none, d, dv_v, v[p]);
-        f_[p]     = equation::friction_force<Pack>(g_[p], here.force);
+        f_[p] = equation::friction_force<Pack>(g_[p], here.force);
+        N_[p] = equation::body_force<Pack>(e[p], m != nullptr ? m[p] : none, k_[p]);
+        if (!slopes)
+          continue;
         f_v_[p]   = g_[p] * here.by_v;
         w_f_w_[p] = w_dg_[p] * here.force;
         if (has_ground)
           f_u_[p] = g_[p] * here.by_u;
-        N_[p] = equation::body_force<Pack>(e[p], m != nullptr ? m[p] : none, k_[p]);
       }
       laws = {N_,
               f_,
@@ -169,18 +171,18 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     }
 
     bool
-    ask_host(const int l, const double t)
+    ask_host(const int l, const double t, const bool slopes)
     {
       const bool friction = has(LaneLaws::host_friction), ground = has(LaneLaws::host_ground),
                  force = has(LaneLaws::feedback), by_rate = has(LaneLaws::rate);
       Pack *const read[]  = {u, v, w_, rate};
       Pack *const write[] = {friction ? g_ : nullptr,
-                             friction ? w_dg_ : nullptr,
+                             friction && slopes ? w_dg_ : nullptr,
                              ground ? c_ : nullptr,
-                             ground ? c_x_ : nullptr,
+                             ground && slopes ? c_x_ : nullptr,
                              force ? m_ : nullptr,
-                             force ? N_w_ : nullptr,
-                             by_rate ? N_rate_ : nullptr};
+                             force && slopes ? N_w_ : nullptr,
+                             by_rate && slopes ? N_rate_ : nullptr};
       double *own[n_arrays];
       for (int i = 0; i < n_arrays; ++i)
       {
@@ -203,7 +205,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           if (own[i] != nullptr)
             for (int p = 0; p < n_; ++p)
               set_lane(write[i - n_read][p], l, own[i][p]);
-      if (force)
+      if (force && slopes)
         for (int p = 0; p < n_; ++p)
           set_lane(N_w_[p], l, get_lane(N_w_[p], l) + get_lane(k_[p], l));
       return good;

@@ -72,7 +72,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       if (!is_general_)
         return kernels_.residual(mesh_, u, v, m, F);
-      const Pack least = evaluate(t, u, v, m);
+      const Pack least = evaluate(t, u, v, m, /*slopes=*/false);
       kernels_.residual(mesh_, u, v, m, F);
       return least;
     }
@@ -92,7 +92,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       if (!rates)
         return;
       if (is_general_)
-        evaluate(t, u, v, m);
+        evaluate(t, u, v, m, /*slopes=*/false);
       kernels_.integrals(mesh_, u, v, m, result.sums);
       if ((setup_.laws & LaneLaws::feedback) == 0)
         return;
@@ -131,7 +131,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     factorize(const double *t, const Pack *u, const Pack *v, const Pack *m, const Pack &inverse_h)
     {
       if (is_general_)
-        evaluate(t, u, v, m);
+        evaluate(t, u, v, m, /*slopes=*/true);
       Number shifts[pairs];
       for (int j = 0; j < pairs; ++j)
         shifts[j] = {setup_.eigenvalues[2 * j] * inverse_h, setup_.eigenvalues[2 * j + 1] * inverse_h};
@@ -200,7 +200,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       Pack left = broadcast<Pack>(HUGE_VAL);
       for (int i = 0; i < most_corrections; ++i)
       {
-        evaluate(t, u, v, m);
+        evaluate(t, u, v, m, /*slopes=*/true);
         kernels_.balance(mesh_, u, v, m, correction, blocks_, schur_);
         factorize_corners(schur_, lower_, pivot_, upper_);
         solve(correction);
@@ -227,10 +227,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   private:
     /// The laws for a state.
     Pack
-    evaluate(const double *t, const Pack *u, const Pack *v, const Pack *m)
+    evaluate(const double *t, const Pack *u, const Pack *v, const Pack *m, const bool slopes)
     {
       kernels_.states(mesh_, u, v, general_.u, general_.v, general_.e, general_.rate);
-      return general_.evaluate(t, mesh_.friction, m);
+      return general_.evaluate(t, mesh_.friction, m, slopes);
     }
 
     std::size_t
