@@ -278,7 +278,8 @@ namespace crawler
       double at_start, later;
     };
 
-    /// The largest sudden changes of m at the ends and of its jumps at the breaks in space.
+    /// The largest sudden changes of m at the ends and of its jumps at the breaks in space. At the start m meets a body
+    /// whose initial stretch w balances -k (w - 1).
     SuddenChange
     largest_sudden_change(const Scene &scene, const std::vector<double> &in_space)
     {
@@ -289,15 +290,23 @@ namespace crawler
       const auto stress = scene.active_stress->at(points);
       std::vector<double> m(points.size());
       const std::size_t n = 2 + in_space.size();
-      std::vector<double> before(n, 0.), now(n);
+      std::vector<double> before(n), now(n);
       SuddenChange largest{0., 0.};
+      const auto keep_changes = [&](std::vector<double> &changes) {
+        changes[0] = m[0];
+        changes[1] = m[1];
+        for (std::size_t i = 0; i < in_space.size(); ++i)
+          changes[2 + i] = m[3 + 2 * i] - m[2 + 2 * i];
+      };
       const auto look = [&](const double t) {
         stress->values(t * T, m);
-        now[0] = m[0];
-        now[1] = m[1];
-        for (std::size_t i = 0; i < in_space.size(); ++i)
-          now[2 + i] = m[3 + 2 * i] - m[2 + 2 * i];
+        keep_changes(now);
       };
+      const std::vector<double> w = profile_at(scene.profiles.initial_stretch, points),
+                                k = profile_at(scene.profiles.elastic_modulus, points);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        m[i] = -scene.body.elastic_modulus * k[i] * (w[i] - 1.);
+      keep_changes(before);
       TimeSegments pieces(*scene.active_stress, T);
       for (double start = 0.;; pieces.go_on())
       {
@@ -347,8 +356,9 @@ namespace crawler
       samples.look_at(0.5 * (changes[i].from + changes[i].to));
 
     const double largest = samples.largest, along = samples.along;
-    const SuddenChange change = largest > 0. ? largest_sudden_change(scene, in_space) : SuddenChange{0., 0.};
-    const double unit         = largest > 0. ? largest : 1.;
+    const bool is_moved       = largest > 0. || scene.profiles.initial_stretch;
+    const SuddenChange change = is_moved ? largest_sudden_change(scene, in_space) : SuddenChange{0., 0.};
+    const double unit         = largest > 0. ? largest : scene.body.elastic_modulus;
     const bool may_jump       = along * L / fine > jump_part * largest;
     return {std::min(largest * L / scene.body.elastic_modulus, largest * T / (L * scene.body.friction_coefficient)),
             along > 0. ? largest / along : L,

@@ -363,3 +363,26 @@ TEST(Jumps, MayEndWhenCyclesRepeat)
   EXPECT_NEAR(early.displacement / all.displacement, 1., 1e-6);
   EXPECT_NEAR(early.energy_balance->stress_work / all.energy_balance->stress_work, 1., 1e-5);
 }
+
+/// An initial stretch that does not fit the ends makes layers like a stress that starts suddenly, and gets the same
+/// meshes.
+TEST(Jumps, AreMadeByAnInitialStretch)
+{
+  const test::Settings scene =
+    test::with(test::expression(-1., "0.3*sin(2*pi*(s+t))*s*(1-s)*4"), {{"Body/Initial stretch", "1+0.2*s"}});
+  const test::LaneRun fine(
+    scene, "radau 9", {.degree = 8, .n_cells = 12, .tolerance = 1e-12, .initial_step = 1e-14, .grading = {8, 0.4}});
+  const SimulationResult exact = fine.simulate(Engine::automatic);
+  ASSERT_EQ(exact.time.status, Status::finished);
+  for (const double accuracy : {1e-4, 1e-8})
+  {
+    test::LaneRun run(scene, "automatic", {});
+    run.parameters.accuracy       = accuracy;
+    run.numerics                  = choose_numerics(MPI_COMM_WORLD, run.parameters, run.scene)->numerics;
+    const SimulationResult result = run.simulate(Engine::automatic);
+    EXPECT_GT(run.numerics.grading.levels, 0u);
+    ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
+    EXPECT_EQ(result.engine, "fused");
+    EXPECT_NEAR(result.displacement, exact.displacement, accuracy * std::abs(exact.displacement));
+  }
+}
