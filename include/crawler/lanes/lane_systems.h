@@ -2,7 +2,7 @@
 #pragma once
 
 #include <crawler/lanes/lane_engine.h>
-#include <crawler/lanes/lane_kernels.h>
+#include <crawler/lanes/lane_kernel_table.h>
 #include <crawler/lanes/lane_laws.h>
 #include <crawler/lanes/lane_memory.h>
 
