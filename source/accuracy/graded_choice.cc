@@ -92,7 +92,9 @@ namespace crawler
         with_more_cells(next);
         if (!is_ratio_fine())
           with_finer_ratio(next);
-        bool again = possible_ && matters(next, result, space_change_);
+        if (!possible_)
+          return std::nullopt;
+        bool again = matters(next, result, space_change_);
         if (!possible_ && n_runs_ <= most_runs) // too much at once
           again = possible_ = true;
         while (again && possible_)

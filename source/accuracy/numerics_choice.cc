@@ -599,13 +599,15 @@ namespace crawler
         }
         if (jumps_move_ && predicts)
           choice_.wanted_error = accuracy_ * size_;
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        const std::string kind =
-          jumps_move_ ? "jumps of the active stress that move, "
-          : is_graded
-            ? fmt::format("sudden stress, {} levels of cells smaller by {:g} each, ", n.grading.levels, n.grading.ratio)
-          : n.mesh.tolerance > 0. ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
-                                  : "";
+        const double seconds   = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const std::string kind = jumps_move_ ? "jumps of the active stress that move, "
+                                 : is_graded ? fmt::format("sudden stress, {} level{} of cells smaller by {:g} each, ",
+                                                           n.grading.levels,
+                                                           n.grading.levels == 1 ? "" : "s",
+                                                           n.grading.ratio)
+                                 : n.mesh.tolerance > 0.
+                                   ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
+                                   : "";
         choice_.explanation =
           predicts ? fmt::format("for Accuracy {:g}: {}from {} pilot runs in {:.2g} s: displacement about {:.3g}",
                                  accuracy_,
