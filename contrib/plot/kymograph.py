@@ -10,6 +10,8 @@ With --stress the active stress over s and t comes first.
 Reads kymograph.vts, statistics.csv and parameters.prm of the folder; needs matplotlib (Debian: python3-matplotlib).
 """
 import argparse
+import array
+import base64
 import csv
 import pathlib
 import re
@@ -29,16 +31,21 @@ def existing(folder, name, entry):
     return path
 
 
+def numbers(element):
+    """Those of a DataArray in base 64, behind the number of their bytes."""
+    return array.array("d", base64.b64decode(element.text)[8:]).tolist()
+
+
 def read_kymograph(path, names):
     """s/L (list), t/T (list) and the wanted fields, each a row of values over s for each time."""
     try:
         piece = ElementTree.parse(path).getroot().find("StructuredGrid/Piece")
         extent = [int(word) for word in piece.get("Extent").split()]
         n_s, n_t = extent[1] - extent[0] + 1, extent[3] - extent[2] + 1
-        points = [float(word) for word in piece.find("Points/DataArray").text.split()]
+        points = numbers(piece.find("Points/DataArray"))
         fields = []
         for name in names:
-            values = [float(word) for word in piece.find(f"PointData/DataArray[@Name='{name}']").text.split()]
+            values = numbers(piece.find(f"PointData/DataArray[@Name='{name}']"))
             if len(values) != n_s * n_t or len(points) != 3 * n_s * n_t:
                 raise ValueError("wrong number of values")
             fields.append([values[j * n_s:(j + 1) * n_s] for j in range(n_t)])
@@ -48,7 +55,7 @@ def read_kymograph(path, names):
 
 
 def read_statistics(path):
-    """Time and displacement of every step."""
+    """Time and displacement of every step and snapshot."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     try:

@@ -89,7 +89,7 @@ namespace crawler
       TimeParameters time       = parameters.time;
       time.petsc_prefix         = time_of_finer_run(time).petsc_prefix;
       time.max_steps            = time_of_finer_run(time).max_steps; // the limit is for the run itself
-      const auto cycles         = cycle_wish(parameters, scene, 0);
+      const auto cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false);
       return Simulation(communicator, scene, time, numerics)
         .run({}, options_of_finer_run(result, cycles), {}, keep_going);
     }
@@ -105,7 +105,7 @@ namespace crawler
     {
       const TimeParameters time = time_of_finer_run(parameters.time);
       const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene, result.cycles.has_value());
-      const auto cycles         = cycle_wish(parameters, scene, 0);
+      const auto cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false);
       const auto options        = options_of_finer_run(result, cycles);
       // Most runs fit the fused engine; then nothing else has to be built.
       if (size_of(communicator) == 1 && batch_method(scene, time, numerics))

@@ -80,7 +80,7 @@ namespace crawler
         pilot_time_.petsc_prefix = "pilot_"; // options after "--" are for the real run
         pilot_time_.max_steps    = std::min(pilot_time_.max_steps, most_pilot_steps);
         tolerance_               = std::max(1e-3 * scale_, smallest());
-        cycles_                  = cycle_wish(parameters, scene, 0);
+        cycles_                  = cycle_wish(parameters, scene, /*has_pictures=*/false);
         if (cycles_)
           cycles_->accuracy = std::max(accuracy_, pilot_accuracy);
       }
@@ -666,5 +666,17 @@ namespace crawler
     {
       return std::nullopt;
     }
+  }
+
+  void
+  prepare_for_pictures(NumericsChoice &choice, const RunParameters &parameters)
+  {
+    const double largest = accuracy_rule::choice::tolerance_of_pictures * choice.wanted_error;
+    if (parameters.time.tolerance || choice.is_family || !choice.numerics.integrator.starts_with("radau") ||
+        !(largest < choice.numerics.tolerance))
+      return;
+    choice.numerics.tolerance =
+      std::max(largest, accuracy_rule::choice::least_tolerance_of_pictures * parameters.body.length);
+    choice.explanation += fmt::format("; tolerance {:.2g} for pictures", choice.numerics.tolerance);
   }
 } // namespace crawler

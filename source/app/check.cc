@@ -26,16 +26,18 @@ namespace crawler
     if (!model.needs_mesh())
       return check_reduced_model(input, model, log);
     PilotProgress pilots(log);
-    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, input.parameters, input.scene, [&]() {
+    NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, input.parameters, input.scene, [&]() {
       pilots.step();
       return true;
     });
+    if (input.parameters.output.has_snapshots())
+      prepare_for_pictures(choice, input.parameters);
     const Simulation simulation(MPI_COMM_SELF, input.scene, input.parameters.time, choice.numerics);
     report_plan(log, input, model, choice);
     log.line(
       fmt::format("Output: {} snapshots{}{}{}, to \"{}\" unless --output is given.",
-                  input.parameters.output.n_snapshots,
-                  input.parameters.output.kymograph && input.parameters.output.n_snapshots > 0 ? ", kymograph" : "",
+                  picture_times(input.parameters.output, input.scene).n_snapshots(),
+                  input.parameters.output.kymograph && input.parameters.output.has_snapshots() ? ", kymograph" : "",
                   input.parameters.output.statistics ? ", statistics" : "",
                   input.parameters.output.energy_balance ? ", energy balance" : "",
                   output_folder(options.output, options.file).string()));

@@ -62,34 +62,54 @@ namespace crawler
     return result;
   }
 
-  Rates
+  void
   RateQuadrature::advance(const double time, const Rates &rates)
   {
+    start_ = points_.empty() ? time : points_.front().time;
     points_.push_front({time, rates});
     if (points_.size() > most_points)
       points_.pop_back();
+    used_ = std::min<std::size_t>(points_.size(), 2);
+    while (used_ >= 2 && used_ < points_.size() &&
+           (points_[used_ - 1].time - points_[used_].time) * largest_growth >= time - start_)
+      ++used_;
+  }
+
+  void
+  RateQuadrature::begin_step(const double time)
+  {
+    points_.clear();
+    start_ = time;
+    used_  = 0;
+  }
+
+  void
+  RateQuadrature::add_stage(const double time, const Rates &rates)
+  {
+    points_.push_front({time, rates});
+    ++used_;
+  }
+
+  Rates
+  RateQuadrature::until(const double time) const
+  {
     Rates increment{};
-    if (points_.size() == 1)
+    const double step = time - start_;
+    if (step == 0.)
       return increment;
-
-    const double left = points_[1].time, step = time - left;
-    unsigned int n = 2;
-    while (n < points_.size() && (points_[n - 1].time - points_[n].time) * largest_growth >= step)
-      ++n;
-
     // Gauss formula with three points, exact for the polynomial of degree n - 1 <= 5 through the n points.
     const double offset         = 0.5 * std::sqrt(0.6);
     constexpr double weights[3] = {5. / 18., 4. / 9., 5. / 18.};
     const double x[3]           = {0.5 - offset, 0.5, 0.5 + offset};
-    for (unsigned int j = 0; j < n; ++j)
+    for (std::size_t j = 0; j < used_; ++j)
     {
       double weight = 0.;
       for (unsigned int g = 0; g < 3; ++g)
       {
         double lagrange = weights[g];
-        for (unsigned int i = 0; i < n; ++i)
+        for (std::size_t i = 0; i < used_; ++i)
           if (i != j)
-            lagrange *= (left + x[g] * step - points_[i].time) / (points_[j].time - points_[i].time);
+            lagrange *= (start_ + x[g] * step - points_[i].time) / (points_[j].time - points_[i].time);
         weight += lagrange;
       }
       for (unsigned int r = 0; r < increment.size(); ++r)

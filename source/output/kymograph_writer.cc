@@ -2,11 +2,14 @@
 #include <crawler/base/files.h>
 #include <crawler/output/kymograph_writer.h>
 
+#include <deal.II/base/utilities.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <iterator>
 
 namespace crawler
@@ -16,6 +19,17 @@ namespace crawler
     constexpr unsigned int n_points = KymographWriter::n_points;
     constexpr const char *names[]   = {"stretch", "velocity", "active_stress", "friction_force", "displacement"};
     constexpr unsigned int n_fields = std::size(names);
+
+    /// As VTK's XML files have it: the number of bytes and the values, in base 64.
+    std::string
+    encoded(const std::vector<double> &values)
+    {
+      const std::uint64_t size = values.size() * sizeof(double);
+      std::vector<unsigned char> bytes(sizeof(size) + size);
+      std::memcpy(bytes.data(), &size, sizeof(size));
+      std::memcpy(bytes.data() + sizeof(size), values.data(), size);
+      return dealii::Utilities::encode_base64(bytes);
+    }
 
     /// In the order of the names.
     std::array<const std::vector<double> *, n_fields>
@@ -56,7 +70,7 @@ namespace crawler
   void
   KymographWriter::observe(const Snapshot &snapshot)
   {
-    if (!snapshot.is_output_time)
+    if (!snapshot.pictures.is_row)
       return;
     const Discretization &d = snapshot.assembler.discretization();
     if (!sampler_ || mesh_number_ != snapshot.mesh_number)
@@ -93,31 +107,33 @@ namespace crawler
     if (rows_.empty() || times_.size() < 2)
       return;
     const std::size_t n_times = times_.size();
-    std::string text          = fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"0.1\" "
-                                            "byte_order=\"LittleEndian\">\n<StructuredGrid WholeExtent=\"0 {0} 0 {1} 0 0\">\n"
-                                            "<Piece Extent=\"0 {0} 0 {1} 0 0\">\n<PointData Scalars=\"stretch\">\n",
-                                   n_points - 1,
-                                   n_times - 1);
+    std::string text          = fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"1.0\" "
+               "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<StructuredGrid WholeExtent=\"0 {0} 0 {1} 0 0\">\n"
+               "<Piece Extent=\"0 {0} 0 {1} 0 0\">\n<PointData Scalars=\"stretch\">\n",
+      n_points - 1,
+      n_times - 1);
+    std::vector<double> values;
+    const auto add_array = [&](const std::string &attributes) {
+      text += fmt::format("<DataArray type=\"Float64\" {} format=\"binary\">", attributes) + encoded(values) +
+              "</DataArray>\n";
+      values.clear();
+    };
     for (unsigned int f = 0; f < n_fields; ++f)
     {
-      text += fmt::format("<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n", names[f]);
       for (std::size_t j = 0; j < n_times; ++j)
       {
-        for (unsigned int i = 0; i < n_points; ++i)
-          fmt::format_to(std::back_inserter(text), "{:.9g} ", rows_[(j * n_fields + f) * n_points + i]);
-        text += '\n';
+        const auto row = rows_.begin() + static_cast<std::ptrdiff_t>((j * n_fields + f) * n_points);
+        values.insert(values.end(), row, row + n_points);
       }
-      text += "</DataArray>\n";
+      add_array(fmt::format("Name=\"{}\"", names[f]));
     }
-    text += "</PointData>\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n";
+    text += "</PointData>\n<Points>\n";
     for (const double time : times_)
-    {
       for (unsigned int i = 0; i < n_points; ++i)
-        fmt::format_to(
-          std::back_inserter(text), "{:.9g} {:.9g} 0 ", static_cast<double>(i) / (n_points - 1), time / end_time_);
-      text += '\n';
-    }
-    text += "</DataArray>\n</Points>\n</Piece>\n</StructuredGrid>\n</VTKFile>\n";
+        values.insert(values.end(), {static_cast<double>(i) / (n_points - 1), time / end_time_, 0.});
+    add_array("NumberOfComponents=\"3\"");
+    text += "</Points>\n</Piece>\n</StructuredGrid>\n</VTKFile>\n";
     write_file(folder_ / "kymograph.vts", text);
   }
 } // namespace crawler

@@ -10,10 +10,14 @@ namespace crawler
     declarations.enter("Output");
     declarations.whole_number("Number of snapshots", n_snapshots, 0, 1000000)
       .means("Number of snapshots for ParaView at equal time intervals until the end time, besides the initial state. "
-             "0: none.");
+             "0: none, and no kymograph. Automatic: 64 for each stride, at least 64 and at most 640; 256 if the "
+             "stride is not known.");
     declarations.flag("Kymograph", kymograph)
-      .means("Whether to write the fields over s and t of all snapshots as one file.");
-    declarations.flag("Statistics", statistics).means("Whether to write statistics.csv, a row for each time step.");
+      .means("Whether to write the fields over s and t as one file, besides snapshots. It has times of its own: 64 for "
+             "each stride and at least 128, of the last 20 strides if there are more, and each jump of the active "
+             "stress.");
+    declarations.flag("Statistics", statistics)
+      .means("Whether to write statistics.csv, a row for each time step and each snapshot.");
     declarations.flag("Ledger", energy_balance)
       .means("Whether to compute works, energies and the net friction in every step, and to check that they balance.");
     declarations.number("Ledger tolerance", energy_balance_tolerance, positive(), "1")

@@ -45,7 +45,7 @@ namespace crawler
   void
   StatisticsWriter::observe(const Snapshot &snapshot)
   {
-    if (!writes_)
+    if (!writes_ || !(snapshot.is_step_end || snapshot.pictures.is_snapshot))
       return;
     write({snapshot.step,
            snapshot.integrals.displacement / length_,
@@ -53,7 +53,7 @@ namespace crawler
            snapshot.integrals.velocity / length_,
            snapshot.energy_balance,
            snapshot.integrals.net_friction});
-    if (snapshot.is_output_time)
+    if (snapshot.pictures.is_snapshot)
       out_.flush();
   }
 

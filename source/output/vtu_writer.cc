@@ -71,7 +71,7 @@ namespace crawler
   void
   VtuWriter::observe(const Snapshot &snapshot)
   {
-    if (!snapshot.is_output_time)
+    if (!snapshot.pictures.is_snapshot)
       return;
     const Discretization &d = snapshot.assembler.discretization();
     if (!sampler_ || mesh_number_ != snapshot.mesh_number)

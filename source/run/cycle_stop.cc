@@ -23,11 +23,11 @@ namespace crawler
   } // namespace
 
   std::optional<CycleWish>
-  cycle_wish(const RunParameters &parameters, const Scene &scene, const unsigned int n_output_times)
+  cycle_wish(const RunParameters &parameters, const Scene &scene, const bool has_pictures)
   {
     const TimeParameters &time = parameters.time;
-    if (time.cycle_stop == CycleStopMode::off || (time.cycle_stop == CycleStopMode::automatic &&
-                                                  (n_output_times > 0 || time.step_control != StepControl::adaptive)))
+    if (time.cycle_stop == CycleStopMode::off ||
+        (time.cycle_stop == CycleStopMode::automatic && (has_pictures || time.step_control != StepControl::adaptive)))
       return std::nullopt;
     if (!scene.is_alike_everywhere())
       return std::nullopt;

@@ -6,60 +6,51 @@
 
 namespace crawler
 {
-  OutputTimes::OutputTimes(const std::vector<double> &asked, const std::vector<double> &needed, const double end_time)
-    : end_time_(end_time)
+  OutputTimes::OutputTimes(PictureTimes pictures, std::vector<double> needed, const bool is_dense)
+    : pictures_(std::move(pictures))
+    , step_ends_(std::move(needed))
   {
-    for (const double time : asked)
-      times_.push_back({time, false});
-    for (const double part : needed)
+    if (is_dense)
+      return;
+    // Those of snapshots are kept to the last bit.
+    std::vector<double> ends;
+    for (std::size_t i = 0; i < pictures_.all().size(); ++i)
+      if (pictures_.all()[i].kinds.is_snapshot)
+        ends.push_back(pictures_.natural(i));
+    const std::size_t n = ends.size();
+    for (const double time : step_ends_)
     {
-      const double time = part * end_time, same = 1e-12 * end_time;
-      const auto place =
-        std::lower_bound(times_.begin(), times_.end(), time - same, [](const Time &one, const double other) {
-          return one.value < other;
-        });
-      if (place == times_.end() || place->value > time + same)
-        times_.insert(place, {time, true});
+      const auto last  = ends.begin() + static_cast<std::ptrdiff_t>(n);
+      const auto place = std::lower_bound(ends.begin(), last, time - least_time_between_breaks);
+      if (place == last || !is_same(*place, time))
+        ends.push_back(time);
     }
-  }
-
-  double
-  OutputTimes::natural(const std::size_t i) const
-  {
-    const bool is_end = i + 1 == times_.size() && times_[i].value == end_time_;
-    return is_end ? 1. : times_[i].value / end_time_;
+    std::sort(ends.begin(), ends.end());
+    step_ends_ = std::move(ends);
   }
 
   std::vector<double>
-  OutputTimes::of_segment(const TimeSegments &segments) const
+  OutputTimes::of_segment(const TimeSegments &segments, const double time) const
   {
     const double reach = segments.is_last() ? HUGE_VAL : segments.end() - least_time_between_breaks;
     std::vector<double> result;
-    for (std::size_t i = next_; i < times_.size() && natural(i) < reach; ++i)
-      result.push_back(natural(i));
+    for (const double end : step_ends_)
+      if (end > time && end < reach)
+        result.push_back(end);
     if (!segments.is_last())
       result.push_back(segments.end());
     return result;
   }
 
-  bool
-  OutputTimes::include_end_of(const TimeSegments &segments) const
-  {
-    std::size_t i = next_;
-    while (i < times_.size() && natural(i) < segments.end() - least_time_between_breaks)
-      ++i;
-    return i < times_.size() && natural(i) <= segments.end() + least_time_between_breaks;
-  }
-
   double
   OutputTimes::next() const
   {
-    return next_ < times_.size() ? natural(next_) : HUGE_VAL;
+    return next_ < pictures_.all().size() ? pictures_.natural(next_) : HUGE_VAL;
   }
 
-  double
-  OutputTimes::next_in_user_units() const
+  const PictureTimes::Time *
+  OutputTimes::passed_at(const double time) const
   {
-    return next_ < times_.size() ? times_[next_].value : HUGE_VAL;
+    return next_ > 0 && is_same(pictures_.natural(next_ - 1), time) ? &pictures_.all()[next_ - 1] : nullptr;
   }
 } // namespace crawler

@@ -189,12 +189,10 @@ namespace crawler
                                    *discretization.smallest_cell,
                                    body.length),
                        "Discretization/Smallest cell");
-    if (time.cycle_stop == CycleStopMode::on && output.n_snapshots > 0)
-      throw InputError(
-        fmt::format("Cycle stop is on, but {} snapshots until the end time are wanted; 0 is expected for "
-                    "Output/Number of snapshots, or automatic or off here",
-                    output.n_snapshots),
-        "Time/Cycle stop");
+    if (time.cycle_stop == CycleStopMode::on && output.has_snapshots())
+      throw InputError("Cycle stop is on, but snapshots until the end time are wanted; 0 is expected for Output/Number "
+                       "of snapshots, or automatic or off here",
+                       "Time/Cycle stop");
     Scene scene{body, nullptr, nullptr, time.end_time};
     natural_units(scene); // first, since nothing else is prepared for numbers that it refuses
     scene.profiles = read_profiles(body, time.end_time);

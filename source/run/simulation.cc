@@ -115,29 +115,25 @@ namespace crawler
     choose_stepper(); // options of PETSc are read now
   }
 
-  Simulation::Run::Run(const Options &options,
-                       const bool has_observers,
-                       Recorder recorder,
-                       const std::vector<double> &output_times,
-                       const double end_time,
-                       StepLimiter limiter)
+  Simulation::Run::Run(
+    const Options &options, const bool has_observers, Recorder recorder, OutputTimes output_times, StepLimiter limiter)
     : options(options)
     , has_observers(has_observers)
     , recorder(std::move(recorder))
-    , output_times(output_times, this->recorder.step_ends(), end_time)
+    , output_times(std::move(output_times))
     , limiter(std::move(limiter))
   {
   }
 
   SimulationResult
-  Simulation::run(const std::vector<double> &output_times,
+  Simulation::run(const PictureTimes &pictures,
                   const Options &options,
                   const std::vector<std::unique_ptr<Observer>> &observers,
                   const std::function<bool()> &keep_going)
   {
     const double start = now();
-    if (options.cycles && !output_times.empty())
-      throw std::logic_error("a run that may end when its cycles repeat has no output times");
+    if (options.cycles && !pictures.is_empty())
+      throw std::logic_error("a run that may end when its cycles repeat has no pictures");
     segments_.restart();
     run_.reset();
     if (!mesh_.is_first)
@@ -147,17 +143,17 @@ namespace crawler
     // To look for a period costs a thousand looks at the state.
     constexpr std::size_t most_unknowns = 10000;
     const bool is_watched               = time_.step_control == StepControl::adaptive;
-    run_.emplace(
-      options,
-      !observers.empty(),
-      Recorder(
-        physical_scene_, units_, options, numerics_.tolerance, mesh_.discretization->n_unknowns() <= most_unknowns),
-      output_times,
-      physical_scene_.end_time,
-      StepLimiter(numerics_.step_limits,
-                  past_.delay > 0. ? past_.delay : HUGE_VAL,
-                  *scene_.active_stress,
-                  is_watched ? numerics_.least_event : 0.));
+    Recorder recorder(
+      physical_scene_, units_, options, numerics_.tolerance, mesh_.discretization->n_unknowns() <= most_unknowns);
+    OutputTimes output_times(pictures, recorder.step_ends(), !integrators_.present->quadrature().empty());
+    run_.emplace(options,
+                 !observers.empty(),
+                 std::move(recorder),
+                 std::move(output_times),
+                 StepLimiter(numerics_.step_limits,
+                             past_.delay > 0. ? past_.delay : HUGE_VAL,
+                             *scene_.active_stress,
+                             is_watched ? numerics_.least_event : 0.));
     run_->n_failures     = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0;
     result().model       = numerics_.linear ? Model::linear : Model::nonlinear;
     result().jumps_move  = numerics_.jumps_move;
@@ -207,8 +203,10 @@ namespace crawler
     }
     else if (!run_->options.energy_balance && observers.empty())
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, y_, v_).displacement;
+    const double before = now();
     for (const auto &observer : observers)
       observer->end();
+    result.output_seconds += now() - before;
     if (mesh_.assembler) // not if the next mesh could not be built
       result.mesh = {discretization().n_cells(),
                      discretization().element().degree,
@@ -231,7 +229,11 @@ namespace crawler
       run_->request = Request::none;
       choose_stepper();
       if (!segments_.is_last() && run_->accepted.time >= segments_.end())
+      {
         begin_segment();
+        if (!run_->diagnosis)
+          show_row_after_jump(observers);
+      }
       if (run_->diagnosis)
         return run_->before;
       TimeOutcome outcome = integrate_part(observers, keep_going);
@@ -245,10 +247,14 @@ namespace crawler
   Simulation::integrate_part(const std::vector<std::unique_ptr<Observer>> &observers,
                              const std::function<bool()> &keep_going)
   {
-    bool resumed                   = run_->accepted.is_there;
-    const std::vector<double> ends = run_->output_times.of_segment(segments_);
-    const bool ends_at_output_time = run_->output_times.include_end_of(segments_);
-    integrators_.present->monitor  = [&](const Step &part, const std::span<const double> y) {
+    bool resumed                      = run_->accepted.is_there;
+    const std::vector<double> ends    = run_->output_times.of_segment(segments_, run_->accepted.time);
+    integrators_.present->stage_rates = nullptr;
+    if (mesh_.velocity->keeps_rates() || run_->output_times.next() < HUGE_VAL)
+      integrators_.present->stage_rates = [this](const double t, const std::span<const double> y_dot) {
+        mesh_.velocity->see_rate(t, y_dot);
+      };
+    integrators_.present->monitor = [&](const Step &part, const std::span<const double> y) {
       if (resumed) // the state from which this part starts has been seen already
       {
         resumed = false;
@@ -260,7 +266,6 @@ namespace crawler
       step.newton_iterations += run_->before.newton_iterations;
       run_->latest              = step;
       const bool at_end_of_part = !segments_.is_last() && part.time == segments_.end();
-      step.is_output_time       = part.is_output_time && (!at_end_of_part || ends_at_output_time);
       if (!sees(step, y, observers) || (keep_going && !keep_going()) || may_end_after(step, y))
         return false;
       look_for_coarser_mesh(step);
@@ -277,22 +282,6 @@ namespace crawler
     outcome.linear_iterations += run_->before.linear_iterations;
     result().most_cells = std::max(result().most_cells, mesh_.discretization->n_cells());
     return outcome;
-  }
-
-  /// An accepted step: examined, and shown to the observers if its state may be used.
-  bool
-  Simulation::sees(const Step &step,
-                   const std::span<const double> y,
-                   const std::vector<std::unique_ptr<Observer>> &observers)
-  {
-    if (!examine(step, y))
-      return false;
-    const double before = now();
-    show(step, y, observers);
-    result().output_seconds += now() - before;
-    if (step.is_output_time)
-      run_->output_times.pass();
-    return true;
   }
 
   /// Do the cycles repeat, or are there too many steps?
@@ -412,44 +401,5 @@ namespace crawler
       run_->before.steps -= std::min(run_->before.steps, 1u);
       ++run_->before.rejected_steps;
     }
-  }
-
-  void
-  Simulation::show(const Step &step,
-                   const std::span<const double> y,
-                   const std::vector<std::unique_ptr<Observer>> &observers)
-  {
-    if (observers.empty())
-      return;
-    Step physical = step;
-    // Output times are shown as they were asked for, exactly.
-    const double output_time = run_->output_times.next_in_user_units();
-    physical.time = step.is_output_time && std::isfinite(output_time) ? output_time : step.time * units_.time;
-    physical.size *= units_.time;
-    const double energy = units_.energy(), power = units_.power();
-    CellIntegrals sums = run_->integrals;
-    sums.displacement *= units_.length * units_.length;
-    sums.velocity *= units_.length * units_.velocity();
-    sums.elastic_energy *= energy;
-    for (double *rate : {&sums.stress_power, &sums.positive_power, &sums.absolute_power, &sums.dissipation})
-      *rate *= power;
-    sums.net_friction *= units_.force;
-    sums.abs_friction *= units_.force;
-    const StretchRange range{{run_->stretch.min.value, run_->stretch.min.s * units_.length},
-                             {run_->stretch.max.value, run_->stretch.max.s * units_.length}};
-    const EnergyBalance energy_balance =
-      result().energy_balance ? result().energy_balance->scaled(energy) : EnergyBalance();
-    for (const auto &observer : observers)
-      observer->observe({physical,
-                         step.number == 0 || (step.is_output_time && run_->output_times.shows_next()),
-                         *mesh_.assembler,
-                         mesh_number_,
-                         units_,
-                         step.time,
-                         y,
-                         v_,
-                         sums,
-                         range,
-                         energy_balance});
   }
 } // namespace crawler

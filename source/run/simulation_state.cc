@@ -49,7 +49,7 @@ namespace crawler
       return false;
     }
     // Pictures need the velocity at output times only, the energy balance and adaptive meshes always.
-    const bool is_shown = run_->has_observers && (step.is_output_time || step.number == 0);
+    const bool is_shown = run_->has_observers && run_->output_times.next() <= step.time + least_time_between_breaks;
     if ((run_->options.energy_balance || is_adaptive() || is_shown) && !finds_velocity(step.time, step.size, y, v_))
       return false;
     if (is_adaptive() && !mesh_is_good(step, y))
@@ -74,12 +74,18 @@ namespace crawler
   {
     if (mesh_.velocity->compute(t, size, y, v))
       return true;
+    explain_no_velocity(t);
+    return false;
+  }
+
+  void
+  Simulation::explain_no_velocity(const double t)
+  {
     if (!law_failed() && !stress_failed())
       run_->diagnosis = {
         Status::failed,
         "linear_failed",
         fmt::format("the velocity at t = {:.6g} cannot be computed: the friction matrix is singular", t * units_.time)};
-    return false;
   }
 
   /// Did the active stress do something within the step that its ends do not show? Then the step is made again, by
@@ -161,32 +167,30 @@ namespace crawler
       {sums.stress_power, sums.dissipation, sums.positive_power, sums.absolute_power, (*mesh_.end_power)(t, y, v)}};
   }
 
-  /// The works of a step by the formula of the integrator itself. The states within the step are looked at for extremes
-  /// of the stretch, too. Returns false if one of them has no velocity.
+  /// The rates of a step at the stages of the integrator, which integrates by them itself. The states within the step
+  /// are looked at for extremes of the stretch, too. Returns false if one of them has no velocity.
   bool
   Simulation::integrate_step(const Step &step, const Rates &at_end)
   {
+    run_->quadrature.begin_step(step.time - step.size);
     if (step.size == 0.)
       return true;
-    Rates sum{};
     y_inside_.resize(y_.size());
     v_inside_.resize(v_.size());
     for (const auto &point : integrators_.present->quadrature())
     {
-      Rates inside = at_end;
+      const double t = step.time - (1. - point.place) * step.size;
+      Rates inside   = at_end;
       if (point.place < 1.)
       {
-        const double t = step.time - (1. - point.place) * step.size;
         integrators_.present->interpolate(t, y_inside_);
         if (!finds_velocity(t, step.size, y_inside_, v_inside_))
           return false;
         inside = rates(t, mesh_.assembler->integrals(t, y_inside_, v_inside_), y_inside_, v_inside_);
         look_at_extremes(t, mesh_.assembler->stretch_range(y_inside_));
       }
-      for (std::size_t i = 0; i < sum.size(); ++i)
-        sum[i] += step.size * point.weight * inside[i];
+      run_->quadrature.add_stage(t, inside);
     }
-    result().energy_balance->add_works(sum);
     return true;
   }
 
@@ -227,7 +231,7 @@ namespace crawler
       return true;
     const CellIntegrals &integrals = run_->integrals = mesh_.assembler->integrals(step.time, y, v_);
     result().displacement                            = integrals.displacement;
-    if (!run_->options.energy_balance && !step.is_output_time && step.number != 0)
+    if (!run_->options.energy_balance && run_->output_times.next() > step.time + least_time_between_breaks)
       return true;
     if (!std::isfinite(integrals.dissipation))
     {
@@ -242,12 +246,14 @@ namespace crawler
     }
     if (!run_->options.energy_balance)
       return true;
-    const Rates now = rates(step.time, integrals, y, v_);
+    EnergyBalance &energies = *result().energy_balance;
+    run_->balance_before    = energies;
+    const Rates now         = rates(step.time, integrals, y, v_);
     if (integrators_.present->quadrature().empty())
-      result().energy_balance->add_works(run_->quadrature.advance(step.time, now));
+      run_->quadrature.advance(step.time, now);
     else if (!integrate_step(step, now))
       return false;
-    EnergyBalance &energies = *result().energy_balance;
+    energies.add_works(run_->quadrature.until(step.time));
     energies.elastic_energy = integrals.elastic_energy;
     if (step.number == 0)
       energies.initial_energy = integrals.elastic_energy;

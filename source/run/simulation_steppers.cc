@@ -42,10 +42,6 @@ namespace crawler
         integrators_.petsc = std::make_unique<TimeStepper>(communicator_, *mesh_.position, time_);
       integrators_.present = integrators_.petsc.get();
     }
-    if (mesh_.velocity->keeps_rates())
-      integrators_.present->stage_rates = [this](const double t, const std::span<const double> y_dot) {
-        mesh_.velocity->see_rate(t, y_dot);
-      };
   }
 
   /// PETSc takes the last accepted state, with a step that is as small as the first one, or as the engine wanted it.

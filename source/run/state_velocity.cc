@@ -101,4 +101,27 @@ namespace crawler
     }
     return true;
   }
+
+  bool
+  StateVelocity::compute_within(
+    const double t, const double end, const double size, const ConstVector y, const std::span<double> v)
+  {
+    std::vector<const Rate *> stages;
+    for (const Rate &rate : rates_)
+      if (rate.time > end - size * (1. - 1e-9) && rate.time <= end + 1e-9 * size)
+        stages.push_back(&rate);
+    if (position_ == nullptr || stages.size() + 1 != rates_.size())
+      return assembler_.velocity(t, y, v);
+    std::fill(v.begin(), v.end(), 0.);
+    for (const Rate *stage : stages)
+    {
+      double weight = 1.;
+      for (const Rate *other : stages)
+        if (other != stage)
+          weight *= (t - other->time) / (stage->time - other->time);
+      for (std::size_t i = 0; i < v.size(); ++i)
+        v[i] += weight * stage->y_dot[i];
+    }
+    return true;
+  }
 } // namespace crawler

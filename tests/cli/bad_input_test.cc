@@ -234,7 +234,7 @@ namespace
        {"Model is linear and Integrator is bdf", "radau 9 is expected"}},
       {"CycleStopWithSnapshots",
        in_section("Time", "set Cycle stop = on"),
-       {"line 2", "50 snapshots until the end time are wanted", "0 is expected for Output/Number of snapshots"}},
+       {"line 2", "snapshots until the end time are wanted", "0 is expected for Output/Number of snapshots"}},
       {"FixedWithoutStep",
        in_section("Time", "set Step control = fixed"),
        {"line 2", "fixed", "number is expected for Initial step"}},

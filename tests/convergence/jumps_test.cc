@@ -41,8 +41,9 @@ namespace
     void
     observe(const Snapshot &snapshot) override
     {
-      steps_.push_back(snapshot.step.time);
-      if (snapshot.is_output_time)
+      if (snapshot.is_step_end)
+        steps_.push_back(snapshot.step.time);
+      if (snapshot.pictures.is_snapshot)
         output_times_.push_back(snapshot.step.time);
     }
 
@@ -236,7 +237,7 @@ TEST(Jumps, ManyInTime)
     std::vector<double> steps, output_times;
     std::vector<std::unique_ptr<Observer>> observers;
     observers.push_back(std::make_unique<Times>(steps, output_times));
-    const SimulationResult result = simulation.run(wanted, {.energy_balance = true}, observers);
+    const SimulationResult result = simulation.run({wanted, {}, 2.}, {.energy_balance = true}, observers);
     ASSERT_EQ(result.time.status, Status::finished) << result.time.message;
     EXPECT_EQ(result.time.steps + 1, steps.size());
     EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end()));

@@ -222,7 +222,8 @@ namespace
       parameters.accuracy = accuracy;
       const Scene scene   = random.create(parameters);
       const auto choice   = choose_numerics(MPI_COMM_SELF, parameters, scene);
-      const Simulation::Options options{.energy_balance = true, .cycles = cycle_wish(parameters, scene, 0)};
+      const Simulation::Options options{.energy_balance = true,
+                                        .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false)};
       const Answer answer = run_as_promised(
         MPI_COMM_SELF,
         parameters,

@@ -86,8 +86,9 @@ namespace
     const Parameters parameters = test::parameters_with(settings);
     const Scene scene           = parameters.create_scene();
     const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, parameters, scene);
-    Simulation::Options options = {
-      .energy_balance = true, .cycles = cycle_wish(parameters, scene, 0), .gait = Simulation::GaitWish::any};
+    Simulation::Options options = {.energy_balance = true,
+                                   .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
+                                   .gait           = Simulation::GaitWish::any};
     const Answer answer =
       run_as_promised(MPI_COMM_SELF,
                       parameters,

@@ -30,8 +30,9 @@ namespace
     parameters.accuracy    = accuracy;
     Simulation simulation(MPI_COMM_WORLD, scene, parameters.time, choice.numerics);
     Pair pair;
-    pair.cycles = simulation.run({}, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, 0)});
-    pair.full   = simulation.run({}, {.energy_balance = true});
+    pair.cycles =
+      simulation.run({}, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, /*has_pictures=*/false)});
+    pair.full = simulation.run({}, {.energy_balance = true});
     EXPECT_EQ(pair.full.time.status, Status::finished);
     EXPECT_EQ(pair.cycles.time.status, Status::finished);
     EXPECT_FALSE(pair.full.cycles);
@@ -43,7 +44,9 @@ namespace
   compute(const Parameters &parameters)
   {
     const Scene scene = parameters.create_scene();
-    return test::run_with(parameters, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, 0)}).result;
+    return test::run_with(parameters,
+                          {.energy_balance = true, .cycles = cycle_wish(parameters, scene, /*has_pictures=*/false)})
+      .result;
   }
 
   /// The settings with Accuracy 1e-9.
@@ -202,10 +205,10 @@ TEST(CycleStop, DriftOfTheStretchIsSeen)
 
 TEST(CycleStop, WhenItIsWished)
 {
-  const auto wish = [](const test::Settings &settings, const unsigned int n_output_times) {
+  const auto wish = [](const test::Settings &settings, const bool has_pictures) {
     const auto parameters = test::parameters_with(settings);
     const Scene scene     = parameters.create_scene();
-    return cycle_wish(parameters, scene, n_output_times).has_value();
+    return cycle_wish(parameters, scene, has_pictures).has_value();
   };
   auto settings = test::wave(-1., 0.1, 1., 20.);
   EXPECT_TRUE(wish(settings, 0));

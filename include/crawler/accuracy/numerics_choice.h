@@ -49,4 +49,9 @@ namespace crawler
                   const RunParameters &parameters,
                   const Scene &scene,
                   const std::function<bool()> &keep_going = {});
+
+  /// Pictures at times within steps are less accurate than the ends of the steps of radau 5 and 9. Makes the tolerance
+  /// so small that their displacement is as accurate as wanted, too, if it is not the user's.
+  void
+  prepare_for_pictures(NumericsChoice &choice, const RunParameters &parameters);
 } // namespace crawler

@@ -65,16 +65,26 @@ namespace crawler
   };
 
   /**
-   * Integrates rates over time as accurately as the time integrator: over each step the polynomial through the last
-   * (up to six) accepted points, i.e. the Adams-Moulton quadrature for variable steps. Where steps have just grown a
-   * lot, fewer points are used.
+   * Integrates rates over time as accurately as the time integrator: over each step the polynomial through some points.
+   * These are the stages of the step, if the method integrates by them; or else the last (up to six) accepted points,
+   * i.e. the Adams-Moulton quadrature for variable steps, fewer where steps have just grown a lot.
    */
   class RateQuadrature
   {
   public:
-    /// Adds the rates at the next point in time and returns the increments of their integrals.
-    Rates
+    /// Goes to the next point in time, with its rates.
+    void
     advance(double time, const Rates &rates);
+
+    /// A step from this time; its stages follow.
+    void
+    begin_step(double time);
+    void
+    add_stage(double time, const Rates &rates);
+
+    /// The increments of the integrals from the start of the step to @p time, within it or at its end.
+    Rates
+    until(double time) const;
 
   private:
     struct Point
@@ -83,5 +93,7 @@ namespace crawler
       Rates rates;
     };
     std::deque<Point> points_; ///< newest first
+    double start_     = 0.;    ///< of the step
+    std::size_t used_ = 0;     ///< points of the polynomial
   };
 } // namespace crawler

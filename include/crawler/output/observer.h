@@ -3,28 +3,31 @@
 
 #include <crawler/equation/assembler.h>
 #include <crawler/equation/energy_balance.h>
+#include <crawler/output/picture_times.h>
 #include <crawler/time/time_stepper.h>
 
 namespace crawler
 {
-  /// An accepted state of a run, read-only, in the user's units except for what the equation is computed in: assembler,
-  /// y, v and computed_time, whose units are given.
+  /// A state of a run, read-only, in the user's units except for what the equation is computed in: assembler, y, v and
+  /// computed_time, whose units are given. It is the end of an accepted step, or what the integrator knows of a time
+  /// within one; the first is the initial state.
   struct Snapshot
   {
-    const Step &step;
-    bool is_output_time;        ///< one of the snapshots that were asked for, the initial state included
+    const Step &step;           ///< with the time of this state, which may be within the step
+    bool is_step_end;           ///< an accepted state
+    PictureKinds pictures;      ///< what it was asked for
     const Assembler &assembler; ///< mesh and formulation; may be another one in the next snapshot ...
     unsigned int mesh_number;   ///< ... and then this number is another one
     const Units &units;
     double computed_time;
     std::span<const double> y;      ///< the unknowns (assembler.h), owned values of this rank
-    std::span<const double> v;      ///< velocity at the nodes; without an energy balance of snapshots only
+    std::span<const double> v;      ///< velocity at the nodes; without an energy balance of pictures only
     const CellIntegrals &integrals; ///< those with v are as old as v
     const StretchRange &stretch;
     const EnergyBalance &energy_balance;
   };
 
-  /// Looks at the accepted states of a run. Called on all ranks together.
+  /// Looks at the accepted states of a run and at those that were asked for. Called on all ranks together.
   class Observer
   {
   public:

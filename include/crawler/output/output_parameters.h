@@ -11,12 +11,18 @@ namespace crawler
   /// Section "Output": what is computed and written besides the displacement.
   struct OutputParameters
   {
-    unsigned int n_snapshots = 50;
-    bool kymograph           = true;
-    bool statistics          = true;
-    bool energy_balance      = true;
+    std::optional<unsigned int> n_snapshots;
+    bool kymograph      = true;
+    bool statistics     = true;
+    bool energy_balance = true;
     std::optional<double> energy_balance_tolerance;
     std::vector<double> active_stress_table; ///< numbers of samples over s and t; empty: no table
+
+    bool
+    has_snapshots() const
+    {
+      return n_snapshots != 0u;
+    }
 
     void
     add_parameters(Declarations &declarations);

@@ -55,6 +55,9 @@ namespace crawler::accuracy_rule
     inline constexpr double accurate_graded = 1e-5;
     /// More breaks would make graded meshes too large, or too many starts where nothing happens suddenly.
     inline constexpr std::size_t most_graded_places = 200, most_gentle_breaks = 200;
+    /// The displacement within a step of radau 5 or 9 has an error of up to half the tolerance: with pictures this is
+    /// at most so many times the wanted error, and never smaller than this part of the length.
+    inline constexpr double tolerance_of_pictures = 2., least_tolerance_of_pictures = 1e-13;
     /// First tolerances on graded meshes, relative to the wanted error.
     inline constexpr double graded_radau_5 = 4., graded_radau_9 = 10., graded_others = 0.1;
     /// Meshes for jumps that move: from the coarsest, doubled until the displacement settles, which it does like the

@@ -31,7 +31,7 @@ namespace crawler
   /// What the entry Time/Cycle stop means for a run with so many output times; nothing if it shall not end early or if
   /// the active stress has no period of which there are enough.
   std::optional<CycleWish>
-  cycle_wish(const RunParameters &parameters, const Scene &scene, unsigned int n_output_times);
+  cycle_wish(const RunParameters &parameters, const Scene &scene, bool has_pictures);
 
   /**
    * Watches a run with periodic actuation, from rest over (0, 1], and says when a cycle repeats the one before it

@@ -1,60 +1,51 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/output/picture_times.h>
 #include <crawler/scene/breaks.h>
-
-#include <cstddef>
-#include <vector>
 
 namespace crawler
 {
-  /// Where the steps of a run must end: at the output times that were asked for, which it keeps to the last bit, and at
-  /// times that only its record needs.
+  /// Where the steps of a run must end, and the pictures that it passes. Times are in units of the duration.
   class OutputTimes
   {
   public:
-    /// @p asked: ascending, in (0, @p end_time] [time]. @p needed: ascending, in (0, 1), in units of the duration.
-    OutputTimes(const std::vector<double> &asked, const std::vector<double> &needed, double end_time);
+    /// @p needed: ascending, in (0, 1). @p is_dense: the integrator knows the state at any time within a step as well
+    /// as at its ends, so steps need not end at snapshots.
+    OutputTimes(PictureTimes pictures, std::vector<double> needed, bool is_dense);
 
-    /// From the next one to the end of the segment, which is the last of them if another segment follows; in units of
-    /// the duration.
+    /// Ends of steps after @p time until the end of the segment, which is the last of them if another one follows.
     std::vector<double>
-    of_segment(const TimeSegments &segments) const;
-    /// Is the end of the segment one of them?
-    bool
-    include_end_of(const TimeSegments &segments) const;
+    of_segment(const TimeSegments &segments, double time) const;
 
-    /// The next one, if there is one; infinite otherwise. In units of the duration, and of the user.
+    /// Of the next picture; infinite if there is none.
     double
     next() const;
-    double
-    next_in_user_units() const;
-    /// Was it asked for? So is the end, whether it is one of them or not.
-    bool
-    shows_next() const
+    /// The next picture, which must be there.
+    const PictureTimes::Time &
+    picture() const
     {
-      return next_ == times_.size() || !times_[next_].is_hidden;
+      return pictures_.all()[next_];
     }
-
     void
     pass()
     {
-      if (next_ < times_.size())
-        ++next_;
+      ++next_;
+    }
+    /// The last picture that was passed, if it is of this time.
+    const PictureTimes::Time *
+    passed_at(double time) const;
+
+    /// Are two times one?
+    static bool
+    is_same(const double a, const double b)
+    {
+      return a - b <= least_time_between_breaks && b - a <= least_time_between_breaks;
     }
 
   private:
-    struct Time
-    {
-      double value; ///< [time]
-      bool is_hidden;
-    };
-
-    double
-    natural(std::size_t i) const;
-
-    std::vector<Time> times_;
-    double end_time_  = 1.;
+    PictureTimes pictures_;
+    std::vector<double> step_ends_;
     std::size_t next_ = 0;
   };
 } // namespace crawler

@@ -39,10 +39,10 @@ namespace crawler
     ~Simulation();
 
     /// Runs from rest. If that is wished it ends when its cycles repeat (cycle_stop.h); the result is that of the end
-    /// time all the same. @p output_times are times in (0, T] where steps must end. @p keep_going is asked after every
+    /// time all the same. @p pictures: what observers see besides the ends of steps. @p keep_going is asked after every
     /// step.
     SimulationResult
-    run(const std::vector<double> &output_times,
+    run(const PictureTimes &pictures,
         const Options &options,
         const std::vector<std::unique_ptr<Observer>> &observers = {},
         const std::function<bool()> &keep_going                 = {});
@@ -116,12 +116,7 @@ namespace crawler
     /// One run().
     struct Run
     {
-      Run(const Options &options,
-          bool has_observers,
-          Recorder recorder,
-          const std::vector<double> &output_times,
-          double end_time,
-          StepLimiter limiter);
+      Run(const Options &options, bool has_observers, Recorder recorder, OutputTimes output_times, StepLimiter limiter);
 
       const Options options;
       const bool has_observers;
@@ -131,10 +126,11 @@ namespace crawler
       Accepted accepted;
       StretchRange stretch{}; ///< of the state that is looked at
       CellIntegrals integrals{};
-      RateQuadrature quadrature; ///< of works, for integrators that have none
-      Resolution largest{};      ///< over time, if looked at
-      TimeOutcome before{};      ///< counts of the parts of the run before the last change of mesh
-      Step latest{};             ///< that was tried, with the counts of the whole run
+      RateQuadrature quadrature;    ///< of works
+      EnergyBalance balance_before; ///< at the start of the latest step
+      Resolution largest{};         ///< over time, if looked at
+      TimeOutcome before{};         ///< counts of the parts of the run before the last change of mesh
+      Step latest{};                ///< that was tried, with the counts of the whole run
       bool lanes_gave_up = false;
       std::optional<Diagnosis> diagnosis;
       Request request = Request::none;
@@ -179,6 +175,8 @@ namespace crawler
     examine(const Step &step, std::span<const double> y);
     bool
     finds_velocity(double t, double size, std::span<const double> y, std::vector<double> &v);
+    void
+    explain_no_velocity(double t);
     void
     look_at_resolution(const Step &step, std::span<const double> y);
     bool
@@ -225,8 +223,27 @@ namespace crawler
     failure_while_integrating();
     SimulationResult
     finish(const std::vector<std::unique_ptr<Observer>> &observers);
+    /// A state that observers see.
+    struct Shown
+    {
+      const Step &step; ///< with the time of the state
+      std::span<const double> y, v;
+      const CellIntegrals &integrals;
+      const StretchRange &stretch;
+      const EnergyBalance &energy_balance;
+      bool is_step_end;
+      const PictureTimes::Time *picture; ///< null: it is none
+    };
     void
-    show(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
+    show_step(const Step &step, std::span<const double> y, const std::vector<std::unique_ptr<Observer>> &observers);
+    bool
+    show_pictures_within(const Step &step, double until, const std::vector<std::unique_ptr<Observer>> &observers);
+    void
+    show_pictures_before_inversion(const Step &step, const std::vector<std::unique_ptr<Observer>> &observers);
+    void
+    show_row_after_jump(const std::vector<std::unique_ptr<Observer>> &observers);
+    void
+    show(const Shown &shown, const std::vector<std::unique_ptr<Observer>> &observers);
     SimulationResult &
     result()
     {

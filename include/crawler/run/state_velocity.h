@@ -38,6 +38,12 @@ namespace crawler
     bool
     compute(double t, double size, ConstVector y, std::span<double> v);
 
+    /// @p v of the state @p y at a time within the step of this @p size that ended at @p end: where friction balances
+    /// forces, the error of a dense output would be multiplied by the stiffness, so it is the polynomial through the
+    /// rates of the stages, if these were seen.
+    bool
+    compute_within(double t, double end, double size, ConstVector y, std::span<double> v);
+
   private:
     struct Rate
     {

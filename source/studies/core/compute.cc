@@ -22,8 +22,9 @@ namespace crawler
     Simulation::Options
     options_of(const Parameters &parameters, const Scene &scene, const Simulation::GaitWish gait)
     {
-      return {
-        .energy_balance = parameters.output.energy_balance, .cycles = cycle_wish(parameters, scene, 0), .gait = gait};
+      return {.energy_balance = parameters.output.energy_balance,
+              .cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false),
+              .gait           = gait};
     }
 
     SimulationResult
@@ -132,7 +133,7 @@ namespace crawler
           runs[energy_balance].push_back({&*task.scene,
                                           &task.parameters.time,
                                           &task.computed.choice.numerics,
-                                          cycle_wish(task.parameters, *task.scene, 0)});
+                                          cycle_wish(task.parameters, *task.scene, /*has_pictures=*/false)});
           members[energy_balance].push_back(&task);
         }
       for (const bool energy_balance : {false, true})
@@ -285,7 +286,11 @@ namespace crawler
         NumericsChoice own = shared;
         own.numerics.step_limits =
           similar_step_limits(scene, own.numerics.step_limits, own.numerics.least_event / least_event);
-        members.push_back({&tasks[i], own, cycle_wish(parameters, scene, 0), {}, time_of_finer_run(parameters.time)});
+        members.push_back({&tasks[i],
+                           own,
+                           cycle_wish(parameters, scene, /*has_pictures=*/false),
+                           {},
+                           time_of_finer_run(parameters.time)});
       }
       return members;
     }

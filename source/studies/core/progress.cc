@@ -32,7 +32,7 @@ namespace crawler
   Progress::observe(const Snapshot &snapshot)
   {
     const double done = 10. * snapshot.step.time / end_time_;
-    if (done < next_tenth_ || snapshot.step.number == 0)
+    if (!snapshot.is_step_end || done < next_tenth_ || snapshot.step.number == 0)
       return;
     while (next_tenth_ <= done)
       ++next_tenth_;

@@ -40,7 +40,7 @@ namespace crawler
   begin_files(Log &log, const Input &input, const std::filesystem::path &folder)
   {
     prepare(folder);
-    if (input.parameters.output.n_snapshots > 0)
+    if (input.parameters.output.has_snapshots())
       std::filesystem::create_directories(folder / "solution");
     write_file(folder / "original.prm", input.file.text());
     write_file(folder / "parameters.prm", input.effective);

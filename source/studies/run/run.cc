@@ -34,16 +34,6 @@ namespace crawler
 {
   namespace
   {
-    /// n equal parts of (0, end_time].
-    std::vector<double>
-    equal_times(const unsigned int n, const double end_time)
-    {
-      std::vector<double> times;
-      for (unsigned int i = 1; i <= n; ++i)
-        times.push_back(i == n ? end_time : end_time * i / n);
-      return times;
-    }
-
     std::string
     describe(const Numerics &n, const Input &input)
     {
@@ -157,6 +147,8 @@ namespace crawler
         pilots.step();
         return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
       });
+      if (chosen && output.has_snapshots())
+        prepare_for_pictures(*chosen, parameters);
     });
     if (stop_signal.arrived_anywhere(communicator))
     {
@@ -188,7 +180,7 @@ namespace crawler
     const bool writes           = shared || first;
     const auto create_observers = [&]() {
       std::vector<std::unique_ptr<Observer>> observers;
-      if (writes && output.n_snapshots > 0)
+      if (writes && output.has_snapshots())
       {
         observers.push_back(std::make_unique<VtuWriter>(folder));
         if (output.kymograph)
@@ -205,8 +197,9 @@ namespace crawler
     unsigned int n_runs        = 0;
     TimeOutcome latest;
     const Simulation::Options run_options = {.energy_balance = output.energy_balance,
-                                             .cycles         = cycle_wish(parameters, input.scene, output.n_snapshots),
-                                             .gait           = Simulation::GaitWish::any};
+                                             .cycles = cycle_wish(parameters, input.scene, output.has_snapshots()),
+                                             .gait   = Simulation::GaitWish::any};
+    const PictureTimes pictures           = picture_times(output, input.scene);
     const auto simulate                   = [&](const NumericsChoice &choice) {
       if (choice.is_family)
         build(choice.numerics);
@@ -223,9 +216,8 @@ namespace crawler
           });
         log.line(describe(choice.numerics, input));
       }
-      SimulationResult run = simulation->run(
-        equal_times(output.n_snapshots, parameters.time.end_time), run_options, create_observers(), keep_going);
-      latest = run.time;
+      SimulationResult run = simulation->run(pictures, run_options, create_observers(), keep_going);
+      latest               = run.time;
       return run;
     };
     guarded([&]() {
@@ -253,7 +245,7 @@ namespace crawler
       return "";
     });
     // The first rank speaks for all: a signal may have stopped some only.
-    int code = static_cast<int>(report_end(log, result, folder, output.n_snapshots > 0));
+    int code = static_cast<int>(report_end(log, result, folder, output.has_snapshots()));
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
     return static_cast<ExitCode>(code);
   }
@@ -309,24 +301,38 @@ namespace crawler
       const Units &units             = level.reduced_scene().units();
       const auto points              = equidistant(KymographWriter::n_points);
       // Without snapshots the table alone has its rows as often as there would be snapshots by default.
-      const unsigned int n = output.n_snapshots > 0 ? output.n_snapshots : OutputParameters().n_snapshots;
+      OutputParameters wanted = output;
+      if (!output.has_snapshots())
+      {
+        wanted.n_snapshots.reset();
+        wanted.kymograph = false;
+      }
+      const PictureTimes times = picture_times(wanted, input.scene);
+      std::vector<double> natural;
+      for (std::size_t i = 0; i < times.all().size(); ++i)
+        natural.push_back(times.natural(i));
       VtuWriter pictures(folder);
       KymographWriter kymograph(input.scene.end_time, folder);
       std::optional<StatisticsWriter> statistics;
       if (output.statistics)
         statistics.emplace(input.scene.body.length, true, folder, output.energy_balance);
-      unsigned int number = 0;
-      bool stopped        = false;
-      level.replay(equidistant(n + 1), points, [&](const double t, const ReducedModel::State &state) {
-        const double time = number == n ? input.scene.end_time : input.scene.end_time * number / n;
-        const Step step{time, number == 0 ? 0. : input.scene.end_time / n, number, true, 0, 0};
-        const Fields fields = physical_fields(state.fields, points, level.reduced_scene().scene(), units);
-        if (output.n_snapshots > 0)
-        {
-          pictures.write(
-            time, number, {{0., units.length}}, static_cast<unsigned int>(points.size()), fields, MPI_COMM_SELF);
+      unsigned int number = 0, n_rows = 0;
+      bool stopped  = false;
+      double before = 0.;
+      level.replay(natural, points, [&](const double t, const ReducedModel::State &state) {
+        const PictureTimes::Time &picture = times.all()[number++];
+        const double time                 = picture.value;
+        const Fields fields               = physical_fields(state.fields, points, level.reduced_scene().scene(), units);
+        if (picture.kinds.is_row && output.has_snapshots())
           kymograph.add(time, fields);
-        }
+        stopped = signal.arrived_anywhere(MPI_COMM_SELF);
+        if (!picture.kinds.is_snapshot)
+          return !stopped && t <= 1.;
+        const Step step{time, time - before, n_rows++, true, 0, 0};
+        before = time;
+        if (output.has_snapshots())
+          pictures.write(
+            time, step.number, {{0., units.length}}, static_cast<unsigned int>(points.size()), fields, MPI_COMM_SELF);
         const auto stretch_at = [&](const StrainExtreme &e) { return StretchAt{1. + e.strain, e.s * units.length}; };
         if (statistics)
           statistics->write({step,
@@ -335,13 +341,11 @@ namespace crawler
                              state.velocity * units.velocity(),
                              state.energies.scaled(units.energy()),
                              state.net_friction * units.force});
-        ++number;
-        stopped = signal.arrived_anywhere(MPI_COMM_SELF);
         return !stopped && t <= 1.;
       });
       if (statistics)
         statistics->end();
-      if (output.n_snapshots > 0 && output.kymograph)
+      if (output.has_snapshots() && output.kymograph)
         kymograph.end();
       return !stopped;
     }
@@ -385,7 +389,7 @@ namespace crawler
         log.line(level.description());
 
         const auto before = Clock::now();
-        if (result.error && (output.n_snapshots > 0 || output.statistics) &&
+        if (result.error && (output.has_snapshots() || output.statistics) &&
             !write_pictures(level, input, folder, stop_signal))
           result.time.status = Status::stopped;
         result.output_seconds = seconds_from(before);
@@ -400,7 +404,7 @@ namespace crawler
         result.time.message = "stopped by a signal";
       }
       write_file(folder / "summary.json", summary_json(result, size_of(communicator), options.command_line));
-      code = static_cast<int>(report_end(log, result, folder, output.n_snapshots > 0 && result.error));
+      code = static_cast<int>(report_end(log, result, folder, output.has_snapshots() && result.error));
       return "";
     });
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);

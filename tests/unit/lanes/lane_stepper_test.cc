@@ -181,7 +181,7 @@ namespace
     observe(const Snapshot &snapshot) override
     {
       seen_.steps = snapshot.step.number;
-      if (!snapshot.step.is_output_time)
+      if (!snapshot.pictures.is_snapshot || snapshot.step.time == 0.)
         return;
       seen_.times.push_back(snapshot.step.time);
       seen_.computed_times.push_back(snapshot.computed_time);
@@ -208,8 +208,8 @@ namespace
     Seen seen;
     std::vector<std::unique_ptr<Observer>> observers;
     observers.push_back(std::make_unique<Recorder>(seen));
-    const auto result =
-      Simulation(MPI_COMM_WORLD, run.scene, time, run.numerics).run(output_times, {.energy_balance = true}, observers);
+    const auto result = Simulation(MPI_COMM_WORLD, run.scene, time, run.numerics)
+                          .run({output_times, {}, run.scene.end_time}, {.energy_balance = true}, observers);
     EXPECT_EQ(result.time.status, Status::finished);
     return seen;
   }

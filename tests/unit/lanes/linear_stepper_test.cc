@@ -184,7 +184,9 @@ TEST(LinearLevel, CyclesRepeat)
   const auto parameters = linear("0.3*sin(2*pi*t)*sin(pi*s)", 30., 1., {{"Accuracy", "1e-7"}});
   const Scene scene     = parameters.create_scene();
   const auto cycles =
-    test::run_with(parameters, {.energy_balance = true, .cycles = cycle_wish(parameters, scene, 0)}).result;
+    test::run_with(parameters,
+                   {.energy_balance = true, .cycles = cycle_wish(parameters, scene, /*has_pictures=*/false)})
+      .result;
   const auto full = test::run_with(parameters).result;
   ASSERT_TRUE(cycles.cycles);
   EXPECT_NEAR(cycles.energy_balance->stress_work / full.energy_balance->stress_work, 1., 1e-5);

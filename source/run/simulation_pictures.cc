@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The part of Simulation that shows its states to the observers: the ends of steps, and pictures at the times that were
+// asked for, which the integrator's dense output knows as well (doc/numerics.md, "Pictures").
+#include <crawler/run/simulation.h>
+
+#include <chrono>
+
+namespace crawler
+{
+  namespace
+  {
+    double
+    now()
+    {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    }
+  } // namespace
+
+  /// An accepted step: examined, and shown to the observers if its state may be used.
+  bool
+  Simulation::sees(const Step &step,
+                   const std::span<const double> y,
+                   const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    const bool is_good  = examine(step, y);
+    const double before = now();
+    bool is_shown       = is_good && show_pictures_within(step, step.time, observers);
+    if (is_shown)
+      show_step(step, y, observers);
+    else if (!observers.empty() && run_->diagnosis && run_->diagnosis->status == Status::inverted)
+      show_pictures_before_inversion(step, observers);
+    result().output_seconds += now() - before;
+    return is_shown;
+  }
+
+  /// The end of a step, or the initial state, with v_ and what run_ has of it.
+  void
+  Simulation::show_step(const Step &step,
+                        const std::span<const double> y,
+                        const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    const bool is_picture = run_->output_times.next() <= step.time + least_time_between_breaks;
+    const EnergyBalance none;
+    show({step,
+          y,
+          v_,
+          run_->integrals,
+          run_->stretch,
+          result().energy_balance ? *result().energy_balance : none,
+          /*is_step_end=*/true,
+          is_picture ? &run_->output_times.picture() : nullptr},
+         observers);
+    if (is_picture)
+      run_->output_times.pass();
+  }
+
+  /// The pictures within the step that has just been made, before the time @p until. Returns false if one of these
+  /// states has no velocity.
+  bool
+  Simulation::show_pictures_within(const Step &step,
+                                   const double until,
+                                   const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    for (; run_->output_times.next() < until - least_time_between_breaks; run_->output_times.pass())
+    {
+      const double t = run_->output_times.next();
+      y_inside_.resize(y_.size());
+      v_inside_.resize(v_.size());
+      integrators_.present->interpolate(t, y_inside_);
+      if (!mesh_.velocity->compute_within(t, step.time, step.size, y_inside_, v_inside_))
+      {
+        explain_no_velocity(t);
+        return false;
+      }
+      const CellIntegrals integrals = mesh_.assembler->integrals(t, y_inside_, v_inside_);
+      const StretchRange stretch    = mesh_.assembler->stretch_range(y_inside_);
+      EnergyBalance energies;
+      if (run_->options.energy_balance)
+      {
+        energies = run_->balance_before;
+        energies.add_works(run_->quadrature.until(t));
+        energies.elastic_energy = integrals.elastic_energy;
+      }
+      Step inside = step;
+      inside.time = t;
+      show({inside,
+            y_inside_,
+            v_inside_,
+            integrals,
+            stretch,
+            energies,
+            /*is_step_end=*/false,
+            &run_->output_times.picture()},
+           observers);
+    }
+    return true;
+  }
+
+  /// The step has lost the body's stretch, but the dense output that told when knows what was before, too. The works
+  /// until then follow from some times, since the stages may be later.
+  void
+  Simulation::show_pictures_before_inversion(const Step &step, const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    const Diagnosis inverted = *run_->diagnosis;
+    const double start = step.time - step.size, end = result().inversion->t;
+    if (run_->options.energy_balance)
+    {
+      run_->balance_before = *result().energy_balance;
+      run_->quadrature.begin_step(start);
+      y_inside_.resize(y_.size());
+      v_inside_.resize(v_.size());
+      for (const double place : {0.1, 0.5, 0.9})
+      {
+        const double t = start + place * (end - start);
+        integrators_.present->interpolate(t, y_inside_);
+        if (!mesh_.velocity->compute_within(t, step.time, step.size, y_inside_, v_inside_))
+          return;
+        run_->quadrature.add_stage(t,
+                                   rates(t, mesh_.assembler->integrals(t, y_inside_, v_inside_), y_inside_, v_inside_));
+      }
+    }
+    show_pictures_within(step, end, observers);
+    run_->diagnosis = inverted;
+  }
+
+  /// The active stress has just jumped: the row of the kymograph at this time, once more, since a jump is not a ramp.
+  void
+  Simulation::show_row_after_jump(const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    const double t                    = run_->accepted.time;
+    const PictureTimes::Time *picture = run_->output_times.passed_at(t);
+    if (picture == nullptr || !picture->kinds.is_row || !finds_velocity(t, 0., y_, v_))
+      return;
+    const double before = now();
+    Step step           = run_->latest;
+    step.size           = 0.;
+    const PictureTimes::Time row{picture->value, {.is_snapshot = false, .is_row = true}};
+    const EnergyBalance none;
+    show({step,
+          y_,
+          v_,
+          mesh_.assembler->integrals(t, y_, v_),
+          run_->stretch,
+          result().energy_balance ? *result().energy_balance : none,
+          /*is_step_end=*/false,
+          &row},
+         observers);
+    result().output_seconds += now() - before;
+  }
+
+  void
+  Simulation::show(const Shown &shown, const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    if (observers.empty())
+      return;
+    Step physical = shown.step;
+    // Pictures are shown as they were asked for, exactly.
+    physical.time = shown.picture != nullptr ? shown.picture->value : shown.step.time * units_.time;
+    physical.size *= units_.time;
+    const double energy = units_.energy(), power = units_.power();
+    CellIntegrals sums = shown.integrals;
+    sums.displacement *= units_.length * units_.length;
+    sums.velocity *= units_.length * units_.velocity();
+    sums.elastic_energy *= energy;
+    for (double *rate : {&sums.stress_power, &sums.positive_power, &sums.absolute_power, &sums.dissipation})
+      *rate *= power;
+    sums.net_friction *= units_.force;
+    sums.abs_friction *= units_.force;
+    const StretchRange range{{shown.stretch.min.value, shown.stretch.min.s * units_.length},
+                             {shown.stretch.max.value, shown.stretch.max.s * units_.length}};
+    for (const auto &observer : observers)
+      observer->observe({physical,
+                         shown.is_step_end,
+                         shown.picture != nullptr ? shown.picture->kinds : PictureKinds(),
+                         *mesh_.assembler,
+                         mesh_number_,
+                         units_,
+                         shown.step.time,
+                         shown.y,
+                         shown.v,
+                         sums,
+                         range,
+                         shown.energy_balance.scaled(energy)});
+  }
+} // namespace crawler

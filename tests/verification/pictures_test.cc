@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Pictures come from the dense output of the integrator (doc/numerics.md, "Pictures").
+#include "../support/run_text.h"
+
+#include <crawler/output/field_sampler.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace crawler;
+using test::Settings;
+
+namespace
+{
+  /// What an observer sees of one state.
+  struct Seen
+  {
+    double time, displacement, dissipation, residual;
+    std::vector<double> stretch, velocity, active_stress;
+    bool is_step_end;
+    PictureKinds pictures;
+  };
+
+  class Watcher : public Observer
+  {
+  public:
+    explicit Watcher(std::vector<Seen> &seen)
+      : seen_(seen)
+    {
+    }
+    void
+    observe(const Snapshot &snapshot) override
+    {
+      const Discretization &d = snapshot.assembler.discretization();
+      std::vector<FieldSampler::Point> points;
+      for (unsigned int i = 0; i <= 20; ++i)
+      {
+        const double place      = 0.05 * i * d.n_cells();
+        const unsigned int cell = std::min(static_cast<unsigned int>(place), d.n_cells() - 1);
+        points.push_back({cell, place - cell});
+      }
+      FieldSampler sampler(snapshot.assembler, snapshot.units, points);
+      const Fields &fields = sampler.sample(snapshot.computed_time, snapshot.y, snapshot.v);
+      seen_.push_back({snapshot.step.time,
+                       snapshot.integrals.displacement,
+                       snapshot.energy_balance.dissipation,
+                       snapshot.energy_balance.residual(),
+                       fields.stretch,
+                       fields.velocity,
+                       fields.active_stress,
+                       snapshot.is_step_end,
+                       snapshot.pictures});
+    }
+
+  private:
+    std::vector<Seen> &seen_;
+  };
+
+  struct Course
+  {
+    SimulationResult result;
+    NumericsChoice choice;
+    std::vector<Seen> seen;
+
+    std::vector<Seen>
+    pictures() const
+    {
+      std::vector<Seen> some;
+      std::copy_if(
+        seen.begin(), seen.end(), std::back_inserter(some), [](const Seen &one) { return one.pictures.is_snapshot; });
+      return some;
+    }
+  };
+
+  /// As `crawler run` does it, but for the error bound.
+  Course
+  run(const Settings &settings, const std::optional<Numerics> &numerics = {}, const bool has_pictures = true)
+  {
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    Course run;
+    run.choice = *choose_numerics(MPI_COMM_SELF, parameters, scene);
+    prepare_for_pictures(run.choice, parameters);
+    if (numerics)
+      run.choice.numerics = *numerics;
+    std::vector<std::unique_ptr<Observer>> observers;
+    observers.push_back(std::make_unique<Watcher>(run.seen));
+    run.result = Simulation(MPI_COMM_SELF, scene, parameters.time, run.choice.numerics)
+                   .run(has_pictures ? picture_times(parameters.output, scene) : PictureTimes(),
+                        {.energy_balance = true},
+                        observers);
+    return run;
+  }
+
+  double
+  largest_difference(const std::vector<double> &a, const std::vector<double> &b)
+  {
+    double largest = a.size() == b.size() ? 0. : HUGE_VAL;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+      largest = std::max(largest, std::abs(a[i] - b[i]));
+    return largest;
+  }
+
+  Settings
+  robot(const double end_time)
+  {
+    return {{"Active stress/Generator", "segments"},
+            {"Active stress/Segments/Gap", "0.1"},
+            {"Active stress/Segments/Ramp duration", "0"},
+            {"Time/End time", test::text(end_time)}};
+  }
+} // namespace
+
+/// Steps know nothing of pictures.
+TEST(Pictures, ChangeNeitherStepsNorResults)
+{
+  for (Settings settings : {test::wave(-1., 0.4), test::wave(2., 0.2, 1., 3.), robot(1.)})
+  {
+    const Course with = run(settings), without = run(settings, with.choice.numerics, /*has_pictures=*/false);
+    EXPECT_EQ(with.result.displacement, without.result.displacement);
+    EXPECT_EQ(with.result.time.steps, without.result.time.steps);
+    EXPECT_EQ(with.result.energy_balance->dissipation, without.result.energy_balance->dissipation);
+    EXPECT_GE(with.pictures().size(), 65u);
+  }
+}
+
+/// Displacement, velocity and works at the demanded times against steps that are far shorter: the displacement is as
+/// accurate as wanted at all times, and all errors fall with Accuracy.
+TEST(Pictures, AreAsAccurateAsWanted)
+{
+  for (const Settings &scene : {test::wave(-1., 0.4),
+                                test::wave(2., 0.2, -1.),
+                                test::wave(-1., 0.3, 1., 1., 100.),
+                                test::wave(-1., 0.3, 1., 1., 1e4),
+                                test::wave(-1., 0.3, 1., 1., 1e-2)})
+  {
+    double last = HUGE_VAL;
+    for (const char *accuracy : {"1e-4", "1e-6", "1e-8"})
+    {
+      Settings settings = scene;
+      settings.emplace_back("Accuracy", accuracy);
+      const Course coarse = run(settings);
+      Numerics fine       = coarse.choice.numerics;
+      fine.tolerance      = 1e-4 * fine.tolerance;
+      const Course exact  = run(settings, fine);
+      const auto some = coarse.pictures(), all = exact.pictures();
+      ASSERT_EQ(some.size(), all.size());
+      double u = 0., v = 0., largest_v = 0., dissipation = 0., residual = 0.;
+      for (std::size_t i = 0; i < all.size(); ++i)
+      {
+        EXPECT_EQ(some[i].time, all[i].time);
+        u           = std::max(u, std::abs(some[i].displacement - all[i].displacement));
+        v           = std::max(v, largest_difference(some[i].velocity, all[i].velocity));
+        largest_v   = std::max(largest_v, largest_difference(all[i].velocity, std::vector<double>(21, 0.)));
+        dissipation = std::max(dissipation, std::abs(some[i].dissipation - all[i].dissipation));
+        residual    = std::max(residual, some[i].residual);
+      }
+      const double A = std::stod(accuracy);
+      fmt::print("{} {} steps ({}): displacement {:.2e} of {:.2e} wanted, velocity {:.2e} of {:.2g}, dissipation "
+                 "{:.2e} of {:.2g}, ledger {:.1e}\n",
+                 accuracy,
+                 coarse.result.time.steps,
+                 exact.result.time.steps,
+                 u,
+                 coarse.choice.wanted_error,
+                 v,
+                 largest_v,
+                 dissipation,
+                 exact.result.energy_balance->dissipation,
+                 residual);
+      EXPECT_LT(u, coarse.choice.wanted_error);
+      EXPECT_LT(v, 200. * A * largest_v); // one order less
+      EXPECT_LT(dissipation, 10. * A * exact.result.energy_balance->dissipation);
+      EXPECT_LT(u, last);
+      last = u;
+    }
+  }
+}
+
+/// A row on each side of each jump of the active stress, with its two values and the same stretch.
+TEST(Pictures, ShowBothSidesOfAJump)
+{
+  const Course robots = run(robot(1.));
+  unsigned int n      = 0;
+  for (std::size_t i = 1; i < robots.seen.size(); ++i)
+  {
+    const Seen &before = robots.seen[i - 1], &after = robots.seen[i];
+    if (!before.pictures.is_row || !after.pictures.is_row || after.time != before.time)
+      continue;
+    ++n;
+    EXPECT_LT(largest_difference(before.stretch, after.stretch), 1e-12);
+    EXPECT_NEAR(largest_difference(before.active_stress, after.active_stress), 0.3, 1e-12);
+  }
+  EXPECT_EQ(n, 7u); // one segment switches on when another switches off, every eighth of a stride
+}
+
+/// The body is seen until it inverts, however long the step in which it does.
+TEST(Pictures, AreThereUntilTheBodyInverts)
+{
+  Settings settings = test::wave(1., 0.9);
+  settings.emplace_back("Output/Number of snapshots", "200");
+  const Course lost = run(settings);
+  ASSERT_EQ(lost.result.time.status, Status::inverted);
+  ASSERT_TRUE(lost.result.inversion);
+  const Seen &last = lost.pictures().back();
+  EXPECT_LT(last.time, lost.result.inversion->t);
+  EXPECT_GT(last.time, lost.result.inversion->t - 1. / 200. - 1e-12);
+  EXPECT_GT(*std::min_element(last.stretch.begin(), last.stretch.end()), 0.);
+}
+
+/// What has no collocation polynomial ends its steps at snapshots.
+TEST(Pictures, OfOtherIntegratorsAreEndsOfSteps)
+{
+  Settings settings = test::wave(-1., 0.2);
+  settings.emplace_back("Time/Integrator", "bdf");
+  for (const Seen &one : run(settings).pictures())
+    EXPECT_TRUE(one.is_step_end);
+}
+
+/// Long gaits have rows of the last strides only, short ones of the whole run; jumps are rows.
+TEST(Pictures, TimesFollowTheStride)
+{
+  const auto times = [](const Settings &settings) {
+    const Parameters parameters = test::parameters_with(settings);
+    return picture_times(parameters.output, parameters.create_scene());
+  };
+  EXPECT_EQ(times(test::wave(-1., 0.1)).n_snapshots(), 64u);
+  EXPECT_EQ(times(test::wave(-1., 0.1, 1., 5.)).n_snapshots(), 320u);
+  const PictureTimes all = times(test::wave(-1., 0.1, 1., 100.));
+  EXPECT_EQ(all.n_snapshots(), 640u);
+  for (const PictureTimes::Time &time : all.all())
+    EXPECT_TRUE(!time.kinds.is_row || time.value > 80.) << time.value;
+  EXPECT_TRUE(times({{"Output/Number of snapshots", "0"}}).is_empty());
+  for (std::size_t i = 1; i < all.all().size(); ++i)
+    EXPECT_LT(all.all()[i - 1].value, all.all()[i].value);
+}
