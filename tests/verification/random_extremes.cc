@@ -4,8 +4,9 @@
 // compared with a second method: the position form of degree 8 through PETSc with far smaller steps, on a mesh of its
 // own, by radau 9 and, for its error, by radau 5 on a coarser mesh; where that does not decide, the other form or finer
 // automatic numerics, which report their errors. An answer is wrong if the difference is larger than both errors
-// together. Prints coverage, failures by reason, and the cost (processor time of choice, run and error, without files).
-// The exit code is 1 if an answer is wrong, or, of 500 scenes or more, if 0.5 % fail, one takes 5 s, or 5 % take 20 ms.
+// together ("the bound only" if it is still as small as Accuracy asks for). Prints coverage, failures by reason, and
+// the cost (processor time of choice, run and error, without files). The exit code is 1 if an answer is wrong, or, of
+// 500 scenes or more, if 0.5 % fail, one takes 5 s, or 5 % take 20 ms.
 //
 //     random_extremes FIRST-LAST OUT.csv [seconds that a run of the second method may take]
 //     random_extremes NUMBER --prm           prints the parameter file of one scene
@@ -19,7 +20,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <chrono>
 #include <cstdio>
 #include <ctime>
 #include <map>
@@ -30,11 +30,14 @@ namespace
   using test::Settings;
 
   /// The promise.
-  constexpr double largest_failed_share = 0.005, usual_seconds = 0.02, usual_share = 0.95, most_seconds = 5.;
+  constexpr double largest_failed_share = 0.005, largest_missed_share = 0.01, usual_seconds = 0.02, usual_share = 0.95,
+                   most_seconds = 5.;
   /// Of fewer scenes only wrong answers count: shares and times say little.
   constexpr unsigned int fewest = 500;
   /// No answer is waited for longer [s].
-  constexpr double own_limit = 20.;
+  constexpr double own_limit = 12.;
+  /// The error is larger than the reported one, but not larger than Accuracy asks for.
+  constexpr const char *bound_only = "WRONG: the bound only";
   /// Inversions inside agree if they are within this part of the duration.
   constexpr double same_time = 0.03;
 
@@ -74,12 +77,25 @@ namespace
     return result.time.reason.empty() ? word_of(result.time.status) : result.time.reason;
   }
 
+  double
+  processor_seconds()
+  {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  }
+
+  /// What `crawler run` computes, stopped if it takes longer than @p limit [s].
   Task
   computed(const Parameters &parameters, const double limit)
   {
     Task task;
-    task.parameters = parameters;
-    compute_all({&task, 1}, limit, []() { return false; });
+    task.parameters    = parameters;
+    const double begin = processor_seconds();
+    compute_all({&task, 1}, std::numeric_limits<double>::infinity(), [&]() {
+      task.is_out_of_time = processor_seconds() - begin > limit;
+      return task.is_out_of_time;
+    });
+    task.seconds        = processor_seconds() - begin;
+    task.is_out_of_time = task.seconds > limit;
     return task;
   }
 
@@ -130,13 +146,13 @@ namespace
       time.cycle_stop     = CycleStopMode::off;
       time.engine         = Engine::petsc;
       time.max_steps      = 1000000;
-      const auto begin    = std::chrono::steady_clock::now();
+      const double begin  = processor_seconds();
       bool in_time        = true;
       SimulationResult result;
       try
       {
         result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {}, {}, [&]() {
-          return in_time = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < limit;
+          return in_time = processor_seconds() - begin < limit;
         });
       }
       catch (const std::exception &error)
@@ -175,7 +191,7 @@ namespace
       return std::abs(own.inversion - *second.inversion) <= std::max(own.bound, same_time * T) ? "agree"
                                                                                                : "WRONG: inverts then";
     if (std::abs(own.displacement - second.displacement) > own.bound + second.error)
-      return "WRONG";
+      return std::abs(own.displacement - second.displacement) > wanted + second.error ? "WRONG" : bound_only;
     return second.error <= std::max(own.bound, wanted) ? "agree" : "undecided";
   }
 
@@ -203,13 +219,19 @@ namespace
       return by_program(p, name, limit);
     };
     const bool is_stretch = result.formulation == Formulation::stretch;
+    // The stretches of stiff bodies differ by round-off only.
+    const Body &body    = parameters.body;
+    const double T      = parameters.time.end_time;
+    const bool is_stiff = body.elastic_modulus * T > 1e3 * body.friction_coefficient * body.length * body.length;
     for (unsigned int method = 0; method < 3; ++method)
     {
+      if (method == 1 && is_stiff && !is_stretch)
+        continue;
       const Judgement second =
         method == 0   ? by_position_form(other, row.scene, own, limit)
         : method == 1 ? in_form(is_stretch ? FormulationEntry::position : FormulationEntry::stretch, 0.5, "other form")
                       : in_form(is_stretch ? FormulationEntry::stretch : FormulationEntry::position, 0.1, "finer");
-      const std::string verdict = compare(row, second, wanted, parameters.time.end_time);
+      const std::string verdict = compare(row, second, wanted, T);
       if (verdict == "undecided")
       {
         if (row.second.by.empty())
@@ -234,9 +256,8 @@ namespace
     {
       const Parameters parameters    = test::parameters_with(row.scene.settings);
       row.accuracy                   = parameters.accuracy;
-      const std::clock_t begin       = std::clock();
       const Task own                 = computed(parameters, own_limit);
-      row.seconds                    = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+      row.seconds                    = own.seconds;
       const SimulationResult &result = own.computed.result;
       if (own.error)
         std::rethrow_exception(own.error);
@@ -262,16 +283,26 @@ namespace
   std::string
   parameter_file(const Settings &settings)
   {
-    std::string text = "set Model = nonlinear\n";
+    std::map<std::string, std::string> sections;
     for (const auto &[entry, value] : settings)
     {
-      std::string rest = entry, before, after;
-      for (std::size_t i; (i = rest.find('/')) != std::string::npos; rest = rest.substr(i + 1))
+      const std::size_t slash = entry.rfind('/');
+      const bool is_top       = slash == std::string::npos;
+      sections[is_top ? "" : entry.substr(0, slash)] +=
+        fmt::format("set {} = {}\n", is_top ? entry : entry.substr(slash + 1), value);
+    }
+    std::string text;
+    for (const auto &[path, lines] : sections)
+    {
+      std::string ends, names = path;
+      while (!names.empty())
       {
-        before += "subsection " + rest.substr(0, i) + "\n";
-        after += "end\n";
+        const std::size_t slash = std::min(names.find('/'), names.size());
+        text += "subsection " + names.substr(0, slash) + "\n";
+        ends += "end\n";
+        names.erase(0, slash + 1);
       }
-      text += before + "set " + rest + " = " + value + "\n" + after;
+      text += lines + ends;
     }
     return text;
   }
@@ -319,7 +350,7 @@ namespace
 
   struct Count
   {
-    unsigned int n = 0, finished = 0, inverted = 0, failed = 0, compared = 0, wrong = 0;
+    unsigned int n = 0, finished = 0, inverted = 0, failed = 0, compared = 0, missed = 0, wrong = 0;
     std::vector<double> seconds;
 
     void
@@ -330,19 +361,21 @@ namespace
       inverted += r.status == "inverted";
       failed += r.has_failed();
       compared += r.verdict != "not compared";
-      wrong += r.verdict.starts_with("WRONG") || r.verdict == "disputed";
+      missed += r.verdict == bound_only;
+      wrong += (r.verdict.starts_with("WRONG") && r.verdict != bound_only) || r.verdict == "disputed";
       seconds.push_back(r.seconds);
     }
     void
     print(const std::string &name) const
     {
-      fmt::print("{:22} {:6} {:8} {:8} {:6} {:8} {:5} {:8.3f} {:8.3f} {:8.3f}\n",
+      fmt::print("{:22} {:6} {:8} {:8} {:6} {:8} {:6} {:5} {:8.3f} {:8.3f} {:8.3f}\n",
                  name,
                  n,
                  finished,
                  inverted,
                  failed,
                  compared,
+                 missed,
                  wrong,
                  quantile(seconds, 0.5),
                  quantile(seconds, usual_share),
@@ -381,13 +414,14 @@ namespace
       else
         ++refusals[row.refused];
     const Count all = counts["all"];
-    fmt::print("{:22} {:>6} {:>8} {:>8} {:>6} {:>8} {:>5} {:>8} {:>8} {:>8}\n",
+    fmt::print("{:22} {:>6} {:>8} {:>8} {:>6} {:>8} {:>6} {:>5} {:>8} {:>8} {:>8}\n",
                "",
                "scenes",
                "finished",
                "inverted",
                "failed",
                "compared",
+               "missed",
                "wrong",
                "median s",
                "95 %",
@@ -406,9 +440,10 @@ namespace
     fmt::print("\nthe slowest:\n");
     for (const Row &row : slow)
       print(row);
-    const bool kept = all.wrong == 0 && (all.n < fewest || (all.failed < largest_failed_share * all.n &&
-                                                            quantile(all.seconds, usual_share) < usual_seconds &&
-                                                            quantile(all.seconds, 1.) < most_seconds));
+    const bool kept = all.wrong == 0 && all.missed <= std::max(1., largest_missed_share * all.n) &&
+                      (all.n < fewest || (all.failed < largest_failed_share * all.n &&
+                                          quantile(all.seconds, usual_share) < usual_seconds &&
+                                          quantile(all.seconds, 1.) < most_seconds));
     fmt::print("{}\n",
                !kept            ? "THE PROMISE IS NOT KEPT"
                : all.n < fewest ? "no answer is wrong"
