@@ -195,7 +195,8 @@ namespace
     return second.error <= std::max(own.bound, wanted) ? "agree" : "undecided";
   }
 
-  /// By one method after the other until one decides; a wrong answer must be so by each that does.
+  /// By one method after the other until one decides; what says that a wrong answer is right must know it four times as
+  /// well, and then nothing is decided.
   void
   judge(Row &row, const Parameters &parameters, const Task &own, const double limit)
   {
@@ -232,15 +233,14 @@ namespace
         : method == 1 ? in_form(is_stretch ? FormulationEntry::position : FormulationEntry::stretch, 0.5, "other form")
                       : in_form(is_stretch ? FormulationEntry::stretch : FormulationEntry::position, 0.1, "finer");
       const std::string verdict = compare(row, second, wanted, T);
-      if (verdict == "undecided")
-      {
-        if (row.second.by.empty())
-          row.second = second;
-        continue;
-      }
-      if (row.verdict == "not compared" || verdict == "agree")
+      const bool was_wrong      = row.verdict.starts_with("WRONG");
+      if (row.second.by.empty())
         row.second = second;
-      row.verdict = row.verdict.starts_with("WRONG") && verdict == "agree" ? "disputed" : verdict;
+      if (verdict == "undecided" || (was_wrong && verdict == "agree" && !(second.error <= row.bound / 4.)))
+        continue;
+      if (!was_wrong || verdict == "agree")
+        row.second = second;
+      row.verdict = was_wrong && verdict == "agree" ? "disputed" : verdict;
       if (verdict == "agree")
         return;
     }
@@ -360,9 +360,9 @@ namespace
       finished += r.status == "finished";
       inverted += r.status == "inverted";
       failed += r.has_failed();
-      compared += r.verdict != "not compared";
+      compared += r.verdict != "not compared" && r.verdict != "disputed";
       missed += r.verdict == bound_only;
-      wrong += (r.verdict.starts_with("WRONG") && r.verdict != bound_only) || r.verdict == "disputed";
+      wrong += r.verdict.starts_with("WRONG") && r.verdict != bound_only;
       seconds.push_back(r.seconds);
     }
     void
