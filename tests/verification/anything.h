@@ -93,8 +93,10 @@ namespace crawler::test
              : r.chance(0.3) ? 2.
                              : r.uniform(-2., 5.);
       // All but few strides.
-      T        = (r.chance(0.7) ? r.log_uniform(0.3, 4.) : r.log_uniform(4., 1000.)) / nu;
-      steep_   = 1. + 0.1 * std::abs(1. - p);
+      T      = (r.chance(0.7) ? r.log_uniform(0.3, 4.) : r.log_uniform(4., 1000.)) / nu;
+      steep_ = 1. + 0.1 * std::abs(1. - p);
+      if (Random(90000 + number_).chance(0.25)) // a bold one, which may invert
+        steep_ = 0.5;
       accuracy = r.log_uniform(1e-9, 1e-2);
       set("Accuracy", accuracy);
       set("Body/Length", L);
@@ -596,7 +598,7 @@ namespace crawler::test
     void
     draw_initial_stretch()
     {
-      set("Body/Initial stretch", factor("s", "stretch", "Body/Profile interpolation", 0.5 / steep_));
+      set("Body/Initial stretch", factor("s", "stretch", "Body/Profile interpolation", 0.5 / std::max(1., steep_)));
     }
     void
     draw_laws()
