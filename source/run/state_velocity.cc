@@ -89,7 +89,7 @@ namespace crawler
     position_->solve_with_jacobian(F, correction);
     for (std::size_t i = 0; i < v.size(); ++i)
       v[i] = known->y_dot[i] - correction[i] / size;
-    if (is_plain)
+    if (assembler_.scene().ground.direction.ratio == 1.)
     {
       // K does not act on rigid motions, so round-off of the solution, 1e-16 h K/M of it, can hide in one; friction
       // that is linear in the velocity says how large that is.

@@ -234,3 +234,16 @@ TEST(HardAnswers, NumericsOfTheUser)
     }
   EXPECT_EQ(n_missed, 0u) << "of " << n;
 }
+
+/// Tiny cells at the ends, for an initial stretch that does not fit them, turn round-off into a rigid motion: friction
+/// that is linear in the velocity balances all the same.
+TEST(HardAnswers, FrictionBalancesAfterAnInitialStretch)
+{
+  const SimulationResult result = answer_to({{"Body/Anchoring exponent", "21"},
+                                             {"Body/Elastic modulus", "10"},
+                                             {"Body/Initial stretch", "1+0.057*tanh(10*(s-0.6))"},
+                                             {"Active stress/Generator", "none"},
+                                             {"Accuracy", "4e-3"}});
+  EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
+  EXPECT_LT(result.net_friction, 1e-12);
+}

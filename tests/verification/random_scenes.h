@@ -15,7 +15,8 @@ namespace crawler::test
     std::string kind; ///< wave, waves, pulse, standing or sudden; or start, switch or segments
     Settings settings;
     std::vector<double> in_space, in_time; ///< breaks of the active stress
-    double step = 0.;                      ///< no step of a reference may be longer, if this is not 0 [time]
+    double step   = 0.;                    ///< no step of a reference may be longer, if this is not 0 [time]
+    double length = 0.;                    ///< of the smallest features of the active stress, if known [length]
 
     /// The scene of @p parameters, which have the settings.
     Scene

@@ -109,7 +109,7 @@ namespace crawler::accuracy_rule
   } // namespace form
 
   // Families of meshes of the stretch form (mesh_family.cc; doc/numerics.md, "Stretch form"). Measured by
-  // tests/verification/two_forms.cc and tests/benchmark/stretch_table.cc.
+  // tests/verification/random_extremes.cc and tests/benchmark/stretch_table.cc.
   namespace family
   {
     /// Cells of the finest mesh, and for a smaller Accuracy than accurate.

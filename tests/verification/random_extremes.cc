@@ -1,0 +1,508 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Random scenes of everything that generators, laws and ranges allow (anything.h). The answer of `crawler run` is
+// compared with a second method: the position form of degree 8 through PETSc with far smaller steps, on a mesh of its
+// own, by radau 9 and, for its error, by radau 5 on a coarser mesh; where that does not decide, the other form or finer
+// automatic numerics, which report their errors. An answer is wrong if the difference is larger than both errors
+// together ("the bound only" if it is still as small as Accuracy asks for). Prints coverage, failures by reason, and
+// the cost (processor time of choice, run and error, without files). The exit code is 1 if an answer is wrong, or, of
+// 500 scenes or more, if 0.5 % fail, one takes 5 s, or 5 % take 20 ms.
+//
+//     random_extremes FIRST-LAST OUT.csv [seconds that a run of the second method may take]
+//     random_extremes NUMBER --prm           prints the parameter file of one scene
+#include "anything.h"
+
+#include <crawler/accuracy/answer.h>
+#include <crawler/accuracy/graded_choice.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/run/self_check.h>
+#include <crawler/studies/core/compute.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cstdio>
+#include <ctime>
+#include <map>
+
+namespace
+{
+  using namespace crawler;
+  using test::Settings;
+
+  /// The promise.
+  constexpr double largest_failed_share = 0.005, largest_missed_share = 0.01, usual_seconds = 0.02, usual_share = 0.95,
+                   most_seconds = 5.;
+  /// Of fewer scenes only wrong answers count: shares and times say little.
+  constexpr unsigned int fewest = 500;
+  /// No answer is waited for longer [s].
+  constexpr double own_limit = 12.;
+  /// The error is larger than the reported one, but not larger than Accuracy asks for.
+  constexpr const char *bound_only = "WRONG: the bound only";
+  /// Inversions inside agree if they are within this part of the duration.
+  constexpr double same_time = 0.03;
+
+  /// What one method says.
+  struct Judgement
+  {
+    std::string by;
+    double displacement = NAN, error = NAN;
+    std::optional<double> inversion; ///< its time
+    std::string problem;             ///< why it says nothing
+
+    bool
+    is_answer() const
+    {
+      return inversion || (std::isfinite(displacement) && std::isfinite(error));
+    }
+  };
+
+  struct Row
+  {
+    unsigned int number = 0;
+    test::RandomScene scene;
+    std::string status, reason, form, verdict, refused;
+    double accuracy = 0., seconds = 0., displacement = NAN, bound = NAN, inversion = NAN;
+    Judgement second;
+
+    bool
+    has_failed() const
+    {
+      return refused.empty() && status != "finished" && status != "inverted";
+    }
+  };
+
+  std::string
+  reason_of(const SimulationResult &result)
+  {
+    return result.time.reason.empty() ? word_of(result.time.status) : result.time.reason;
+  }
+
+  double
+  processor_seconds()
+  {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  }
+
+  /// What `crawler run` computes, stopped if it takes longer than @p limit [s].
+  Task
+  computed(const Parameters &parameters, const double limit)
+  {
+    Task task;
+    task.parameters    = parameters;
+    const double begin = processor_seconds();
+    compute_all({&task, 1}, std::numeric_limits<double>::infinity(), [&]() {
+      task.is_out_of_time = processor_seconds() - begin > limit;
+      return task.is_out_of_time;
+    });
+    task.seconds        = processor_seconds() - begin;
+    task.is_out_of_time = task.seconds > limit;
+    return task;
+  }
+
+  /// The answer of the program for another form or accuracy.
+  Judgement
+  by_program(const Parameters &parameters, const std::string &name, const double limit)
+  {
+    const Task task                = computed(parameters, limit);
+    const SimulationResult &result = task.computed.result;
+    if (task.error || task.is_out_of_time)
+      return {name, NAN, NAN, {}, task.error ? "refused" : "time_limit"};
+    if (result.inversion)
+      return {name, NAN, NAN, result.inversion->t, ""};
+    if ((result.time.status != Status::finished && result.time.reason != accuracy_not_met) || !result.error)
+      return {name, NAN, NAN, {}, reason_of(result)};
+    return {name, result.displacement, result.error->total, {}, ""};
+  }
+
+  /// Numerics that owe nothing to the choice of the program but a number of cells that is not smaller.
+  Judgement
+  by_position_form(const Parameters &parameters, const test::RandomScene &random, const Task &own, const double limit)
+  {
+    const Scene scene      = parameters.create_scene();
+    const Numerics &chosen = own.computed.choice.numerics;
+    const double L = scene.body.length, T = scene.end_time;
+    const bool own_is_position = chosen.n_cells > 0 && chosen.formulation == Formulation::position;
+    const bool is_graded = chosen.grading.levels > 0 || !own_is_position || parameters.body.initial_stretch != "1";
+    double cells         = std::max(12., 2. * L / random.length);
+    if (own_is_position)
+      cells = std::max(cells, 1.3 * chosen.n_cells * chosen.degree / 8.);
+    const double size = std::max(std::abs(own.computed.result.displacement), 1e-4 * own.computed.result.largest_u);
+    const double wanted =
+      std::max(parameters.accuracy * (size > 0. && std::isfinite(size) ? size : 1e-3 * L), 1e-13 * L);
+    Judgement judgement;
+    judgement.by   = "position";
+    const auto run = [&](const std::string &integrator, const double tolerance, const double part) {
+      Numerics n;
+      n.degree  = 8;
+      n.n_cells = static_cast<unsigned int>(part * std::min(cells, 400.));
+      if (is_graded)
+        n.grading = {11, part < 1. ? 0.4 : 0.35};
+      n.tolerance         = std::max(tolerance * wanted, 3e-15 * L);
+      n.integrator        = integrator;
+      n.step_limits       = {{0., random.step}};
+      n.initial_step      = is_graded ? first_step_on_graded_mesh(scene, n) : 1e-3 * std::min(random.step, T / 8.);
+      TimeParameters time = parameters.time;
+      time.integrator     = integrator;
+      time.cycle_stop     = CycleStopMode::off;
+      time.engine         = Engine::petsc;
+      time.max_steps      = 1000000;
+      const double begin  = processor_seconds();
+      bool in_time        = true;
+      SimulationResult result;
+      try
+      {
+        result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {}, {}, [&]() {
+          return in_time = processor_seconds() - begin < limit;
+        });
+      }
+      catch (const std::exception &error)
+      {
+        judgement.problem = error.what();
+        return result;
+      }
+      if (result.time.status != Status::finished)
+        judgement.problem = in_time ? reason_of(result) : "time_limit";
+      return result;
+    };
+    const SimulationResult fine = run("radau 9", 1e-3, 1.);
+    if (fine.time.status != Status::finished && !fine.inversion)
+      return judgement;
+    const SimulationResult coarse = run("radau 5", 3e-2, 0.8);
+    if (fine.inversion && coarse.inversion && std::abs(fine.inversion->t - coarse.inversion->t) < same_time * T)
+      judgement.inversion = fine.inversion->t;
+    else if (fine.time.status == Status::finished && coarse.time.status == Status::finished)
+    {
+      judgement.displacement = fine.displacement;
+      judgement.error        = std::abs(fine.displacement - coarse.displacement) + 1e-14 * L;
+    }
+    return judgement;
+  }
+
+  /// agree, WRONG, or undecided.
+  std::string
+  compare(const Row &own, const Judgement &second, const double wanted, const double T)
+  {
+    const bool inverts = own.status == "inverted";
+    if (!second.is_answer() || (!inverts && !std::isfinite(own.bound)))
+      return "undecided";
+    if (inverts != second.inversion.has_value())
+      return (inverts ? own.inversion : *second.inversion) > (1. - same_time) * T ? "agree" : "WRONG: one inverts";
+    if (inverts)
+      return std::abs(own.inversion - *second.inversion) <= std::max(own.bound, same_time * T) ? "agree"
+                                                                                               : "WRONG: inverts then";
+    if (std::abs(own.displacement - second.displacement) > own.bound + second.error)
+      return std::abs(own.displacement - second.displacement) > wanted + second.error ? "WRONG" : bound_only;
+    return second.error <= std::max(own.bound, wanted) ? "agree" : "undecided";
+  }
+
+  /// By one method after the other until one decides; what says that a wrong answer is right must know it four times as
+  /// well, and then nothing is decided.
+  void
+  judge(Row &row, const Parameters &parameters, const Task &own, const double limit)
+  {
+    const SimulationResult &result = own.computed.result;
+    const bool has_bound           = result.error && std::isfinite(result.error->total);
+    if (row.status == "inverted")
+      row.bound = result.inversion_error.value_or(0.);
+    else if (has_bound)
+      row.bound = result.error->total;
+    row.verdict = "not compared";
+    if (own.is_out_of_time || (row.status != "inverted" && !has_bound))
+      return;
+    const double wanted         = parameters.accuracy * std::abs(result.displacement);
+    Parameters other            = parameters;
+    other.model                 = Model::nonlinear;
+    other.output.energy_balance = false;
+    const auto in_form          = [&](const FormulationEntry form, const double part, const char *name) {
+      Parameters p                 = other;
+      p.discretization.formulation = form;
+      p.accuracy                   = std::clamp(part * parameters.accuracy, 1e-9, 1e-2);
+      return by_program(p, name, limit);
+    };
+    const bool is_stretch = result.formulation == Formulation::stretch;
+    // The stretches of stiff bodies differ by round-off only.
+    const Body &body    = parameters.body;
+    const double T      = parameters.time.end_time;
+    const bool is_stiff = body.elastic_modulus * T > 1e3 * body.friction_coefficient * body.length * body.length;
+    for (unsigned int method = 0; method < 3; ++method)
+    {
+      if (method == 1 && is_stiff && !is_stretch)
+        continue;
+      const Judgement second =
+        method == 0   ? by_position_form(other, row.scene, own, limit)
+        : method == 1 ? in_form(is_stretch ? FormulationEntry::position : FormulationEntry::stretch, 0.5, "other form")
+                      : in_form(is_stretch ? FormulationEntry::stretch : FormulationEntry::position, 0.1, "finer");
+      const std::string verdict = compare(row, second, wanted, T);
+      const bool was_wrong      = row.verdict.starts_with("WRONG");
+      if (row.second.by.empty())
+        row.second = second;
+      if (verdict == "undecided" || (was_wrong && verdict == "agree" && !(second.error <= row.bound / 4.)))
+        continue;
+      if (!was_wrong || verdict == "agree")
+        row.second = second;
+      row.verdict = was_wrong && verdict == "agree" ? "disputed" : verdict;
+      if (verdict == "agree")
+        return;
+    }
+  }
+
+  Row
+  answer(const unsigned int number, const std::filesystem::path &folder, const double limit)
+  {
+    Row row;
+    row.number = number;
+    row.scene  = test::anything(number, folder);
+    try
+    {
+      const Parameters parameters    = test::parameters_with(row.scene.settings);
+      row.accuracy                   = parameters.accuracy;
+      const Task own                 = computed(parameters, own_limit);
+      row.seconds                    = own.seconds;
+      const SimulationResult &result = own.computed.result;
+      if (own.error)
+        std::rethrow_exception(own.error);
+      row.status       = own.is_out_of_time ? "time_limit" : word_of(result.time.status);
+      row.reason       = own.is_out_of_time ? "time_limit" : result.time.reason;
+      row.form         = result.model != Model::nonlinear             ? word_of(result.model)
+                         : result.formulation == Formulation::stretch ? "stretch"
+                                                                      : "position";
+      row.displacement = result.displacement;
+      if (result.inversion)
+        row.inversion = result.inversion->t;
+      judge(row, parameters, own, limit);
+    }
+    catch (const std::exception &error)
+    {
+      row.refused = error.what();
+      row.verdict = "refused";
+    }
+    return row;
+  }
+
+  /// The entries as they stand in a parameter file.
+  std::string
+  parameter_file(const Settings &settings)
+  {
+    std::map<std::string, std::string> sections;
+    for (const auto &[entry, value] : settings)
+    {
+      const std::size_t slash = entry.rfind('/');
+      const bool is_top       = slash == std::string::npos;
+      sections[is_top ? "" : entry.substr(0, slash)] +=
+        fmt::format("set {} = {}\n", is_top ? entry : entry.substr(slash + 1), value);
+    }
+    std::string text;
+    for (const auto &[path, lines] : sections)
+    {
+      std::string ends, names = path;
+      while (!names.empty())
+      {
+        const std::size_t slash = std::min(names.find('/'), names.size());
+        text += "subsection " + names.substr(0, slash) + "\n";
+        ends += "end\n";
+        names.erase(0, slash + 1);
+      }
+      text += lines + ends;
+    }
+    return text;
+  }
+
+  std::string
+  command(const Row &row)
+  {
+    std::string text = "crawler run --overwrite --set Output/Statistics=false --set \"Output/Number of snapshots=0\"";
+    for (const auto &[entry, value] : row.scene.settings)
+      text += fmt::format(" --set \"{}={}\"", entry, value);
+    return text;
+  }
+
+  void
+  print(const Row &r)
+  {
+    fmt::print("scene {} ({}, {}): {} {} in {:.3g} s, D = {:.12g} +- {:.2g}, inverts at {:.6g}; {}\n"
+               "  {}: D = {:.12g} +- {:.2g}, inverts at {:.6g} {}\n  {}\n",
+               r.number,
+               r.scene.kind,
+               r.form,
+               r.status,
+               r.reason,
+               r.seconds,
+               r.displacement,
+               r.bound,
+               r.inversion,
+               r.verdict,
+               r.second.by,
+               r.second.displacement,
+               r.second.error,
+               r.second.inversion.value_or(NAN),
+               r.second.problem,
+               command(r));
+  }
+
+  double
+  quantile(std::vector<double> values, const double part)
+  {
+    if (values.empty())
+      return NAN;
+    std::sort(values.begin(), values.end());
+    return values[std::min(values.size() - 1, static_cast<std::size_t>(part * static_cast<double>(values.size())))];
+  }
+
+  struct Count
+  {
+    unsigned int n = 0, finished = 0, inverted = 0, failed = 0, compared = 0, missed = 0, wrong = 0;
+    std::vector<double> seconds;
+
+    void
+    add(const Row &r)
+    {
+      ++n;
+      finished += r.status == "finished";
+      inverted += r.status == "inverted";
+      failed += r.has_failed();
+      compared += r.verdict != "not compared" && r.verdict != "disputed";
+      missed += r.verdict == bound_only;
+      wrong += r.verdict.starts_with("WRONG") && r.verdict != bound_only;
+      seconds.push_back(r.seconds);
+    }
+    void
+    print(const std::string &name) const
+    {
+      fmt::print("{:22} {:6} {:8} {:8} {:6} {:8} {:6} {:5} {:8.3f} {:8.3f} {:8.3f}\n",
+                 name,
+                 n,
+                 finished,
+                 inverted,
+                 failed,
+                 compared,
+                 missed,
+                 wrong,
+                 quantile(seconds, 0.5),
+                 quantile(seconds, usual_share),
+                 quantile(seconds, 1.));
+    }
+  };
+
+  /// What the scene has besides its generator.
+  std::vector<std::string>
+  groups(const Row &row)
+  {
+    std::vector<std::string> groups = {"all", "generator " + row.scene.kind, "form " + row.form};
+    for (const auto &[entry, value] : row.scene.settings)
+      if (entry.starts_with("Ground/") && !entry.ends_with("interpolation") && !entry.ends_with("velocity") &&
+          !entry.ends_with("Expression"))
+        groups.push_back("law " + entry.substr(7));
+      else if (entry.ends_with("profile") || entry.ends_with("Initial stretch"))
+        groups.push_back("law " + entry.substr(5));
+    groups.push_back(fmt::format("Accuracy 1e{}", static_cast<int>(std::floor(std::log10(row.accuracy)))));
+    return groups;
+  }
+
+  bool
+  print_summary(const std::vector<Row> &rows)
+  {
+    std::map<std::string, Count> counts;
+    std::map<std::string, unsigned int> failures, refusals;
+    for (const Row &row : rows)
+      if (row.refused.empty())
+      {
+        for (const std::string &group : groups(row))
+          counts[group].add(row);
+        if (row.has_failed())
+          ++failures[row.reason];
+      }
+      else
+        ++refusals[row.refused];
+    const Count all = counts["all"];
+    fmt::print("{:22} {:>6} {:>8} {:>8} {:>6} {:>8} {:>6} {:>5} {:>8} {:>8} {:>8}\n",
+               "",
+               "scenes",
+               "finished",
+               "inverted",
+               "failed",
+               "compared",
+               "missed",
+               "wrong",
+               "median s",
+               "95 %",
+               "largest");
+    for (const auto &[name, count] : counts)
+      count.print(name);
+    fmt::print("failures:\n");
+    for (const auto &[reason, n] : failures)
+      fmt::print("  {}: {}\n", reason, n);
+    fmt::print("refused:\n");
+    for (const auto &[reason, n] : refusals)
+      fmt::print("  {}: {}\n", n, reason);
+    std::vector<Row> slow = rows;
+    std::sort(slow.begin(), slow.end(), [](const Row &a, const Row &b) { return a.seconds > b.seconds; });
+    slow.resize(std::min<std::size_t>(slow.size(), 10));
+    fmt::print("\nthe slowest:\n");
+    for (const Row &row : slow)
+      print(row);
+    const bool kept = all.wrong == 0 && all.missed <= std::max(1., largest_missed_share * all.n) &&
+                      (all.n < fewest || (all.failed < largest_failed_share * all.n &&
+                                          quantile(all.seconds, usual_share) < usual_seconds &&
+                                          quantile(all.seconds, 1.) < most_seconds));
+    fmt::print("{}\n",
+               !kept            ? "THE PROMISE IS NOT KEPT"
+               : all.n < fewest ? "no answer is wrong"
+                                : "the promise is kept");
+    return kept;
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  int one            = 1;
+  char *no_options[] = {argv[0], nullptr}, **none = no_options;
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(one, none, 1);
+  unsigned int first = 0, last = 0;
+  const int n_numbers = argc < 3 ? 0 : std::sscanf(argv[1], "%u-%u", &first, &last);
+  if (n_numbers == 1 && std::string(argv[2]) == "--prm")
+  {
+    fmt::print("{}", parameter_file(test::anything(first, ".").settings));
+    return 0;
+  }
+  if (n_numbers < 1)
+  {
+    fmt::print(stderr, "random_extremes FIRST-LAST OUT.csv [seconds]\nrandom_extremes NUMBER --prm\n");
+    return 2;
+  }
+  last                               = std::max(first, last);
+  const double limit                 = argc > 3 ? std::stod(argv[3]) : 3.;
+  const std::filesystem::path folder = std::filesystem::path(argv[2]).replace_extension("");
+  std::ofstream out(argv[2]);
+  out << "number,kind,form,accuracy,status,reason,seconds,displacement,bound,inversion,second,second displacement,"
+         "second error,second inversion,second problem,verdict\n";
+  computed(test::parameters_with({}), own_limit); // what a process does once
+  std::vector<Row> rows;
+  for (unsigned int number = first; number <= last; ++number)
+  {
+    rows.push_back(answer(number, folder, limit));
+    const Row &r = rows.back();
+    out << fmt::format("{},{},{},{:.3g},{},{},{:.4g},{:.15g},{:.3g},{:.10g},{},{:.15g},{:.3g},{:.10g},\"{}\",{}\n",
+                       r.number,
+                       r.scene.kind,
+                       r.form,
+                       r.accuracy,
+                       r.refused.empty() ? r.status : "refused",
+                       r.reason,
+                       r.seconds,
+                       r.displacement,
+                       r.bound,
+                       r.inversion,
+                       r.second.by,
+                       r.second.displacement,
+                       r.second.error,
+                       r.second.inversion.value_or(NAN),
+                       r.second.problem,
+                       r.verdict)
+        << std::flush;
+    if (r.has_failed() || r.verdict.starts_with("WRONG") || r.verdict == "disputed")
+      print(r);
+    std::fflush(stdout);
+  }
+  return print_summary(rows) ? 0 : 1;
+}
