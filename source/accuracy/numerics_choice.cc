@@ -592,13 +592,13 @@ namespace crawler
             !parameters_.discretization.mesh_tolerance)
         {
           choice_.space_share    = space_over_time_ / (1. + space_over_time_);
-          choice_.wanted_error   = accuracy_ * size_;
+          choice_.wanted_error   = std::max(accuracy_ * size_, least_error * L_);
           choice_.promised_error = choice_.wanted_error;
           if (n.mesh.tolerance > 0. && stiffness() < very_soft)
             choice_.least_error = soft_error * size_;
         }
         if (jumps_move_ && predicts)
-          choice_.wanted_error = accuracy_ * size_;
+          choice_.wanted_error = std::max(accuracy_ * size_, least_error * L_);
         const double seconds   = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         const std::string kind = jumps_move_ ? "jumps of the active stress that move, "
                                  : is_graded ? fmt::format("sudden stress, {} level{} of cells smaller by {:g} each, ",
@@ -621,7 +621,7 @@ namespace crawler
                                  n_pilots_,
                                  n.n_cells,
                                  pilot_.time.message);
-        if (std::max(choice_.promised_error, choice_.least_error) > 1.5 * accuracy_ * size_)
+        if (std::max(choice_.promised_error, choice_.least_error) > 1.5 * choice_.wanted_error)
           choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
                                              std::max(choice_.promised_error, choice_.least_error) / size_);
         if (!scales_.sees_all)

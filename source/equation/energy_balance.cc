@@ -65,37 +65,41 @@ namespace crawler
   void
   RateQuadrature::advance(const double time, const Rates &rates)
   {
-    start_ = points_.empty() ? time : points_.front().time;
-    points_.push_front({time, rates});
+    size_              = points_.empty() ? 0. : time - latest_;
+    latest_            = time;
+    const double shift = points_.empty() ? 0. : points_.front().offset;
+    for (Point &point : points_)
+      point.offset -= shift;
+    points_.push_front({size_, rates});
     if (points_.size() > most_points)
       points_.pop_back();
     used_ = std::min<std::size_t>(points_.size(), 2);
     while (used_ >= 2 && used_ < points_.size() &&
-           (points_[used_ - 1].time - points_[used_].time) * largest_growth >= time - start_)
+           (points_[used_ - 1].offset - points_[used_].offset) * largest_growth >= size_)
       ++used_;
   }
 
   void
-  RateQuadrature::begin_step(const double time)
+  RateQuadrature::begin_step(const double size)
   {
     points_.clear();
-    start_ = time;
-    used_  = 0;
+    size_ = size;
+    used_ = 0;
   }
 
   void
-  RateQuadrature::add_stage(const double time, const Rates &rates)
+  RateQuadrature::add_stage(const double place, const Rates &rates)
   {
-    points_.push_front({time, rates});
+    points_.push_front({place * size_, rates});
     ++used_;
   }
 
   Rates
-  RateQuadrature::until(const double time) const
+  RateQuadrature::until(const double place) const
   {
     Rates increment{};
-    const double step = time - start_;
-    if (step == 0.)
+    const double part = place * size_;
+    if (part == 0.)
       return increment;
     // Gauss formula with three points, exact for the polynomial of degree n - 1 <= 5 through the n points.
     const double offset         = 0.5 * std::sqrt(0.6);
@@ -109,11 +113,11 @@ namespace crawler
         double lagrange = weights[g];
         for (std::size_t i = 0; i < used_; ++i)
           if (i != j)
-            lagrange *= (start_ + x[g] * step - points_[i].time) / (points_[j].time - points_[i].time);
+            lagrange *= (x[g] * part - points_[i].offset) / (points_[j].offset - points_[i].offset);
         weight += lagrange;
       }
       for (unsigned int r = 0; r < increment.size(); ++r)
-        increment[r] += step * weight * points_[j].rates[r];
+        increment[r] += part * weight * points_[j].rates[r];
     }
     return increment;
   }

@@ -112,7 +112,8 @@ namespace crawler
     StretchLaws &laws   = *self.cell_laws_;
     const std::size_t n = self.tables_.points.size();
     const long bad      = laws.evaluate(t, {w, n}, {rate, n}, m);
-    if (bad >= 0)
+    // A power law fails only where the stretch is lost.
+    if (bad >= 0 && w[bad] > 0. && !self.scene_.has_power_law())
       self.bad_friction_ = {w[bad], laws.friction[static_cast<std::size_t>(bad)]};
     const bool may_be_empty        = self.scene_.friction_exponent() < 0.;
     const BodyForceAtPoints &force = laws.force();

@@ -35,7 +35,7 @@ namespace crawler
     const double reach = segments.is_last() ? HUGE_VAL : segments.end() - least_time_between_breaks;
     std::vector<double> result;
     for (const double end : step_ends_)
-      if (end > time && end < reach)
+      if (end > time + least_time_between_breaks && end < reach)
         result.push_back(end);
     if (!segments.is_last())
       result.push_back(segments.end());

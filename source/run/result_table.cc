@@ -279,13 +279,20 @@ namespace crawler
     return list;
   }
 
-  std::string
-  error_bound_in_words(const SimulationResult &result, const std::string &key)
+  std::optional<double>
+  error_bound(const SimulationResult &result, const std::string &key)
   {
     const auto &entries = entries_with_errors();
     for (std::size_t i = 0; result.errors && i < entries.size(); ++i)
       if (entries[i]->key == key && std::isfinite(result.errors->values[i]))
-        return fmt::format(" +- {:.2g}", result.errors->values[i]);
-    return "";
+        return result.errors->values[i];
+    return std::nullopt;
+  }
+
+  std::string
+  error_bound_in_words(const SimulationResult &result, const std::string &key)
+  {
+    const auto bound = error_bound(result, key);
+    return bound ? fmt::format(" +- {:.2g}", *bound) : "";
   }
 } // namespace crawler

@@ -79,7 +79,7 @@ namespace crawler
       if (run_->options.energy_balance)
       {
         energies = run_->balance_before;
-        energies.add_works(run_->quadrature.until(t));
+        energies.add_works(run_->quadrature.until(1. - (step.time - t) / step.size));
         energies.elastic_energy = integrals.elastic_energy;
       }
       Step inside = step;
@@ -107,7 +107,7 @@ namespace crawler
     if (run_->options.energy_balance)
     {
       run_->balance_before = *result().energy_balance;
-      run_->quadrature.begin_step(start);
+      run_->quadrature.begin_step(step.size);
       y_inside_.resize(y_.size());
       v_inside_.resize(v_.size());
       for (const double place : {0.1, 0.5, 0.9})

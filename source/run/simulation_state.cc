@@ -172,7 +172,7 @@ namespace crawler
   bool
   Simulation::integrate_step(const Step &step, const Rates &at_end)
   {
-    run_->quadrature.begin_step(step.time - step.size);
+    run_->quadrature.begin_step(step.size);
     if (step.size == 0.)
       return true;
     y_inside_.resize(y_.size());
@@ -189,7 +189,7 @@ namespace crawler
         inside = rates(t, mesh_.assembler->integrals(t, y_inside_, v_inside_), y_inside_, v_inside_);
         look_at_extremes(t, mesh_.assembler->stretch_range(y_inside_));
       }
-      run_->quadrature.add_stage(t, inside);
+      run_->quadrature.add_stage(point.place, inside);
     }
     return true;
   }
@@ -253,7 +253,7 @@ namespace crawler
       run_->quadrature.advance(step.time, now);
     else if (!integrate_step(step, now))
       return false;
-    energies.add_works(run_->quadrature.until(step.time));
+    energies.add_works(run_->quadrature.until(1.));
     energies.elastic_energy = integrals.elastic_energy;
     if (step.number == 0)
       energies.initial_energy = integrals.elastic_energy;

@@ -89,17 +89,39 @@ namespace crawler
     position_->solve_with_jacobian(F, correction);
     for (std::size_t i = 0; i < v.size(); ++i)
       v[i] = known->y_dot[i] - correction[i] / size;
-    if (assembler_.scene().ground.direction.ratio == 1.)
-    {
-      // K does not act on rigid motions, so round-off of the solution, 1e-16 h K/M of it, can hide in one; friction
-      // that is linear in the velocity says how large that is.
-      const std::vector<double> rigid(v.size(), 1.);
-      const double motion = assembler_.integrals(t, y, v).net_friction / assembler_.integrals(t, y, rigid).net_friction;
-      if (std::isfinite(motion))
-        for (double &value : v)
-          value -= motion;
-    }
+    remove_rigid_motion(t, y, v);
     return true;
+  }
+
+  /// K does not act on rigid motions, so round-off of the solution, 1e-16 h K/M of it, can hide in one. The friction
+  /// that is left over says how large that is: at once if it is linear in the velocity, else by secants.
+  void
+  StateVelocity::remove_rigid_motion(const double t, const ConstVector y, const std::span<double> v)
+  {
+    const bool is_linear       = assembler_.scene().ground.direction.ratio == 1.;
+    const unsigned int n_tries = is_linear ? 1 : 4;
+    const std::vector<double> rigid(v.size(), 1.);
+    double friction = assembler_.integrals(t, y, v).net_friction;
+    double slope    = std::abs(assembler_.integrals(t, y, rigid).net_friction);
+    for (unsigned int i = 0; i < n_tries && friction != 0.; ++i)
+    {
+      const double motion = friction / slope;
+      if (!std::isfinite(motion))
+        return;
+      for (double &value : v)
+        value -= motion;
+      if (i + 1 == n_tries)
+        return;
+      const double now = assembler_.integrals(t, y, v).net_friction;
+      if (!(std::abs(now) < std::abs(friction)))
+      {
+        for (double &value : v) // no better
+          value += motion;
+        return;
+      }
+      slope    = (friction - now) / motion;
+      friction = now;
+    }
   }
 
   bool

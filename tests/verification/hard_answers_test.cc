@@ -247,3 +247,53 @@ TEST(HardAnswers, FrictionBalancesAfterAnInitialStretch)
   EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
   EXPECT_LT(result.net_friction, 1e-12);
 }
+
+/// At a = 14 friction underflows where the stretch is lost: that is an inversion, not a friction law that fails.
+TEST(HardAnswers, LostStretchOfASteepPowerLawIsAnInversion)
+{
+  test::Settings settings = test::wave(14., 0.1, 1., 1., 1e-5);
+  settings.emplace_back("Accuracy", "1e-4");
+  const SimulationResult plain = answer_to(settings);
+  settings.emplace_back("Body/Elastic modulus profile", "1+1e-9*s");
+  const SimulationResult general = answer_to(settings);
+  ASSERT_TRUE(plain.inversion && general.inversion) << general.time.reason << ": " << general.time.message;
+  EXPECT_NEAR(general.inversion->t, plain.inversion->t, 2e-2 * plain.inversion->t);
+}
+
+/// The stress has hardly reached the body: no error is wanted to be smaller than round-off of the length.
+TEST(HardAnswers, NothingHasHappenedYet)
+{
+  const SimulationResult result =
+    answer_to({{"Active stress/Generator", "pulse"}, {"Time/End time", "0.05"}, {"Accuracy", "1e-4"}});
+  EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
+  EXPECT_LT(std::abs(result.displacement), 1e-15);
+}
+
+/// The works of a sudden start are less accurate than the displacement, and their balance closes within their bounds.
+TEST(HardAnswers, AStiffBodyMayStartSuddenly)
+{
+  const SimulationResult result = answer_to({{"Body/Elastic modulus", "3e5"},
+                                             {"Active stress/Generator", "travelling wave"},
+                                             {"Active stress/Travelling wave/Amplitude", "3e4"},
+                                             {"Active stress/Travelling wave/Profile", "smoothed square"},
+                                             {"Accuracy", "1e-8"}});
+  EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
+  EXPECT_NEAR(result.displacement, 0.009250788171, 1e-10);
+}
+
+/// Direction-dependent friction is not linear in the velocity, but it balances as well.
+TEST(HardAnswers, FrictionOfTwoDirectionsBalances)
+{
+  const SimulationResult result = answer_to({{"Ground/Backward ratio", "0.4"},
+                                             {"Ground/Switching velocity", "0.05"},
+                                             {"Active stress/Generator", "segments"},
+                                             {"Active stress/Segments/Amplitude", "0.02"},
+                                             {"Active stress/Segments/Switching", "smooth"},
+                                             {"Active stress/Segments/Front width", "0.25"},
+                                             {"Body/Initial stretch", "1+0.05*s"},
+                                             {"Body/Elastic modulus", "100"},
+                                             {"Time/End time", "0.3"},
+                                             {"Accuracy", "1e-7"}});
+  EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
+  EXPECT_LT(result.net_friction, 1e-6);
+}

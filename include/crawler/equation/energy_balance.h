@@ -76,24 +76,24 @@ namespace crawler
     void
     advance(double time, const Rates &rates);
 
-    /// A step from this time; its stages follow.
+    /// A step of this @p size [time]; its stages follow, each at its @p place in the step, in [0, 1].
     void
-    begin_step(double time);
+    begin_step(double size);
     void
-    add_stage(double time, const Rates &rates);
+    add_stage(double place, const Rates &rates);
 
-    /// The increments of the integrals from the start of the step to @p time, within it or at its end.
+    /// The increments of the integrals from the start of the step to this @p place in it, 1 at its end.
     Rates
-    until(double time) const;
+    until(double place) const;
 
   private:
     struct Point
     {
-      double time;
+      double offset; ///< from the start of the step [time]: steps may be as short as round-off of the time
       Rates rates;
     };
     std::deque<Point> points_; ///< newest first
-    double start_     = 0.;    ///< of the step
-    std::size_t used_ = 0;     ///< points of the polynomial
+    double size_ = 0., latest_ = 0.;
+    std::size_t used_ = 0; ///< points of the polynomial
   };
 } // namespace crawler

@@ -3,6 +3,7 @@
 
 #include <crawler/run/simulation_result.h>
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -48,7 +49,11 @@ namespace crawler
   const std::vector<const ResultEntry *> &
   entries_with_errors();
 
-  /// " +- 1e-6", if the error bound of the number under this key is known.
+  /// That of the number under this key, if it is known.
+  std::optional<double>
+  error_bound(const SimulationResult &result, const std::string &key);
+
+  /// The same as " +- 1e-6", or nothing.
   std::string
   error_bound_in_words(const SimulationResult &result, const std::string &key);
 } // namespace crawler

@@ -45,6 +45,9 @@ namespace crawler
     compute_within(double t, double end, double size, ConstVector y, std::span<double> v);
 
   private:
+    void
+    remove_rigid_motion(double t, ConstVector y, std::span<double> v);
+
     struct Rate
     {
       double time = -1.;

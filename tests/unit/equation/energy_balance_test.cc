@@ -22,14 +22,14 @@ namespace
     for (double small = 1e-6 / n; small < 0.4 / n; small *= 1.5)
     {
       quadrature.advance(small, {{f(small), 0., 0., 0., 0.}});
-      sum += quadrature.until(small)[0];
+      sum += quadrature.until(1.)[0];
     }
     for (unsigned int i = 1; i <= n; ++i)
     {
       const double x = static_cast<double>(i) / n, t = x + 0.05 * std::sin(6. * x) * (1. - x);
       {
         quadrature.advance(t, {{f(t), 0., 0., 0., 0.}});
-        sum += quadrature.until(t)[0];
+        sum += quadrature.until(1.)[0];
       }
     }
     const double exact = (std::exp(1.) * (std::sin(5.) - 5. * std::cos(5.)) + 5.) / 26.;
@@ -50,11 +50,28 @@ TEST(RateQuadrature, IsExactForPolynomialsOfDegreeFive)
   {
     const double t = times[i];
     fresh.advance(t, {{6. * std::pow(t, 5), 0., 0., 0., 0.}});
-    const double increment = fresh.until(t)[0];
+    const double increment = fresh.until(1.)[0];
     if (i >= 5)
       sum += increment - (std::pow(t, 6) - std::pow(times[i - 1], 6));
   }
   EXPECT_NEAR(sum, 0., 1e-11);
+}
+
+/// The stages of a step as short as round-off of the time, and integrals to places within a step.
+TEST(RateQuadrature, IntegratesBetweenStages)
+{
+  RateQuadrature quadrature;
+  for (const double size : {0.3, 1e-16})
+  {
+    quadrature.begin_step(size);
+    for (const double place : {0.2, 0.6, 1.})
+      quadrature.add_stage(place, {{3. * place * place, 1., 0., 0., 0.}});
+    for (const double place : {0., 0.25, 1.})
+    {
+      EXPECT_NEAR(quadrature.until(place)[0], size * std::pow(place, 3), 1e-14 * size);
+      EXPECT_NEAR(quadrature.until(place)[1], size * place, 1e-14 * size);
+    }
+  }
 }
 
 TEST(RateQuadrature, ConvergesWithOrderSix)
