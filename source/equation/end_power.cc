@@ -9,8 +9,21 @@ namespace crawler
     : assembler_(assembler)
     , stress_(assembler.scene().active_stress->at({0., assembler.scene().body.length}))
   {
-    if (!assembler.has_known_ends())
-      sampler_ = GeneralSampler::at_ends(assembler);
+    if (assembler.has_known_ends())
+      return;
+    sampler_  = GeneralSampler::at_ends(assembler);
+    feedback_ = assembler.scene().active_stress->feedback()->at({0., assembler.scene().body.length});
+  }
+
+  double
+  EndPower::of_ends(const Ends &ends)
+  {
+    std::array<double, 2> m{};
+    if (feedback_)
+      feedback_->values(ends.t, {ends.stretch, ends.rate, {}, {}}, {m, {}, {}, {}});
+    else
+      stress_->values(ends.t, m);
+    return m[1] * ends.velocity[1] - m[0] * ends.velocity[0];
   }
 
   double

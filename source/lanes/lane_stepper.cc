@@ -76,8 +76,7 @@ namespace crawler
       outcome_.step_size = initial_step;
       return outcome_;
     }
-    const LaneHost host = {
-      this, next, stress, accepted, done, /*look_inside=*/false, laws, cell_laws_ ? cell_laws : nullptr};
+    const LaneHost host = {this, next, stress, accepted, done, looks_inside_, laws, cell_laws_ ? cell_laws : nullptr};
     single_engine().run(setup_, host, memory_.get());
     return outcome_;
   }

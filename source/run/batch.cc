@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/lanes/host_laws.h>
 #include <crawler/run/batch.h>
+#include <crawler/run/lane_extremes.h>
 #include <crawler/run/lane_sampler.h>
 #include <crawler/run/recorder.h>
 #include <crawler/time/integrators.h>
@@ -69,6 +70,7 @@ namespace crawler
         , keep_going_(keep_going)
         , results_(results)
         , sampler_(tables_.setup, Recorder::n_pieces)
+        , extremes_(tables_)
       {
       }
 
@@ -270,15 +272,16 @@ namespace crawler
       look_at_step(Lane &lane, const LaneStep &step)
       {
         const double from = lane.segments.inside(step.time - step.size), to = lane.segments.inside(step.time);
-        if (!lane.watch->is_calm(from * lane.units.time, to * lane.units.time) || end_inverts(lane))
+        if (!step.is_settled || !lane.watch->is_calm(from * lane.units.time, to * lane.units.time) || end_inverts(lane))
           return false;
         const unsigned int n = tableau_.n;
         for (unsigned int i = options_.energy_balance ? 0 : n - 1; i < n; ++i)
         {
-          const double t = i + 1 < n ? step.time - (1. - tableau_.c[i]) * step.size : step.time;
           if (!(step.stages[i].min_stretch > small_stretch))
             return false;
-          look_at_extremes(lane, step, i, t);
+          const auto [smallest, largest] =
+            extremes_.look(step, i, lane.recorder->result.min_stretch.value, lane.recorder->result.max_stretch.value);
+          lane.recorder->see_stretch(smallest, largest);
           if (options_.energy_balance)
             add_rates(lane, step, i);
         }
@@ -298,56 +301,6 @@ namespace crawler
           lane.n_stress_calls = 0;
         }
         return true;
-      }
-
-      /// The same as Assembler::stretch_range and Simulation::look_at_extremes: if a sample may be a new extreme, the
-      /// parabola through its neighbours in the cell comes closer.
-      void
-      look_at_extremes(Lane &lane, const LaneStep &step, const unsigned int i, const double t) const
-      {
-        const LaneStage &stage = step.stages[i];
-        const auto sharpened =
-          [&](const double value, const unsigned int sample, const bool is_beyond, const double record) {
-            Extreme now{value, tables_.place_of_sample(sample), t};
-            if (is_beyond || std::abs(value - record) < sharpening * std::abs(record - 1.))
-              sharpen(step, i, sample, now);
-            return now;
-          };
-        const double least = lane.recorder->result.min_stretch.value, most = lane.recorder->result.max_stretch.value;
-        lane.recorder->see_stretch(sharpened(stage.min_stretch, stage.min_sample, stage.min_stretch < least, least),
-                                   sharpened(stage.max_stretch, stage.max_sample, stage.max_stretch > most, most));
-      }
-
-      void
-      sharpen(const LaneStep &step, const unsigned int i, const unsigned int sample, Extreme &now) const
-      {
-        const LaneSetup &setup   = tables_.setup;
-        const unsigned int place = sample % setup.n_samples, cell = sample / setup.n_samples;
-        if (place == 0 || place + 1 == setup.n_samples)
-          return;
-        const auto stretch_at = [&](const unsigned int p) {
-          const std::size_t n = setup.degree + 1, unknowns = setup.n_cells * setup.degree + 1;
-          double sum = 0.;
-          for (unsigned int j = 0; j < n; ++j)
-          {
-            const std::size_t d = cell * setup.degree + j;
-            const double u = step.y[d * step.stride] - step.z[((setup.n_stages - 1) * unknowns + d) * step.stride] +
-                             step.z[(i * unknowns + d) * step.stride];
-            sum += setup.sample_derivatives[p * n + j] * u;
-          }
-          return 1. + sum / setup.sizes[cell];
-        };
-        const auto [s, value] = parabola_vertex(tables_.place_of_sample(sample - 1),
-                                                stretch_at(place - 1),
-                                                now.s,
-                                                now.value,
-                                                tables_.place_of_sample(sample + 1),
-                                                stretch_at(place + 1));
-        if (value > 0. && s > tables_.place_of_sample(sample - 1) && s < tables_.place_of_sample(sample + 1))
-        {
-          now.s     = s;
-          now.value = value;
-        }
       }
 
       void
@@ -403,6 +356,7 @@ namespace crawler
       const std::function<bool()> &keep_going_;
       Results &results_;
       LaneSampler sampler_;
+      const LaneExtremes extremes_;
       std::vector<Lane> lanes_;
       std::size_t next_ = 0;
       bool interrupted_ = false;

@@ -203,6 +203,8 @@ namespace crawler
     }
     else if (!run_->options.energy_balance && observers.empty())
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, y_, v_).displacement;
+    if (run_->lanes_look && run_->accepted.is_there)
+      result.displacement = mesh_.assembler->integrals(run_->accepted.time, run_->accepted.y, v_).displacement;
     const double before = now();
     for (const auto &observer : observers)
       observer->end();
@@ -247,8 +249,11 @@ namespace crawler
   Simulation::integrate_part(const std::vector<std::unique_ptr<Observer>> &observers,
                              const std::function<bool()> &keep_going)
   {
-    bool resumed                      = run_->accepted.is_there;
-    const std::vector<double> ends    = run_->output_times.of_segment(segments_, run_->accepted.time);
+    bool resumed                   = run_->accepted.is_there;
+    const std::vector<double> ends = run_->output_times.of_segment(segments_, run_->accepted.time);
+    run_->lanes_look               = may_take_looks_of_lanes();
+    if (integrators_.lanes)
+      integrators_.lanes->look_inside(run_->lanes_look);
     integrators_.present->stage_rates = nullptr;
     if (mesh_.velocity->keeps_rates() || run_->output_times.next() < HUGE_VAL)
       integrators_.present->stage_rates = [this](const double t, const std::span<const double> y_dot) {

@@ -29,7 +29,8 @@ namespace crawler
   {
     if (stress_failed())
       return false;
-    StretchRange &stretch = run_->stretch = mesh_.assembler->stretch_range(y);
+    const bool lanes_look = takes_looks_of_lanes(step);
+    StretchRange &stretch = run_->stretch = lanes_look ? stretch_of_lanes() : mesh_.assembler->stretch_range(y);
     if (!std::isfinite(stretch.min.value) || !std::isfinite(stretch.max.value))
     {
       run_->diagnosis = {Status::failed,
@@ -50,13 +51,19 @@ namespace crawler
     }
     // Pictures need the velocity at output times only, the energy balance and adaptive meshes always.
     const bool is_shown = run_->has_observers && run_->output_times.next() <= step.time + least_time_between_breaks;
-    if ((run_->options.energy_balance || is_adaptive() || is_shown) && !finds_velocity(step.time, step.size, y, v_))
+    if ((run_->options.energy_balance || is_adaptive() || is_shown) && !lanes_look &&
+        !finds_velocity(step.time, step.size, y, v_))
       return false;
     if (is_adaptive() && !mesh_is_good(step, y))
       return false;
-    if (!compute_integrals(step, y))
-      return false;
-    look_at_extremes(step.time, stretch);
+    if (lanes_look)
+      take_looks_of_lanes(step);
+    else
+    {
+      if (!compute_integrals(step, y))
+        return false;
+      look_at_extremes(step.time, stretch);
+    }
     if (run_->options.resolution != ResolutionWish::none)
       look_at_resolution(step, y);
     if (leads_nowhere(step))

@@ -10,6 +10,8 @@ namespace crawler
   {
     /// Cells that come to rest faster than this, relative to the duration, turn round-off of the state into a velocity.
     constexpr double fast_relaxation = 1e-9;
+    /// Of cells whose velocities the fused engine is not asked for.
+    constexpr double fastest_relaxation = 1e-12;
 
     /// Of the highest mode of the smallest cell; of an adaptive mesh the largest cell tells whether the body is stiff.
     double
@@ -34,6 +36,12 @@ namespace crawler
     , relaxation_time_(relaxation_time(assembler, is_adaptive))
     , rates_(n_stages + 1)
   {
+  }
+
+  bool
+  StateVelocity::is_known_to_lanes() const
+  {
+    return !is_linear_ && relaxation_time_ > fastest_relaxation;
   }
 
   bool

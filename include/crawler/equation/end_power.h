@@ -3,6 +3,7 @@
 
 #include <crawler/equation/general_sampler.h>
 
+#include <array>
 #include <memory>
 
 namespace crawler
@@ -17,9 +18,20 @@ namespace crawler
     double
     operator()(double t, std::span<const double> y, std::span<const double> v);
 
+    /// The same if what it depends on is known: stretch and its rate, which only a local feedback sees, and velocity at
+    /// s = 0 and L.
+    struct Ends
+    {
+      double t;
+      std::array<double, 2> stretch, rate, velocity;
+    };
+    double
+    of_ends(const Ends &ends);
+
   private:
     const Assembler &assembler_;
     const std::unique_ptr<ActiveStressAtPoints> stress_; ///< of a body without feedback, at both ends
     std::unique_ptr<GeneralSampler> sampler_;            ///< of the others
+    std::unique_ptr<FeedbackAtPoints> feedback_;         ///< the same, at both ends
   };
 } // namespace crawler

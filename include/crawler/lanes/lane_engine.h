@@ -118,6 +118,7 @@ namespace crawler
     const double *z;         ///< [stages][unknowns] displacements in the stages relative to the start of the step
     const LaneStage *stages; ///< [n_stages]; the last one alone is filled unless `look_inside` is set
     double elastic_energy;   ///< at the end, if rates are asked for
+    bool is_settled;         ///< was the velocity at the end found? If rates are asked for
   };
 
   struct LaneOutcome

@@ -31,6 +31,24 @@ namespace crawler
     void
     interpolate(double time, Vector y) override;
 
+    /// Is what the stages of the position form give wanted (LaneStage)? For the next solve().
+    void
+    look_inside(const bool wanted)
+    {
+      looks_inside_ = wanted;
+    }
+    /// Within the monitor: the step that has just been accepted.
+    const LaneStep &
+    step() const
+    {
+      return step_;
+    }
+    const LaneTables &
+    tables() const
+    {
+      return tables_;
+    }
+
     /// Stretch and friction where a friction law was not positive, of the last solve(), if one was not.
     const std::optional<std::pair<double, double>> &
     bad_friction() const
@@ -67,7 +85,7 @@ namespace crawler
     // The state of one solve().
     std::optional<std::pair<double, double>> bad_friction_;
     LaneJob job_;
-    bool started_           = false;
+    bool started_ = false, looks_inside_ = false;
     std::vector<double> *y_ = nullptr;
     LaneStep step_;
     TimeOutcome outcome_;

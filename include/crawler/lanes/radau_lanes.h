@@ -324,7 +324,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       Lane &lane                = lanes_[l];
       const bool is_output_time = lane.arrive();
-      if (!(stages_[l][s - 1].min_stretch > lane.job.least_stretch && get_lane(unsettled_, l) <= 1e3))
+      if (!(stages_[l][s - 1].min_stretch > lane.job.least_stretch))
       {
         end(l, LaneOutcome::gave_up);
         return;
@@ -344,7 +344,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                 reinterpret_cast<const double *>(states_.y) + l,
                                 reinterpret_cast<const double *>(states_.old_z) + l,
                                 stages_[l],
-                                get_lane(elastic_energy_, l)});
+                                get_lane(elastic_energy_, l),
+                                get_lane(unsettled_, l) <= 1e3});
       if (lane.output_time == lane.job.n_output_times)
         end(l, LaneOutcome::finished);
       else if (!go_on || lane.steps >= lane.job.most_steps)

@@ -126,6 +126,7 @@ namespace crawler
       Accepted accepted;
       StretchRange stretch{}; ///< of the state that is looked at
       CellIntegrals integrals{};
+      bool lanes_look = false;      ///< what they see in the stages of steps is taken
       RateQuadrature quadrature;    ///< of works
       EnergyBalance balance_before; ///< at the start of the latest step
       Resolution largest{};         ///< over time, if looked at
@@ -191,6 +192,14 @@ namespace crawler
     rates(double t, const CellIntegrals &sums, std::span<const double> y, std::span<const double> v);
     bool
     integrate_step(const Step &step, const Rates &at_end);
+    bool
+    may_take_looks_of_lanes() const;
+    bool
+    takes_looks_of_lanes(const Step &step) const;
+    StretchRange
+    stretch_of_lanes() const;
+    void
+    take_looks_of_lanes(const Step &step);
     void
     keep_history(const Step &step, std::span<const double> y);
     void

@@ -24,6 +24,10 @@ namespace crawler
     StateVelocity(
       Assembler &assembler, PositionForm *position, bool is_linear, bool is_adaptive, unsigned int n_stages);
 
+    /// May rates and velocities of the fused engine be used, which has no such cure?
+    bool
+    is_known_to_lanes() const;
+
     /// Is see_rate() to be told of the rates?
     bool
     keeps_rates() const;

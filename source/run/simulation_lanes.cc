@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The part of Simulation that takes what the fused engine itself has seen in the stages of a step, instead of looking
+// at all of them once more.
+#include <crawler/run/lane_extremes.h>
+#include <crawler/run/simulation.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  /// May it? Observers see more than the engine does, and round-off of the state counts in very stiff or small cells.
+  bool
+  Simulation::may_take_looks_of_lanes() const
+  {
+    return run_->options.energy_balance && !run_->has_observers && mesh_.position != nullptr &&
+           integrators_.present == integrators_.lanes.get() && mesh_.velocity->is_known_to_lanes() &&
+           run_->options.resolution != ResolutionWish::all;
+  }
+
+  /// Of this step, where no stretch is nearly lost?
+  bool
+  Simulation::takes_looks_of_lanes(const Step &step) const
+  {
+    if (!run_->lanes_look || step.size == 0.)
+      return false;
+    const LaneStep &seen = integrators_.lanes->step();
+    const std::span<const LaneStage> stages(seen.stages, integrators_.lanes->tables().setup.n_stages);
+    return seen.is_settled &&
+           std::ranges::all_of(stages, [](const LaneStage &stage) { return stage.min_stretch > small_stretch; });
+  }
+
+  /// At the end of the step, among the samples.
+  StretchRange
+  Simulation::stretch_of_lanes() const
+  {
+    const LaneStepper &lanes = *integrators_.lanes;
+    const LaneStage &end     = lanes.step().stages[lanes.tables().setup.n_stages - 1];
+    return {{end.min_stretch, lanes.tables().place_of_sample(end.min_sample)},
+            {end.max_stretch, lanes.tables().place_of_sample(end.max_sample)}};
+  }
+
+  /// Stretch and works of an accepted step.
+  void
+  Simulation::take_looks_of_lanes(const Step &step)
+  {
+    const LaneStepper &lanes = *integrators_.lanes;
+    const LaneStep &seen     = lanes.step();
+    const LaneSetup &setup   = lanes.tables().setup;
+    const LaneExtremes extremes(lanes.tables());
+    if (!mesh_.end_power)
+      mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
+    run_->quadrature.begin_step(step.size);
+    for (unsigned int i = 0; i < setup.n_stages; ++i)
+    {
+      const LaneStage &stage         = seen.stages[i];
+      const SimulationResult &record = result();
+      const auto [smallest, largest] = extremes.look(seen, i, record.min_stretch.value, record.max_stretch.value);
+      run_->recorder.see_stretch(smallest, largest);
+      const double t = step.time - (1. - setup.c[i]) * step.size;
+      run_->quadrature.add_stage(setup.c[i],
+                                 {{stage.stress_power,
+                                   stage.dissipation,
+                                   stage.positive_power,
+                                   stage.absolute_power,
+                                   mesh_.end_power->of_ends({t,
+                                                             {{stage.end_stretch[0], stage.end_stretch[1]}},
+                                                             {{stage.end_rate[0], stage.end_rate[1]}},
+                                                             {{stage.left_velocity, stage.right_velocity}}})}});
+    }
+    EnergyBalance &energies = *result().energy_balance;
+    energies.add_works(run_->quadrature.until(1.));
+    energies.elastic_energy = seen.elastic_energy;
+    const LaneStage &end    = seen.stages[setup.n_stages - 1];
+    run_->recorder.see_friction(end.abs_friction, std::abs(end.net_friction));
+  }
+} // namespace crawler
