@@ -34,7 +34,7 @@ commands = json.load(open(sys.argv[1]))
 main = next(c for c in commands if c["file"].endswith("source/main.cc"))
 headers = sys.argv[2] + "/headers.cc"
 commands.append(main | {"file": headers, "command": main["command"].replace(main["file"], headers)})
-lanes = [c for c in commands if c["file"].endswith("lanes.cc")]
+lanes = [c for c in commands if c["file"].endswith("/lanes.cc")]
 commands = [c for c in commands if c not in lanes[1:]]  # of one instruction set
 for c in commands:
     c["command"] = " ".join(w for w in c["command"].split() if w not in ("-fcx-limited-range", "-funroll-all-loops"))

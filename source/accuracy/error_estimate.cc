@@ -46,10 +46,7 @@ namespace crawler
       else
       {
         const double factor = promised ? more_cells : more_cells_without_promise;
-        // A piece between breaks may have one cell only, and must get another.
-        const auto n_breaks   = static_cast<unsigned int>(scene.breaks_in_space().size());
-        const unsigned int by = n_breaks > 0 ? n_breaks + 1 : 0;
-        n.n_cells             = std::max(static_cast<unsigned int>(std::ceil(factor * n.n_cells)), n.n_cells + by);
+        n.n_cells           = finer_n_cells(factor, n.n_cells, scene.breaks_in_space().size(), n.grading);
       }
       n.tolerance *= !promised                       ? finer_tolerance_without_promise
                      : integrator == best_integrator ? finer_tolerance
@@ -128,7 +125,7 @@ namespace crawler
     if (n.mesh.tolerance > 0.)
       n.mesh.tolerance *= refined_tolerance;
     else
-      n.n_cells = static_cast<unsigned int>(std::ceil(refined_cells * n.n_cells));
+      n.n_cells = finer_n_cells(refined_cells, n.n_cells, scene.breaks_in_space().size(), n.grading);
     n.tolerance *= refined_tolerance;
     if (n.grading.levels > 0)
       n = with_finer_grading(scene, n);
@@ -198,6 +195,11 @@ namespace crawler
       if (finer_mesh != nullptr)
       {
         space = factor * std::abs(finer_mesh->displacement - result.displacement);
+        // A kink that moves with the place where the velocity changes its sign makes errors that change their sign from
+        // mesh to mesh: a difference may be small by chance, and so may be that which ended the search.
+        if (scene.ground.direction.ratio != 1. && choice.numerics.grading.levels > 0 &&
+            std::isfinite(choice.promised_error))
+          space = std::max(*space, accuracy_rule::graded::part * choice.promised_error);
         total = *space + factor * std::abs(finer->displacement - finer_mesh->displacement);
       }
       else

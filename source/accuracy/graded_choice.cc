@@ -44,6 +44,7 @@ namespace crawler
       find()
       {
         now_.grading = {task_.accuracy < accurate ? first_levels_if_accurate : first_levels, coarse_ratio};
+        now_.n_cells = std::max(now_.n_cells, least_cells(n_pieces_ - 1, now_.grading)); // fewer are the same mesh
         if (task_.choose_tolerance)
           now_.tolerance = 1e-3 * task_.scale;
         // Too coarse a mesh or step can lose a stretch that is not lost.
@@ -78,9 +79,7 @@ namespace crawler
         const auto one_more_level   = [](Numerics &n) { ++n.grading.levels; };
         const auto with_finer_ratio = [](Numerics &n) { n.grading = finer(n.grading); };
         const auto with_more_cells  = [this](Numerics &n) {
-          // One more in each piece between breaks, at least: else the mesh may stay as it is.
-          n.n_cells = std::max(static_cast<unsigned int>(std::ceil(more_cells * n.n_cells)),
-                               n.n_cells + (n_pieces_ > 1 ? n_pieces_ : 0));
+          n.n_cells = finer_n_cells(more_cells, n.n_cells, n_pieces_ - 1, n.grading);
         };
         const auto is_ratio_fine = [this]() {
           return task_.accuracy >= coarse_ratio_is_enough || now_.grading.ratio > fine_ratio * 0.99;

@@ -8,17 +8,17 @@ namespace crawler
 {
   namespace
   {
-    /// Cells for pieces of these lengths: one each; the others one by one to the piece whose cells are the largest.
+    /// Cells for pieces of these lengths: @p least each; the others one by one to the piece whose cells are the largest.
     std::vector<unsigned int>
-    shared_out(const unsigned int n_cells, const std::vector<double> &lengths)
+    shared_out(const unsigned int n_cells, const std::vector<double> &lengths, const unsigned int least)
     {
-      std::vector<unsigned int> cells(lengths.size(), 1);
-      unsigned int left = n_cells - std::min(n_cells, static_cast<unsigned int>(lengths.size()));
+      std::vector<unsigned int> cells(lengths.size(), least);
+      unsigned int left = n_cells - std::min(n_cells, least * static_cast<unsigned int>(lengths.size()));
       // Most of them at once.
       const unsigned int many = left;
       for (std::size_t i = 0; i < lengths.size(); ++i)
       {
-        const auto share      = static_cast<unsigned int>(std::max(0., std::floor(lengths[i] * many) - 1.));
+        const auto share      = static_cast<unsigned int>(std::max(0., std::floor(lengths[i] * many) - least));
         const unsigned int of = std::min(share, left);
         cells[i] += of;
         left -= of;
@@ -35,6 +35,20 @@ namespace crawler
     }
   } // namespace
 
+  unsigned int
+  least_cells(const std::size_t n_breaks, const Grading &grading)
+  {
+    return static_cast<unsigned int>(n_breaks + 1) * (grading.levels > 0 ? 2 : 1);
+  }
+
+  unsigned int
+  finer_n_cells(const double factor, const unsigned int n_cells, const std::size_t n_breaks, const Grading &grading)
+  {
+    const unsigned int present = std::max(n_cells, least_cells(n_breaks, grading));
+    const unsigned int by      = n_breaks > 0 ? static_cast<unsigned int>(n_breaks) + 1 : 0;
+    return std::max(static_cast<unsigned int>(std::ceil(factor * present)), present + by);
+  }
+
   std::vector<double>
   cell_ends(const unsigned int n_cells, const std::vector<double> &breaks, const Grading &grading)
   {
@@ -46,25 +60,18 @@ namespace crawler
     std::vector<double> lengths;
     for (std::size_t i = 0; i + 1 < pieces.size(); ++i)
       lengths.push_back(pieces[i + 1] - pieces[i]);
-    const std::vector<unsigned int> cells = shared_out(n_cells, lengths);
+    const std::vector<unsigned int> cells = shared_out(n_cells, lengths, least_cells(0, grading));
 
     std::vector<double> ends = {0.};
     for (std::size_t i = 0; i < lengths.size(); ++i)
     {
       const double left = pieces[i], right = pieces[i + 1], size = lengths[i] / cells[i];
-      const double graded = cells[i] == 1 ? 0.5 * size : size; // of each end
-      if (grading.levels > 0)
-      {
-        for (unsigned int level = grading.levels; level > 0; --level)
-          ends.push_back(left + graded * std::pow(grading.ratio, level));
-        if (cells[i] == 1)
-          ends.push_back(left + graded);
-      }
+      for (unsigned int level = grading.levels; level > 0; --level)
+        ends.push_back(left + size * std::pow(grading.ratio, level));
       for (unsigned int c = 1; c < cells[i]; ++c)
         ends.push_back(left + c * size);
-      if (grading.levels > 0)
-        for (unsigned int level = 1; level <= grading.levels; ++level)
-          ends.push_back(right - graded * std::pow(grading.ratio, level));
+      for (unsigned int level = 1; level <= grading.levels; ++level)
+        ends.push_back(right - size * std::pow(grading.ratio, level));
       ends.push_back(right);
     }
     return ends;

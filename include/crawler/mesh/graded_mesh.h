@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace crawler
@@ -14,13 +15,22 @@ namespace crawler
 
   /**
    * The ends of the cells of a body of length 1, from 0 to 1; empty if all cells have one size, 1/n_cells. @p breaks
-   * (ascending, in (0, 1)) are ends of cells. The pieces between them get at least one cell each, and cells of one size
-   * in proportion to their lengths as far as whole numbers allow: @p n_cells altogether, or one for each piece if that
-   * is more. Then the cell at each end of a piece is divided at ratio^levels, ..., ratio^2, ratio of its size, seen
-   * from that end (half of it, if it is the only cell of its piece).
+   * (ascending, in (0, 1)) are ends of cells. The pieces between them get at least one cell each, two if they are
+   * graded, and cells of one size in proportion to their lengths as far as whole numbers allow: @p n_cells altogether,
+   * or least_cells() if that is more. Then the cell at each end of a piece is divided at ratio^levels, ..., ratio^2,
+   * ratio of its size, seen from that end.
    */
   std::vector<double>
   cell_ends(unsigned int n_cells, const std::vector<double> &breaks, const Grading &grading);
+
+  /// For fewer cells than this, before they are graded, cell_ends() gives the same mesh.
+  unsigned int
+  least_cells(std::size_t n_breaks, const Grading &grading);
+
+  /// A number of cells, before they are graded, for a mesh that is certainly finer than that of @p n_cells: @p factor
+  /// times as many, or one more for each piece between breaks if that is more.
+  unsigned int
+  finer_n_cells(double factor, unsigned int n_cells, std::size_t n_breaks, const Grading &grading);
 
   /**
    * The ends of cells of a body of length 1 that are images of cells of one size: half of them are in layers at the

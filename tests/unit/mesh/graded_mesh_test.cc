@@ -63,6 +63,20 @@ TEST(GradedMesh, GoesDownGeometricallyToEndsAndBreaks)
   EXPECT_EQ(cell_ends(1, {}, {1, 0.5}), (std::vector<double>{0., 0.25, 0.5, 0.75, 1.}));
 }
 
+/// A mesh that is asked to be finer is: also where pieces have few cells, which are halved to be graded.
+TEST(GradedMesh, HasMoreCellsWhereMoreAreAskedFor)
+{
+  for (const auto &breaks : {std::vector<double>{0.18, 0.46, 0.73}, {0.25, 0.5, 0.75}, {0.9, 0.95}, {0.5}})
+    for (const Grading &grading : {Grading{}, Grading{2, 0.25}, Grading{4, 0.4}})
+      for (const unsigned int n : {1u, 4u, 5u, 7u, 8u, 11u, 30u})
+        for (const double factor : {1.1, 1.5, 2.})
+        {
+          const auto before = cell_ends(n, breaks, grading);
+          const auto after  = cell_ends(finer_n_cells(factor, n, breaks.size(), grading), breaks, grading);
+          EXPECT_GT(after.size(), before.size()) << n;
+        }
+}
+
 /// Cells of any size can be divided and joined; after all is joined the first mesh is there again.
 TEST(GradedMesh, CanBeAdapted)
 {
