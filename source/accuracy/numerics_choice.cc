@@ -61,7 +61,7 @@ namespace crawler
         , T_(scene.end_time)
         , L_(scene.body.length)
         , accuracy_(parameters.accuracy)
-        , scale_(scales_.displacement > 0. ? scales_.displacement : L_)
+        , scale_(scales_.displacement > 0. ? std::max(scales_.displacement, least_size()) : L_)
         , adaptive_steps_(parameters.time.step_control == StepControl::adaptive)
       {
         Numerics &n              = choice_.numerics;
@@ -198,6 +198,8 @@ namespace crawler
         const bool finished = pilot_.time.status == Status::finished;
         size_               = std::max(finished ? std::abs(pilot_.displacement) : 0.,
                          (choice_.numerics.linear ? 1. : displacement_floor) * pilot_.largest_u);
+        if (size_ > 0.)
+          size_ = std::max(size_, least_size());
       }
 
       /// k T/(gamma L^2)
@@ -556,6 +558,13 @@ namespace crawler
         return method.order > 0 ? method.order : parameters_.time.order;
       }
 
+      /// Of a displacement whose wanted error is round-off.
+      double
+      least_size() const
+      {
+        return least_error * L_ / accuracy_;
+      }
+
       /// How much larger than by the rule the tolerance may be.
       double
       superconvergence() const
@@ -592,13 +601,13 @@ namespace crawler
             !parameters_.discretization.mesh_tolerance)
         {
           choice_.space_share    = space_over_time_ / (1. + space_over_time_);
-          choice_.wanted_error   = std::max(accuracy_ * size_, least_error * L_);
+          choice_.wanted_error   = accuracy_ * size_;
           choice_.promised_error = choice_.wanted_error;
           if (n.mesh.tolerance > 0. && stiffness() < very_soft)
             choice_.least_error = soft_error * size_;
         }
         if (jumps_move_ && predicts)
-          choice_.wanted_error = std::max(accuracy_ * size_, least_error * L_);
+          choice_.wanted_error = accuracy_ * size_;
         const double seconds   = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         const std::string kind = jumps_move_ ? "jumps of the active stress that move, "
                                  : is_graded ? fmt::format("sudden stress, {} level{} of cells smaller by {:g} each, ",

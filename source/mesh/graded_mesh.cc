@@ -8,7 +8,8 @@ namespace crawler
 {
   namespace
   {
-    /// Cells for pieces of these lengths: @p least each; the others one by one to the piece whose cells are the largest.
+    /// Cells for pieces of these lengths: @p least each; the others one by one to the piece whose cells are the
+    /// largest.
     std::vector<unsigned int>
     shared_out(const unsigned int n_cells, const std::vector<double> &lengths, const unsigned int least)
     {

@@ -627,13 +627,13 @@ TEST_F(Commands, SignalsStopARunInOrder)
   write_text(folder.path / "scene.prm",
              in_section("Discretization", "set Number of cells = 50") +
                in_section("Time", "set Step control = fixed\nset Initial step = 1e-6") +
-               in_section("Output", "set Number of snapshots = 100000"));
+               in_section("Output", "set Number of snapshots = 1000"));
   for (const int number : {SIGTERM, SIGINT})
   {
     fs::remove_all(results);
     Program program(folder.path, {"run", "scene.prm", "--output", "results"});
     ASSERT_TRUE(
-      Program::wait_until([&]() { return fs::exists(results / "solution" / "000900.vtu") || !program.running(); }));
+      Program::wait_until([&]() { return fs::exists(results / "solution" / "000009.vtu") || !program.running(); }));
     program.signal(number);
     EXPECT_EQ(program.exit_code(), 5) << program.err();
     EXPECT_TRUE(program.err().starts_with("crawler: signal: stopped by a signal at t = ")) << program.err();

@@ -56,7 +56,7 @@ namespace crawler::accuracy_rule
     /// More breaks would make graded meshes too large, or too many starts where nothing happens suddenly.
     inline constexpr std::size_t most_graded_places = 200, most_gentle_breaks = 200;
     /// No error is wanted to be smaller than this part of the length: round-off.
-    inline constexpr double least_error = 5e-15;
+    inline constexpr double least_error = 3e-15;
     /// The displacement within a step of radau 5 or 9 has an error of up to half the tolerance: with pictures this is
     /// at most so many times the wanted error, and never smaller than this part of the length.
     inline constexpr double tolerance_of_pictures = 2., least_tolerance_of_pictures = 1e-13;
