@@ -203,7 +203,7 @@ namespace crawler
     }
     else if (!run_->options.energy_balance && observers.empty())
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, y_, v_).displacement;
-    if (run_->lanes_look && run_->accepted.is_there)
+    if (run_->lanes_look && !run_->has_observers && run_->accepted.is_there)
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, run_->accepted.y, v_).displacement;
     const double before = now();
     for (const auto &observer : observers)

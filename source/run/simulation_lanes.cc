@@ -10,11 +10,11 @@
 
 namespace crawler
 {
-  /// May it? Observers see more than the engine does, and round-off of the state counts in very stiff or small cells.
+  /// May it? Not where round-off of the state counts, in very stiff or small cells.
   bool
   Simulation::may_take_looks_of_lanes() const
   {
-    return run_->options.energy_balance && !run_->has_observers && mesh_.position != nullptr &&
+    return run_->options.energy_balance && mesh_.position != nullptr &&
            integrators_.present == integrators_.lanes.get() && mesh_.velocity->is_known_to_lanes() &&
            run_->options.resolution != ResolutionWish::all;
   }
@@ -41,38 +41,39 @@ namespace crawler
             {end.max_stretch, lanes.tables().place_of_sample(end.max_sample)}};
   }
 
-  /// Stretch and works of an accepted step.
+  /// Stretch and rates of stage @p i of an accepted step.
+  void
+  Simulation::take_stage_of_lanes(const Step &step, const unsigned int i)
+  {
+    const LaneStepper &lanes       = *integrators_.lanes;
+    const LaneStage &stage         = lanes.step().stages[i];
+    const double place             = lanes.tables().setup.c[i];
+    const SimulationResult &record = result();
+    const auto [smallest, largest] =
+      LaneExtremes(lanes.tables()).look(lanes.step(), i, record.min_stretch.value, record.max_stretch.value);
+    run_->recorder.see_stretch(smallest, largest);
+    if (!mesh_.end_power)
+      mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
+    const double end_power = mesh_.end_power->of_ends({step.time - (1. - place) * step.size,
+                                                       {{stage.end_stretch[0], stage.end_stretch[1]}},
+                                                       {{stage.end_rate[0], stage.end_rate[1]}},
+                                                       {{stage.left_velocity, stage.right_velocity}}});
+    run_->quadrature.add_stage(
+      place, {{stage.stress_power, stage.dissipation, stage.positive_power, stage.absolute_power, end_power}});
+  }
+
+  /// Stretch and works of an accepted step, if nobody wants to see more of its end.
   void
   Simulation::take_looks_of_lanes(const Step &step)
   {
-    const LaneStepper &lanes = *integrators_.lanes;
-    const LaneStep &seen     = lanes.step();
-    const LaneSetup &setup   = lanes.tables().setup;
-    const LaneExtremes extremes(lanes.tables());
-    if (!mesh_.end_power)
-      mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
+    const LaneStep &seen    = integrators_.lanes->step();
+    const unsigned int last = integrators_.lanes->tables().setup.n_stages - 1;
     run_->quadrature.begin_step(step.size);
-    for (unsigned int i = 0; i < setup.n_stages; ++i)
-    {
-      const LaneStage &stage         = seen.stages[i];
-      const SimulationResult &record = result();
-      const auto [smallest, largest] = extremes.look(seen, i, record.min_stretch.value, record.max_stretch.value);
-      run_->recorder.see_stretch(smallest, largest);
-      const double t = step.time - (1. - setup.c[i]) * step.size;
-      run_->quadrature.add_stage(setup.c[i],
-                                 {{stage.stress_power,
-                                   stage.dissipation,
-                                   stage.positive_power,
-                                   stage.absolute_power,
-                                   mesh_.end_power->of_ends({t,
-                                                             {{stage.end_stretch[0], stage.end_stretch[1]}},
-                                                             {{stage.end_rate[0], stage.end_rate[1]}},
-                                                             {{stage.left_velocity, stage.right_velocity}}})}});
-    }
+    for (unsigned int i = 0; i <= last; ++i)
+      take_stage_of_lanes(step, i);
     EnergyBalance &energies = *result().energy_balance;
     energies.add_works(run_->quadrature.until(1.));
     energies.elastic_energy = seen.elastic_energy;
-    const LaneStage &end    = seen.stages[setup.n_stages - 1];
-    run_->recorder.see_friction(end.abs_friction, std::abs(end.net_friction));
+    run_->recorder.see_friction(seen.stages[last].abs_friction, std::abs(seen.stages[last].net_friction));
   }
 } // namespace crawler

@@ -29,7 +29,7 @@ namespace crawler
   {
     if (stress_failed())
       return false;
-    const bool lanes_look = takes_looks_of_lanes(step);
+    const bool lanes_look = !run_->has_observers && takes_looks_of_lanes(step);
     StretchRange &stretch = run_->stretch = lanes_look ? stretch_of_lanes() : mesh_.assembler->stretch_range(y);
     if (!std::isfinite(stretch.min.value) || !std::isfinite(stretch.max.value))
     {
@@ -182,6 +182,14 @@ namespace crawler
     run_->quadrature.begin_step(step.size);
     if (step.size == 0.)
       return true;
+    if (takes_looks_of_lanes(step))
+    {
+      const auto last = static_cast<unsigned int>(integrators_.present->quadrature().size()) - 1;
+      for (unsigned int i = 0; i < last; ++i)
+        take_stage_of_lanes(step, i);
+      run_->quadrature.add_stage(1., at_end);
+      return true;
+    }
     y_inside_.resize(y_.size());
     v_inside_.resize(v_.size());
     for (const auto &point : integrators_.present->quadrature())

@@ -199,6 +199,8 @@ namespace crawler
     StretchRange
     stretch_of_lanes() const;
     void
+    take_stage_of_lanes(const Step &step, unsigned int i);
+    void
     take_looks_of_lanes(const Step &step);
     void
     keep_history(const Step &step, std::span<const double> y);
