@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/equation/general_position_form.h>
 #include <crawler/run/simulation.h>
@@ -8,21 +9,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
 namespace crawler
 {
-  namespace
-  {
-    double
-    now()
-    {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    }
-  } // namespace
-
   Numerics
   in_units(Numerics numerics, const Units &units)
   {
@@ -131,7 +122,7 @@ namespace crawler
                   const std::vector<std::unique_ptr<Observer>> &observers,
                   const std::function<bool()> &keep_going)
   {
-    const double start = now();
+    const double start = seconds_now();
     if (options.cycles && !pictures.is_empty())
       throw std::logic_error("a run that may end when its cycles repeat has no pictures");
     segments_.restart();
@@ -170,7 +161,7 @@ namespace crawler
       result().time = failure_while_integrating();
     }
     SimulationResult answer = finish(observers);
-    answer.solve_seconds    = now() - start - answer.output_seconds;
+    answer.solve_seconds    = seconds_now() - start - answer.output_seconds;
     return answer;
   }
 
@@ -205,10 +196,10 @@ namespace crawler
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, y_, v_).displacement;
     if (run_->lanes_look && !run_->has_observers && run_->accepted.is_there)
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, run_->accepted.y, v_).displacement;
-    const double before = now();
+    const double before = seconds_now();
     for (const auto &observer : observers)
       observer->end();
-    result.output_seconds += now() - before;
+    result.output_seconds += seconds_now() - before;
     if (mesh_.assembler) // not if the next mesh could not be built
       result.mesh = {discretization().n_cells(),
                      discretization().element().degree,

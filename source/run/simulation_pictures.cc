@@ -2,21 +2,12 @@
 //
 // The part of Simulation that shows its states to the observers: the ends of steps, and pictures at the times that were
 // asked for, which the integrator's dense output knows as well (doc/numerics.md, "Pictures").
+#include <crawler/base/clock.h>
 #include <crawler/run/simulation.h>
 
-#include <chrono>
 
 namespace crawler
 {
-  namespace
-  {
-    double
-    now()
-    {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    }
-  } // namespace
-
   /// An accepted step: examined, and shown to the observers if its state may be used.
   bool
   Simulation::sees(const Step &step,
@@ -24,13 +15,13 @@ namespace crawler
                    const std::vector<std::unique_ptr<Observer>> &observers)
   {
     const bool is_good  = examine(step, y);
-    const double before = now();
+    const double before = seconds_now();
     bool is_shown       = is_good && show_pictures_within(step, step.time, observers);
     if (is_shown)
       show_step(step, y, observers);
     else if (!observers.empty() && run_->diagnosis && run_->diagnosis->status == Status::inverted)
       show_pictures_before_inversion(step, observers);
-    result().output_seconds += now() - before;
+    result().output_seconds += seconds_now() - before;
     return is_shown;
   }
 
@@ -132,7 +123,7 @@ namespace crawler
     const PictureTimes::Time *picture = run_->output_times.passed_at(t);
     if (picture == nullptr || !picture->kinds.is_row || !finds_velocity(t, 0., y_, v_))
       return;
-    const double before = now();
+    const double before = seconds_now();
     Step step           = run_->latest;
     step.size           = 0.;
     const PictureTimes::Time row{picture->value, {.is_snapshot = false, .is_row = true}};
@@ -146,7 +137,7 @@ namespace crawler
           /*is_step_end=*/false,
           &row},
          observers);
-    result().output_seconds += now() - before;
+    result().output_seconds += seconds_now() - before;
   }
 
   void
