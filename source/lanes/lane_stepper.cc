@@ -31,7 +31,7 @@ namespace crawler
       laws_.emplace(scene, tables_.points);
     memory_ = lane_storage(single_engine().memory(setup_));
     for (unsigned int i = 0; i < tableau_.n; ++i)
-      quadrature_.push_back({tableau_.c[i], tableau_.b[i]});
+      stage_places_.push_back(tableau_.c[i]);
   }
 
   TimeOutcome

@@ -36,7 +36,7 @@ namespace crawler
     , error_(form.n_owned())
   {
     for (unsigned int i = 0; i < n_stages; ++i)
-      quadrature_.push_back({tableau_.c[i], tableau_.b[i]});
+      stage_places_.push_back(tableau_.c[i]);
     form_.mass(0., start_, start_, mass_);
     form_.jacobian(0., start_, start_, 0., stiffness_);
     mass_.multiply(std::vector<double>(form.n_owned(), 1.), row_sums_);

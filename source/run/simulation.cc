@@ -122,7 +122,7 @@ namespace crawler
                   const std::vector<std::unique_ptr<Observer>> &observers,
                   const std::function<bool()> &keep_going)
   {
-    const double start = seconds_now();
+    const double start = now();
     if (options.cycles && !pictures.is_empty())
       throw std::logic_error("a run that may end when its cycles repeat has no pictures");
     segments_.restart();
@@ -136,7 +136,7 @@ namespace crawler
     const bool is_watched               = time_.step_control == StepControl::adaptive;
     Recorder recorder(
       physical_scene_, units_, options, numerics_.tolerance, mesh_.discretization->n_unknowns() <= most_unknowns);
-    OutputTimes output_times(pictures, recorder.step_ends(), !integrators_.present->quadrature().empty());
+    OutputTimes output_times(pictures, recorder.step_ends(), !integrators_.present->stage_places().empty());
     run_.emplace(options,
                  !observers.empty(),
                  std::move(recorder),
@@ -161,7 +161,7 @@ namespace crawler
       result().time = failure_while_integrating();
     }
     SimulationResult answer = finish(observers);
-    answer.solve_seconds    = seconds_now() - start - answer.output_seconds;
+    answer.solve_seconds    = now() - start - answer.output_seconds;
     return answer;
   }
 
@@ -194,12 +194,13 @@ namespace crawler
     }
     else if (!run_->options.energy_balance && observers.empty())
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, y_, v_).displacement;
-    if (run_->lanes_look && !run_->has_observers && run_->accepted.is_there)
+    // Where the lanes have looked, steps have not asked for it.
+    if (integrators_.lanes && run_->options.energy_balance && !run_->has_observers && run_->accepted.is_there)
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, run_->accepted.y, v_).displacement;
-    const double before = seconds_now();
+    const double before = now();
     for (const auto &observer : observers)
       observer->end();
-    result.output_seconds += seconds_now() - before;
+    result.output_seconds += now() - before;
     if (mesh_.assembler) // not if the next mesh could not be built
       result.mesh = {discretization().n_cells(),
                      discretization().element().degree,
@@ -380,7 +381,7 @@ namespace crawler
     if (end_inverts(t, t))
       return;
     y_ = run_->accepted.y;
-    if (!run_->options.energy_balance || !integrators_.present->quadrature().empty())
+    if (!run_->options.energy_balance || !integrators_.present->stage_places().empty())
       return;
     if (mesh_.velocity->compute(t, 0., y_, v_))
       run_->quadrature.advance(t, rates(t, mesh_.assembler->integrals(t, y_, v_), y_, v_));

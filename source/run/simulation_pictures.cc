@@ -15,13 +15,13 @@ namespace crawler
                    const std::vector<std::unique_ptr<Observer>> &observers)
   {
     const bool is_good  = examine(step, y);
-    const double before = seconds_now();
+    const double before = now();
     bool is_shown       = is_good && show_pictures_within(step, step.time, observers);
     if (is_shown)
       show_step(step, y, observers);
     else if (!observers.empty() && run_->diagnosis && run_->diagnosis->status == Status::inverted)
       show_pictures_before_inversion(step, observers);
-    result().output_seconds += seconds_now() - before;
+    result().output_seconds += now() - before;
     return is_shown;
   }
 
@@ -123,7 +123,7 @@ namespace crawler
     const PictureTimes::Time *picture = run_->output_times.passed_at(t);
     if (picture == nullptr || !picture->kinds.is_row || !finds_velocity(t, 0., y_, v_))
       return;
-    const double before = seconds_now();
+    const double before = now();
     Step step           = run_->latest;
     step.size           = 0.;
     const PictureTimes::Time row{picture->value, {.is_snapshot = false, .is_row = true}};
@@ -137,7 +137,7 @@ namespace crawler
           /*is_step_end=*/false,
           &row},
          observers);
-    result().output_seconds += seconds_now() - before;
+    result().output_seconds += now() - before;
   }
 
   void

@@ -184,7 +184,7 @@ namespace crawler
       return true;
     if (takes_looks_of_lanes(step))
     {
-      const auto last = static_cast<unsigned int>(integrators_.present->quadrature().size()) - 1;
+      const auto last = static_cast<unsigned int>(integrators_.present->stage_places().size()) - 1;
       for (unsigned int i = 0; i < last; ++i)
         take_stage_of_lanes(step, i);
       run_->quadrature.add_stage(1., at_end);
@@ -192,11 +192,11 @@ namespace crawler
     }
     y_inside_.resize(y_.size());
     v_inside_.resize(v_.size());
-    for (const auto &point : integrators_.present->quadrature())
+    for (const double place : integrators_.present->stage_places())
     {
-      const double t = step.time - (1. - point.place) * step.size;
+      const double t = step.time - (1. - place) * step.size;
       Rates inside   = at_end;
-      if (point.place < 1.)
+      if (place < 1.)
       {
         integrators_.present->interpolate(t, y_inside_);
         if (!finds_velocity(t, step.size, y_inside_, v_inside_))
@@ -204,7 +204,7 @@ namespace crawler
         inside = rates(t, mesh_.assembler->integrals(t, y_inside_, v_inside_), y_inside_, v_inside_);
         look_at_extremes(t, mesh_.assembler->stretch_range(y_inside_));
       }
-      run_->quadrature.add_stage(point.place, inside);
+      run_->quadrature.add_stage(place, inside);
     }
     return true;
   }
@@ -264,7 +264,7 @@ namespace crawler
     EnergyBalance &energies = *result().energy_balance;
     run_->balance_before    = energies;
     const Rates now         = rates(step.time, integrals, y, v_);
-    if (integrators_.present->quadrature().empty())
+    if (integrators_.present->stage_places().empty())
       run_->quadrature.advance(step.time, now);
     else if (!integrate_step(step, now))
       return false;

@@ -254,7 +254,7 @@ namespace crawler
       petsc(radau_set_system(stepper, &system, &guarded));
       const RadauTableau &tableau = radau_tableau(n_stages);
       for (unsigned int i = 0; i < n_stages; ++i)
-        owner.quadrature_.push_back({tableau.c[i], tableau.b[i]});
+        owner.stage_places_.push_back(tableau.c[i]);
     }
     if (name == "theta")
     {

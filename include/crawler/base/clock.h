@@ -7,7 +7,7 @@ namespace crawler
 {
   /// Seconds of a clock that only goes forward, for differences.
   inline double
-  seconds_now()
+  now()
   {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   }

@@ -85,19 +85,15 @@ namespace crawler
     virtual void
     interpolate(double time, Vector y) = 0;
 
-    /// The formula by which the integrator itself integrates over a step: states interpolated at these parts of the
-    /// step, in (0, 1], have the accuracy of the method. Empty if it is not known.
-    struct QuadraturePoint
+    /// The stages of a collocation method, as parts of the step in (0, 1], the last one 1: what is integrated by the
+    /// polynomial through them has the accuracy of the method. Empty if it is none.
+    const std::vector<double> &
+    stage_places() const
     {
-      double place, weight;
-    };
-    const std::vector<QuadraturePoint> &
-    quadrature() const
-    {
-      return quadrature_;
+      return stage_places_;
     }
 
   protected:
-    std::vector<QuadraturePoint> quadrature_;
+    std::vector<double> stage_places_;
   };
 } // namespace crawler

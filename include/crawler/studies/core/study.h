@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/clock.h>
 #include <crawler/studies/core/log.h>
 
 #include <mpi.h>
@@ -14,10 +15,6 @@
 namespace crawler
 {
   /// What the commands have in common that compute many runs.
-
-  /// Wall time since some moment [s].
-  double
-  now();
 
   /// "0.83 ms", "83 s", "12 min", "3.4 h", "2.1 days".
   std::string
