@@ -112,7 +112,12 @@ TEST(HardAnswers, EachPointOfASweepHasItsEvents)
   std::vector<Task> tasks(12);
   for (std::size_t i = 0; i < tasks.size(); ++i)
     tasks[i].parameters = test::parameters_with(event(0.1 + 0.07 * static_cast<double>(i), 2e-4, "1e-4"));
-  std::vector<bool> done = compute_similar(tasks, std::vector<bool>(tasks.size(), true), HUGE_VAL, never);
+  std::vector<Task> examples(3);
+  for (std::size_t i = 0; i < examples.size(); ++i)
+    examples[i].parameters = tasks[5 * i].parameters;
+  const auto shared = shared_numerics(examples, []() { return true; });
+  ASSERT_TRUE(shared);
+  const std::vector<bool> done = compute_similar(tasks, *shared, HUGE_VAL, never);
   EXPECT_GE(std::count(done.begin(), done.end(), true), 10) << "most of them share their numerics";
   for (std::size_t i = 0; i < tasks.size(); ++i)
     if (done[i])

@@ -119,45 +119,123 @@ namespace crawler
       return !task.error && task.computed.result.time.status == Status::none;
     }
 
-    /// Runs that fit, side by side.
+    /// May runs of this choice and the finer ones that measure their errors share the lanes?
+    bool
+    may_share_lanes(const Task &task, const NumericsChoice &choice)
+    {
+      return !choice.is_family && batch_method(*task.scene, task.parameters.time, choice.numerics);
+    }
+
+    /// A task in the lanes, and what its run and the finer one take.
+    struct Member
+    {
+      Task *task;
+      NumericsChoice choice;
+      bool is_shared; ///< the choice was made for others: it knows nothing of the size of this displacement
+      std::optional<CycleWish> cycles;
+      TimeParameters finer_time;
+      Numerics finer = {}; ///< once the run has finished
+
+      Member(Task &its_task, const NumericsChoice &its_choice, const bool choice_is_shared)
+        : task(&its_task)
+        , choice(its_choice)
+        , is_shared(choice_is_shared)
+        , cycles(cycle_wish(its_task.parameters, *its_task.scene, /*has_pictures=*/false))
+        , finer_time(time_of_finer_run(its_task.parameters.time))
+      {
+      }
+
+      bool
+      has_finer_run() const
+      {
+        return task->parameters.error_estimate && std::isfinite(choice.promised_error) && !choice.is_measured &&
+               !choice.numerics.linear && batch_method(*task->scene, finer_time, finer);
+      }
+    };
+
+    /// The answer of a member, if it is as good as it should be.
+    void
+    take_answer(const Member &member, SimulationResult result, const SimulationResult &finer)
+    {
+      Task &task            = *member.task;
+      NumericsChoice choice = member.choice;
+      if (member.is_shared)
+        choice.promised_error = choice.wanted_error = task.parameters.accuracy * std::abs(result.displacement);
+      set_errors(choice, result, &finer, task.parameters, *task.scene);
+      check_identities(result, task.parameters);
+      if (result.time.status == Status::finished && result.error->total <= choice.wanted_error)
+        task.computed = {std::move(result), std::move(choice)};
+    }
+
+    /**
+     * The runs, and of those that finish the finer ones, side by side; all want the same. Tasks whose answer is as good
+     * as it should be have it with its errors, other runs that finished without.
+     */
+    void
+    compute_members(std::vector<Member> members,
+                    const Simulation::Options &options,
+                    const std::function<bool()> &is_in_time)
+    {
+      std::vector<BatchRun> runs, finer_runs;
+      for (const Member &member : members)
+        runs.push_back({&*member.task->scene, &member.task->parameters.time, &member.choice.numerics, member.cycles});
+      auto results = run_batch(runs, options, is_in_time);
+      std::vector<std::size_t> finished;
+      for (std::size_t i = 0; i < members.size(); ++i)
+      {
+        if (!results[i])
+          continue;
+        Member &member       = members[i];
+        const Task &task     = *member.task;
+        const bool repeats   = results[i]->cycles.has_value();
+        member.finer         = numerics_of_finer_run(member.choice, task.parameters.time, *task.scene, repeats);
+        member.task->computed = {*results[i], member.choice};
+        if (results[i]->time.status != Status::finished || !member.has_finer_run())
+          continue;
+        finished.push_back(i);
+        finer_runs.push_back({&*task.scene, &member.finer_time, &member.finer, member.cycles});
+      }
+      const auto finer_results = run_batch(finer_runs, options, is_in_time);
+      for (std::size_t j = 0; j < finished.size(); ++j)
+        if (finer_results[j] && finer_results[j]->time.status == Status::finished)
+          take_answer(members[finished[j]], std::move(*results[finished[j]]), *finer_results[j]);
+    }
+
+    Simulation::Options
+    options_of_batch(const Task &task)
+    {
+      return {.energy_balance = task.parameters.output.energy_balance, .gait = gait_wish(task)};
+    }
+
+    /// Runs that fit, side by side, each with the numerics chosen for it.
     void
     compute_batches(const std::span<Task> tasks, const double time_limit, const std::function<bool()> &interrupted)
     {
-      std::vector<BatchRun> runs[2]; // without and with energy balance
-      std::vector<Task *> members[2];
-      for (Task &task : tasks)
-        if (is_ready(task) && !task.computed.choice.is_family &&
-            batch_method(*task.scene, task.parameters.time, task.computed.choice.numerics))
-        {
-          const bool energy_balance = task.parameters.output.energy_balance;
-          runs[energy_balance].push_back({&*task.scene,
-                                          &task.parameters.time,
-                                          &task.computed.choice.numerics,
-                                          cycle_wish(task.parameters, *task.scene, /*has_pictures=*/false)});
-          members[energy_balance].push_back(&task);
-        }
       for (const bool energy_balance : {false, true})
       {
-        const double n = static_cast<double>(runs[energy_balance].size());
+        std::vector<Member> members;
+        for (Task &task : tasks)
+          if (is_ready(task) && task.parameters.output.energy_balance == energy_balance &&
+              may_share_lanes(task, task.computed.choice))
+            members.emplace_back(task, task.computed.choice, /*choice_is_shared=*/false);
+        if (members.empty())
+          continue;
+        const double n = static_cast<double>(members.size());
         const Clock clock;
-        std::vector<std::optional<SimulationResult>> results;
         try
         {
-          results = run_batch(runs[energy_balance],
-                              {.energy_balance = energy_balance, .gait = gait_wish(tasks.front())},
-                              [&]() { return clock.seconds() <= n * time_limit && !interrupted(); });
+          compute_members(members, options_of_batch(*members.front().task), [&]() {
+            return clock.seconds() <= n * time_limit && !interrupted();
+          });
         }
         catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
         {
         }
-        for (std::size_t i = 0; i < results.size(); ++i)
-        {
-          members[energy_balance][i]->seconds += clock.seconds() / n;
-          if (results[i])
-            members[energy_balance][i]->computed.result = std::move(*results[i]);
-        }
+        for (const Member &member : members)
+          member.task->seconds += clock.seconds() / n;
       }
     }
+
     /// What the batch has left: runs, and errors of the displacement with what follows from them.
     void
     finish(Task &task, const double time_limit, const std::function<bool()> &interrupted)
@@ -204,9 +282,6 @@ namespace crawler
 
   namespace
   {
-    /// So few are not worth three choices of the numerics.
-    constexpr std::size_t fewest = 6;
-
     /// What an answer of the shared numerics needs: a bar that can be compared with what is wanted.
     bool
     may_share(const Parameters &p)
@@ -215,27 +290,38 @@ namespace crawler
              p.time.step_control == StepControl::adaptive;
     }
 
-    /// The choice for one scene, if it is one that others can share.
-    std::optional<NumericsChoice>
-    choose(const Task &task, const std::function<bool()> &keep_going)
+    void
+    create_scene(Task &task)
     {
-      const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
-      if (!choice || choice->is_measured || choice->is_family || !std::isfinite(choice->promised_error) ||
-          !batch_method(*task.scene, task.parameters.time, choice->numerics))
-        return std::nullopt;
-      return choice;
+      task.scene.emplace(task.parameters.create_scene());
+      choose_model(task.parameters, *task.scene); // refuses what the model cannot compute
     }
 
-    /// The finest of the choices for the first, the middle and the last of the scenes; nothing if they are of different
-    /// kinds.
-    std::optional<NumericsChoice>
-    shared_choice(const std::span<Task> tasks, const std::function<bool()> &keep_going)
+    /// Leaves nothing of a try behind.
+    void
+    forget(Task &task)
     {
-      std::optional<NumericsChoice> finest;
-      for (const std::size_t anchor : {std::size_t(0), tasks.size() / 2, tasks.size() - 1})
+      task.computed = {};
+      task.scene.reset();
+      task.error = nullptr;
+    }
+  } // namespace
+
+  std::optional<NumericsChoice>
+  shared_numerics(const std::span<Task> examples, const std::function<bool()> &keep_going)
+  {
+    std::optional<NumericsChoice> finest;
+    try
+    {
+      for (Task &task : examples)
       {
-        const auto choice = choose(tasks[anchor], keep_going);
-        if (!choice || (finest && choice->numerics.integrator != finest->numerics.integrator))
+        if (!may_share(task.parameters))
+          return std::nullopt;
+        create_scene(task);
+        const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
+        if (!choice || choice->is_measured || !std::isfinite(choice->promised_error) ||
+            !may_share_lanes(task, *choice) ||
+            (finest && choice->numerics.integrator != finest->numerics.integrator))
           return std::nullopt;
         if (!finest)
         {
@@ -249,131 +335,52 @@ namespace crawler
         n.initial_step = std::min(a.initial_step, b.initial_step);
         n.least_event  = std::min(a.least_event, b.least_event);
       }
-      return finest;
     }
-
-    /// Leaves nothing of a try behind.
-    void
-    forget(Task &task)
+    catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
     {
-      task.computed = {};
-      task.scene.reset();
-      task.error   = nullptr;
-      task.seconds = 0.;
+      return std::nullopt;
     }
-
-    /// A task that shares the numerics, and what its run and the finer one take.
-    struct Member
-    {
-      Task *task;
-      NumericsChoice own;
-      std::optional<CycleWish> cycles;
-      Numerics finer; ///< once the run has finished
-      TimeParameters finer_time;
-    };
-
-    std::vector<Member>
-    members_of(const std::span<Task> tasks, const std::vector<bool> &wanted, const NumericsChoice &shared)
-    {
-      std::vector<Member> members;
-      for (std::size_t i = 0; i < tasks.size(); ++i)
-      {
-        const Parameters &parameters = tasks[i].parameters;
-        const Scene &scene           = *tasks[i].scene;
-        if (!wanted[i] || !batch_method(scene, parameters.time, shared.numerics))
-          continue;
-        // Each stress has events of its own.
-        NumericsChoice own = shared;
-        own.numerics.step_limits =
-          similar_step_limits(scene, own.numerics.step_limits, own.numerics.least_event / least_event);
-        members.push_back({&tasks[i],
-                           own,
-                           cycle_wish(parameters, scene, /*has_pictures=*/false),
-                           {},
-                           time_of_finer_run(parameters.time)});
-      }
-      return members;
-    }
-
-    /// The runs, and of those that finish the finer ones. Tasks whose answer is as good as it should be have it.
-    void
-    compute_members(std::vector<Member> members,
-                    const Simulation::Options &options,
-                    const std::function<bool()> &is_in_time)
-    {
-      std::vector<BatchRun> runs, finer_runs;
-      for (const Member &member : members)
-        runs.push_back({&*member.task->scene, &member.task->parameters.time, &member.own.numerics, member.cycles});
-      auto results = run_batch(runs, options, is_in_time);
-      std::vector<std::size_t> finished;
-      for (std::size_t i = 0; i < members.size(); ++i)
-      {
-        if (!results[i] || results[i]->time.status != Status::finished)
-          continue;
-        Member &member     = members[i];
-        const Task &task   = *member.task;
-        const bool repeats = results[i]->cycles.has_value();
-        member.finer       = numerics_of_finer_run(member.own, task.parameters.time, *task.scene, repeats);
-        if (!batch_method(*task.scene, member.finer_time, member.finer))
-          continue;
-        finished.push_back(i);
-        finer_runs.push_back({&*task.scene, &member.finer_time, &member.finer, member.cycles});
-      }
-      const auto finer_results = run_batch(finer_runs, options, is_in_time);
-      for (std::size_t j = 0; j < finished.size(); ++j)
-      {
-        if (!finer_results[j] || finer_results[j]->time.status != Status::finished)
-          continue;
-        const Member &member     = members[finished[j]];
-        Task &task               = *member.task;
-        SimulationResult &result = *results[finished[j]];
-        NumericsChoice choice    = member.own;
-        choice.wanted_error      = task.parameters.accuracy * std::abs(result.displacement);
-        choice.promised_error    = choice.wanted_error;
-        set_errors(choice, result, &*finer_results[j], task.parameters, *task.scene);
-        check_identities(result, task.parameters);
-        if (result.time.status == Status::finished && result.error->total <= choice.wanted_error)
-          task.computed = {std::move(result), choice};
-      }
-    }
-  } // namespace
+    return finest;
+  }
 
   std::vector<bool>
   compute_similar(const std::span<Task> tasks,
-                  const std::vector<bool> &wanted,
+                  const NumericsChoice &shared,
                   const double time_limit,
                   const std::function<bool()> &interrupted)
   {
     std::vector<bool> done(tasks.size(), false);
     const double start    = now();
-    const auto n_wanted   = std::count(wanted.begin(), wanted.end(), true);
     const auto is_in_time = [&]() { return now() - start <= time_limit && !interrupted(); };
-    if (tasks.size() < fewest || n_wanted == 0 ||
-        !std::all_of(tasks.begin(), tasks.end(), [](const Task &task) { return may_share(task.parameters); }))
-      return done;
     try
     {
+      std::vector<Member> members;
       for (Task &task : tasks)
       {
-        task.scene.emplace(task.parameters.create_scene());
-        choose_model(task.parameters, *task.scene); // refuses what the model cannot compute
+        if (!may_share(task.parameters) ||
+            task.parameters.output.energy_balance != tasks.front().parameters.output.energy_balance)
+          continue;
+        create_scene(task);
+        if (!may_share_lanes(task, shared))
+          continue;
+        // Each stress has events of its own.
+        NumericsChoice own       = shared;
+        own.numerics.step_limits = similar_step_limits(
+          *task.scene, shared.numerics.step_limits, shared.numerics.least_event / least_event);
+        members.emplace_back(task, own, /*choice_is_shared=*/true);
       }
-      if (const auto shared = shared_choice(tasks, is_in_time))
-        compute_members(
-          members_of(tasks, wanted, *shared),
-          {.energy_balance = tasks.front().parameters.output.energy_balance, .gait = gait_wish(tasks.front())},
-          is_in_time);
+      if (!members.empty())
+        compute_members(members, options_of_batch(tasks.front()), is_in_time);
       for (std::size_t i = 0; i < tasks.size(); ++i)
-        done[i] = tasks[i].computed.result.time.status != Status::none;
+        done[i] = tasks[i].computed.result.error.has_value();
     }
     catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
     {
       done.assign(tasks.size(), false);
     }
-    const double seconds = (now() - start) / static_cast<double>(n_wanted);
     for (std::size_t i = 0; i < tasks.size(); ++i)
       if (done[i])
-        tasks[i].seconds = seconds;
+        tasks[i].seconds = (now() - start) / static_cast<double>(tasks.size());
       else
         forget(tasks[i]);
     return done;

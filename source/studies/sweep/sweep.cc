@@ -102,16 +102,15 @@ namespace crawler
                  const std::function<bool()> &interrupted,
                  Log &log)
     {
-      const SweepBlocks blocks(points.design());
-      const SweepOrder order(blocks, points);
+      SweepWork own(points, size_of(communicator));
       RowFile results(communicator, folder / table.file, table.group, table.written_columns());
       return share_work(communicator,
-                        {blocks.size(),
+                        {own.n_parts(),
                          static_cast<unsigned long>(std::count(done.begin(), done.end(), false)),
                          "points",
                          interrupted,
                          [&](const unsigned long number, const auto &stops, const auto &see) {
-                           return compute_block(blocks[order[number]], points, done, results, stops, see);
+                           return own.compute(number, done, results, stops, see);
                          }},
                         log);
     }
@@ -248,26 +247,17 @@ namespace crawler
     std::size_t bytes         = 0;
     for (const RowFile::Column &column : sweep_columns(design, points.declarations()))
       bytes += column.width == 0 ? sizeof(double) : column.width;
-    // The time of some blocks, spread over the sweep.
+    // The time of some parts, spread over the sweep.
     constexpr unsigned long most_samples = 32;
     constexpr double long_enough         = 2.; // seconds
-    const SweepBlocks blocks(design);
-    const unsigned long stride = golden_stride(blocks.size());
-    const double limit = points.sweep().point_time_limit.value_or(HUGE_VAL), before = now();
-    unsigned long n_computed = 0;
-    for (unsigned long i = 0; i < std::min(most_samples, blocks.size()) && now() - before < long_enough; ++i)
-    {
-      const SweepBlock block = blocks[(i + 1) * stride % blocks.size()];
-      std::vector<Task> tasks(block.size);
-      for (unsigned long j = 0; j < block.size; ++j)
-        tasks[j].parameters = points.parameters(block.first + j);
-      const auto never = []() { return false; };
-      auto done        = compute_similar(tasks, std::vector<bool>(block.size, true), limit, never);
-      for (unsigned long j = 0; j < block.size; ++j)
-        if (!done[j])
-          compute_all({&tasks[j], 1}, limit, never);
-      n_computed += block.size;
-    }
+    SweepWork work(points, size_of(communicator));
+    const unsigned long n_parts = work.n_parts(), stride = golden_stride(n_parts);
+    const double before         = now();
+    unsigned long n_computed    = 0;
+    for (unsigned long i = 0; i < n_parts && n_computed < design.n_points() &&
+                              (i < most_samples || n_computed == 0) && now() - before < long_enough;
+         ++i)
+      n_computed += work.try_out((i + 1) * stride % n_parts);
     const double each = (now() - before) / static_cast<double>(n_computed);
     log.line(fmt::format("Sweep: {}.", in_words(design, points.sweep().design)));
     const double all = each * static_cast<double>(design.n_points());

@@ -2,27 +2,32 @@
 #pragma once
 
 #include <crawler/base/row_file.h>
+#include <crawler/studies/core/compute.h>
 #include <crawler/studies/sweep/sweep_points.h>
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace crawler
 {
-  /// Points in succession that are computed together, and share the numerics if they can.
+  /// Points in succession.
   struct SweepBlock
   {
     unsigned long first, size;
   };
 
   /**
-   * All points of a sweep in blocks, of at most 64 points and at least 256 blocks if there are as many points. They do
-   * not depend on the number of ranks or on what is done already, so neither do the answers. A block does not go beyond
-   * the end of the last axis of a grid, where its points would not be similar any more. Nothing is kept for a block.
+   * All points of a sweep in blocks of at most 64 neighbours, which share the numerics if they can. They do not depend
+   * on the number of ranks or on what is done already, so neither do the answers. A block does not go beyond the end of
+   * the last axis of a grid, or of the last two where the rows are short and the axis before it is of numbers: there
+   * its points would not be similar any more. Nothing is kept for a block.
    */
   class SweepBlocks
   {
   public:
+    static constexpr unsigned long most = 64;
+
     explicit SweepBlocks(const SweepDesign &design);
 
     unsigned long
@@ -32,7 +37,7 @@ namespace crawler
     operator[](unsigned long number) const;
 
   private:
-    unsigned long n_runs_, run_length_, parts_of_run_;
+    unsigned long row_, rows_, n_runs_, parts_of_run_; ///< points in a row, rows in a run, which is cut into parts
   };
 
   /**
@@ -54,14 +59,49 @@ namespace crawler
     std::vector<unsigned long> sorted_; ///< empty if all take equally long, as far as is known
   };
 
-  /// One rank's part of the work of a sweep: computes the points of a block that have no row yet (@p done), and writes
-  /// their rows. Calls @p see when rows have been written, with their number and how many of these did not finish.
-  /// Returns false if it was interrupted. Throws FileError.
-  bool
-  compute_block(const SweepBlock &block,
-                SweepPoints &points,
-                const std::vector<bool> &done,
-                RowFile &file,
-                const std::function<bool()> &interrupted,
-                const std::function<void(unsigned long n, unsigned long failed)> &see);
+  /**
+   * One rank's part of the work of a sweep. The work is handed out in parts of blocks, small enough that each of
+   * @p n_ranks gets several; who computes a part does not change its answers, since the numerics are those of its block.
+   */
+  class SweepWork
+  {
+  public:
+    SweepWork(SweepPoints &points, unsigned int n_ranks);
+
+    unsigned long
+    n_parts() const;
+
+    /// Computes the points of a part that have no row yet (@p done), and writes their rows. Calls @p see when rows have
+    /// been written, with their number and how many of these did not finish. Returns false if it was interrupted.
+    /// Throws FileError.
+    bool
+    compute(unsigned long part,
+            const std::vector<bool> &done,
+            RowFile &file,
+            const std::function<bool()> &interrupted,
+            const std::function<void(unsigned long n, unsigned long failed)> &see);
+
+    /// The answers of the points of a part, without files; their number.
+    unsigned long
+    try_out(unsigned long part);
+
+  private:
+    SweepBlock
+    part(unsigned long number) const;
+
+    /// What the block of a part shares; kept until a part of another block is asked for.
+    const std::optional<NumericsChoice> &
+    numerics(unsigned long part, const std::function<bool()> &interrupted);
+
+    Task
+    task(unsigned long point) const;
+
+    SweepPoints &points_;
+    const SweepBlocks blocks_;
+    const SweepOrder order_;
+    const unsigned long parts_of_block_;
+    const double time_limit_; ///< for each point [s]
+    std::optional<unsigned long> block_;
+    std::optional<NumericsChoice> numerics_; ///< of that block
+  };
 } // namespace crawler

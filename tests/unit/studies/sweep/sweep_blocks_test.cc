@@ -15,7 +15,7 @@ namespace
     return ParameterFile::from_text("subsection Sweep\n set Axes = " + axes + "\n " + more + "\nend\n", "test.prm");
   }
 
-  TEST(SweepBlocks, HaveEachPointOnceAndStayWithinTheLastAxis)
+  TEST(SweepBlocks, HaveEachPointOnceAndStayWithinTheirAxes)
   {
     for (const auto &[p, chi] : {std::pair(1, 1), {1, 1000}, {7, 13}, {300, 65}, {20, 1000}})
     {
@@ -30,14 +30,28 @@ namespace
         const SweepBlock block = blocks[i];
         ASSERT_EQ(block.first, next);
         ASSERT_TRUE(block.size >= 1 && block.size <= 64);
-        if (chi > 1)
+        if (chi > 32)
         {
           ASSERT_EQ(block.first / chi, (block.first + block.size - 1) / chi);
+        }
+        else if (chi > 1)
+        {
+          ASSERT_EQ(block.size % chi, 0u) << "whole rows";
         }
         next += block.size;
       }
       EXPECT_EQ(next, design.n_points());
-      EXPECT_GE(blocks.size(), std::min(256ul, design.n_points()));
+    }
+  }
+
+  TEST(SweepBlocks, KeepRowsApartThatAreNotSimilar)
+  {
+    for (const std::string axis : {"Accuracy : 1e-3, 1e-6", "Time/End time : 1, 2", "Active stress/Generator : a, b"})
+    {
+      SweepParameters parameters;
+      parameters.axes = axis + "; A/chi : linspace(0, 1, 10)";
+      const SweepDesign design(parameters);
+      EXPECT_EQ(SweepBlocks(design).size(), 2u) << axis;
     }
   }
 
