@@ -99,6 +99,17 @@ namespace crawler::accuracy_rule
     inline constexpr double longest_first_step = 1e-2, shortest_first_step = 1e-16;
   } // namespace graded
 
+  // Numerics that similar scenes share (shared_choice.cc; doc/numerics.md, "Sweeps"). Measured by
+  // tests/verification/shared_study.cc.
+  namespace shared
+  {
+    /// Space and time may each change the displacement of an example by this part of the wanted error, and the
+    /// extrapolation of cycles by that one.
+    inline constexpr double part = 0.12, part_of_cycles = 0.1;
+    /// Tolerances that are tried, relative to the displacement: from the loosest, smaller by this factor each time.
+    inline constexpr double loosest_tolerance = 3e-2, next_tolerance = 0.316;
+  } // namespace shared
+
   // Which form is the cheaper one (form_choice.cc; doc/numerics.md, "Stretch form"). Measured by
   // tests/benchmark/stretch_table.cc.
   namespace form

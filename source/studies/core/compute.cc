@@ -2,7 +2,6 @@
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/run_as_promised.h>
-#include <crawler/accuracy/stress_scales.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
@@ -282,7 +281,6 @@ namespace crawler
 
   namespace
   {
-    /// What an answer of the shared numerics needs: a bar that can be compared with what is wanted.
     bool
     may_share(const Parameters &p)
     {
@@ -307,45 +305,31 @@ namespace crawler
     }
   } // namespace
 
-  std::optional<NumericsChoice>
+  std::optional<SharedChoice>
   shared_numerics(const std::span<Task> examples, const std::function<bool()> &keep_going)
   {
-    std::optional<NumericsChoice> finest;
     try
     {
+      std::vector<SceneToCompute> scenes;
       for (Task &task : examples)
       {
         if (!may_share(task.parameters))
           return std::nullopt;
         create_scene(task);
-        const auto choice = choose_numerics(MPI_COMM_SELF, task.parameters, *task.scene, keep_going);
-        if (!choice || choice->is_measured || !std::isfinite(choice->promised_error) ||
-            !may_share_lanes(task, *choice) ||
-            (finest && choice->numerics.integrator != finest->numerics.integrator))
-          return std::nullopt;
-        if (!finest)
-        {
-          finest = choice;
-          continue;
-        }
-        const Numerics a = finest->numerics, &b = choice->numerics;
-        Numerics &n    = finest->numerics;
-        n              = b.n_cells * b.degree > a.n_cells * a.degree ? b : a;
-        n.tolerance    = std::min(a.tolerance, b.tolerance);
-        n.initial_step = std::min(a.initial_step, b.initial_step);
-        n.least_event  = std::min(a.least_event, b.least_event);
+        scenes.push_back({&task.parameters, &*task.scene});
       }
+      return shared_choice(scenes, keep_going);
     }
     catch (const std::exception &) // whoever computes them one by one finds out what is wrong with which
     {
       return std::nullopt;
     }
-    return finest;
   }
 
   std::vector<bool>
   compute_similar(const std::span<Task> tasks,
-                  const NumericsChoice &shared,
+                  const SharedChoice &shared,
+                  const std::vector<double> &sizes,
                   const double time_limit,
                   const std::function<bool()> &interrupted)
   {
@@ -355,19 +339,15 @@ namespace crawler
     try
     {
       std::vector<Member> members;
-      for (Task &task : tasks)
+      for (std::size_t i = 0; i < tasks.size(); ++i)
       {
+        Task &task = tasks[i];
         if (!may_share(task.parameters) ||
             task.parameters.output.energy_balance != tasks.front().parameters.output.energy_balance)
           continue;
         create_scene(task);
-        if (!may_share_lanes(task, shared))
-          continue;
-        // Each stress has events of its own.
-        NumericsChoice own       = shared;
-        own.numerics.step_limits = similar_step_limits(
-          *task.scene, shared.numerics.step_limits, shared.numerics.least_event / least_event);
-        members.emplace_back(task, own, /*choice_is_shared=*/true);
+        if (may_share_lanes(task, shared.choice))
+          members.emplace_back(task, shared.choice_for(*task.scene, sizes[i]), /*choice_is_shared=*/true);
       }
       if (!members.empty())
         compute_members(members, options_of_batch(tasks.front()), is_in_time);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace crawler
@@ -77,16 +78,17 @@ namespace crawler
     return sorted_.empty() ? i * stride_ % size_ : sorted_[i];
   }
 
+  /// A point with its answer.
+  struct SweepWork::Point
+  {
+    unsigned long number;
+    Task task;
+  };
+
   namespace
   {
-    /// A point to compute.
-    struct Point
-    {
-      unsigned long number;
-      Task task;
-    };
-
     /// The rows of these points, those in succession at once.
+    template <typename Point>
     void
     write(const std::vector<Point> &points,
           RowFile &file,
@@ -113,12 +115,12 @@ namespace crawler
     , blocks_(points.design())
     , order_(blocks_, points)
     , parts_of_block_([&]() {
-      constexpr unsigned long parts_per_rank = 16;
-      const unsigned long together =
-        std::clamp(points.design().n_points() / (parts_per_rank * n_ranks), 1ul, SweepBlocks::most);
+      constexpr unsigned long parts_per_rank = 16, most = 64;
+      const unsigned long together = std::clamp(points.design().n_points() / (parts_per_rank * n_ranks), 1ul, most);
       return (SweepBlocks::most + together - 1) / together;
     }())
     , time_limit_(points.sweep().point_time_limit.value_or(HUGE_VAL))
+    , numerics_(points)
   {
   }
 
@@ -129,60 +131,65 @@ namespace crawler
   }
 
   SweepBlock
+  SweepWork::block_of(const unsigned long part) const
+  {
+    return blocks_[order_[part / parts_of_block_]];
+  }
+
+  SweepBlock
   SweepWork::part(const unsigned long number) const
   {
-    const SweepBlock block   = blocks_[order_[number / parts_of_block_]];
+    const SweepBlock block   = block_of(number);
     const unsigned long part = number % parts_of_block_;
     const unsigned long from = block.size * part / parts_of_block_, to = block.size * (part + 1) / parts_of_block_;
     return {block.first + from, to - from};
   }
 
-  Task
-  SweepWork::task(const unsigned long point) const
+  std::vector<SweepWork::Point>
+  SweepWork::compute_shared(const SweepBlock &block,
+                            const std::vector<unsigned long> &points,
+                            const std::function<bool()> &interrupted)
   {
-    Task one;
-    one.parameters = points_.parameters(point);
-    one.gait       = true;
-    return one;
-  }
-
-  const std::optional<NumericsChoice> &
-  SweepWork::numerics(const unsigned long part, const std::function<bool()> &interrupted)
-  {
-    constexpr unsigned long fewest = 6; // so few are not worth three choices
-    const unsigned long number     = order_[part / parts_of_block_];
-    if (block_ == number)
-      return numerics_;
-    const SweepBlock block = blocks_[number];
-    numerics_.reset();
-    block_ = number;
-    if (block.size < fewest)
-      return numerics_;
-    std::vector<Task> examples;
-    for (const unsigned long i : {0ul, block.size / 2, block.size - 1})
-      examples.push_back(task(block.first + i));
-    const double start = now();
-    numerics_ = shared_numerics(examples, [&]() { return now() - start <= time_limit_ && !interrupted(); });
-    return numerics_;
+    std::vector<Point> answers;
+    for (std::size_t from = 0, to = 0; from < points.size(); from = to)
+    {
+      const double start = now();
+      const auto shared  = numerics_.at(
+        block, points[from], [&]() { return now() - start <= time_limit_ && !interrupted(); });
+      while (to < points.size() && points[to] < shared.points.first + shared.points.size)
+        ++to;
+      if (shared.choice == nullptr || interrupted())
+        continue;
+      std::vector<Task> tasks;
+      std::vector<double> sizes;
+      for (std::size_t i = from; i < to; ++i)
+      {
+        tasks.push_back(numerics_.task(points[i]));
+        sizes.push_back(numerics_.size_at(shared, points[i]));
+      }
+      const std::vector<bool> computed = compute_similar(tasks, *shared.choice, sizes, time_limit_, interrupted);
+      for (std::size_t i = from; i < to; ++i)
+        if (computed[i - from])
+          answers.push_back({points[i], std::move(tasks[i - from])});
+    }
+    return answers;
   }
 
   unsigned long
-  SweepWork::try_out(const unsigned long part)
+  SweepWork::try_out(const unsigned long number)
   {
     const auto never       = []() { return false; };
-    const SweepBlock block = this->part(part);
-    if (block.size == 0)
-      return 0;
-    std::vector<Task> tasks;
-    for (unsigned long i = 0; i < block.size; ++i)
-      tasks.push_back(task(block.first + i));
-    std::vector<bool> computed(tasks.size(), false);
-    if (const auto &shared = numerics(part, never))
-      computed = compute_similar(tasks, *shared, time_limit_, never);
-    for (std::size_t i = 0; i < tasks.size(); ++i)
-      if (!computed[i])
-        compute_all({&tasks[i], 1}, time_limit_, never);
-    return tasks.size();
+    const SweepBlock block = part(number);
+    std::vector<unsigned long> points(block.size);
+    std::iota(points.begin(), points.end(), block.first);
+    for (const Point &done : compute_shared(block_of(number), points, never))
+      std::erase(points, done.number);
+    for (const unsigned long point : points)
+    {
+      Task one = numerics_.task(point);
+      compute_all({&one, 1}, time_limit_, never);
+    }
+    return block.size;
   }
 
   bool
@@ -192,31 +199,17 @@ namespace crawler
                      const std::function<bool()> &interrupted,
                      const std::function<void(unsigned long n, unsigned long failed)> &see)
   {
-    const SweepBlock block = part(number);
+    const SweepBlock own = part(number);
     std::vector<unsigned long> missing;
-    for (unsigned long point = block.first; point < block.first + block.size; ++point)
+    for (unsigned long point = own.first; point < own.first + own.size; ++point)
       if (!done[point])
         missing.push_back(point);
-    if (missing.empty())
-      return true;
-    if (const auto &shared = numerics(number, interrupted))
-    {
-      std::vector<Task> tasks;
-      for (const unsigned long point : missing)
-        tasks.push_back(task(point));
-      const std::vector<bool> computed = compute_similar(tasks, *shared, time_limit_, interrupted);
-      if (interrupted())
-        return false;
-      std::vector<Point> ready;
-      std::vector<unsigned long> left;
-      for (std::size_t i = 0; i < tasks.size(); ++i)
-        if (computed[i])
-          ready.push_back({missing[i], std::move(tasks[i])});
-        else
-          left.push_back(missing[i]);
-      write(ready, file, see);
-      missing = std::move(left);
-    }
+    const auto shared = compute_shared(block_of(number), missing, interrupted);
+    if (interrupted())
+      return false;
+    write(shared, file, see);
+    for (const Point &point : shared)
+      std::erase(missing, point.number);
 
     // The rest a few at a time, or one by one where one takes long: what is finished shall be on the disk soon. With a
     // time limit for each, no one may use up that of its neighbours.
@@ -228,7 +221,7 @@ namespace crawler
       to = std::min(from + together, missing.size());
       std::vector<Task> few;
       for (std::size_t i = from; i < to; ++i)
-        few.push_back(task(missing[i]));
+        few.push_back(numerics_.task(missing[i]));
       const double before = now();
       compute_all(few, time_limit_, interrupted);
       if (interrupted())

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/accuracy/shared_choice.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/parameters.h>
 
@@ -44,25 +44,24 @@ namespace crawler
   void
   compute_all(std::span<Task> tasks, double time_limit, const std::function<bool()> &interrupted);
 
-  /**
-   * Numerics for scenes that are similar, as neighbours in a sweep: the finest of those that `crawler run` would choose
-   * for some @p examples of them. Nothing if these are of different kinds, do not fit the fused engine or have no bound
-   * that could be compared with what is wanted, or if @p keep_going says no.
-   */
-  std::optional<NumericsChoice>
+  /// The numerics that similar scenes share (accuracy/shared_choice.h), as measured on some @p examples of them; nothing
+  /// if there are none.
+  std::optional<SharedChoice>
   shared_numerics(std::span<Task> examples, const std::function<bool()> &keep_going);
 
   /**
    * Computes scenes with the numerics that they share. Runs and the finer runs that measure their errors share the
    * lanes of the fused engine, so a point costs a hundredth of what it costs alone. Each answer has an error bound as
    * always; what does not meet its Accuracy with these numerics, or does not fit the fused engine, is left alone.
+   * @p sizes: about what each displacement is [length].
    *
    * Returns which have been computed. Nothing is thrown. Runs are given up when @p interrupted says so, and after
    * @p time_limit [s] for all together, so that none takes longer.
    */
   std::vector<bool>
   compute_similar(std::span<Task> tasks,
-                  const NumericsChoice &shared,
+                  const SharedChoice &shared,
+                  const std::vector<double> &sizes,
                   double time_limit,
                   const std::function<bool()> &interrupted);
 } // namespace crawler

@@ -2,23 +2,15 @@
 #pragma once
 
 #include <crawler/base/row_file.h>
-#include <crawler/studies/core/compute.h>
-#include <crawler/studies/sweep/sweep_points.h>
+#include <crawler/studies/sweep/sweep_numerics.h>
 
 #include <functional>
-#include <optional>
 #include <vector>
 
 namespace crawler
 {
-  /// Points in succession.
-  struct SweepBlock
-  {
-    unsigned long first, size;
-  };
-
   /**
-   * All points of a sweep in blocks of at most 64 neighbours, which share the numerics if they can. They do not depend
+   * All points of a sweep in blocks of at most 256 neighbours, which share the numerics if they can. They do not depend
    * on the number of ranks or on what is done already, so neither do the answers. A block does not go beyond the end of
    * the last axis of a grid, or of the last two where the rows are short and the axis before it is of numbers: there
    * its points would not be similar any more. Nothing is kept for a block.
@@ -26,7 +18,7 @@ namespace crawler
   class SweepBlocks
   {
   public:
-    static constexpr unsigned long most = 64;
+    static constexpr unsigned long most = 256;
 
     explicit SweepBlocks(const SweepDesign &design);
 
@@ -87,21 +79,22 @@ namespace crawler
 
   private:
     SweepBlock
+    block_of(unsigned long part) const;
+    SweepBlock
     part(unsigned long number) const;
 
-    /// What the block of a part shares; kept until a part of another block is asked for.
-    const std::optional<NumericsChoice> &
-    numerics(unsigned long part, const std::function<bool()> &interrupted);
-
-    Task
-    task(unsigned long point) const;
+    /// Computes points of one part with the numerics that they share; what it returns has been computed.
+    struct Point;
+    std::vector<Point>
+    compute_shared(const SweepBlock &block,
+                   const std::vector<unsigned long> &points,
+                   const std::function<bool()> &interrupted);
 
     SweepPoints &points_;
     const SweepBlocks blocks_;
     const SweepOrder order_;
     const unsigned long parts_of_block_;
     const double time_limit_; ///< for each point [s]
-    std::optional<unsigned long> block_;
-    std::optional<NumericsChoice> numerics_; ///< of that block
+    SweepNumerics numerics_;
   };
 } // namespace crawler

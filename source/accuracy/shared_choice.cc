@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/shared_choice.h>
+#include <crawler/accuracy/stress_scales.h>
+#include <crawler/run/accuracy_rule.h>
+#include <crawler/run/batch.h>
+#include <crawler/run/stress_watch.h>
+#include <crawler/time/integrators.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace crawler
+{
+  namespace
+  {
+    using namespace accuracy_rule::shared;
+
+    /// What an answer of shared numerics needs: a bound that can be compared with what is wanted.
+    bool
+    may_share(const NumericsChoice &choice, const SceneToCompute &one)
+    {
+      return !choice.is_measured && !choice.is_family && std::isfinite(choice.promised_error) &&
+             batch_method(*one.scene, one.parameters->time, choice.numerics);
+    }
+
+    class Search
+    {
+    public:
+      Search(const std::span<const SceneToCompute> examples, const std::function<bool()> &keep_going)
+        : examples_(examples)
+        , keep_going_(keep_going)
+      {
+        for (const SceneToCompute &one : examples)
+          accuracy_ = std::min(accuracy_, one.parameters->accuracy);
+      }
+
+      std::optional<SharedChoice>
+      find()
+      {
+        if (!begin_by_rule())
+          return std::nullopt;
+        const Numerics &n    = found_.choice.numerics;
+        const Runs reference = run(n, found_.relative_tolerance);
+        if (!reference.finished)
+          return std::nullopt;
+        if (n.grading.levels == 0 && !n.linear)
+          make_cheaper(reference);
+        return found_;
+      }
+
+    private:
+      /// The same runs of all examples.
+      struct Runs
+      {
+        bool finished = false;
+        std::vector<double> displacements;
+        double cost = std::numeric_limits<double>::infinity(); ///< of the time integration
+      };
+
+      /// The finest of the choices for all examples, with the tolerance relative to the displacement.
+      bool
+      begin_by_rule()
+      {
+        found_.relative_tolerance = std::numeric_limits<double>::infinity();
+        for (const SceneToCompute &one : examples_)
+        {
+          const auto choice         = choose_numerics(MPI_COMM_SELF, *one.parameters, *one.scene, keep_going_);
+          if (!choice || !may_share(*choice, one) ||
+              (!found_.sizes.empty() && choice->numerics.integrator != found_.choice.numerics.integrator))
+            return false;
+          const double size         = choice->wanted_error / one.parameters->accuracy; // not 0 where D nearly is
+          found_.relative_tolerance = std::min(found_.relative_tolerance, choice->numerics.tolerance / size);
+          found_.sizes.push_back(size);
+          if (found_.sizes.size() == 1)
+          {
+            found_.choice = *choice;
+            continue;
+          }
+          const Numerics a = found_.choice.numerics, &b = choice->numerics;
+          Numerics &n    = found_.choice.numerics;
+          n              = b.n_cells * b.degree > a.n_cells * a.degree ? b : a;
+          n.initial_step = std::min(a.initial_step, b.initial_step);
+          n.least_event  = std::min(a.least_event, b.least_event);
+        }
+        return true;
+      }
+
+      Runs
+      run(const Numerics &numerics, const double relative_tolerance)
+      {
+        SharedChoice settings       = found_;
+        settings.choice.numerics    = numerics;
+        settings.relative_tolerance = relative_tolerance;
+        std::vector<NumericsChoice> choices;
+        std::vector<TimeParameters> times;
+        for (std::size_t i = 0; i < examples_.size(); ++i)
+        {
+          choices.push_back(settings.choice_for(*examples_[i].scene, found_.sizes[i]));
+          times.push_back(examples_[i].parameters->time);
+        }
+        std::vector<BatchRun> runs;
+        for (std::size_t i = 0; i < examples_.size(); ++i)
+        {
+          if (!batch_method(*examples_[i].scene, times[i], choices[i].numerics))
+            return {};
+          auto cycles = cycle_wish(*examples_[i].parameters, *examples_[i].scene, /*has_pictures=*/false);
+          if (cycles)
+            cycles->accuracy = part_of_cycles * accuracy_;
+          runs.push_back({examples_[i].scene, &times[i], &choices[i].numerics, cycles});
+        }
+        Runs result{true, {}, 0.};
+        for (const auto &one : run_batch(runs, {.energy_balance = false}, keep_going_))
+        {
+          if (!one || one->time.status != Status::finished)
+            return {};
+          result.displacements.push_back(one->displacement);
+          result.cost += static_cast<double>(one->time.newton_iterations);
+        }
+        result.cost *= integrator(numerics.integrator).n_stages;
+        return result;
+      }
+
+      /// Do the displacements differ by so little that it does not count?
+      bool
+      are_near(const Runs &some, const Runs &others) const
+      {
+        if (!some.finished || !others.finished)
+          return false;
+        for (std::size_t i = 0; i < examples_.size(); ++i)
+          if (!(std::abs(some.displacements[i] - others.displacements[i]) <= part * accuracy_ * found_.sizes[i]))
+            return false;
+        return true;
+      }
+
+      void
+      make_cheaper(const Runs &reference)
+      {
+        Numerics &best = found_.choice.numerics;
+        Runs on_mesh   = reference; // exact in time, as far as it counts
+        for (unsigned int n = accuracy_rule::choice::fewest_cells; n < best.n_cells; ++n)
+        {
+          Numerics fewer   = best;
+          fewer.n_cells    = n;
+          const Runs tried = run(fewer, found_.relative_tolerance);
+          if (!are_near(tried, reference))
+            continue;
+          best    = fewer;
+          on_mesh = tried;
+          break;
+        }
+        double least_cost = on_mesh.cost;
+        const Numerics mesh = best;
+        const bool is_free  = examples_.front().parameters->time.integrator == "automatic";
+        for (const char *name : {"radau 9", "radau 5"})
+        {
+          if (!is_free && mesh.integrator != name)
+            continue;
+          Numerics other   = mesh;
+          other.integrator = name;
+          // One difference may be small by chance.
+          Runs looser;
+          for (double tolerance = loosest_tolerance; tolerance > found_.relative_tolerance; tolerance *= next_tolerance)
+          {
+            const Runs tried = run(other, tolerance);
+            if (are_near(tried, on_mesh) && are_near(looser, on_mesh))
+            {
+              if (looser.cost < least_cost)
+              {
+                best                      = other;
+                least_cost                = looser.cost;
+                found_.relative_tolerance = tolerance / next_tolerance;
+              }
+              break;
+            }
+            if (tried.cost > 2. * least_cost && tried.finished)
+              break;
+            looser = tried;
+          }
+        }
+      }
+
+      const std::span<const SceneToCompute> examples_;
+      const std::function<bool()> &keep_going_;
+      double accuracy_ = std::numeric_limits<double>::infinity();
+      SharedChoice found_;
+    };
+  } // namespace
+
+  NumericsChoice
+  SharedChoice::choice_for(const Scene &scene, const double size) const
+  {
+    NumericsChoice own  = choice;
+    own.numerics.tolerance =
+      std::max(relative_tolerance * size, accuracy_rule::choice::least_error * scene.body.length);
+    // Each stress has events of its own.
+    own.numerics.step_limits =
+      similar_step_limits(scene, choice.numerics.step_limits, choice.numerics.least_event / least_event);
+    return own;
+  }
+
+  std::optional<SharedChoice>
+  shared_choice(const std::span<const SceneToCompute> examples, const std::function<bool()> &keep_going)
+  {
+    return Search(examples, keep_going).find();
+  }
+} // namespace crawler
