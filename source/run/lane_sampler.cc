@@ -8,6 +8,7 @@ namespace crawler
 {
   LaneSampler::LaneSampler(const LaneSetup &setup, const unsigned int n_pieces)
     : setup_(setup)
+    , shape_((n_pieces + 1) * (setup.degree + 1))
     , integral_(setup.n_cells * setup.degree + 1, 0.)
     , u_(integral_.size())
     , at_ends_(n_pieces + 1)
@@ -27,7 +28,8 @@ namespace crawler
           break;
         cells_.push_back(cell);
         const auto shape = interpolation_matrix(element.nodes, {(s - left) / setup.sizes[cell]});
-        shape_.insert(shape_.end(), shape.begin(), shape.end());
+        for (unsigned int i = 0; i < element.n; ++i)
+          shape_[i * at_ends_.size() + piece] = shape[i];
       }
       left = right;
     }
@@ -41,12 +43,16 @@ namespace crawler
     for (std::size_t d = 0; d < u_.size(); ++d)
       mean_ += integral_[d] * u_[d];
     const unsigned int nodes = setup_.degree + 1;
-    for (std::size_t e = 0; e < at_ends_.size(); ++e)
+    const std::size_t n      = at_ends_.size();
+    std::fill(at_ends_.begin(), at_ends_.end(), 0.);
+    for (std::size_t from = 0, to = 0; from < n; from = to)
     {
-      const double *const u = &u_[cells_[e] * setup_.degree];
-      at_ends_[e]           = 0.;
+      const double *const u = &u_[cells_[from] * setup_.degree];
+      while (to < n && cells_[to] == cells_[from])
+        ++to;
       for (unsigned int i = 0; i < nodes; ++i)
-        at_ends_[e] += shape_[e * nodes + i] * u[i];
+        for (std::size_t e = from; e < to; ++e)
+          at_ends_[e] += shape_[i * n + e] * u[i];
     }
   }
 } // namespace crawler

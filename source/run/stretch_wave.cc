@@ -264,11 +264,13 @@ namespace crawler
         const double e = stretch[j][i] - mean[i], later = stretch[j + half][i] - mean[i];
         largest = std::max({largest, std::abs(e), std::abs(later)});
         squares += per_phase * (e * e + later * later);
-        const double parts[] = {e - later, e + later};
-        for (unsigned int n = 0; n < n_harmonics; ++n)
+        const double odd = e - later, even = e + later;
+        for (unsigned int n = 0; n < n_harmonics; n += 2)
         {
-          E[i].re[n] += parts[n % 2] * turn.re[n];
-          E[i].im[n] += parts[n % 2] * turn.im[n];
+          E[i].re[n] += odd * turn.re[n];
+          E[i].im[n] += odd * turn.im[n];
+          E[i].re[n + 1] += even * turn.re[n + 1];
+          E[i].im[n + 1] += even * turn.im[n + 1];
         }
       }
     }

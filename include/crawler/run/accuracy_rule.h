@@ -100,7 +100,7 @@ namespace crawler::accuracy_rule
   } // namespace graded
 
   // Numerics that similar scenes share (shared_choice.cc; doc/numerics.md, "Sweeps"). Measured by
-  // tests/verification/shared_study.cc.
+  // tests/verification/shared_numerics_test.cc.
   namespace shared
   {
     /// Space and time may each change the displacement of an example by this part of the wanted error, and the

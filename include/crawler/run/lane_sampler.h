@@ -35,7 +35,7 @@ namespace crawler
   private:
     const LaneSetup &setup_;
     std::vector<unsigned int> cells_; ///< [n_pieces + 1] in which the ends are
-    std::vector<double> shape_;       ///< [n_pieces + 1][degree + 1] shape functions there
+    std::vector<double> shape_;       ///< [degree + 1][n_pieces + 1] shape functions there
     std::vector<double> integral_;    ///< [unknowns] of each shape function
     std::vector<double> u_, at_ends_;
     double mean_ = 0.;

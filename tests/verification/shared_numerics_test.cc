@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Answers with numerics that neighbours in a sweep share (studies/sweep/sweep_numerics.h), against answers of runs that
+// are alone and a hundred times as accurate.
+#include <crawler/run/result_table.h>
+#include <crawler/studies/sweep/sweep_numerics.h>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  bool
+  never()
+  {
+    return false;
+  }
+
+  bool
+  always()
+  {
+    return true;
+  }
+
+  constexpr unsigned long n_points = 60;
+
+  SweepPoints
+  points_of(const std::string &scene, const std::string &axes, const double accuracy)
+  {
+    return {MPI_COMM_SELF,
+            ParameterFile::from_text(fmt::format("set Accuracy = {}\n{}\nsubsection Sweep\n set Design = random\n "
+                                                 "set Number of points = {}\n set Axes = {}\nend\n",
+                                                 accuracy,
+                                                 scene,
+                                                 n_points,
+                                                 axes),
+                                     "test.prm")};
+  }
+
+  struct Family
+  {
+    const char *name, *scene, *axes;
+    double least_part; ///< of the points that the shared numerics must answer
+  };
+
+  const std::string wave = "subsection Active stress\n subsection Optimal wave\n set Choose wave by = wave speed\n "
+                           "set Wave speed = 1\n end\nend\n";
+
+  void
+  expect_covered(const Family &family, const double accuracy)
+  {
+    const std::string scene = wave + family.scene;
+    SweepPoints points = points_of(scene, family.axes, accuracy), exact = points_of(scene, family.axes, 0.01 * accuracy);
+    SweepNumerics numerics(points), others(exact);
+    const SweepBlock all = {0, n_points};
+    unsigned long n      = 0;
+    for (unsigned long i = 0; i < n_points; ++i)
+    {
+      const auto shared = numerics.at(all, i, always);
+      if (shared.choice == nullptr)
+        continue;
+      Task task       = numerics.task(i);
+      const auto done = compute_similar({&task, 1}, *shared.choice, {numerics.size_at(shared, i)}, HUGE_VAL, never);
+      if (!done.front())
+        continue;
+      ++n;
+      const SimulationResult &result = task.computed.result;
+      EXPECT_LE(result.error->total, accuracy * std::abs(result.displacement)) << family.name << ", point " << i;
+      if (i % 4 != 0)
+        continue;
+      Task finer = others.task(i);
+      compute_all({&finer, 1}, HUGE_VAL, never);
+      ASSERT_EQ(finer.computed.result.time.status, Status::finished) << family.name << ", point " << i;
+      EXPECT_LE(std::abs(result.displacement - finer.computed.result.displacement),
+                result.error->total + finer.computed.result.error->total)
+        << family.name << ", point " << i;
+      const auto &entries = entries_with_errors();
+      for (std::size_t e = 0; e < entries.size(); ++e)
+      {
+        const auto value = entries[e]->value(result), true_value = entries[e]->value(finer.computed.result);
+        if (std::holds_alternative<double>(value) && std::holds_alternative<double>(true_value))
+        {
+          EXPECT_LE(std::abs(std::get<double>(value) - std::get<double>(true_value)),
+                    result.errors->values[e] + finer.computed.result.errors->values[e])
+            << family.name << ", point " << i << ", " << entries[e]->key;
+        }
+      }
+    }
+    EXPECT_GE(n, static_cast<unsigned long>(family.least_part * n_points)) << family.name;
+  }
+} // namespace
+
+TEST(SharedNumerics, BoundsCoverTheErrors)
+{
+  const std::string chi = "Active stress/Optimal wave/Perturbation parameter : uniform(0.05, 0.4)",
+                    p   = "Body/Anchoring exponent : uniform(1.5, 4)";
+  const std::string p_chi = p + "; " + chi, k_chi = "Body/Elastic modulus : loguniform(0.1, 100); " + chi,
+                    c_chi = "Active stress/Optimal wave/Wave speed : uniform(0.5, 3); " + chi;
+  for (const double accuracy : {1e-3, 1e-4, 1e-6})
+  {
+    expect_covered({"p, chi", "", p_chi.c_str(), 0.9}, accuracy);
+    expect_covered({"k, chi", "", k_chi.c_str(), 0.7}, accuracy);
+    expect_covered({"c, chi", "", c_chi.c_str(), 0.8}, accuracy); // some nearly invert
+    expect_covered({"stiffness profile",
+                    "subsection Body\n set Elastic modulus profile = 1+0.5*sin(3*s)\nend\n",
+                    p_chi.c_str(),
+                    0.9},
+                   accuracy);
+  }
+}
+
+/// Whoever asks, and in which order, gets the same.
+TEST(SharedNumerics, DependOnTheBlockAlone)
+{
+  SweepPoints points = points_of(wave, "Active stress/Optimal wave/Perturbation parameter : uniform(0.05, 0.45)", 1e-4);
+  const SweepBlock all = {0, n_points}, other = {0, n_points / 2};
+  SweepNumerics forward(points), backward(points);
+  const auto a             = forward.at(all, 0, always);
+  const double tolerance   = a.choice->relative_tolerance;
+  const double size        = forward.size_at(a, 7);
+  const unsigned int cells = a.choice->choice.numerics.n_cells;
+  backward.at(other, 3, always);
+  const auto b = backward.at(all, n_points - 1, always);
+  EXPECT_EQ(b.choice->relative_tolerance, tolerance);
+  EXPECT_EQ(b.choice->choice.numerics.n_cells, cells);
+  EXPECT_EQ(backward.size_at(b, 7), size);
+}
+
+/// Neighbours of different kinds share nothing, but parts of them may.
+TEST(SharedNumerics, BlocksOfDifferentKindsAreDivided)
+{
+  SweepPoints points(MPI_COMM_SELF,
+                     ParameterFile::from_text(wave + "subsection Sweep\n set Axes = Time/Integrator : bdf, radau 9; "
+                                                     "Body/Anchoring exponent : linspace(1.5, 4, 20)\nend\n",
+                                              "test.prm"));
+  SweepNumerics numerics(points);
+  const SweepBlock all = {0, 40};
+  EXPECT_EQ(numerics.at(all, 3, always).choice, nullptr) << "bdf is not for the fused engine";
+  const auto shared = numerics.at(all, 33, always);
+  ASSERT_NE(shared.choice, nullptr);
+  EXPECT_EQ(shared.points.first, 20u);
+  EXPECT_EQ(shared.points.size, 20u);
+}
