@@ -65,7 +65,7 @@ namespace crawler
         found_.relative_tolerance = std::numeric_limits<double>::infinity();
         for (const SceneToCompute &one : examples_)
         {
-          const auto choice         = choose_numerics(MPI_COMM_SELF, *one.parameters, *one.scene, keep_going_);
+          const auto choice = choose_numerics(MPI_COMM_SELF, *one.parameters, *one.scene, keep_going_);
           if (!choice || !may_share(*choice, one) ||
               (!found_.sizes.empty() && choice->numerics.integrator != found_.choice.numerics.integrator))
             return false;
@@ -149,7 +149,7 @@ namespace crawler
           on_mesh = tried;
           break;
         }
-        double least_cost = on_mesh.cost;
+        double least_cost   = on_mesh.cost;
         const Numerics mesh = best;
         const bool is_free  = examples_.front().parameters->time.integrator == "automatic";
         for (const char *name : {"radau 9", "radau 5"})
@@ -190,7 +190,7 @@ namespace crawler
   NumericsChoice
   SharedChoice::choice_for(const Scene &scene, const double size) const
   {
-    NumericsChoice own  = choice;
+    NumericsChoice own = choice;
     own.numerics.tolerance =
       std::max(relative_tolerance * size, accuracy_rule::choice::least_error * scene.body.length);
     // Each stress has events of its own.

@@ -117,8 +117,8 @@ TEST(HardAnswers, EachPointOfASweepHasItsEvents)
     examples[i].parameters = tasks[5 * i].parameters;
   const auto shared = shared_numerics(examples, []() { return true; });
   ASSERT_TRUE(shared);
-  const std::vector<bool> done = compute_similar(
-    tasks, *shared, std::vector<double>(tasks.size(), shared->sizes.front()), HUGE_VAL, never);
+  const std::vector<bool> done =
+    compute_similar(tasks, *shared, std::vector<double>(tasks.size(), shared->sizes.front()), HUGE_VAL, never);
   EXPECT_GE(std::count(done.begin(), done.end(), true), 10) << "most of them share their numerics";
   for (std::size_t i = 0; i < tasks.size(); ++i)
     if (done[i])

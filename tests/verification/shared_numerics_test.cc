@@ -26,7 +26,7 @@ namespace
     return true;
   }
 
-  constexpr unsigned long n_points = 60;
+  constexpr unsigned long n_points = 60, n_all = 600; ///< of a block that is looked at, and of the sweep
 
   SweepPoints
   points_of(const std::string &scene, const std::string &axes, const double accuracy)
@@ -36,7 +36,7 @@ namespace
                                                  "set Number of points = {}\n set Axes = {}\nend\n",
                                                  accuracy,
                                                  scene,
-                                                 n_points,
+                                                 n_all,
                                                  axes),
                                      "test.prm")};
   }
@@ -54,7 +54,8 @@ namespace
   expect_covered(const Family &family, const double accuracy)
   {
     const std::string scene = wave + family.scene;
-    SweepPoints points = points_of(scene, family.axes, accuracy), exact = points_of(scene, family.axes, 0.01 * accuracy);
+    SweepPoints points      = points_of(scene, family.axes, accuracy),
+                exact       = points_of(scene, family.axes, 0.01 * accuracy);
     SweepNumerics numerics(points), others(exact);
     const SweepBlock all = {0, n_points};
     unsigned long n      = 0;
@@ -96,8 +97,8 @@ namespace
 
 TEST(SharedNumerics, BoundsCoverTheErrors)
 {
-  const std::string chi = "Active stress/Optimal wave/Perturbation parameter : uniform(0.05, 0.4)",
-                    p   = "Body/Anchoring exponent : uniform(1.5, 4)";
+  const std::string chi   = "Active stress/Optimal wave/Perturbation parameter : uniform(0.05, 0.4)",
+                    p     = "Body/Anchoring exponent : uniform(1.5, 4)";
   const std::string p_chi = p + "; " + chi, k_chi = "Body/Elastic modulus : loguniform(0.1, 100); " + chi,
                     c_chi = "Active stress/Optimal wave/Wave speed : uniform(0.5, 3); " + chi;
   for (const double accuracy : {1e-3, 1e-4, 1e-6})
@@ -135,13 +136,24 @@ TEST(SharedNumerics, BlocksOfDifferentKindsAreDivided)
 {
   SweepPoints points(MPI_COMM_SELF,
                      ParameterFile::from_text(wave + "subsection Sweep\n set Axes = Time/Integrator : bdf, radau 9; "
-                                                     "Body/Anchoring exponent : linspace(1.5, 4, 20)\nend\n",
+                                                     "Body/Anchoring exponent : linspace(1.5, 4, 300)\nend\n",
                                               "test.prm"));
   SweepNumerics numerics(points);
-  const SweepBlock all = {0, 40};
-  EXPECT_EQ(numerics.at(all, 3, always).choice, nullptr) << "bdf is not for the fused engine";
-  const auto shared = numerics.at(all, 33, always);
+  const SweepBlock some = {280, 40};
+  EXPECT_EQ(numerics.at(some, 283, always).choice, nullptr) << "bdf is not for the fused engine";
+  const auto shared = numerics.at(some, 313, always);
   ASSERT_NE(shared.choice, nullptr);
-  EXPECT_EQ(shared.points.first, 20u);
+  EXPECT_EQ(shared.points.first, 300u);
   EXPECT_EQ(shared.points.size, 20u);
+}
+
+/// Where each rank would measure for a few points only, each point chooses for itself.
+TEST(SharedNumerics, AreForManyPoints)
+{
+  SweepPoints points(
+    MPI_COMM_SELF,
+    ParameterFile::from_text(
+      wave + "subsection Sweep\n set Axes = Body/Anchoring exponent : linspace(1.5, 4, 100)\nend\n", "test.prm"));
+  SweepNumerics numerics(points);
+  EXPECT_EQ(numerics.at({0, 100}, 3, always).choice, nullptr);
 }

@@ -184,10 +184,10 @@ namespace crawler
       {
         if (!results[i])
           continue;
-        Member &member       = members[i];
-        const Task &task     = *member.task;
-        const bool repeats   = results[i]->cycles.has_value();
-        member.finer         = numerics_of_finer_run(member.choice, task.parameters.time, *task.scene, repeats);
+        Member &member        = members[i];
+        const Task &task      = *member.task;
+        const bool repeats    = results[i]->cycles.has_value();
+        member.finer          = numerics_of_finer_run(member.choice, task.parameters.time, *task.scene, repeats);
         member.task->computed = {*results[i], member.choice};
         if (results[i]->time.status != Status::finished || !member.has_finer_run())
           continue;

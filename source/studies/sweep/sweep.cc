@@ -252,10 +252,10 @@ namespace crawler
     constexpr double long_enough         = 2.; // seconds
     SweepWork work(points, size_of(communicator));
     const unsigned long n_parts = work.n_parts(), stride = golden_stride(n_parts);
-    const double before         = now();
-    unsigned long n_computed    = 0;
-    for (unsigned long i = 0; i < n_parts && n_computed < design.n_points() &&
-                              (i < most_samples || n_computed == 0) && now() - before < long_enough;
+    const double before      = now();
+    unsigned long n_computed = 0;
+    for (unsigned long i = 0; i < n_parts && n_computed < design.n_points() && (i < most_samples || n_computed == 0) &&
+                              now() - before < long_enough;
          ++i)
       n_computed += work.try_out((i + 1) * stride % n_parts);
     const double each = (now() - before) / static_cast<double>(n_computed);

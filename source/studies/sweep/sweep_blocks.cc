@@ -44,6 +44,12 @@ namespace crawler
     return n_runs_ * parts_of_run_;
   }
 
+  unsigned long
+  SweepBlocks::largest() const
+  {
+    return (rows_ + parts_of_run_ - 1) / parts_of_run_ * row_;
+  }
+
   SweepBlock
   SweepBlocks::operator[](const unsigned long number) const
   {
@@ -115,9 +121,12 @@ namespace crawler
     , blocks_(points.design())
     , order_(blocks_, points)
     , parts_of_block_([&]() {
-      constexpr unsigned long parts_per_rank = 16, most = 64;
-      const unsigned long together = std::clamp(points.design().n_points() / (parts_per_rank * n_ranks), 1ul, most);
-      return (SweepBlocks::most + together - 1) / together;
+      // A rank that takes a part must measure what its block shares.
+      constexpr unsigned long parts_per_rank = 4, most = 64, most_if_alone = 8;
+      const unsigned long n = points.design().n_points(), largest = blocks_.largest();
+      const unsigned long together =
+        std::clamp(n / (parts_per_rank * n_ranks), 1ul, SweepNumerics::are_shared(n) ? most : most_if_alone);
+      return (largest + together - 1) / together;
     }())
     , time_limit_(points.sweep().point_time_limit.value_or(HUGE_VAL))
     , numerics_(points)
@@ -154,8 +163,8 @@ namespace crawler
     for (std::size_t from = 0, to = 0; from < points.size(); from = to)
     {
       const double start = now();
-      const auto shared  = numerics_.at(
-        block, points[from], [&]() { return now() - start <= time_limit_ && !interrupted(); });
+      const auto shared =
+        numerics_.at(block, points[from], [&]() { return now() - start <= time_limit_ && !interrupted(); });
       while (to < points.size() && points[to] < shared.points.first + shared.points.size)
         ++to;
       if (shared.choice == nullptr || interrupted())

@@ -14,7 +14,7 @@ namespace crawler
     constexpr unsigned long fewest = 6;
     /// Examples of a block, and of one that has fewer points than many.
     constexpr std::size_t n_examples = 5, n_examples_of_few = 3;
-    constexpr unsigned long many     = 48;
+    constexpr unsigned long many = 48;
 
     /// The square of the distance of two places.
     double
@@ -78,7 +78,7 @@ namespace crawler
   SweepNumerics::measure(const SweepBlock &part, const std::function<bool()> &keep_going) const
   {
     Known known;
-    if (part.size < fewest)
+    if (part.size < fewest || !are_shared(points_.design().n_points()))
       return known;
     std::vector<std::vector<double>> places;
     for (unsigned long i = 0; i < part.size; ++i)

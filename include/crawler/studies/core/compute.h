@@ -44,8 +44,8 @@ namespace crawler
   void
   compute_all(std::span<Task> tasks, double time_limit, const std::function<bool()> &interrupted);
 
-  /// The numerics that similar scenes share (accuracy/shared_choice.h), as measured on some @p examples of them; nothing
-  /// if there are none.
+  /// The numerics that similar scenes share (accuracy/shared_choice.h), as measured on some @p examples of them;
+  /// nothing if there are none.
   std::optional<SharedChoice>
   shared_numerics(std::span<Task> examples, const std::function<bool()> &keep_going);
 

@@ -25,6 +25,10 @@ namespace crawler
     unsigned long
     size() const;
 
+    /// Points of the largest block.
+    unsigned long
+    largest() const;
+
     SweepBlock
     operator[](unsigned long number) const;
 
@@ -53,7 +57,8 @@ namespace crawler
 
   /**
    * One rank's part of the work of a sweep. The work is handed out in parts of blocks, small enough that each of
-   * @p n_ranks gets several; who computes a part does not change its answers, since the numerics are those of its block.
+   * @p n_ranks gets several; who computes a part does not change its answers, since the numerics are those of its
+   * block.
    */
   class SweepWork
   {

@@ -22,16 +22,24 @@ namespace crawler
   /**
    * The numerics that the points of a block share, measured on a few of them that lie as far apart as they can. Where
    * these have nothing in common the halves of the block are tried, and so on. The answer for a point depends on its
-   * block alone, not on who asks and in which order.
+   * block alone, not on who asks and in which order. Sweeps of few points share nothing: there each rank would measure
+   * for too few points.
    */
   class SweepNumerics
   {
   public:
     explicit SweepNumerics(SweepPoints &points);
 
+    /// Does a sweep of so many points share anything?
+    static bool
+    are_shared(const unsigned long n_points)
+    {
+      return n_points >= 512;
+    }
+
     struct Shared
     {
-      SweepBlock points; ///< that share it
+      SweepBlock points;          ///< that share it
       const SharedChoice *choice; ///< null if they share nothing; good until a point of another block is asked for
     };
 
@@ -61,7 +69,7 @@ namespace crawler
     place(unsigned long point) const;
 
     SweepPoints &points_;
-    std::optional<unsigned long> block_;                           ///< its first point
+    std::optional<unsigned long> block_;                             ///< its first point
     std::map<std::pair<unsigned long, unsigned long>, Known> known_; ///< of that block and its parts
   };
 } // namespace crawler

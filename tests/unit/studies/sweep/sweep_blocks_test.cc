@@ -29,8 +29,8 @@ namespace
       {
         const SweepBlock block = blocks[i];
         ASSERT_EQ(block.first, next);
-        ASSERT_TRUE(block.size >= 1 && block.size <= 64);
-        if (chi > 32)
+        ASSERT_TRUE(block.size >= 1 && block.size <= SweepBlocks::most);
+        if (static_cast<unsigned long>(chi) > SweepBlocks::most / 2)
         {
           ASSERT_EQ(block.first / chi, (block.first + block.size - 1) / chi);
         }
