@@ -41,6 +41,7 @@ namespace crawler
                         static_cast<unsigned int>(sample_places_.size()),
                         samples_.data(),
                         tableau.c.data(),
+                        tableau.b.data(),
                         tableau.inverse.data(),
                         tableau.error_weights.data(),
                         tableau.newton_fraction,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Compiled once for each instruction set; CRAWLER_INSTRUCTION_SET names it and CRAWLER_PACK is the widest pack.
+#include <crawler/lanes/adjoint_lanes.h>
 #include <crawler/lanes/radau_lanes.h>
 
 namespace crawler::CRAWLER_INSTRUCTION_SET
@@ -42,11 +43,33 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         run_in<Pack, PositionSystem>(setup, host, memory);
     }
 
+    template <typename Pack>
+    std::size_t
+    adjoint_memory(const LaneSetup &setup)
+    {
+      return setup.n_stages == 3 ? AdjointLanes<Pack, 3>::memory(setup) : AdjointLanes<Pack, 5>::memory(setup);
+    }
+
+    template <typename Pack>
+    void
+    adjoint(const LaneSetup &setup, const LaneAdjointHost &host, double *memory)
+    {
+      if (setup.n_stages == 3)
+        AdjointLanes<Pack, 3>(setup, host, memory).run();
+      else
+        AdjointLanes<Pack, 5>(setup, host, memory).run();
+    }
+
 #define CRAWLER_TEXT(name) CRAWLER_TEXT_OF(name)
 #define CRAWLER_TEXT_OF(name) #name
     template <typename Pack>
     constexpr LaneEngine engine = {
-      CRAWLER_TEXT(CRAWLER_INSTRUCTION_SET), PackTraits<Pack>::size, memory<Pack>, run<Pack>};
+      CRAWLER_TEXT(CRAWLER_INSTRUCTION_SET),
+      PackTraits<Pack>::size,
+      memory<Pack>,
+      run<Pack>,
+      adjoint_memory<Pack>,
+      adjoint<Pack>};
   } // namespace
 
   extern const LaneEngine batch, single;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/lanes/lane_adjoint.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/equation/general_position_form.h>
@@ -265,6 +266,9 @@ namespace crawler
       const bool at_end_of_part = !segments_.is_last() && part.time == segments_.end();
       if (!sees(step, y, observers) || (keep_going && !keep_going()) || may_end_after(step, y))
         return false;
+      if (run_->options.steps != nullptr && step.size > 0. && integrators_.present == integrators_.lanes.get())
+        run_->options.steps->add(
+          integrators_.lanes->step(), integrators_.lanes->tables().setup.n_stages, y.size(), part.number == 1);
       look_for_coarser_mesh(step);
       if (at_end_of_part && run_->request == Request::none)
         run_->request = Request::restart;

@@ -42,7 +42,7 @@ namespace crawler
     const double *values, *derivatives, *weights, *stiffness; ///< of the element
     unsigned int n_samples;                                   ///< per cell, where the stretch is looked at
     const double *sample_derivatives;                         ///< [n_samples][degree+1]
-    const double *c, *inverse, *error_weights;                ///< of the method
+    const double *c, *b, *inverse, *error_weights;            ///< of the method
     double newton_fraction; ///< of the method: error of Newton's method that is left, relative to the tolerance
     double real_eigenvalue;
     const double *eigenvalues; ///< [pairs][real, imaginary]
@@ -163,6 +163,37 @@ namespace crawler
     LaneCellLaws (*cell_laws)(void *context, double t, const double *m, const double *w, const double *rate) = nullptr;
   };
 
+  /// A run to go through backwards. All arrays belong to the caller.
+  struct LanePast
+  {
+    unsigned int n_steps = 0;
+    const double *times = nullptr, *sizes = nullptr; ///< [n_steps] ends and lengths of the steps
+    const double *z      = nullptr;                  ///< [n_steps][stages][unknowns] as in LaneStep
+    const double *end    = nullptr;                  ///< [unknowns] the last state
+    const unsigned char *starts = nullptr;           ///< [n_steps] does a body start anew with this step? Null: never
+    const double *gradient = nullptr; ///< [unknowns] what one wants to know, differentiated by the last state
+  };
+
+  /// A step gone through backwards; element i is at [i*stride].
+  struct LaneAdjointStep
+  {
+    unsigned int number; ///< from 0
+    std::size_t stride;
+    const double *mu; ///< [stages][unknowns] what one wants to know, differentiated by the residuals, with the sign of dF
+  };
+
+  /// Who gives the runs and takes their adjoints.
+  struct LaneAdjointHost
+  {
+    void *context;
+    /// The next run for a lane; of @p job the laws of the body alone count. False if there is none.
+    bool (*next)(void *context, unsigned int lane, LaneJob &job, LanePast &past);
+    void (*step)(void *context, unsigned int lane, const LaneAdjointStep &step);
+    /// @p by_start: [unknowns] what one wants to know, differentiated by the first state; not good unless @p finished.
+    void (*done)(void *context, unsigned int lane, bool finished, std::size_t stride, const double *by_start);
+    bool (*laws)(void *context, unsigned int lane, const LanePoints &points) = nullptr; ///< as in LaneHost
+  };
+
   /// The engine as compiled for one instruction set and one number of lanes.
   struct LaneEngine
   {
@@ -171,6 +202,9 @@ namespace crawler
     /// Doubles of scratch memory that run() needs, aligned to 64 bytes.
     std::size_t (*memory)(const LaneSetup &setup);
     void (*run)(const LaneSetup &setup, const LaneHost &host, double *memory);
+    /// The same for the adjoint of runs in the position form.
+    std::size_t (*adjoint_memory)(const LaneSetup &setup);
+    void (*adjoint)(const LaneSetup &setup, const LaneAdjointHost &host, double *memory);
   };
 
   /// The best engine for this processor: for many bodies, or with one lane for one body.

@@ -24,6 +24,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                       Pack *,
                       Complex<Pack> *,
                       Complex<Pack> *);
+    decltype(factorize) factorize_transposed;
+    void (*slopes)(const LaneMesh<Pack> &, const Pack *, const Pack *, const LaneSlopes<Pack> &);
+    void (*transposed)(const LaneMesh<Pack> &, const LaneSlopes<Pack> &, const Pack *, Pack *, Pack *);
     void (*forward)(int, const Pack *, Pack *);
     void (*backward)(int, const Pack *, Pack *);
     void (*complex_forward)(int, const Complex<Pack> *, Complex<Pack> *);
@@ -38,7 +41,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                                        LaneKernels<Pack, q>::states,
                                                        LaneKernels<Pack, q>::balance,
                                                        LaneKernels<Pack, q>::integrals,
-                                                       LaneKernels<Pack, q>::factorize,
+                                                       LaneKernels<Pack, q>::template factorize<false>,
+                                                       LaneKernels<Pack, q>::template factorize<true>,
+                                                       LaneKernels<Pack, q>::slopes,
+                                                       LaneKernels<Pack, q>::transposed,
                                                        LaneKernels<Pack, q>::template forward<Pack>,
                                                        LaneKernels<Pack, q>::template backward<Pack>,
                                                        LaneKernels<Pack, q>::template forward<Complex<Pack>>,

@@ -36,6 +36,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack end_stretch[2] = {}, end_rate[2] = {}; ///< at both ends, and its rate
   };
 
+  /// The derivatives of friction f and force N at all points of a state: by velocity, stretch, place and the rate of the
+  /// stretch. Null: 0.
+  template <typename Pack>
+  struct LaneSlopes
+  {
+    Pack *f_v = nullptr, *f_w = nullptr, *N_w = nullptr, *f_u = nullptr, *N_rate = nullptr;
+  };
+
   template <typename Pack, int q>
   struct LaneKernels
   {
@@ -125,7 +133,66 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         F[i] = -F[i];
     }
 
-    /// The factors of K + real M, and of K + (re + i im) M for each pair.
+    static const Pack &
+    modulus(const Laws &laws, const PointDerivatives<n, Pack> &, int)
+    {
+      return laws.k;
+    }
+    static const Pack &
+    modulus(const KnownLaws<n, Pack> &, const PointDerivatives<n, Pack> &D, const int p)
+    {
+      return D.N_w[p];
+    }
+
+    [[gnu::flatten]] static void
+    slopes(const LaneMesh<Pack> &mesh, const Pack *u, const Pack *v, const LaneSlopes<Pack> &at)
+    {
+      for_cells(mesh, nullptr, [&](const auto &laws, const int c) {
+        const auto D = cell_derivatives<n, true, Pack>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q);
+        for (int p = 0; p < n; ++p)
+        {
+          const int i = c * n + p;
+          at.f_v[i]   = D.f_v[p];
+          at.f_w[i]   = D.f_w[p];
+          at.N_w[i] = modulus(laws, D, p);
+          if (at.f_u != nullptr)
+            at.f_u[i] = D.f_u[p];
+          if (at.N_rate != nullptr)
+            at.N_rate[i] = D.N_rate[p];
+        }
+      });
+    }
+
+    /// The products of the transposed dF/du and of dF/dv, which is symmetric, with @p x.
+    [[gnu::flatten]] static void
+    transposed(const LaneMesh<Pack> &mesh, const LaneSlopes<Pack> &at, const Pack *x, Pack *K_x, Pack *M_x)
+    {
+      for (int c = 0; c < mesh.n_cells; ++c)
+      {
+        set_to_zero(c, K_x);
+        set_to_zero(c, M_x);
+        Pack here[n], slope[n], N[n], f[n];
+        evaluate<n>(mesh.tables.values, x + c * q, 1., 0., here);
+        evaluate<n>(mesh.tables.derivatives, x + c * q, 1. / mesh.sizes[c], 0., slope);
+        for (int p = 0; p < n; ++p)
+        {
+          const int i = c * n + p;
+          N[p]        = at.f_w[i] * here[p] + at.N_w[i] * slope[p];
+          f[p]        = at.f_u != nullptr ? at.f_u[i] * here[p] : Pack{};
+        }
+        add_forces<n, Pack>(mesh.tables, mesh.sizes[c], N, at.f_u != nullptr ? f : nullptr, K_x + c * q);
+        for (int p = 0; p < n; ++p)
+        {
+          const int i = c * n + p;
+          f[p]        = at.f_v[i] * here[p];
+          N[p]        = at.N_rate != nullptr ? at.N_rate[i] * slope[p] : Pack{};
+        }
+        add_forces<n, Pack>(mesh.tables, mesh.sizes[c], N, f, M_x + c * q);
+      }
+    }
+
+    /// The factors of K + real M, and of K + (re + i im) M for each pair; with the transposed K if so wished.
+    template <bool is_transposed>
     [[gnu::flatten]] static void
     factorize(const LaneMesh<Pack> &mesh,
               const Pack *u,
@@ -142,6 +209,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for_cells(mesh, nullptr, [&](const auto &laws, const int c) {
         Pack K[n * n], M[n * n];
         cell_blocks<n, true>(mesh.tables, mesh.sizes[c], laws, u + c * q, v + c * q, K, M);
+        if constexpr (is_transposed)
+          for (int i = 0; i < n; ++i)
+            for (int j = 0; j < i; ++j)
+            {
+              const Pack lower = K[i * n + j];
+              K[i * n + j]     = K[j * n + i];
+              K[j * n + i]     = lower;
+            }
         Pack *A = blocks + c * n * n;
         for (int i = 0; i < n * n; ++i)
           A[i] = K[i] + real * M[i];

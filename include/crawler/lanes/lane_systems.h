@@ -126,7 +126,37 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory.piece(complex_upper_, pairs * corners);
     }
 
-    /// For the state (@p u, @p v).
+    /// Memory for slopes().
+    void
+    lay_out(LaneSlopes<Pack> &slopes, const std::size_t points, LaneMemory &memory) const
+    {
+      memory.piece(slopes.f_v, points);
+      memory.piece(slopes.f_w, points);
+      memory.piece(slopes.N_w, points);
+      if ((setup_.laws & LaneLaws::host_ground) != 0)
+        memory.piece(slopes.f_u, points);
+      if ((setup_.laws & LaneLaws::rate) != 0)
+        memory.piece(slopes.N_rate, points);
+    }
+
+    /// Of the laws, for the state (@p u, @p v).
+    void
+    slopes(const double *t, const Pack *u, const Pack *v, LaneSlopes<Pack> &at)
+    {
+      if (is_general_)
+        evaluate(t, u, v, nullptr, /*slopes=*/true);
+      kernels_.slopes(mesh_, u, v, at);
+    }
+
+    /// (dF/du)^T x and dF/dv x.
+    void
+    transposed(const LaneSlopes<Pack> &at, const Pack *x, Pack *K_x, Pack *M_x) const
+    {
+      kernels_.transposed(mesh_, at, x, K_x, M_x);
+    }
+
+    /// For the state (@p u, @p v); of the transposed systems if so wished.
+    template <bool is_transposed = false>
     void
     factorize(const double *t, const Pack *u, const Pack *v, const Pack *m, const Pack &inverse_h)
     {
@@ -135,16 +165,17 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       Number shifts[pairs];
       for (int j = 0; j < pairs; ++j)
         shifts[j] = {setup_.eigenvalues[2 * j] * inverse_h, setup_.eigenvalues[2 * j + 1] * inverse_h};
-      kernels_.factorize(mesh_,
-                         u,
-                         v,
-                         setup_.real_eigenvalue * inverse_h,
-                         pairs,
-                         shifts,
-                         blocks_,
-                         schur_,
-                         complex_blocks_,
-                         complex_schur_);
+      const auto factorize = is_transposed ? kernels_.factorize_transposed : kernels_.factorize;
+      factorize(mesh_,
+                u,
+                v,
+                setup_.real_eigenvalue * inverse_h,
+                pairs,
+                shifts,
+                blocks_,
+                schur_,
+                complex_blocks_,
+                complex_schur_);
       const int N = mesh_.n_cells;
       factorize_corners(schur_, lower_, pivot_, upper_);
       for (int j = 0; j < pairs; ++j)

@@ -14,6 +14,8 @@
 
 namespace crawler
 {
+  class LaneRecord;
+
   struct Scene;
 
   /// Of the last stride (SimulationResult::gait): none, if the active stress says how long it is, or in any case.
@@ -39,6 +41,7 @@ namespace crawler
     ResolutionWish resolution       = ResolutionWish::none;
     std::optional<CycleWish> cycles = {}; ///< end the run when its cycles repeat; not with output times
     GaitWish gait                   = GaitWish::none;
+    LaneRecord *steps               = nullptr; ///< all steps of the fused engine are added to it
   };
 
   /**

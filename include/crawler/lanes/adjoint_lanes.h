@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/lanes/lane_engine.h>
+#include <crawler/lanes/lane_kernels.h>
+#include <crawler/lanes/lane_memory.h>
+#include <crawler/lanes/lane_states.h>
+#include <crawler/lanes/lane_systems.h>
+
+#include <cstddef>
+
+/**
+ * The discrete adjoint of the Radau IIA methods on packs of bodies (doc/numerics.md, "Sensitivities"; Hairer, Hochbruck,
+ * Iserles, Lubich, GNI, section VI.4 for the methods, the transposed simplified Newton iteration as in radau_lanes.h).
+ * Included by lanes.cc alone, once for each instruction set; nothing here may come from the C++ library.
+ *
+ * For the stages u_i, v_i of a step with F_i = F(t_i, u_i, v_i), K_i = dF_i/du, M_i = dF_i/dv and W = A^-1:
+ *
+ *   K_i^T mu_i + (1/h) sum_j W_ji M_j mu_j = -delta_is lambda,     lambda <- lambda + sum_i K_i^T mu_i,
+ *
+ * from the last step to the first; then dJ/dp = sum over steps and stages of mu_i . dF_i/dp.
+ */
+namespace crawler::CRAWLER_INSTRUCTION_SET
+{
+  template <typename Pack, int s>
+  class AdjointLanes
+  {
+  public:
+    static constexpr int lanes = PackTraits<Pack>::size, pairs = (s - 1) / 2, middle = s / 2;
+    using Number = Complex<Pack>;
+
+    AdjointLanes(const LaneSetup &setup, const LaneAdjointHost &host, double *memory)
+      : setup_(setup)
+      , host_(host)
+      , laws_host_{host.context, nullptr, nullptr, nullptr, nullptr, false, host.laws}
+      , system_(setup, laws_host_)
+      , n_(system_.n_unknowns())
+      , n_points_(system_.n_points())
+      , memory_(memory)
+      , states_{setup, n_}
+    {
+      lay_out();
+      constexpr int columns = 1 + pairs;
+      for (int i = 0; i < s; ++i)
+        for (int j = 0; j < columns; ++j)
+          for (int part = 0; part < 2; ++part)
+          {
+            rows_[2 * (j * s + i) + part]          = setup.vectors[2 * (i * columns + j) + part];
+            vectors_[2 * (i * columns + j) + part] = setup.rows[2 * (j * s + i) + part];
+          }
+    }
+
+    AdjointLanes(const AdjointLanes &) = delete;
+
+    static std::size_t
+    memory(const LaneSetup &setup)
+    {
+      const LaneAdjointHost none{};
+      return AdjointLanes(setup, none, nullptr).memory_.size();
+    }
+
+    void
+    run()
+    {
+      for (int l = 0; l < lanes; ++l)
+        take_next(l);
+      while (any_busy())
+      {
+        if (friction_changed_)
+          system_.sort_bodies();
+        friction_changed_ = false;
+        load_step();
+        look_at_stages();
+        guess();
+        solve();
+        finish_step();
+      }
+    }
+
+  private:
+    /// A body, and the step that is gone through.
+    struct Lane
+    {
+      LanePast past;
+      bool busy = false, iterating = false, failed = false, has_old = false;
+      unsigned int left = 0; ///< steps, this one too
+      double h = 1., old_h = 1.;
+    };
+
+    void
+    lay_out()
+    {
+      const std::size_t n = n_, points = n_points_;
+      states_.lay_out(memory_);
+      memory_.piece(lambda_, n);
+      memory_.piece(mu_, s * n);
+      memory_.piece(old_mu_, s * n);
+      memory_.piece(K_mu_, s * n);
+      memory_.piece(M_mu_, s * n);
+      memory_.piece(residual_, s * n);
+      memory_.piece(real_, n);
+      memory_.piece(complex_, pairs * n);
+      for (LaneSlopes<Pack> &slopes : slopes_)
+        system_.lay_out(slopes, points, memory_);
+      system_.lay_out(memory_);
+    }
+
+    bool
+    any_busy() const
+    {
+      for (const Lane &lane : lanes_)
+        if (lane.busy)
+          return true;
+      return false;
+    }
+
+    /// The next body for a lane, or one at rest that asks nothing.
+    void
+    take_next(const int l)
+    {
+      Lane &lane = lanes_[l];
+      lane       = Lane();
+      LaneJob job{};
+      lane.busy = host_.next(host_.context, static_cast<unsigned int>(l), job, lane.past);
+      if (!lane.busy)
+        job.k = 1.;
+      lane.left = lane.past.n_steps;
+      system_.set_body(l, job, lane.busy);
+      friction_changed_ = true;
+      for (int d = 0; d < n_; ++d)
+      {
+        set_lane(lambda_[d], l, lane.busy ? lane.past.gradient[d] : 0.);
+        set_lane(states_.y[d], l, lane.busy ? lane.past.end[d] : 0.);
+      }
+      for (int d = 0; d < s * n_; ++d)
+        set_lane(states_.z[d], l, 0.);
+      if (lane.busy && lane.left == 0)
+        end(l);
+    }
+
+    /// Where the step starts, and its stages.
+    void
+    load_step()
+    {
+      for (int l = 0; l < lanes; ++l)
+      {
+        Lane &lane = lanes_[l];
+        if (lane.busy)
+        {
+          const std::size_t step = lane.left - 1;
+          lane.h                 = lane.past.sizes[step];
+          const double *z        = lane.past.z + step * s * n_;
+          for (int d = 0; d < s * n_; ++d)
+            set_lane(states_.z[d], l, z[d]);
+          for (int d = 0; d < n_; ++d)
+            set_lane(states_.y[d], l, get_lane(states_.y[d], l) - z[(s - 1) * n_ + d]);
+          for (int i = 0; i < s; ++i)
+            times_[i][l] = lane.past.times[step] - (1. - setup_.c[i]) * lane.h;
+        }
+        set_lane(inverse_h_, l, 1. / lane.h);
+      }
+    }
+
+    void
+    look_at_stages()
+    {
+      for (int i = 0; i < s; ++i)
+      {
+        states_.go_to_stage(i, inverse_h_);
+        system_.slopes(times_[i], states_.u, states_.v, slopes_[i]);
+      }
+      states_.go_to_stage(middle, inverse_h_);
+      system_.template factorize<true>(times_[middle], states_.u, states_.v, nullptr, inverse_h_);
+    }
+
+    /// The adjoint zeta = -mu_i/(h b_i) of the step that comes after this one, continued backwards.
+    void
+    guess()
+    {
+      Pack ratio{}, use{}, old_inverse_h{}, h{};
+      for (int l = 0; l < lanes; ++l)
+      {
+        const Lane &lane   = lanes_[l];
+        const double times = lane.h / lane.old_h;
+        set_lane(ratio, l, times);
+        set_lane(use, l, lane.has_old && times <= radau::longest_extrapolation ? 1. : 0.);
+        set_lane(old_inverse_h, l, 1. / lane.old_h);
+        set_lane(h, l, lane.h);
+      }
+      for (int i = 0; i < s; ++i)
+      {
+        Pack weights[s];
+        for (int j = 0; j < s; ++j)
+        {
+          weights[j] = use * h * old_inverse_h * (setup_.b[i] / setup_.b[j]);
+          for (int k = 0; k < s; ++k)
+            if (k != j)
+              weights[j] *= ((setup_.c[i] - 1.) * ratio - setup_.c[k]) * (1. / (setup_.c[j] - setup_.c[k]));
+        }
+        radau::combine(radau::Stages<s>{}, weights, old_mu_, n_, mu_ + i * n_);
+      }
+    }
+
+    /// K_i^T mu_i and M_i mu_i.
+    void
+    multiply()
+    {
+      for (int i = 0; i < s; ++i)
+        system_.transposed(slopes_[i], mu_ + i * n_, K_mu_ + i * n_, M_mu_ + i * n_);
+    }
+
+    /// The stages of the adjoint, by the transposed simplified Newton iteration.
+    void
+    solve()
+    {
+      constexpr int most_passes = 60;
+      for (Lane &lane : lanes_)
+      {
+        lane.iterating = lane.busy;
+        lane.failed    = false;
+      }
+      for (int pass = 0; pass < most_passes && any_iterating(); ++pass)
+      {
+        multiply();
+        for (int i = 0; i < s; ++i)
+          for (int d = 0; d < n_; ++d)
+          {
+            Pack sum = setup_.inverse[i] * M_mu_[d];
+            for (int j = 1; j < s; ++j)
+              sum += setup_.inverse[j * s + i] * M_mu_[j * n_ + d];
+            const Pack right        = i + 1 < s ? Pack{} : -lambda_[d];
+            residual_[i * n_ + d] = right - K_mu_[i * n_ + d] - inverse_h_ * sum;
+          }
+        correct();
+      }
+      for (Lane &lane : lanes_)
+      {
+        lane.failed    = lane.iterating;
+        lane.iterating = false;
+      }
+      multiply();
+    }
+
+    bool
+    any_iterating() const
+    {
+      for (const Lane &lane : lanes_)
+        if (lane.iterating)
+          return true;
+      return false;
+    }
+
+    /// One correction; lanes that are done keep what they have.
+    void
+    correct()
+    {
+      constexpr double settled = 1e-13;
+      radau::to_eigenbasis(radau::Stages<s>{}, rows_, residual_, n_, real_, complex_);
+      system_.solve_all(real_, complex_);
+      Pack moves{}, change{}, size{};
+      for (int l = 0; l < lanes; ++l)
+        set_lane(moves, l, lanes_[l].iterating);
+      const auto moving = moves > 0.;
+      for (int i = 0; i < s; ++i)
+        for (int d = 0; d < n_; ++d)
+        {
+          const Pack step = radau::from_eigenbasis(radau::Stages<s>{}, vectors_, i, d, n_, real_, complex_);
+          Pack &moved     = mu_[i * n_ + d];
+          moved           = moving ? moved + step : moved;
+          change          = added<true>(change, step < 0. ? -step : step);
+          size            = added<true>(size, moved < 0. ? -moved : moved);
+        }
+      for (int l = 0; l < lanes; ++l)
+        if (get_lane(change, l) <= settled * get_lane(size, l))
+          lanes_[l].iterating = false;
+    }
+
+    void
+    finish_step()
+    {
+      Pack busy{};
+      for (int l = 0; l < lanes; ++l)
+        set_lane(busy, l, lanes_[l].busy && !lanes_[l].failed);
+      const auto counts = busy > 0.;
+      for (int i = 0; i < s; ++i)
+        for (int d = 0; d < n_; ++d)
+          lambda_[d] = counts ? lambda_[d] + K_mu_[i * n_ + d] : lambda_[d];
+      for (int l = 0; l < lanes; ++l)
+      {
+        Lane &lane = lanes_[l];
+        if (!lane.busy)
+          continue;
+        --lane.left;
+        if (!lane.failed)
+          host_.step(host_.context,
+                     static_cast<unsigned int>(l),
+                     {lane.left, lanes, reinterpret_cast<const double *>(mu_) + l});
+        lane.old_h   = lane.h;
+        lane.has_old = lane.past.starts == nullptr || lane.past.starts[lane.left] == 0;
+        if (lane.failed || lane.left == 0)
+          end(l);
+      }
+      for (int i = 0; i < s * n_; ++i)
+        old_mu_[i] = mu_[i];
+    }
+
+    void
+    end(const int l)
+    {
+      host_.done(host_.context,
+                 static_cast<unsigned int>(l),
+                 !lanes_[l].failed,
+                 lanes,
+                 reinterpret_cast<const double *>(lambda_) + l);
+      take_next(l);
+    }
+
+    const LaneSetup &setup_;
+    const LaneAdjointHost &host_;
+    const LaneHost laws_host_;
+    PositionSystem<Pack, pairs> system_;
+    const int n_, n_points_; ///< unknowns, and quadrature points
+    LaneMemory memory_;
+    LaneStates<Pack, s> states_;
+    Lane lanes_[lanes];
+    Pack inverse_h_;
+    double times_[s][lanes]; ///< of the stages
+    bool friction_changed_ = true;
+    double rows_[2 * (1 + pairs) * s], vectors_[2 * (1 + pairs) * s]; ///< of the transposed matrix A^-1
+    LaneSlopes<Pack> slopes_[s];                                      ///< at the stages
+
+    Pack *lambda_;                            ///< [unknown]
+    Pack *mu_, *old_mu_;                      ///< [stage][unknown] of this step, and of the one after it
+    Pack *K_mu_, *M_mu_, *residual_, *real_;  ///< products, and right-hand sides in both bases
+    Number *complex_;
+  };
+} // namespace crawler::CRAWLER_INSTRUCTION_SET

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/lanes/host_laws.h>
+#include <crawler/lanes/lane_tables.h>
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace crawler
+{
+  /// The steps of a run by the fused engine, as its adjoint needs them. In natural units.
+  class LaneRecord
+  {
+  public:
+    /// The next accepted step, with a state of so many unknowns; it may take the place of steps that were accepted
+    /// before. @p starts: does the body start anew with it?
+    void
+    add(const LaneStep &step, unsigned int n_stages, std::size_t n_unknowns, bool starts);
+
+    std::size_t
+    n_steps() const
+    {
+      return times_.size();
+    }
+    double
+    time(const std::size_t step) const
+    {
+      return times_[step];
+    }
+    double
+    size(const std::size_t step) const
+    {
+      return sizes_[step];
+    }
+    /// [stages][unknowns] displacements in the stages relative to the start of the step.
+    const double *
+    z(const std::size_t step) const
+    {
+      return z_.data() + step * n_per_step_;
+    }
+    /// The last state.
+    const std::vector<double> &
+    end() const
+    {
+      return end_;
+    }
+
+    LanePast
+    past(const double *gradient) const;
+
+  private:
+    std::size_t n_per_step_ = 0;
+    std::vector<double> times_, sizes_, z_, end_;
+    std::vector<unsigned char> starts_;
+  };
+
+  /// The adjoint of one run in the position form.
+  class LaneAdjoint
+  {
+  public:
+    /// @p scene is in natural units and must outlive it.
+    LaneAdjoint(const Scene &scene, const LaneMethod &method);
+
+    const LaneTables &
+    tables() const
+    {
+      return tables_;
+    }
+
+    /// The gradient of the mean displacement by the last state, [unknowns].
+    std::vector<double>
+    gradient_of_displacement() const;
+
+    /// Sees the adjoint mu, [stages][unknowns], of a step, from the last one to the first (LaneAdjointStep).
+    using Seer = std::function<void(std::size_t step, std::span<const double> mu)>;
+
+    /// The adjoint of what has this @p gradient by the last state. Returns its derivative by the first state; nothing if
+    /// the iteration for the stages did not converge.
+    std::optional<std::vector<double>>
+    solve(const LaneRecord &record, const std::vector<double> &gradient, const Seer &see);
+
+  private:
+    static bool
+    next(void *context, unsigned int lane, LaneJob &job, LanePast &past);
+    static void
+    step(void *context, unsigned int lane, const LaneAdjointStep &step);
+    static void
+    done(void *context, unsigned int lane, bool finished, std::size_t stride, const double *by_start);
+    static bool
+    laws(void *context, unsigned int lane, const LanePoints &points);
+
+    const Scene &scene_;
+    const std::shared_ptr<const LaneTables> tables_owner_;
+    const LaneTables &tables_;
+    std::optional<HostLaws> laws_;
+    LaneStorage memory_;
+    // Of the present solve.
+    LanePast past_;
+    bool started_ = false;
+    const Seer *see_ = nullptr;
+    std::vector<double> mu_, by_start_;
+    bool finished_ = false;
+  };
+} // namespace crawler

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/lanes/lane_adjoint.h>
+#include <crawler/run/simulation.h>
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// Scenes in which one number p differs: p - 2d, p - d, p + d, p + 2d. Their breaks must be those of the scene itself.
+  struct Variation
+  {
+    std::array<const Scene *, 4> scenes;
+    double step; ///< d, in units of p
+  };
+
+  /// How a local change of the body changes the displacement: for k(s) (1 + x(s)) it is int density x ds.
+  struct LocalSensitivity
+  {
+    std::vector<double> s;               ///< [length]
+    std::vector<double> elastic_modulus; ///< [1]: displacement [length] for each relative change along a length
+    std::vector<double> friction;        ///< the same for the friction
+  };
+
+  /**
+   * The derivative of the displacement by numbers of the scene, by the discrete adjoint of one run
+   * (lanes/adjoint_lanes.h; doc/numerics.md, "Sensitivities"): exact for its mesh and steps but for round-off and the
+   * differences by which dF/dp is found at the points, of fourth order.
+   */
+  class DisplacementGradient
+  {
+  public:
+    /// Why there is none for these scenes and settings; empty if there is.
+    static std::string
+    reason_against(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
+
+    /// Makes the run. Throws std::runtime_error if it does not finish. All must outlive it, and there must be no reason
+    /// against it.
+    DisplacementGradient(const Scene &scene,
+                         const TimeParameters &time,
+                         const Numerics &numerics,
+                         const std::function<bool()> &keep_going);
+    DisplacementGradient(const DisplacementGradient &) = delete;
+
+    /// [length]
+    double
+    displacement() const
+    {
+      return displacement_;
+    }
+
+    /// The derivatives of the displacement [length/unit of p], one sweep for all. Throws std::runtime_error if the
+    /// adjoint cannot be found.
+    std::vector<double>
+    derivatives(std::span<const Variation> variations);
+
+    /// Of the last derivatives().
+    const LocalSensitivity &
+    local() const
+    {
+      return local_;
+    }
+
+  private:
+    const Scene &scene_;
+    const Units units_;
+    TimeSegments segments_;
+    const Scene natural_;
+    const LaneMethod method_;
+    LaneRecord steps_;
+    double displacement_;
+    LocalSensitivity local_;
+  };
+
+  /// Does the stress of another scene jump at the same places and times, in units of length and duration?
+  bool
+  have_same_breaks(const Scene &scene, const Scene &other);
+} // namespace crawler
