@@ -49,18 +49,86 @@ namespace crawler
         }
     }
 
-    /// The force N in a body and the friction f at points, in natural units of the body.
+    /// [0, 1] to [0, 1], linear between breaks and taking those of one scene to those of another.
+    class BreakMap
+    {
+    public:
+      BreakMap(std::vector<double> from, std::vector<double> to)
+        : from_(std::move(from))
+        , to_(std::move(to))
+      {
+        for (std::vector<double> *list : {&from_, &to_})
+        {
+          list->insert(list->begin(), 0.);
+          list->push_back(1.);
+        }
+      }
+
+      /// The number of the piece in which @p x is; the left one at a break.
+      std::size_t
+      piece(const double x) const
+      {
+        const auto right = std::lower_bound(from_.begin() + 1, from_.end() - 1, x - 1e-12);
+        return static_cast<std::size_t>(right - from_.begin()) - 1;
+      }
+      double
+      slope(const std::size_t piece) const
+      {
+        return (to_[piece + 1] - to_[piece]) / (from_[piece + 1] - from_[piece]);
+      }
+      double
+      operator()(const std::size_t piece, const double x) const
+      {
+        return to_[piece] + slope(piece) * (x - from_[piece]);
+      }
+
+    private:
+      std::vector<double> from_, to_;
+    };
+
+    /// In units of the length.
+    std::vector<double>
+    breaks_in_space(const Scene &scene)
+    {
+      std::vector<double> list = scene.breaks_in_space();
+      for (double &place : list)
+        place /= scene.body.length;
+      return list;
+    }
+
+    /// In units of the duration.
+    std::vector<double>
+    breaks_in_time(const Scene &scene)
+    {
+      return TimeSegments(*scene.active_stress, scene.end_time).breaks();
+    }
+
+    /**
+     * The force N in a body and the friction f at points, in natural units of the body. The state is that of another
+     * scene at the points; its breaks are taken to those of this one: with S and R the stretches of the body and of the
+     * time that this takes, w = 1 + e/S, v -> v/R, and a piece of the body is S times as long.
+     */
     class ForcesAtPoints
     {
     public:
-      ForcesAtPoints(const Scene &physical, const std::vector<double> &points)
+      ForcesAtPoints(const Scene &physical, const Scene &other, const std::vector<double> &points)
         : units_(natural_units(physical))
         , segments_(*physical.active_stress, physical.end_time)
         , scene_(in_units(physical, units_, &segments_))
-        , body_(scene_, points)
-        , sliding_(scene_, points)
+        , in_time_(breaks_in_time(other), segments_.breaks())
+        , at_(points.size())
         , g_(points.size())
       {
+        const BreakMap in_space(breaks_in_space(other), breaks_in_space(physical));
+        std::vector<double> own = points;
+        for (double &s : own)
+        {
+          const std::size_t piece = in_space.piece(s);
+          longer_.push_back(in_space.slope(piece));
+          s = in_space(piece, s);
+        }
+        body_.emplace(scene_, own);
+        sliding_.emplace(scene_, own);
       }
 
       const Units &
@@ -69,40 +137,59 @@ namespace crawler
         return units_;
       }
 
-      /// At the time @p t in the piece that ends at @p end or later.
+      /// At the time @p t of a step that ends at @p end.
       void
       evaluate(const double t, const double end, const StateAtPoints &at)
       {
-        constexpr double tiny = 1e-12;
-        for (segments_.restart(); !segments_.is_last() && segments_.end() < end - tiny;)
+        const std::size_t piece = in_time_.piece(end);
+        segments_.restart();
+        for (std::size_t i = 0; i < piece; ++i)
           segments_.go_on();
-        body_.evaluate(segments_.inside(t), at.e, {at.w, at.rate, {}, {}});
-        sliding_.evaluate(at.u, at.v);
-        scene_.friction->values(at.w, g_);
+        const double slower = in_time_.slope(piece);
+        at_.u               = at.u;
+        for (std::size_t p = 0; p < g_.size(); ++p)
+        {
+          at_.v[p]    = at.v[p] / slower;
+          at_.e[p]    = at.e[p] / longer_[p];
+          at_.w[p]    = 1. + at_.e[p];
+          at_.rate[p] = at.rate[p] / (longer_[p] * slower);
+        }
+        body_->evaluate(segments_.inside(in_time_(piece, t)), at_.e, {at_.w, at_.rate, {}, {}});
+        sliding_->evaluate(at_.u, at_.v);
+        scene_.friction->values(at_.w, g_);
       }
 
       double
       N(const std::size_t point) const
       {
-        return body_.N[point];
+        return body_->N[point];
       }
+      /// For each length of the other body.
       double
       f(const std::size_t point) const
       {
-        return g_[point] * sliding_.force[point];
+        return longer_[point] * g_[point] * sliding_->force[point];
+      }
+      double
+      longer(const std::size_t point) const
+      {
+        return longer_[point];
       }
       double
       elastic(const std::size_t point, const double e) const
       {
-        return body_.k[point] * e;
+        return body_->k[point] * e;
       }
 
     private:
       const Units units_;
       TimeSegments segments_;
       const Scene scene_;
-      BodyForceAtPoints body_;
-      SlidingAtPoints sliding_;
+      const BreakMap in_time_;
+      std::vector<double> longer_;
+      std::optional<BodyForceAtPoints> body_;
+      std::optional<SlidingAtPoints> sliding_;
+      StateAtPoints at_;
       std::vector<double> g_;
     };
 
@@ -113,14 +200,6 @@ namespace crawler
       return (8. * (values[2] - values[1]) - (values[3] - values[0])) / (12. * step);
     }
 
-    bool
-    are_near(const std::vector<double> &a, const std::vector<double> &b)
-    {
-      constexpr double same = 1e-9;
-      return std::equal(
-        a.begin(), a.end(), b.begin(), b.end(), [](const double x, const double y) { return std::abs(x - y) <= same; });
-    }
-
     LaneMethod
     method_of(const Scene &natural, const TimeParameters &time, const Numerics &numerics)
     {
@@ -129,16 +208,10 @@ namespace crawler
   } // namespace
 
   bool
-  have_same_breaks(const Scene &scene, const Scene &other)
+  have_similar_breaks(const Scene &scene, const Scene &other)
   {
-    const auto places = [](const Scene &one) {
-      std::vector<double> list = one.breaks_in_space();
-      for (double &place : list)
-        place /= one.body.length;
-      return list;
-    };
-    return are_near(places(scene), places(other)) && are_near(TimeSegments(*scene.active_stress, scene.end_time).breaks(),
-                                                              TimeSegments(*other.active_stress, other.end_time).breaks());
+    return breaks_in_space(scene).size() == breaks_in_space(other).size() &&
+           breaks_in_time(scene).size() == breaks_in_time(other).size();
   }
 
   std::string
@@ -199,13 +272,15 @@ namespace crawler
     for (std::size_t i = 0; i < n_points; ++i)
       weights[i] = setup.sizes[i / per_cell] * setup.weights[i % per_cell];
 
-    ForcesAtPoints own(scene_, tables.points);
+    ForcesAtPoints own(scene_, scene_, tables.points);
     std::vector<std::array<std::unique_ptr<ForcesAtPoints>, 4>> others(variations.size());
     for (std::size_t i = 0; i < variations.size(); ++i)
       for (std::size_t k = 0; k < 4; ++k)
-        others[i][k] = std::make_unique<ForcesAtPoints>(*variations[i].scenes[k], tables.points);
+        others[i][k] = std::make_unique<ForcesAtPoints>(*variations[i].scenes[k], scene_, tables.points);
     std::vector<std::array<double, 4>> sums(variations.size());
-    local_ = {tables.points, std::vector<double>(n_points, 0.), std::vector<double>(n_points, 0.)};
+    constexpr std::size_t most_samples = 4000000;
+    const bool keeps_stress            = steps_.n_steps() * tableau.n * n_points <= most_samples;
+    local_ = {tables.points, std::vector<double>(n_points, 0.), std::vector<double>(n_points, 0.), {}, {}};
 
     std::vector<double> y = steps_.end(), u(n), v(n), mu_at(n_points), mu_s(n_points);
     StateAtPoints at(n_points);
@@ -213,7 +288,7 @@ namespace crawler
       const double *z = steps_.z(step);
       for (std::size_t d = 0; d < n; ++d)
         y[d] -= z[(tableau.n - 1) * n + d];
-      for (unsigned int i = 0; i < tableau.n; ++i)
+      for (unsigned int i = tableau.n; i-- > 0;)
       {
         for (std::size_t d = 0; d < n; ++d)
           u[d] = y[d] + z[i * n + d];
@@ -236,6 +311,12 @@ namespace crawler
           local_.elastic_modulus[p] += own.elastic(p, at.e[p]) * mu_s[p];
           local_.friction[p] += own.f(p) * mu_at[p];
         }
+        if (keeps_stress)
+        {
+          local_.times.push_back(t * units_.time);
+          for (std::size_t p = n_points; p-- > 0;)
+            local_.stress.push_back(mu_s[p] / (steps_.size(step) * tableau.b[i] * units_.force * units_.time));
+        }
         for (std::size_t number = 0; number < others.size(); ++number)
           for (std::size_t k = 0; k < 4; ++k)
           {
@@ -247,6 +328,11 @@ namespace crawler
           }
       }
     };
+    evaluate(setup, y.data(), at.u, at.e);
+    for (std::size_t number = 0; number < others.size(); ++number)
+      for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t p = 0; p < n_points; ++p)
+          sums[number][k] += weights[p] * (others[number][k]->longer(p) - 1.) * at.u[p];
     if (!adjoint.solve(steps_, adjoint.gradient_of_displacement(), see))
       throw std::runtime_error("the adjoint of a step did not converge");
 
@@ -260,8 +346,10 @@ namespace crawler
       result.push_back(units_.length * fourth_order(sums[i], variations[i].step) +
                        natural_displacement * fourth_order(lengths, variations[i].step));
     }
-    for (std::size_t p = 0; p < n_points; ++p)
-      local_.s[p] *= units_.length; // a density by s/L times L is one by s times L^2: of x ds in lengths it stays
+    for (double &s : local_.s)
+      s *= units_.length;
+    std::reverse(local_.times.begin(), local_.times.end());
+    std::reverse(local_.stress.begin(), local_.stress.end());
     return result;
   }
 } // namespace crawler

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace crawler
 {
@@ -74,6 +75,26 @@ namespace crawler
                                   error_bound_in_words(result, "gait.cost_of_transport.stress_power"),
                                   positive ? fmt::format("; {:.4g} if it cannot be recovered", *positive) : ""));
     }
+    void
+    add_sensitivity_lines(const SimulationResult &result, std::vector<std::string> &lines)
+    {
+      if (!result.sensitivities.empty())
+        lines.push_back("  sensitivities     d(displacement)/d(entry), and % of displacement for 1 % of the entry");
+      std::size_t width = 0;
+      for (const EntrySensitivity &one : result.sensitivities)
+        width = std::max(width, one.entry.size());
+      for (const EntrySensitivity &one : result.sensitivities)
+        lines.push_back(
+          one.value ? fmt::format("    {:<{}}  {:12.6g} +- {:.2g}{}",
+                                  one.entry,
+                                  width,
+                                  *one.value,
+                                  one.error.value_or(std::numeric_limits<double>::quiet_NaN()),
+                                  result.displacement != 0. && one.at != 0.
+                                    ? fmt::format("  {:8.3g} %", one.elasticity(result.displacement))
+                                    : "")
+                    : fmt::format("    {:<{}}  not known: {}", one.entry, width, one.reason));
+    }
   } // namespace
 
   nlohmann::ordered_json
@@ -96,6 +117,17 @@ namespace crawler
     Json json = summary_of(result);
     if (result.engine == "petsc")
       json["integrator"] = integrator_of_petsc(result.integrator);
+    json["sensitivities"] = nullptr;
+    for (const EntrySensitivity &one : result.sensitivities)
+    {
+      Json &entry   = json["sensitivities"][one.entry];
+      entry["value"] = one.value ? Json(*one.value) : Json(nullptr);
+      entry["error"] = one.error ? Json(*one.error) : Json(nullptr);
+      entry["elasticity"] =
+        one.value && result.displacement != 0. ? Json(one.elasticity(result.displacement)) : Json(nullptr);
+      if (!one.reason.empty())
+        entry["reason"] = one.reason;
+    }
     json["ranks"]        = n_ranks;
     json["versions"]     = versions();
     json["command_line"] = command_line;
@@ -156,6 +188,7 @@ namespace crawler
                   result.max_stretch.s,
                   result.max_stretch.t));
     add_gait_lines(result, lines);
+    add_sensitivity_lines(result, lines);
     return lines;
   }
 } // namespace crawler

@@ -15,13 +15,18 @@ using namespace crawler;
 namespace
 {
   Numerics
-  numerics_for(const Scene &scene, const char *integrator, const unsigned int n_cells, const double tolerance)
+  numerics_for(const Scene &scene,
+               const char *integrator,
+               const unsigned int n_cells,
+               const double tolerance,
+               const Grading &grading = {})
   {
     return {.degree       = 6,
             .n_cells      = n_cells,
             .tolerance    = tolerance * scene.body.length,
-            .initial_step = 1e-3 * scene.end_time,
-            .integrator   = integrator};
+            .initial_step = (grading.levels > 0 ? 1e-8 : 1e-3) * scene.end_time,
+            .integrator   = integrator,
+            .grading      = grading};
   }
 
   Scene
@@ -48,7 +53,7 @@ namespace
   derivatives(const test::Settings &settings,
               const std::string &entry,
               const double value,
-              const char *integrator = "radau 9")
+              const Grading &grading)
   {
     const Scene scene         = scene_of(settings, entry, value);
     const TimeParameters time = test::parameters_with(settings).time;
@@ -60,9 +65,9 @@ namespace
       near.push_back(scene_of(settings, entry, value + i * step));
       const Scene other = scene_of(settings, entry, value + i * far);
       D[near.size() - 1] =
-        Simulation(MPI_COMM_SELF, other, time, numerics_for(other, integrator, 10, 1e-12)).run({}, {}).displacement;
+        Simulation(MPI_COMM_SELF, other, time, numerics_for(other, "radau 9", 10, 1e-12, grading)).run({}, {}).displacement;
     }
-    const Numerics numerics = numerics_for(scene, integrator, 10, 1e-12);
+    const Numerics numerics = numerics_for(scene, "radau 9", 10, 1e-12, grading);
     EXPECT_EQ(DisplacementGradient::reason_against(scene, time, numerics), "");
     DisplacementGradient gradient(scene, time, numerics, {});
     const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
@@ -70,9 +75,13 @@ namespace
   }
 
   void
-  expect_same(const test::Settings &settings, const std::string &entry, const double value, const double tolerance)
+  expect_same(const test::Settings &settings,
+              const std::string &entry,
+              const double value,
+              const double tolerance,
+              const Grading &grading = {})
   {
-    const Both both = derivatives(settings, entry, value);
+    const Both both = derivatives(settings, entry, value, grading);
     EXPECT_NEAR(both.adjoint, both.differences, tolerance * std::abs(both.differences)) << entry;
   }
 
@@ -114,6 +123,30 @@ TEST(DisplacementGradient, OfGeneralBodies)
     for (const auto &[entry, value] : {std::pair("Body/Elastic modulus", 1.2), {"Body/Friction coefficient", 0.7}})
       expect_same(with(wave, more), entry, value, 1e-7);
   expect_same(with(wave, {{"Ground/Switching velocity", "0.1"}}), "Ground/Backward ratio", 1.5, 1e-7);
+}
+
+/// Jumps of the active stress move with these entries, in time and in space.
+TEST(DisplacementGradient, OfJumpsThatMove)
+{
+  const test::Settings robot = {{"Active stress/Generator", "segments"},
+                                {"Active stress/Segments/Number of segments", "3"},
+                                {"Active stress/Segments/Amplitude", "0.3"},
+                                {"Active stress/Segments/Frequency", "1"},
+                                {"Active stress/Segments/Phase lag", "0.27"},
+                                {"Active stress/Segments/Duty cycle", "0.4"},
+                                {"Active stress/Segments/Gap", "0.05"},
+                                {"Active stress/Segments/Ramp duration", "0.6"},
+                                {"Time/End time", "1.33"}};
+  const test::Settings trapezoids = with(robot, {{"Active stress/Segments/Rate limit", "2.5"}});
+  for (const test::Settings &scene : {robot, trapezoids})
+    for (const auto &[entry, value] : {std::pair("Active stress/Segments/Phase lag", 0.27),
+                                       {"Active stress/Segments/Duty cycle", 0.4},
+                                       {"Active stress/Segments/Frequency", 1.},
+                                       {"Active stress/Segments/Amplitude", 0.3},
+                                       {"Active stress/Segments/Gap", 0.05},
+                                       {"Body/Length", 1.},
+                                       {"Time/End time", 1.33}})
+      expect_same(scene, entry, value, 2e-4, {3, 0.25});
 }
 
 /// Exact for the steps and the mesh at hand: coarse ones of radau 5 have the gradient of their own displacement, which

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace crawler
@@ -17,6 +18,7 @@ namespace crawler
     bool energy_balance = true;
     std::optional<double> energy_balance_tolerance;
     std::vector<double> active_stress_table; ///< numbers of samples over s and t; empty: no table
+    std::string sensitivities = "";          ///< entries, or "all" (studies/core/sensitivity_entries.h)
 
     bool
     has_snapshots() const

@@ -183,6 +183,14 @@ namespace crawler::accuracy_rule
     inline constexpr double round_off = 1e-15;
   } // namespace finer_run
 
+  // Derivatives of the displacement (studies/run/sensitivities.cc). Measured by
+  // tests/verification/displacement_gradient_test.cc.
+  namespace sensitivities
+  {
+    /// Relative, of the differences by which dF/dp is found.
+    inline constexpr double round_off = 1e-10;
+  } // namespace sensitivities
+
   // Bounds of other numbers than the displacement (finer_run_errors.cc). Calibrated by
   // tests/verification/number_errors.py.
   namespace number_bounds

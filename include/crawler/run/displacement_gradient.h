@@ -13,7 +13,7 @@
 
 namespace crawler
 {
-  /// Scenes in which one number p differs: p - 2d, p - d, p + d, p + 2d. Their breaks must be those of the scene itself.
+  /// Scenes in which one number p differs: p - 2d, p - d, p + d, p + 2d. All have_similar_breaks().
   struct Variation
   {
     std::array<const Scene *, 4> scenes;
@@ -24,8 +24,12 @@ namespace crawler
   struct LocalSensitivity
   {
     std::vector<double> s;               ///< [length]
-    std::vector<double> elastic_modulus; ///< [1]: displacement [length] for each relative change along a length
+    std::vector<double> elastic_modulus; ///< [1]
     std::vector<double> friction;        ///< the same for the friction
+    /// Where and when the active stress pushes: dD/dm(s,t) [1/(force time)], [time][point] at the stages of the steps;
+    /// empty if there would be too many. For m + x(s,t) the displacement grows by int int stress x ds dt.
+    std::vector<double> times; ///< [time]
+    std::vector<double> stress;
   };
 
   /**
@@ -78,7 +82,7 @@ namespace crawler
     LocalSensitivity local_;
   };
 
-  /// Does the stress of another scene jump at the same places and times, in units of length and duration?
+  /// Have both as many breaks in space, and in time? They may be at other places and times.
   bool
-  have_same_breaks(const Scene &scene, const Scene &other);
+  have_similar_breaks(const Scene &scene, const Scene &other);
 } // namespace crawler

@@ -14,9 +14,26 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace crawler
 {
+  /// The derivative of the displacement by an entry of the parameter file.
+  struct EntrySensitivity
+  {
+    std::string entry;
+    double at;                          ///< value of the entry
+    std::optional<double> value, error; ///< and its bound [length/unit of the entry]; nothing if it is not known
+    std::string reason;                 ///< why it is not known
+
+    /// By how many per cent the displacement grows if the entry grows by one.
+    double
+    elasticity(const double displacement) const
+    {
+      return *value * at / displacement;
+    }
+  };
+
   /// What one simulation gives.
   struct SimulationResult
   {
@@ -29,6 +46,7 @@ namespace crawler
     std::string integrator, engine;
     std::optional<DisplacementError> error; ///< of the displacement
     std::optional<NumberErrors> errors;     ///< of other numbers, if a finer run measured them
+    std::vector<EntrySensitivity> sensitivities; ///< if they are wanted, those that matter most first
     double largest_u  = 0.;                 ///< root mean square of u over the body, largest over time [length]
     double unresolved = 0.;                 ///< Resolution: largest highest_mode over largest strain, if looked at
     double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]

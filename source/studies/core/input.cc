@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/input.h>
 
@@ -114,6 +115,45 @@ namespace crawler
       return notes;
     }
 
+    /// The entries that Output/Sensitivities names, all of them numbers of the scene.
+    std::vector<std::string>
+    sensitivity_entries(const Parameters &p, const Declarations &declarations)
+    {
+      const std::string &wanted = p.output.sensitivities, own = "Output/Sensitivities";
+      std::vector<std::string> all, effective, names;
+      const std::vector<Rule> rules = all_rules(p);
+      for (std::size_t i = 0; i < declarations.entries().size(); ++i)
+      {
+        const EntryInfo &entry = declarations.entries()[i];
+        const bool is_of_scene = entry.path.starts_with("Body/") || entry.path.starts_with("Ground/") ||
+                                 entry.path.starts_with("Active stress/") || entry.path == "Time/End time";
+        if (!is_of_scene || entry.expected.find("number") == std::string::npos ||
+            entry.expected.starts_with("a whole number") || !to_number(declarations.value(static_cast<unsigned int>(i))))
+          continue;
+        all.push_back(entry.path);
+        if (std::ranges::none_of(rules, [&](const Rule &rule) { return rule.is_against(entry.path); }))
+          effective.push_back(entry.path);
+      }
+      if (trimmed(wanted) == "all")
+        return effective;
+      std::istringstream list(wanted);
+      for (std::string name; std::getline(list, name, ',');)
+      {
+        const std::string path = normal_path(name);
+        if (std::ranges::find(all, path) == all.end())
+        {
+          const auto near = nearest_names(path, all, 1);
+          throw InputError(fmt::format("Sensitivities has \"{}\", but entries of the body, the ground, the active stress "
+                                       "or the end time that are numbers are expected, or \"all\"{}",
+                                       trimmed(name),
+                                       near.empty() ? "" : "; the nearest name is " + quoted_list(near)),
+                           own);
+        }
+        names.push_back(path);
+      }
+      return names;
+    }
+
     /// Of a table that goes on behind the end of the body most likely the unit is another one.
     std::vector<std::string>
     profiles_beyond_the_body(const Scene &scene)
@@ -166,7 +206,9 @@ namespace crawler
       auto notes  = settings_without_effect(file, parameters, declarations);
       for (const std::string &note : profiles_beyond_the_body(scene))
         notes.push_back(note);
-      return {std::move(file), parameters, effective.str(), std::move(scene), std::move(notes)};
+      auto sensitivities = sensitivity_entries(parameters, declarations);
+      return {
+        std::move(file), parameters, effective.str(), std::move(scene), std::move(sensitivities), std::move(notes)};
     }
     catch (const InputError &error)
     {

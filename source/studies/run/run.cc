@@ -20,6 +20,7 @@
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/run_files.h>
 #include <crawler/studies/run/run.h>
+#include <crawler/studies/run/sensitivities.h>
 #include <crawler/time/failure.h>
 
 #include <fmt/format.h>
@@ -226,6 +227,7 @@ namespace crawler
       result = std::move(answer.result);
       if (answer.choice.is_family)
         log.line("  (" + answer.choice.explanation + ")");
+      chosen                  = answer.choice;
       result.estimate_seconds = answer.estimate_seconds;
       result.refinements      = answer.refinements;
     });
@@ -236,6 +238,8 @@ namespace crawler
       result.time.message = fmt::format("stopped by a signal at t = {:.6g}", result.time.time);
     }
     check_identities(result, parameters);
+    if (first && result.time.status == Status::finished && !input.sensitivities.empty())
+      find_sensitivities(input, *chosen, folder, result, keep_going);
     if (result.time.status == Status::finished && parameters.error_estimate && !std::isfinite(result.error->total))
       log.warn("the error of the displacement is not known: the second run, which measures it, did not finish");
     report_unused_options(log);

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/error_estimate.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/run/accuracy_rule.h>
+#include <crawler/run/displacement_gradient.h>
+#include <crawler/studies/run/sensitivities.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Relative to the entry.
+    constexpr double step = 1e-3;
+
+    /// An entry, and the scenes in which it differs a little.
+    struct Varied
+    {
+      EntrySensitivity sensitivity;
+      std::vector<Scene> scenes; ///< four, or none if there is a reason
+      double step;
+    };
+
+    /// The scenes of the file in which an entry has four other values. An error in one of them is a reason.
+    Varied
+    vary(const Input &input, const std::string &entry, const double value)
+    {
+      Varied one{{entry, value, {}, {}, ""}, {}, value != 0. ? step * std::abs(value) : step};
+      try
+      {
+        for (const int i : {-2, -1, 1, 2})
+        {
+          ParameterFile file = input.file;
+          file.add_override(entry + "=" + to_text(value + i * one.step));
+          one.scenes.push_back(read_input(std::move(file)).scene);
+          if (!have_similar_breaks(input.scene, one.scenes.back()))
+            one.sensitivity.reason = "with it jumps of the active stress or the body come or go";
+        }
+      }
+      catch (const InputError &error)
+      {
+        one.sensitivity.reason = error.what();
+      }
+      if (!one.sensitivity.reason.empty())
+        one.scenes.clear();
+      return one;
+    }
+
+    std::vector<Varied>
+    vary_all(const Input &input)
+    {
+      const ParameterFile effective = ParameterFile::from_text(input.effective, "parameters.prm");
+      std::vector<Varied> list;
+      for (const std::string &entry : input.sensitivities)
+        list.push_back(vary(input, entry, *to_number(effective.assignment_of(entry)->value)));
+      return list;
+    }
+
+    void
+    write_local(const LocalSensitivity &local, const std::filesystem::path &folder)
+    {
+      std::string text = "s [length],elastic modulus [1],friction [1]\n";
+      for (std::size_t i = 0; i < local.s.size(); ++i)
+        fmt::format_to(
+          std::back_inserter(text), "{},{},{}\n", local.s[i], local.elastic_modulus[i], local.friction[i]);
+      write_file(folder / "sensitivity_body.csv", text);
+      if (local.times.empty())
+        return;
+      text = "s [length],t [time],active stress [1/(force time)]\n";
+      for (std::size_t j = 0; j < local.times.size(); ++j)
+        for (std::size_t i = 0; i < local.s.size(); ++i)
+          fmt::format_to(std::back_inserter(text),
+                         "{},{},{}\n",
+                         local.s[i],
+                         local.times[j],
+                         local.stress[j * local.s.size() + i]);
+      write_file(folder / "sensitivity_stress.csv", text);
+    }
+  } // namespace
+
+  void
+  find_sensitivities(const Input &input,
+                     const NumericsChoice &choice,
+                     const std::filesystem::path &folder,
+                     SimulationResult &result,
+                     const std::function<bool()> &keep_going)
+  {
+    const Parameters &parameters = input.parameters;
+    std::vector<Varied> entries;
+    std::string reason = DisplacementGradient::reason_against(input.scene, parameters.time, choice.numerics);
+    if (reason.empty())
+      entries = vary_all(input);
+    else
+      for (const std::string &entry : input.sensitivities)
+        entries.push_back({{entry, 0., {}, {}, reason}, {}, 0.});
+    std::vector<Variation> variations;
+    std::vector<EntrySensitivity *> known;
+    for (Varied &entry : entries)
+      if (!entry.scenes.empty())
+      {
+        const auto &scenes = entry.scenes;
+        variations.push_back({{{&scenes[0], &scenes[1], &scenes[2], &scenes[3]}}, entry.step});
+        known.push_back(&entry.sensitivity);
+      }
+    try
+    {
+      if (reason.empty())
+      {
+        DisplacementGradient gradient(input.scene, parameters.time, choice.numerics, keep_going);
+        const std::vector<double> values = gradient.derivatives(variations);
+        write_local(gradient.local(), folder);
+        const TimeParameters finer_time = time_of_finer_run(parameters.time);
+        DisplacementGradient finer(
+          input.scene,
+          finer_time,
+          numerics_of_finer_run(choice, parameters.time, input.scene, /*cycles_repeat=*/false),
+          keep_going);
+        const std::vector<double> finer_values = finer.derivatives(variations);
+        for (std::size_t i = 0; i < known.size(); ++i)
+        {
+          using accuracy_rule::finer_run::factor_without_promise;
+          known[i]->value = values[i];
+          known[i]->error = factor_without_promise * std::abs(finer_values[i] - values[i]) +
+                            accuracy_rule::sensitivities::round_off * std::abs(values[i]);
+        }
+      }
+    }
+    catch (const std::runtime_error &error)
+    {
+      for (EntrySensitivity *one : known)
+        one->reason = error.what();
+    }
+    // Of all those that have no effect, or may not vary from where they are by default, are left out.
+    const bool all = trimmed(parameters.output.sensitivities) == "all";
+    for (Varied &entry : entries)
+      if (!all || (entry.sensitivity.value ? *entry.sensitivity.value != 0.
+                                           : input.file.assignment_of(entry.sensitivity.entry) != nullptr))
+        result.sensitivities.push_back(std::move(entry.sensitivity));
+    std::ranges::stable_sort(result.sensitivities, [](const EntrySensitivity &a, const EntrySensitivity &b) {
+      const auto size = [](const EntrySensitivity &one) { return one.value ? std::abs(*one.value * one.at) : -1.; };
+      return size(a) > size(b);
+    });
+  }
+} // namespace crawler
