@@ -93,7 +93,10 @@ namespace crawler
     auto &self = *static_cast<LaneAdjoint *>(context);
     for (std::size_t i = 0; i < self.mu_.size(); ++i)
       self.mu_[i] = step.mu[i * step.stride];
-    (*self.see_)(step.number, self.mu_);
+    self.zeta_.clear();
+    for (std::size_t i = 0; i < self.by_start_.size() && step.zeta != nullptr; ++i)
+      self.zeta_.push_back(step.zeta[i * step.stride]);
+    (*self.see_)(step.number, self.mu_, self.zeta_);
   }
 
   void

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 
 namespace crawler
@@ -49,19 +50,51 @@ namespace crawler
         }
     }
 
-    /// [0, 1] to [0, 1], linear between breaks and taking those of one scene to those of another.
+    /**
+     * [0, 1] to [0, 1], linear between breaks and taking those of one scene to those of another, which are near them:
+     * where several come together in the one, to the mean of what they are in the other.
+     */
     class BreakMap
     {
     public:
-      BreakMap(std::vector<double> from, std::vector<double> to)
-        : from_(std::move(from))
-        , to_(std::move(to))
+      BreakMap(const std::vector<double> &from, const std::vector<double> &to)
+        : from_{0.}
+        , to_{0.}
+        , bunches_(1)
       {
-        for (std::vector<double> *list : {&from_, &to_})
+        constexpr double near = 0.4;
+        for (const double x : from)
+          from_.push_back(x);
+        from_.push_back(1.);
+        bunches_.resize(from_.size());
+        for (const double x : to)
         {
-          list->insert(list->begin(), 0.);
-          list->push_back(1.);
+          const auto right   = std::upper_bound(from_.begin() + 1, from_.end() - 1, x);
+          const auto nearest = x - *(right - 1) < *right - x ? right - 1 : right;
+          bunches_[static_cast<std::size_t>(nearest - from_.begin())].push_back(x);
+          is_good_ = is_good_ && std::abs(x - *nearest) <= near * (*right - *(right - 1));
         }
+        for (std::size_t i = 1; i + 1 < from_.size(); ++i)
+        {
+          const std::vector<double> &bunch = bunches_[i];
+          is_good_                         = is_good_ && !bunch.empty();
+          to_.push_back(std::accumulate(bunch.begin(), bunch.end(), 0.) / static_cast<double>(bunch.size()));
+        }
+        to_.push_back(1.);
+      }
+
+      /// Has each break of the one some of the other near it, and the other no more but at the ends?
+      bool
+      is_good() const
+      {
+        return is_good_;
+      }
+      /// Are they as many?
+      bool
+      is_one_to_one() const
+      {
+        return is_good_ && std::ranges::all_of(bunches_, [](const auto &bunch) { return bunch.size() <= 1; }) &&
+               bunches_.front().empty() && bunches_.back().empty();
       }
 
       /// The number of the piece in which @p x is; the left one at a break.
@@ -82,8 +115,46 @@ namespace crawler
         return to_[piece] + slope(piece) * (x - from_[piece]);
       }
 
+      double
+      start(const std::size_t piece) const
+      {
+        return from_[piece];
+      }
+      double
+      end(const std::size_t piece) const
+      {
+        return from_[piece + 1];
+      }
+      bool
+      is_last(const std::size_t piece) const
+      {
+        return piece + 2 == from_.size();
+      }
+      /// The breaks of the other scene near break @p number of the one; 0 is the start, and what they are taken for.
+      const std::vector<double> &
+      bunch(const std::size_t number) const
+      {
+        return bunches_[number];
+      }
+      double
+      image_of_break(const std::size_t number) const
+      {
+        return to_[number];
+      }
+      /// The number of the piece of the other scene that this one becomes.
+      std::size_t
+      image(const std::size_t piece) const
+      {
+        std::size_t n = 0;
+        for (std::size_t i = 0; i <= piece; ++i)
+          n += bunches_[i].size();
+        return n;
+      }
+
     private:
       std::vector<double> from_, to_;
+      std::vector<std::vector<double>> bunches_; ///< [break of the one, and both ends]
+      bool is_good_ = true;
     };
 
     /// In units of the length.
@@ -106,7 +177,8 @@ namespace crawler
     /**
      * The force N in a body and the friction f at points, in natural units of the body. The state is that of another
      * scene at the points; its breaks are taken to those of this one: with S and R the stretches of the body and of the
-     * time that this takes, w = 1 + e/S, v -> v/R, and a piece of the body is S times as long.
+     * time that this takes, w = 1 + e/S, v -> v/R, and a piece of the body is S times as long. What comes between jumps
+     * in time that come together in the other scene is in between().
      */
     class ForcesAtPoints
     {
@@ -142,9 +214,6 @@ namespace crawler
       evaluate(const double t, const double end, const StateAtPoints &at)
       {
         const std::size_t piece = in_time_.piece(end);
-        segments_.restart();
-        for (std::size_t i = 0; i < piece; ++i)
-          segments_.go_on();
         const double slower = in_time_.slope(piece);
         at_.u               = at.u;
         for (std::size_t p = 0; p < g_.size(); ++p)
@@ -154,9 +223,54 @@ namespace crawler
           at_.w[p]    = 1. + at_.e[p];
           at_.rate[p] = at.rate[p] / (longer_[p] * slower);
         }
-        body_->evaluate(segments_.inside(in_time_(piece, t)), at_.e, {at_.w, at_.rate, {}, {}});
+        force(in_time_.image(piece), in_time_(piece, t));
         sliding_->evaluate(at_.u, at_.v);
         scene_.friction->values(at_.w, g_);
+      }
+
+      /// Is the end of a step where several jumps come together, or where some come in or go out of the run? (@p start:
+      /// of the run.)
+      bool
+      has_between(const double time, const bool start) const
+      {
+        const std::size_t number = start ? 0 : in_time_.piece(time) + 1;
+        const bool is_edge       = start || in_time_.is_last(number - 1);
+        return in_time_.bunch(number).size() >= (is_edge ? 1 : 2) &&
+               (start || std::abs(time - in_time_.end(number - 1)) <= 1e-12);
+      }
+
+      /// int N dt over the short times between them, less what evaluate() has instead, at all points; for the state that
+      /// was evaluated last.
+      std::vector<double>
+      between(const double time, const bool start)
+      {
+        const std::size_t number  = start ? 0 : in_time_.piece(time) + 1;
+        std::vector<double> edges = in_time_.bunch(number);
+        const double middle       = in_time_.image_of_break(number);
+        const std::size_t left = start ? 0 : in_time_.image(number - 1), right = left + edges.size();
+        const bool is_end = !start && in_time_.is_last(number - 1);
+        std::vector<double> sum(g_.size(), 0.);
+        const auto add = [&](const std::size_t piece, const double from, const double to) {
+          if (!(to > from))
+            return;
+          const double t = 0.5 * (from + to);
+          force(piece, t);
+          for (std::size_t p = 0; p < sum.size(); ++p)
+            sum[p] += (to - from) * body_->N[p];
+          force(t < middle || is_end ? left : right, t);
+          for (std::size_t p = 0; p < sum.size(); ++p)
+            sum[p] -= (to - from) * body_->N[p];
+        };
+        if (start)
+          add(left, 0., edges.front());
+        for (std::size_t i = 0; i + 1 < edges.size(); ++i)
+        {
+          add(left + i + 1, edges[i], std::min(edges[i + 1], middle));
+          add(left + i + 1, std::max(edges[i], middle), edges[i + 1]);
+        }
+        if (is_end)
+          add(right, edges.back(), 1.);
+        return sum;
       }
 
       double
@@ -182,6 +296,16 @@ namespace crawler
       }
 
     private:
+      /// N at a time of a piece, or as near to it as the piece comes.
+      void
+      force(const std::size_t piece, const double t)
+      {
+        segments_.restart();
+        for (std::size_t i = 0; i < piece; ++i)
+          segments_.go_on();
+        body_->evaluate(segments_.inside(t), at_.e, {at_.w, at_.rate, {}, {}});
+      }
+
       const Units units_;
       TimeSegments segments_;
       const Scene scene_;
@@ -210,8 +334,8 @@ namespace crawler
   bool
   have_similar_breaks(const Scene &scene, const Scene &other)
   {
-    return breaks_in_space(scene).size() == breaks_in_space(other).size() &&
-           breaks_in_time(scene).size() == breaks_in_time(other).size();
+    return BreakMap(breaks_in_space(scene), breaks_in_space(other)).is_one_to_one() &&
+           BreakMap(breaks_in_time(scene), breaks_in_time(other)).is_good();
   }
 
   std::string
@@ -259,7 +383,7 @@ namespace crawler
       throw std::runtime_error("the fused engine did not make all steps");
   }
 
-  std::vector<double>
+  std::vector<std::optional<double>>
   DisplacementGradient::derivatives(const std::span<const Variation> variations)
   {
     LaneAdjoint adjoint(natural_, method_);
@@ -278,13 +402,18 @@ namespace crawler
       for (std::size_t k = 0; k < 4; ++k)
         others[i][k] = std::make_unique<ForcesAtPoints>(*variations[i].scenes[k], scene_, tables.points);
     std::vector<std::array<double, 4>> sums(variations.size());
+    std::vector<double> at_edges(variations.size()); ///< of them, at start and end
     constexpr std::size_t most_samples = 4000000;
     const bool keeps_stress            = steps_.n_steps() * tableau.n * n_points <= most_samples;
     local_ = {tables.points, std::vector<double>(n_points, 0.), std::vector<double>(n_points, 0.), {}, {}};
 
     std::vector<double> y = steps_.end(), u(n), v(n), mu_at(n_points), mu_s(n_points);
     StateAtPoints at(n_points);
-    const auto see = [&](const std::size_t step, const std::span<const double> mu) {
+    const auto see = [&](
+                       const std::size_t step, const std::span<const double> mu, const std::span<const double> zeta) {
+      std::vector<double> zeta_at(n_points), zeta_s(n_points);
+      if (!zeta.empty())
+        evaluate(setup, zeta.data(), zeta_at, zeta_s);
       const double *z = steps_.z(step);
       for (std::size_t d = 0; d < n; ++d)
         y[d] -= z[(tableau.n - 1) * n + d];
@@ -325,6 +454,17 @@ namespace crawler
             for (std::size_t p = 0; p < n_points; ++p) // the differences, since the sums nearly cancel
               sums[number][k] +=
                 weights[p] * ((forces.N(p) - own.N(p)) * mu_s[p] + (forces.f(p) - own.f(p)) * mu_at[p]);
+            const bool is_start = step == 0 && i == 0, is_end = i + 1 == tableau.n;
+            if (!(is_start || is_end) || !forces.has_between(t, is_start))
+              continue;
+            const std::vector<double> between = forces.between(t, is_start);
+            double sum                        = 0.;
+            for (std::size_t p = 0; p < n_points; ++p)
+              sum -= weights[p] * between[p] * (is_end ? zeta_s[p] : -mu_s[p] / (steps_.size(step) * tableau.b[i]));
+            sums[number][k] += sum;
+            // Where friction is not linear in the velocity an impulse is more than its size.
+            if (is_start || steps_.time(step) == 1. || (setup.laws & LaneLaws::nonlinear_in_velocity) != 0)
+              at_edges[number] = std::max(at_edges[number], std::abs(sum));
           }
       }
     };
@@ -337,14 +477,19 @@ namespace crawler
       throw std::runtime_error("the adjoint of a step did not converge");
 
     const double natural_displacement = displacement_ / units_.length;
-    std::vector<double> result;
+    std::vector<std::optional<double>> result;
     for (std::size_t i = 0; i < variations.size(); ++i)
     {
+      constexpr double nothing = 1e-7;
       std::array<double, 4> lengths;
       for (std::size_t k = 0; k < 4; ++k)
         lengths[k] = others[i][k]->units().length;
-      result.push_back(units_.length * fourth_order(sums[i], variations[i].step) +
-                       natural_displacement * fourth_order(lengths, variations[i].step));
+      const double derivative = units_.length * fourth_order(sums[i], variations[i].step) +
+                              natural_displacement * fourth_order(lengths, variations[i].step);
+      if (units_.length * at_edges[i] <= nothing * variations[i].step * std::abs(derivative))
+        result.push_back(derivative);
+      else
+        result.push_back(std::nullopt);
     }
     for (double &s : local_.s)
       s *= units_.length;

@@ -70,6 +70,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           system_.sort_bodies();
         friction_changed_ = false;
         load_step();
+        look_at_break();
         look_at_stages();
         guess();
         solve();
@@ -82,7 +83,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     struct Lane
     {
       LanePast past;
-      bool busy = false, iterating = false, failed = false, has_old = false;
+      bool busy = false, iterating = false, failed = false, has_old = false, at_break = false;
       unsigned int left = 0; ///< steps, this one too
       double h = 1., old_h = 1.;
     };
@@ -93,6 +94,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       const std::size_t n = n_, points = n_points_;
       states_.lay_out(memory_);
       memory_.piece(lambda_, n);
+      memory_.piece(zeta_, n);
       memory_.piece(mu_, s * n);
       memory_.piece(old_mu_, s * n);
       memory_.piece(K_mu_, s * n);
@@ -159,6 +161,29 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         }
         set_lane(inverse_h_, l, 1. / lane.h);
       }
+    }
+
+    /// Where a body starts anew after the step, and at the end of the run: zeta with M zeta = lambda. The systems of a
+    /// step that is so short are M.
+    void
+    look_at_break()
+    {
+      constexpr double tiny_step = 1e-14;
+      bool any                   = false;
+      for (Lane &lane : lanes_)
+      {
+        lane.at_break = lane.busy && (lane.left == lane.past.n_steps ||
+                                      (lane.past.starts != nullptr && lane.past.starts[lane.left] != 0));
+        any           = any || lane.at_break;
+      }
+      if (!any)
+        return;
+      states_.go_to_stage(s - 1, inverse_h_);
+      const Pack inverse = broadcast<Pack>(1. / tiny_step);
+      system_.template factorize<true>(times_[s - 1], states_.u, states_.v, nullptr, inverse);
+      for (int d = 0; d < n_; ++d)
+        zeta_[d] = (setup_.real_eigenvalue * inverse) * lambda_[d];
+      system_.solve(zeta_);
     }
 
     void
@@ -294,7 +319,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         if (!lane.failed)
           host_.step(host_.context,
                      static_cast<unsigned int>(l),
-                     {lane.left, lanes, reinterpret_cast<const double *>(mu_) + l});
+                     {lane.left,
+                      lanes,
+                      reinterpret_cast<const double *>(mu_) + l,
+                      lane.at_break ? reinterpret_cast<const double *>(zeta_) + l : nullptr});
         lane.old_h   = lane.h;
         lane.has_old = lane.past.starts == nullptr || lane.past.starts[lane.left] == 0;
         if (lane.failed || lane.left == 0)
@@ -329,7 +357,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     double rows_[2 * (1 + pairs) * s], vectors_[2 * (1 + pairs) * s]; ///< of the transposed matrix A^-1
     LaneSlopes<Pack> slopes_[s];                                      ///< at the stages
 
-    Pack *lambda_;                            ///< [unknown]
+    Pack *lambda_, *zeta_;                    ///< [unknown]
     Pack *mu_, *old_mu_;                      ///< [stage][unknown] of this step, and of the one after it
     Pack *K_mu_, *M_mu_, *residual_, *real_;  ///< products, and right-hand sides in both bases
     Number *complex_;

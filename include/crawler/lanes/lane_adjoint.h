@@ -74,8 +74,10 @@ namespace crawler
     std::vector<double>
     gradient_of_displacement() const;
 
-    /// Sees the adjoint mu, [stages][unknowns], of a step, from the last one to the first (LaneAdjointStep).
-    using Seer = std::function<void(std::size_t step, std::span<const double> mu)>;
+    /// Sees the adjoint mu, [stages][unknowns], of a step, from the last one to the first, and zeta, which is mostly
+    /// empty (LaneAdjointStep).
+    using Seer =
+      std::function<void(std::size_t step, std::span<const double> mu, std::span<const double> zeta)>;
 
     /// The adjoint of what has this @p gradient by the last state. Returns its derivative by the first state; nothing if
     /// the iteration for the stages did not converge.
@@ -101,7 +103,7 @@ namespace crawler
     LanePast past_;
     bool started_ = false;
     const Seer *see_ = nullptr;
-    std::vector<double> mu_, by_start_;
+    std::vector<double> mu_, zeta_, by_start_;
     bool finished_ = false;
   };
 } // namespace crawler

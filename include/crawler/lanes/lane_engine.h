@@ -179,7 +179,10 @@ namespace crawler
   {
     unsigned int number; ///< from 0
     std::size_t stride;
-    const double *mu; ///< [stages][unknowns] what one wants to know, differentiated by the residuals, with the sign of dF
+    const double *mu;   ///< [stages][unknowns] what one wants to know, differentiated by the residuals, with the sign of dF
+    /// [unknowns] M^-1 of what one wants to know, differentiated by the state at the end of the step: minus the effect of
+    /// an impulse there. Null unless the body starts anew with the next step, or there is none.
+    const double *zeta;
   };
 
   /// Who gives the runs and takes their adjoints.

@@ -59,9 +59,10 @@ namespace crawler
       return displacement_;
     }
 
-    /// The derivatives of the displacement [length/unit of p], one sweep for all. Throws std::runtime_error if the
+    /// The derivatives of the displacement [length/unit of p], one sweep for all. There is none where a jump of the
+    /// active stress comes in or goes out at the start or the end of the run: the displacement has a kink there. Throws std::runtime_error if the
     /// adjoint cannot be found.
-    std::vector<double>
+    std::vector<std::optional<double>>
     derivatives(std::span<const Variation> variations);
 
     /// Of the last derivatives().
@@ -82,7 +83,8 @@ namespace crawler
     LocalSensitivity local_;
   };
 
-  /// Have both as many breaks in space, and in time? They may be at other places and times.
+  /// Do the breaks of another scene, which differs a little, lie near those of a scene? As many in space; in time
+  /// several may come together in the scene itself, and some come in or go out at the ends.
   bool
   have_similar_breaks(const Scene &scene, const Scene &other);
 } // namespace crawler

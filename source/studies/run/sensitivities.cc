@@ -42,7 +42,7 @@ namespace crawler
           file.add_override(entry + "=" + to_text(value + i * one.step));
           one.scenes.push_back(read_input(std::move(file)).scene);
           if (!have_similar_breaks(input.scene, one.scenes.back()))
-            one.sensitivity.reason = "with it jumps of the active stress or the body come or go";
+            one.sensitivity.reason = "jumps of the active stress or the body come or go with it";
         }
       }
       catch (const InputError &error)
@@ -115,7 +115,7 @@ namespace crawler
       if (reason.empty())
       {
         DisplacementGradient gradient(input.scene, parameters.time, choice.numerics, keep_going);
-        const std::vector<double> values = gradient.derivatives(variations);
+        const auto values = gradient.derivatives(variations);
         write_local(gradient.local(), folder);
         const TimeParameters finer_time = time_of_finer_run(parameters.time);
         DisplacementGradient finer(
@@ -123,13 +123,19 @@ namespace crawler
           finer_time,
           numerics_of_finer_run(choice, parameters.time, input.scene, /*cycles_repeat=*/false),
           keep_going);
-        const std::vector<double> finer_values = finer.derivatives(variations);
+        const auto finer_values = finer.derivatives(variations);
         for (std::size_t i = 0; i < known.size(); ++i)
         {
           using accuracy_rule::finer_run::factor_without_promise;
+          if (!values[i] || !finer_values[i])
+          {
+            known[i]->reason = "a jump of the active stress comes in or goes out at the start or the end of the run with "
+                               "it, where the displacement has a kink";
+            continue;
+          }
           known[i]->value = values[i];
-          known[i]->error = factor_without_promise * std::abs(finer_values[i] - values[i]) +
-                            accuracy_rule::sensitivities::round_off * std::abs(values[i]);
+          known[i]->error = factor_without_promise * std::abs(*finer_values[i] - *values[i]) +
+                            accuracy_rule::sensitivities::round_off * std::abs(*values[i]);
         }
       }
     }
