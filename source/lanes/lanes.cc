@@ -63,13 +63,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
 #define CRAWLER_TEXT(name) CRAWLER_TEXT_OF(name)
 #define CRAWLER_TEXT_OF(name) #name
     template <typename Pack>
-    constexpr LaneEngine engine = {
-      CRAWLER_TEXT(CRAWLER_INSTRUCTION_SET),
-      PackTraits<Pack>::size,
-      memory<Pack>,
-      run<Pack>,
-      adjoint_memory<Pack>,
-      adjoint<Pack>};
+    constexpr LaneEngine engine = {CRAWLER_TEXT(CRAWLER_INSTRUCTION_SET),
+                                   PackTraits<Pack>::size,
+                                   memory<Pack>,
+                                   run<Pack>,
+                                   adjoint_memory<Pack>,
+                                   adjoint<Pack>};
   } // namespace
 
   extern const LaneEngine batch, single;

@@ -28,9 +28,10 @@ namespace crawler
       .means("Numbers of samples over s and over t, like 65, 129, of the active stress that are written to "
              "active_stress.csv, which the generator table reads. Nothing: no such file.");
     declarations.text("Sensitivities", sensitivities, "a list Section/Entry, Section/Entry, or the word \"all\"")
-      .means("Entries by which the displacement is differentiated, numbers of the body, the ground, the active stress or "
-             "the end time: how much each of them matters, in summary.json, on the screen and, along the body and over "
-             "time, in sensitivity_body.csv and sensitivity_stress.csv. all: all that have an effect. Nothing: none.");
+      .means(
+        "Entries by which the displacement is differentiated, numbers of the body, the ground, the active stress or "
+        "the end time: how much each of them matters, in summary.json, on the screen and, along the body and over "
+        "time, in sensitivity_body.csv and sensitivity_stress.csv. all: all that have an effect. Nothing: none.");
     declarations.leave();
   }
 } // namespace crawler

@@ -214,8 +214,8 @@ namespace crawler
       evaluate(const double t, const double end, const StateAtPoints &at)
       {
         const std::size_t piece = in_time_.piece(end);
-        const double slower = in_time_.slope(piece);
-        at_.u               = at.u;
+        const double slower     = in_time_.slope(piece);
+        at_.u                   = at.u;
         for (std::size_t p = 0; p < g_.size(); ++p)
         {
           at_.v[p]    = at.v[p] / slower;
@@ -239,8 +239,8 @@ namespace crawler
                (start || std::abs(time - in_time_.end(number - 1)) <= 1e-12);
       }
 
-      /// int N dt over the short times between them, less what evaluate() has instead, at all points; for the state that
-      /// was evaluated last.
+      /// int N dt over the short times between them, less what evaluate() has instead, at all points; for the state
+      /// that was evaluated last.
       std::vector<double>
       between(const double time, const bool start)
       {
@@ -347,7 +347,8 @@ namespace crawler
       return "they are not there for the stretch form, which computes this scene";
     if (scene.profiles.initial_stretch)
       return "they are not there for an initial stretch";
-    if (scene.active_stress->feedback() != nullptr && !TimeSegments(*scene.active_stress, scene.end_time).breaks().empty())
+    if (scene.active_stress->feedback() != nullptr &&
+        !TimeSegments(*scene.active_stress, scene.end_time).breaks().empty())
       return "they are not there for feedback to an active stress that jumps in time";
     if (numerics.jumps_move)
       return "they are not there for jumps of the active stress that move";
@@ -387,11 +388,11 @@ namespace crawler
   DisplacementGradient::derivatives(const std::span<const Variation> variations)
   {
     LaneAdjoint adjoint(natural_, method_);
-    const LaneTables &tables     = adjoint.tables();
-    const LaneSetup &setup       = tables.setup;
-    const std::size_t n_points   = tables.points.size(), n = steps_.end().size();
-    const RadauTableau &tableau  = radau_tableau(setup.n_stages);
-    const std::size_t per_cell   = setup.degree + 1;
+    const LaneTables &tables   = adjoint.tables();
+    const LaneSetup &setup     = tables.setup;
+    const std::size_t n_points = tables.points.size(), n = steps_.end().size();
+    const RadauTableau &tableau = radau_tableau(setup.n_stages);
+    const std::size_t per_cell  = setup.degree + 1;
     std::vector<double> weights(n_points);
     for (std::size_t i = 0; i < n_points; ++i)
       weights[i] = setup.sizes[i / per_cell] * setup.weights[i % per_cell];
@@ -409,8 +410,7 @@ namespace crawler
 
     std::vector<double> y = steps_.end(), u(n), v(n), mu_at(n_points), mu_s(n_points);
     StateAtPoints at(n_points);
-    const auto see = [&](
-                       const std::size_t step, const std::span<const double> mu, const std::span<const double> zeta) {
+    const auto see = [&](const std::size_t step, const std::span<const double> mu, const std::span<const double> zeta) {
       std::vector<double> zeta_at(n_points), zeta_s(n_points);
       if (!zeta.empty())
         evaluate(setup, zeta.data(), zeta_at, zeta_s);
@@ -485,7 +485,7 @@ namespace crawler
       for (std::size_t k = 0; k < 4; ++k)
         lengths[k] = others[i][k]->units().length;
       const double derivative = units_.length * fourth_order(sums[i], variations[i].step) +
-                              natural_displacement * fourth_order(lengths, variations[i].step);
+                                natural_displacement * fourth_order(lengths, variations[i].step);
       if (units_.length * at_edges[i] <= nothing * variations[i].step * std::abs(derivative))
         result.push_back(derivative);
       else

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/lanes/lane_adjoint.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/equation/general_position_form.h>
+#include <crawler/lanes/lane_adjoint.h>
 #include <crawler/run/simulation.h>
 #include <crawler/time/failure.h>
 #include <crawler/time/integrators.h>

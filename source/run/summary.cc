@@ -84,16 +84,15 @@ namespace crawler
       for (const EntrySensitivity &one : result.sensitivities)
         width = std::max(width, one.entry.size());
       for (const EntrySensitivity &one : result.sensitivities)
-        lines.push_back(
-          one.value ? fmt::format("    {:<{}}  {:12.6g} +- {:.2g}{}",
-                                  one.entry,
-                                  width,
-                                  *one.value,
-                                  one.error.value_or(std::numeric_limits<double>::quiet_NaN()),
-                                  result.displacement != 0. && one.at != 0.
-                                    ? fmt::format("  {:8.3g} %", one.elasticity(result.displacement))
-                                    : "")
-                    : fmt::format("    {:<{}}  not known: {}", one.entry, width, one.reason));
+        lines.push_back(one.value ? fmt::format("    {:<{}}  {:12.6g} +- {:.2g}{}",
+                                                one.entry,
+                                                width,
+                                                *one.value,
+                                                one.error.value_or(std::numeric_limits<double>::quiet_NaN()),
+                                                result.displacement != 0. && one.at != 0.
+                                                  ? fmt::format("  {:8.3g} %", one.elasticity(result.displacement))
+                                                  : "")
+                                  : fmt::format("    {:<{}}  not known: {}", one.entry, width, one.reason));
     }
   } // namespace
 
@@ -120,7 +119,7 @@ namespace crawler
     json["sensitivities"] = nullptr;
     for (const EntrySensitivity &one : result.sensitivities)
     {
-      Json &entry   = json["sensitivities"][one.entry];
+      Json &entry    = json["sensitivities"][one.entry];
       entry["value"] = one.value ? Json(*one.value) : Json(nullptr);
       entry["error"] = one.error ? Json(*one.error) : Json(nullptr);
       entry["elasticity"] =

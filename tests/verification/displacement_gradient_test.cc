@@ -50,10 +50,7 @@ namespace
   };
 
   Both
-  derivatives(const test::Settings &settings,
-              const std::string &entry,
-              const double value,
-              const Grading &grading)
+  derivatives(const test::Settings &settings, const std::string &entry, const double value, const Grading &grading)
   {
     const Scene scene         = scene_of(settings, entry, value);
     const TimeParameters time = test::parameters_with(settings).time;
@@ -63,9 +60,10 @@ namespace
     for (const int i : {-2, -1, 1, 2})
     {
       near.push_back(scene_of(settings, entry, value + i * step));
-      const Scene other = scene_of(settings, entry, value + i * far);
-      D[near.size() - 1] =
-        Simulation(MPI_COMM_SELF, other, time, numerics_for(other, "radau 9", 10, 1e-12, grading)).run({}, {}).displacement;
+      const Scene other  = scene_of(settings, entry, value + i * far);
+      D[near.size() - 1] = Simulation(MPI_COMM_SELF, other, time, numerics_for(other, "radau 9", 10, 1e-12, grading))
+                             .run({}, {})
+                             .displacement;
     }
     const Numerics numerics = numerics_for(scene, "radau 9", 10, 1e-12, grading);
     EXPECT_EQ(DisplacementGradient::reason_against(scene, time, numerics), "");
@@ -129,15 +127,15 @@ TEST(DisplacementGradient, OfGeneralBodies)
 /// Jumps of the active stress move with these entries, in time and in space.
 TEST(DisplacementGradient, OfJumpsThatMove)
 {
-  const test::Settings robot = {{"Active stress/Generator", "segments"},
-                                {"Active stress/Segments/Number of segments", "3"},
-                                {"Active stress/Segments/Amplitude", "0.3"},
-                                {"Active stress/Segments/Frequency", "1"},
-                                {"Active stress/Segments/Phase lag", "0.27"},
-                                {"Active stress/Segments/Duty cycle", "0.4"},
-                                {"Active stress/Segments/Gap", "0.05"},
-                                {"Active stress/Segments/Ramp duration", "0.6"},
-                                {"Time/End time", "1.33"}};
+  const test::Settings robot      = {{"Active stress/Generator", "segments"},
+                                     {"Active stress/Segments/Number of segments", "3"},
+                                     {"Active stress/Segments/Amplitude", "0.3"},
+                                     {"Active stress/Segments/Frequency", "1"},
+                                     {"Active stress/Segments/Phase lag", "0.27"},
+                                     {"Active stress/Segments/Duty cycle", "0.4"},
+                                     {"Active stress/Segments/Gap", "0.05"},
+                                     {"Active stress/Segments/Ramp duration", "0.6"},
+                                     {"Time/End time", "1.33"}};
   const test::Settings trapezoids = with(robot, {{"Active stress/Segments/Rate limit", "2.5"}});
   for (const test::Settings &scene : {robot, trapezoids})
     for (const auto &[entry, value] : {std::pair("Active stress/Segments/Phase lag", 0.27),
@@ -153,14 +151,14 @@ TEST(DisplacementGradient, OfJumpsThatMove)
 /// Jumps of different segments that come together, as those of robots with a lag of 1/N do.
 TEST(DisplacementGradient, OfJumpsThatComeTogether)
 {
-  const test::Settings robot = {{"Active stress/Generator", "segments"},
-                                {"Active stress/Segments/Number of segments", "4"},
-                                {"Active stress/Segments/Amplitude", "0.3"},
-                                {"Active stress/Segments/Frequency", "1"},
-                                {"Active stress/Segments/Phase lag", "0.25"},
-                                {"Active stress/Segments/Duty cycle", "0.5"},
-                                {"Active stress/Segments/Ramp duration", "0.6"},
-                                {"Time/End time", "1.33"}};
+  const test::Settings robot      = {{"Active stress/Generator", "segments"},
+                                     {"Active stress/Segments/Number of segments", "4"},
+                                     {"Active stress/Segments/Amplitude", "0.3"},
+                                     {"Active stress/Segments/Frequency", "1"},
+                                     {"Active stress/Segments/Phase lag", "0.25"},
+                                     {"Active stress/Segments/Duty cycle", "0.5"},
+                                     {"Active stress/Segments/Ramp duration", "0.6"},
+                                     {"Time/End time", "1.33"}};
   const test::Settings trapezoids = with(robot, {{"Active stress/Segments/Rate limit", "2.5"}});
   for (const test::Settings &scene : {robot, trapezoids})
     for (const auto &[entry, value] : {std::pair("Active stress/Segments/Phase lag", 0.25),
@@ -177,7 +175,7 @@ TEST(DisplacementGradient, OfJumpsAtTheEndThereIsNone)
                                 {"Active stress/Segments/Phase lag", "0.25"},
                                 {"Active stress/Segments/Ramp duration", "0.6"},
                                 {"Time/End time", "1"}};
-  const Scene scene = scene_of(robot, "Active stress/Segments/Frequency", 1.);
+  const Scene scene          = scene_of(robot, "Active stress/Segments/Frequency", 1.);
   std::vector<Scene> near;
   for (const int i : {-2, -1, 1, 2})
     near.push_back(scene_of(robot, "Active stress/Segments/Frequency", 1. + i * 1e-3));

@@ -10,9 +10,10 @@
 #include <cstddef>
 
 /**
- * The discrete adjoint of the Radau IIA methods on packs of bodies (doc/numerics.md, "Sensitivities"; Hairer, Hochbruck,
- * Iserles, Lubich, GNI, section VI.4 for the methods, the transposed simplified Newton iteration as in radau_lanes.h).
- * Included by lanes.cc alone, once for each instruction set; nothing here may come from the C++ library.
+ * The discrete adjoint of the Radau IIA methods on packs of bodies (doc/numerics.md, "Sensitivities"; Hairer,
+ * Hochbruck, Iserles, Lubich, GNI, section VI.4 for the methods, the transposed simplified Newton iteration as in
+ * radau_lanes.h). Included by lanes.cc alone, once for each instruction set; nothing here may come from the C++
+ * library.
  *
  * For the stages u_i, v_i of a step with F_i = F(t_i, u_i, v_i), K_i = dF_i/du, M_i = dF_i/dv and W = A^-1:
  *
@@ -253,7 +254,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
             Pack sum = setup_.inverse[i] * M_mu_[d];
             for (int j = 1; j < s; ++j)
               sum += setup_.inverse[j * s + i] * M_mu_[j * n_ + d];
-            const Pack right        = i + 1 < s ? Pack{} : -lambda_[d];
+            const Pack right      = i + 1 < s ? Pack{} : -lambda_[d];
             residual_[i * n_ + d] = right - K_mu_[i * n_ + d] - inverse_h_ * sum;
           }
         correct();
@@ -357,9 +358,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     double rows_[2 * (1 + pairs) * s], vectors_[2 * (1 + pairs) * s]; ///< of the transposed matrix A^-1
     LaneSlopes<Pack> slopes_[s];                                      ///< at the stages
 
-    Pack *lambda_, *zeta_;                    ///< [unknown]
-    Pack *mu_, *old_mu_;                      ///< [stage][unknown] of this step, and of the one after it
-    Pack *K_mu_, *M_mu_, *residual_, *real_;  ///< products, and right-hand sides in both bases
+    Pack *lambda_, *zeta_;                   ///< [unknown]
+    Pack *mu_, *old_mu_;                     ///< [stage][unknown] of this step, and of the one after it
+    Pack *K_mu_, *M_mu_, *residual_, *real_; ///< products, and right-hand sides in both bases
     Number *complex_;
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

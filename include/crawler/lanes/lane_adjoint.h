@@ -76,11 +76,10 @@ namespace crawler
 
     /// Sees the adjoint mu, [stages][unknowns], of a step, from the last one to the first, and zeta, which is mostly
     /// empty (LaneAdjointStep).
-    using Seer =
-      std::function<void(std::size_t step, std::span<const double> mu, std::span<const double> zeta)>;
+    using Seer = std::function<void(std::size_t step, std::span<const double> mu, std::span<const double> zeta)>;
 
-    /// The adjoint of what has this @p gradient by the last state. Returns its derivative by the first state; nothing if
-    /// the iteration for the stages did not converge.
+    /// The adjoint of what has this @p gradient by the last state. Returns its derivative by the first state; nothing
+    /// if the iteration for the stages did not converge.
     std::optional<std::vector<double>>
     solve(const LaneRecord &record, const std::vector<double> &gradient, const Seer &see);
 
@@ -101,7 +100,7 @@ namespace crawler
     LaneStorage memory_;
     // Of the present solve.
     LanePast past_;
-    bool started_ = false;
+    bool started_    = false;
     const Seer *see_ = nullptr;
     std::vector<double> mu_, zeta_, by_start_;
     bool finished_ = false;

@@ -168,10 +168,10 @@ namespace crawler
   {
     unsigned int n_steps = 0;
     const double *times = nullptr, *sizes = nullptr; ///< [n_steps] ends and lengths of the steps
-    const double *z      = nullptr;                  ///< [n_steps][stages][unknowns] as in LaneStep
-    const double *end    = nullptr;                  ///< [unknowns] the last state
+    const double *z             = nullptr;           ///< [n_steps][stages][unknowns] as in LaneStep
+    const double *end           = nullptr;           ///< [unknowns] the last state
     const unsigned char *starts = nullptr;           ///< [n_steps] does a body start anew with this step? Null: never
-    const double *gradient = nullptr; ///< [unknowns] what one wants to know, differentiated by the last state
+    const double *gradient      = nullptr; ///< [unknowns] what one wants to know, differentiated by the last state
   };
 
   /// A step gone through backwards; element i is at [i*stride].
@@ -179,9 +179,10 @@ namespace crawler
   {
     unsigned int number; ///< from 0
     std::size_t stride;
-    const double *mu;   ///< [stages][unknowns] what one wants to know, differentiated by the residuals, with the sign of dF
-    /// [unknowns] M^-1 of what one wants to know, differentiated by the state at the end of the step: minus the effect of
-    /// an impulse there. Null unless the body starts anew with the next step, or there is none.
+    const double
+      *mu; ///< [stages][unknowns] what one wants to know, differentiated by the residuals, with the sign of dF
+    /// [unknowns] M^-1 of what one wants to know, differentiated by the state at the end of the step: minus the effect
+    /// of an impulse there. Null unless the body starts anew with the next step, or there is none.
     const double *zeta;
   };
 

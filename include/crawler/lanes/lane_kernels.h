@@ -36,8 +36,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack end_stretch[2] = {}, end_rate[2] = {}; ///< at both ends, and its rate
   };
 
-  /// The derivatives of friction f and force N at all points of a state: by velocity, stretch, place and the rate of the
-  /// stretch. Null: 0.
+  /// The derivatives of friction f and force N at all points of a state: by velocity, stretch, place and the rate of
+  /// the stretch. Null: 0.
   template <typename Pack>
   struct LaneSlopes
   {
@@ -154,7 +154,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           const int i = c * n + p;
           at.f_v[i]   = D.f_v[p];
           at.f_w[i]   = D.f_w[p];
-          at.N_w[i] = modulus(laws, D, p);
+          at.N_w[i]   = modulus(laws, D, p);
           if (at.f_u != nullptr)
             at.f_u[i] = D.f_u[p];
           if (at.N_rate != nullptr)

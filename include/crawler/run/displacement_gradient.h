@@ -60,8 +60,8 @@ namespace crawler
     }
 
     /// The derivatives of the displacement [length/unit of p], one sweep for all. There is none where a jump of the
-    /// active stress comes in or goes out at the start or the end of the run: the displacement has a kink there. Throws std::runtime_error if the
-    /// adjoint cannot be found.
+    /// active stress comes in or goes out at the start or the end of the run: the displacement has a kink there. Throws
+    /// std::runtime_error if the adjoint cannot be found.
     std::vector<std::optional<double>>
     derivatives(std::span<const Variation> variations);
 

@@ -44,11 +44,11 @@ namespace crawler
     double displacement = std::numeric_limits<double>::quiet_NaN();
     /// How: an integrator of time/integrators.h; petsc, fused, or "fused, petsc" where the fused engine gave up.
     std::string integrator, engine;
-    std::optional<DisplacementError> error; ///< of the displacement
-    std::optional<NumberErrors> errors;     ///< of other numbers, if a finer run measured them
+    std::optional<DisplacementError> error;      ///< of the displacement
+    std::optional<NumberErrors> errors;          ///< of other numbers, if a finer run measured them
     std::vector<EntrySensitivity> sensitivities; ///< if they are wanted, those that matter most first
-    double largest_u  = 0.;                 ///< root mean square of u over the body, largest over time [length]
-    double unresolved = 0.;                 ///< Resolution: largest highest_mode over largest strain, if looked at
+    double largest_u  = 0.;                      ///< root mean square of u over the body, largest over time [length]
+    double unresolved = 0.;                      ///< Resolution: largest highest_mode over largest strain, if looked at
     double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]
     std::optional<EnergyBalance> energy_balance;
     bool jumps_move     = false; ///< the energy balance's integrals in time are not those of a smooth active stress

@@ -128,7 +128,8 @@ namespace crawler
         const bool is_of_scene = entry.path.starts_with("Body/") || entry.path.starts_with("Ground/") ||
                                  entry.path.starts_with("Active stress/") || entry.path == "Time/End time";
         if (!is_of_scene || entry.expected.find("number") == std::string::npos ||
-            entry.expected.starts_with("a whole number") || !to_number(declarations.value(static_cast<unsigned int>(i))))
+            entry.expected.starts_with("a whole number") ||
+            !to_number(declarations.value(static_cast<unsigned int>(i))))
           continue;
         all.push_back(entry.path);
         if (std::ranges::none_of(rules, [&](const Rule &rule) { return rule.is_against(entry.path); }))
@@ -143,11 +144,12 @@ namespace crawler
         if (std::ranges::find(all, path) == all.end())
         {
           const auto near = nearest_names(path, all, 1);
-          throw InputError(fmt::format("Sensitivities has \"{}\", but entries of the body, the ground, the active stress "
-                                       "or the end time that are numbers are expected, or \"all\"{}",
-                                       trimmed(name),
-                                       near.empty() ? "" : "; the nearest name is " + quoted_list(near)),
-                           own);
+          throw InputError(
+            fmt::format("Sensitivities has \"{}\", but entries of the body, the ground, the active stress "
+                        "or the end time that are numbers are expected, or \"all\"{}",
+                        trimmed(name),
+                        near.empty() ? "" : "; the nearest name is " + quoted_list(near)),
+            own);
         }
         names.push_back(path);
       }

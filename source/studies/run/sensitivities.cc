@@ -69,19 +69,15 @@ namespace crawler
     {
       std::string text = "s [length],elastic modulus [1],friction [1]\n";
       for (std::size_t i = 0; i < local.s.size(); ++i)
-        fmt::format_to(
-          std::back_inserter(text), "{},{},{}\n", local.s[i], local.elastic_modulus[i], local.friction[i]);
+        fmt::format_to(std::back_inserter(text), "{},{},{}\n", local.s[i], local.elastic_modulus[i], local.friction[i]);
       write_file(folder / "sensitivity_body.csv", text);
       if (local.times.empty())
         return;
       text = "s [length],t [time],active stress [1/(force time)]\n";
       for (std::size_t j = 0; j < local.times.size(); ++j)
         for (std::size_t i = 0; i < local.s.size(); ++i)
-          fmt::format_to(std::back_inserter(text),
-                         "{},{},{}\n",
-                         local.s[i],
-                         local.times[j],
-                         local.stress[j * local.s.size() + i]);
+          fmt::format_to(
+            std::back_inserter(text), "{},{},{}\n", local.s[i], local.times[j], local.stress[j * local.s.size() + i]);
       write_file(folder / "sensitivity_stress.csv", text);
     }
   } // namespace
@@ -118,19 +114,19 @@ namespace crawler
         const auto values = gradient.derivatives(variations);
         write_local(gradient.local(), folder);
         const TimeParameters finer_time = time_of_finer_run(parameters.time);
-        DisplacementGradient finer(
-          input.scene,
-          finer_time,
-          numerics_of_finer_run(choice, parameters.time, input.scene, /*cycles_repeat=*/false),
-          keep_going);
+        DisplacementGradient finer(input.scene,
+                                   finer_time,
+                                   numerics_of_finer_run(choice, parameters.time, input.scene, /*cycles_repeat=*/false),
+                                   keep_going);
         const auto finer_values = finer.derivatives(variations);
         for (std::size_t i = 0; i < known.size(); ++i)
         {
           using accuracy_rule::finer_run::factor_without_promise;
           if (!values[i] || !finer_values[i])
           {
-            known[i]->reason = "a jump of the active stress comes in or goes out at the start or the end of the run with "
-                               "it, where the displacement has a kink";
+            known[i]->reason =
+              "a jump of the active stress comes in or goes out at the start or the end of the run with "
+              "it, where the displacement has a kink";
             continue;
           }
           known[i]->value = values[i];

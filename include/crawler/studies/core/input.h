@@ -20,7 +20,7 @@ namespace crawler
     std::string effective; ///< all entries as they are used, as a .prm file
     Scene scene;
     std::vector<std::string> sensitivities; ///< entries by which the displacement is differentiated
-    std::vector<std::string> notes;         ///< what is perhaps not meant: entries without effect, tables beyond the body
+    std::vector<std::string> notes; ///< what is perhaps not meant: entries without effect, tables beyond the body
   };
 
   /// Reads @p file_name on rank 0 and gives it to all (collective). Throws InputError or FileError, on all ranks.

@@ -1,0 +1,119 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Output/Sensitivities of crawler run: derivatives against differences of runs, what is named instead of one, answers to
+bad input, and the picture.
+
+    python3 sensitivities.py PATH_TO_CRAWLER
+"""
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import matplotlib.image
+import numpy as np
+
+PLOT = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "plot" / "sensitivity.py"
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+WAVE = """
+set Accuracy = 1e-6
+subsection Active stress
+  subsection Optimal wave
+    set Perturbation parameter = 0.3
+    set Choose wave by = wave speed
+  end
+end
+subsection Output
+  set Number of snapshots = 0
+end
+"""
+ROBOT = """
+subsection Active stress
+  set Generator = segments
+  subsection Segments
+    set Number of segments = 4
+    set Phase lag = 0.25
+    set Ramp duration = 0.5
+  end
+end
+subsection Output
+  set Number of snapshots = 0
+end
+"""
+K, P, CHI = "Body/Elastic modulus", "Body/Anchoring exponent", "Active stress/Optimal wave/Perturbation parameter"
+failures = []
+
+
+def expect(condition, what):
+    """Notes what is wrong."""
+    if not condition:
+        failures.append(what)
+
+
+def crawler(folder, text, *settings):
+    """Runs a parameter file; the result of the process and the summary, if there is one."""
+    file = folder / "scene.prm"
+    file.write_text(text, encoding="utf-8")
+    output = folder / "output"
+    arguments = [word for setting in settings for word in ("--set", setting)]
+    result = subprocess.run([sys.argv[1], "run", file, "--output", output, "--overwrite", *arguments],
+                            capture_output=True, text=True, check=False, env=ENVIRONMENT)
+    summary = output / "summary.json"
+    return result, json.loads(summary.read_text(encoding="utf-8")) if summary.exists() else None
+
+
+def main():
+    """All of it."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        result, summary = crawler(folder, WAVE, "Output/Sensitivities=all")
+        expect(result.returncode == 0, f"a run with sensitivities ended with {result.returncode}: {result.stderr}")
+        found = summary["sensitivities"]
+        for entry, value in ((K, 1.0), (P, 2.0), (CHI, 0.3)):
+            step = 0.002 * value
+            moved = [crawler(folder, WAVE, "Accuracy=1e-9", f"{entry}={value + i * step}")[1]["displacement"]
+                     for i in (-1, 1)]
+            by_difference = (moved[1] - moved[0]) / (2 * step)
+            one = found[entry]
+            expect(abs(one["value"] - by_difference) < 1e-4 * abs(by_difference) + one["error"],
+                   f"{entry}: {one['value']} +- {one['error']}, but differences of runs are {by_difference}")
+            expect(abs(one["elasticity"] - one["value"] * value / summary["displacement"]) < 1e-12, f"{entry}: elasticity")
+            expect(entry in result.stdout, f"{entry} is not on the screen")
+        sizes = [abs(one["elasticity"]) for one in found.values() if one["elasticity"] is not None]
+        expect(sizes[:5] == sorted(sizes, reverse=True)[:5], "what matters most is not first")
+
+        crawler(folder, WAVE, "Output/Sensitivities=" + K)
+        output = folder / "output"
+        with open(output / "sensitivity_body.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        expect(rows[0] == ["s [length]", "elastic modulus [1]", "friction [1]"], f"sensitivity_body.csv has {rows[0]}")
+        plot = subprocess.run([sys.executable, PLOT, output], capture_output=True, text=True, check=False)
+        expect(plot.returncode == 0, f"sensitivity.py: {plot.stderr}")
+        picture = matplotlib.image.imread(output / "sensitivity.png")
+        expect(np.ptp(picture[..., :3]) > 0.5 and picture.shape[1] > 800, "sensitivity.png is blank")
+        _, summary = crawler(folder, WAVE)
+        expect(summary["sensitivities"] is None, "sensitivities that nobody wants")
+        plot = subprocess.run([sys.executable, PLOT, folder], capture_output=True, text=True, check=False)
+        expect(plot.returncode == 1 and "Output/Sensitivities" in plot.stderr, f"sensitivity.py on no run: {plot.stderr}")
+
+        phase = "Active stress/Segments/Phase lag"
+        _, summary = crawler(folder, ROBOT, "Time/End time=1.3", "Output/Sensitivities=" + phase)
+        expect(summary["sensitivities"][phase]["value"] is not None, "jumps that come together")
+        _, summary = crawler(folder, ROBOT, "Time/End time=1", "Output/Sensitivities=" + phase)
+        expect("kink" in summary["sensitivities"][phase].get("reason", ""), "a jump at the end of the run")
+        _, summary = crawler(folder, WAVE, "Body/Elastic modulus=1e-4", "Accuracy=1e-3", "Output/Sensitivities=" + P)
+        expect("stretch form" in summary["sensitivities"][P].get("reason", ""), "the stretch form")
+        for wrong, words in (("Body/Elastic moduls", "Body/Elastic modulus"), ("Accuracy", "are expected"),
+                             ("Active stress/Segments/Number of segments", "are expected")):
+            result, _ = crawler(folder, WAVE, "Output/Sensitivities=" + wrong)
+            expect(result.returncode == 2 and words in result.stderr, f"Sensitivities = {wrong}: {result.stderr}")
+        result, _ = crawler(folder, WAVE, "Model=kinematic", "Output/Sensitivities=all")
+        expect(result.returncode == 2 and "nonlinear" in result.stderr, f"the kinematic level: {result.stderr}")
+    sys.exit("\n".join(failures))
+
+
+if __name__ == "__main__":
+    main()
