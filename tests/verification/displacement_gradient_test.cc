@@ -66,8 +66,9 @@ namespace
                              .displacement;
     }
     const Numerics numerics = numerics_for(scene, "radau 9", 10, 1e-12, grading);
-    EXPECT_EQ(DisplacementGradient::reason_against(scene, time, numerics), "");
-    DisplacementGradient gradient(scene, time, numerics, {});
+    EXPECT_EQ(RecordedRun::reason_against(scene, time, numerics), "");
+    const RecordedRun run(scene, time, numerics, {});
+    DisplacementGradient gradient(run);
     const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
     EXPECT_TRUE(have_similar_breaks(scene, near.front())) << entry;
     return {gradient.derivatives({&variation, 1}).front().value(), fourth_order(D[0], D[1], D[2], D[3], far)};
@@ -180,8 +181,8 @@ TEST(DisplacementGradient, OfJumpsAtTheEndThereIsNone)
   for (const int i : {-2, -1, 1, 2})
     near.push_back(scene_of(robot, "Active stress/Segments/Frequency", 1. + i * 1e-3));
   const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, 1e-3};
-  DisplacementGradient gradient(
-    scene, test::parameters_with(robot).time, numerics_for(scene, "radau 9", 8, 1e-8, {2, 0.25}), {});
+  const RecordedRun run(scene, test::parameters_with(robot).time, numerics_for(scene, "radau 9", 8, 1e-8, {2, 0.25}), {});
+  DisplacementGradient gradient(run);
   EXPECT_FALSE(gradient.derivatives({&variation, 1}).front());
 }
 
@@ -197,7 +198,8 @@ TEST(DisplacementGradient, ConvergesAsTheDisplacementDoes)
     near.push_back(scene_of(wave, "Body/Elastic modulus", 1. + i * step));
   const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
   const auto derivative     = [&](const char *integrator, const unsigned int n_cells, const double tolerance) {
-    return DisplacementGradient(scene, time, numerics_for(scene, integrator, n_cells, tolerance), {})
+    const RecordedRun run(scene, time, numerics_for(scene, integrator, n_cells, tolerance), {});
+    return DisplacementGradient(run)
       .derivatives({&variation, 1})
       .front()
       .value();
@@ -227,7 +229,8 @@ TEST(DisplacementGradient, LocalSensitivitiesAddUp)
   const Variation variations[] = {{{{&k[0], &k[1], &k[2], &k[3]}}, step},
                                   {{{&gamma[0], &gamma[1], &gamma[2], &gamma[3]}}, step}};
   const Numerics numerics      = numerics_for(own, "radau 9", 8, 1e-10);
-  DisplacementGradient gradient(own, time, numerics, {});
+  const RecordedRun run(own, time, numerics, {});
+  DisplacementGradient gradient(run);
   const auto derivatives = gradient.derivatives(variations);
   const LaneTables tables({6, 8, 5});
   double by_k = 0., by_gamma = 0.;

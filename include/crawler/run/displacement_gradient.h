@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/lanes/lane_adjoint.h>
-#include <crawler/run/simulation.h>
+#include <crawler/run/recorded_run.h>
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace crawler
@@ -40,24 +37,8 @@ namespace crawler
   class DisplacementGradient
   {
   public:
-    /// Why there is none for these scenes and settings; empty if there is.
-    static std::string
-    reason_against(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
-
-    /// Makes the run. Throws std::runtime_error if it does not finish. All must outlive it, and there must be no reason
-    /// against it.
-    DisplacementGradient(const Scene &scene,
-                         const TimeParameters &time,
-                         const Numerics &numerics,
-                         const std::function<bool()> &keep_going);
-    DisplacementGradient(const DisplacementGradient &) = delete;
-
-    /// [length]
-    double
-    displacement() const
-    {
-      return displacement_;
-    }
+    /// Of a run that is there; it must outlive it.
+    explicit DisplacementGradient(const RecordedRun &run);
 
     /// The derivatives of the displacement [length/unit of p], one sweep for all. There is none where a jump of the
     /// active stress comes in or goes out at the start or the end of the run: the displacement has a kink there. Throws
@@ -73,13 +54,7 @@ namespace crawler
     }
 
   private:
-    const Scene &scene_;
-    const Units units_;
-    TimeSegments segments_;
-    const Scene natural_;
-    const LaneMethod method_;
-    LaneRecord steps_;
-    double displacement_;
+    const RecordedRun &run_;
     LocalSensitivity local_;
   };
 

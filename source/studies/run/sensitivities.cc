@@ -91,7 +91,7 @@ namespace crawler
   {
     const Parameters &parameters = input.parameters;
     std::vector<Varied> entries;
-    std::string reason = DisplacementGradient::reason_against(input.scene, parameters.time, choice.numerics);
+    std::string reason = RecordedRun::reason_against(input.scene, parameters.time, choice.numerics);
     if (reason.empty())
       entries = vary_all(input);
     else
@@ -110,14 +110,17 @@ namespace crawler
     {
       if (reason.empty())
       {
-        DisplacementGradient gradient(input.scene, parameters.time, choice.numerics, keep_going);
+        const RecordedRun run(input.scene, parameters.time, choice.numerics, keep_going);
+        DisplacementGradient gradient(run);
         const auto values = gradient.derivatives(variations);
         write_local(gradient.local(), folder);
         const TimeParameters finer_time = time_of_finer_run(parameters.time);
-        DisplacementGradient finer(input.scene,
-                                   finer_time,
-                                   numerics_of_finer_run(choice, parameters.time, input.scene, /*cycles_repeat=*/false),
-                                   keep_going);
+        const RecordedRun finer_run(
+          input.scene,
+          finer_time,
+          numerics_of_finer_run(choice, parameters.time, input.scene, /*cycles_repeat=*/false),
+          keep_going);
+        DisplacementGradient finer(finer_run);
         const auto finer_values = finer.derivatives(variations);
         for (std::size_t i = 0; i < known.size(); ++i)
         {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/run/batch.h>
+#include <crawler/run/recorded_run.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace crawler
+{
+  namespace
+  {
+    LaneMethod
+    method_of(const Scene &natural, const TimeParameters &time, const Numerics &numerics)
+    {
+      return batch_method(natural, time, numerics).value();
+    }
+  } // namespace
+
+  std::string
+  RecordedRun::reason_against(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
+  {
+    if (numerics.linear)
+      return "the displacement of the linear level is 0";
+    if (numerics.formulation != Formulation::position)
+      return "they are not there for the stretch form, which computes this scene";
+    if (scene.profiles.initial_stretch)
+      return "they are not there for an initial stretch";
+    if (scene.active_stress->feedback() != nullptr &&
+        !TimeSegments(*scene.active_stress, scene.end_time).breaks().empty())
+      return "they are not there for feedback to an active stress that jumps in time";
+    if (numerics.jumps_move)
+      return "they are not there for jumps of the active stress that move";
+    if (!batch_method(scene, time, numerics))
+      return "they need the fused engine: radau, and a mesh that does not change";
+    return "";
+  }
+
+  RecordedRun::RecordedRun(const Scene &its_scene,
+                                             const TimeParameters &time,
+                                             const Numerics &numerics,
+                                             const std::function<bool()> &keep_going)
+    : scene(its_scene)
+    , units(natural_units(scene))
+    , segments(*scene.active_stress, scene.end_time)
+    , natural(in_units(scene, units, &segments))
+    , method(method_of(natural, time, in_units(numerics, units)))
+  {
+    const SimulationResult result =
+      Simulation(MPI_COMM_SELF, scene, time, numerics).run({}, {.steps = &steps}, {}, keep_going);
+    if (result.time.status != Status::finished)
+      throw std::runtime_error("the run did not finish: " + result.time.message);
+    displacement = result.displacement;
+    double from   = 0.;
+    for (std::size_t i = 0; i < steps.n_steps(); ++i)
+    {
+      if (std::abs(steps.time(i) - steps.size(i) - from) > 1e-9 * steps.size(i) + 1e-14)
+        from = HUGE_VAL;
+      else
+        from = steps.time(i);
+    }
+    if (!(std::abs(from - 1.) <= 1e-12))
+      throw std::runtime_error("the fused engine did not make all steps");
+  }
+} // namespace crawler
