@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/lanes/lane_adjoint.h>
+#include <crawler/time/radau_loops.h>
 
 namespace crawler
 {
@@ -34,6 +35,27 @@ namespace crawler
             end_.data(),
             starts_.data(),
             gradient};
+  }
+
+  LaneRecord
+  LaneRecord::at_places(const std::vector<double> &c, const std::vector<double> &places) const
+  {
+    const std::size_t n = end_.size();
+    LaneRecord other    = *this;
+    other.n_per_step_   = places.size() * n;
+    other.z_.assign(times_.size() * other.n_per_step_, 0.);
+    for (std::size_t i = 0; i < places.size(); ++i)
+    {
+      double weights[radau::most_stages];
+      radau::collocation_weights(static_cast<int>(c.size()), c.data(), places[i], weights);
+      for (std::size_t step = 0; step < times_.size(); ++step)
+        radau::combine(static_cast<int>(c.size()),
+                       weights,
+                       z(step),
+                       static_cast<int>(n),
+                       other.z_.data() + step * other.n_per_step_ + i * n);
+    }
+    return other;
   }
 
   LaneAdjoint::LaneAdjoint(const Scene &scene, const LaneMethod &method)

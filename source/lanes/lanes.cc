@@ -47,7 +47,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     std::size_t
     adjoint_memory(const LaneSetup &setup)
     {
-      return setup.n_stages == 3 ? AdjointLanes<Pack, 3>::memory(setup) : AdjointLanes<Pack, 5>::memory(setup);
+      return setup.n_stages == 3   ? AdjointLanes<Pack, 3>::memory(setup)
+             : setup.n_stages == 5 ? AdjointLanes<Pack, 5>::memory(setup)
+                                   : AdjointLanes<Pack, 7>::memory(setup);
     }
 
     template <typename Pack>
@@ -56,8 +58,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       if (setup.n_stages == 3)
         AdjointLanes<Pack, 3>(setup, host, memory).run();
-      else
+      else if (setup.n_stages == 5)
         AdjointLanes<Pack, 5>(setup, host, memory).run();
+      else
+        AdjointLanes<Pack, 7>(setup, host, memory).run();
     }
 
 #define CRAWLER_TEXT(name) CRAWLER_TEXT_OF(name)

@@ -148,9 +148,9 @@ namespace crawler
   const RadauTableau &
   radau_tableau(const unsigned int n_stages)
   {
-    static const RadauTableau three(3), five(5);
-    if (n_stages != 3 && n_stages != 5)
-      throw std::logic_error("Radau IIA is there with 3 and 5 stages");
-    return n_stages == 3 ? three : five;
+    static const RadauTableau three(3), five(5), seven(7);
+    if (n_stages != 3 && n_stages != 5 && n_stages != 7)
+      throw std::logic_error("Radau IIA is there with 3, 5 and 7 stages");
+    return n_stages == 3 ? three : n_stages == 5 ? five : seven;
   }
 } // namespace crawler

@@ -51,6 +51,10 @@ namespace crawler
     LanePast
     past(const double *gradient) const;
 
+    /// The same steps with the states of their polynomials at other places than the stages @p c; the last is 1.
+    LaneRecord
+    at_places(const std::vector<double> &c, const std::vector<double> &places) const;
+
   private:
     std::size_t n_per_step_ = 0;
     std::vector<double> times_, sizes_, z_, end_;

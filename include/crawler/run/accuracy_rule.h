@@ -183,6 +183,19 @@ namespace crawler::accuracy_rule
     inline constexpr double round_off = 1e-15;
   } // namespace finer_run
 
+  // Errors by the adjoint (error_sweep.cc; doc/numerics.md, "Errors by the adjoint"). Measured by
+  // tests/verification/error_sweep_test.cc.
+  namespace sweep
+  {
+    /// Points of a cell more than its degree + 1, and how often the functions of higher degree are improved.
+    inline constexpr unsigned int more_points = 2, rounds = 2;
+    /// The bound of the corrected displacement is this part of the sums of the sizes of all errors, and the change of
+    /// the last round.
+    inline constexpr double part_of_sums = 0.15;
+    /// Below this stretch nothing is estimated.
+    inline constexpr double least_stretch = 0.1;
+  } // namespace sweep
+
   // Derivatives of the displacement (studies/run/sensitivities.cc). Measured by
   // tests/verification/displacement_gradient_test.cc.
   namespace sensitivities

@@ -22,7 +22,7 @@ namespace crawler::radau::inline CRAWLER_INSTRUCTION_SET
       return s;
     }
   };
-  constexpr int most_stages = 5;
+  constexpr int most_stages = 7;
 
   /// The polynomial of the last step is a good guess up to this multiple of the step.
   constexpr double longest_extrapolation = 3.;

@@ -45,7 +45,7 @@ namespace crawler
     return reinterpret_cast<const double *>(values.data());
   }
 
-  /// Throws std::logic_error unless @p n_stages is 3 or 5.
+  /// Throws std::logic_error unless @p n_stages is 3, 5 or 7; runs have the first two.
   const RadauTableau &
   radau_tableau(unsigned int n_stages);
 } // namespace crawler

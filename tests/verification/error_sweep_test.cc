@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// Errors by the adjoint against true ones.
+#include "../support/run_text.h"
+
+#include <crawler/run/error_sweep.h>
+#include <crawler/studies/core/parameters.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace crawler;
+
+namespace
+{
+  Numerics
+  numerics_for(const Scene &scene,
+               const char *integrator,
+               const unsigned int degree,
+               const unsigned int n_cells,
+               const double tolerance)
+  {
+    return {.degree       = degree,
+            .n_cells      = n_cells,
+            .tolerance    = tolerance * scene.body.length,
+            .initial_step = 1e-2 * scene.end_time,
+            .integrator   = integrator};
+  }
+
+  double
+  displacement(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
+  {
+    return Simulation(MPI_COMM_SELF, scene, time, numerics).run({}, {}).displacement;
+  }
+
+  test::Settings
+  wave(const char *p, const char *k, const char *chi, const char *T = "1")
+  {
+    return {{"Active stress/Optimal wave/Choose wave by", "wave speed"},
+            {"Active stress/Optimal wave/Perturbation parameter", chi},
+            {"Body/Anchoring exponent", p},
+            {"Body/Elastic modulus", k},
+            {"Time/End time", T}};
+  }
+} // namespace
+
+TEST(ErrorSweep, TellsSpaceFromTime)
+{
+  const Parameters parameters = test::parameters_with(wave("2", "1", "0.4"));
+  const Scene scene           = parameters.create_scene();
+  const double exact          = displacement(scene, parameters.time, numerics_for(scene, "radau 9", 8, 16, 1e-13));
+  const RecordedRun in_space(scene, parameters.time, numerics_for(scene, "radau 9", 4, 6, 1e-11), {});
+  const auto space = sweep_errors(in_space);
+  ASSERT_TRUE(space && space->is_good());
+  EXPECT_NEAR(space->space / (exact - in_space.displacement), 1., 0.2);
+  EXPECT_LT(std::abs(space->time), 1e-3 * std::abs(space->space));
+  const RecordedRun in_time(scene, parameters.time, numerics_for(scene, "radau 5", 8, 12, 1e-4), {});
+  const auto time = sweep_errors(in_time);
+  ASSERT_TRUE(time && time->is_good());
+  EXPECT_NEAR(time->time / (exact - in_time.displacement), 1., 0.05);
+  EXPECT_LT(std::abs(time->space), 1e-3 * std::abs(time->time));
+}
+
+/// Of many scenes and settings: the corrected displacement is within its bound, and two digits better.
+TEST(ErrorSweep, CorrectedDisplacementsAreCovered)
+{
+  unsigned int n = 0, covered = 0;
+  std::vector<double> effectivities, gains, ratios;
+  for (const auto &settings : {wave("2", "1", "0.4"),
+                               wave("2", "100", "0.3"),
+                               wave("4", "1", "0.3"),
+                               wave("-1", "1", "0.3"),
+                               wave("2", "1", "0.3", "0.7"),
+                               wave("2.5", "0.1", "0.2")})
+  {
+    const Parameters parameters = test::parameters_with(settings);
+    const Scene scene           = parameters.create_scene();
+    const double exact          = displacement(scene, parameters.time, numerics_for(scene, "radau 9", 8, 20, 1e-13));
+    for (const unsigned int degree : {4u, 6u})
+      for (const unsigned int n_cells : {4u, 6u, 9u})
+        for (const auto &[integrator, tolerance] : {std::pair("radau 5", 1e-3),
+                                                    {"radau 5", 1e-5},
+                                                    {"radau 5", 1e-7},
+                                                    {"radau 9", 1e-3},
+                                                    {"radau 9", 1e-5},
+                                                    {"radau 9", 1e-7}})
+        {
+          const RecordedRun run(
+            scene, parameters.time, numerics_for(scene, integrator, degree, n_cells, tolerance), {});
+          const auto errors = sweep_errors(run);
+          if (!errors || !errors->is_good())
+            continue;
+          const double before = std::abs(exact - run.displacement),
+                       after  = std::abs(exact - run.displacement - errors->time - errors->space);
+          if (before < 1e-12)
+            continue;
+          ++n;
+          const double bound = std::max(errors->bound_of_corrected(), 2e-13);
+          covered += after <= bound;
+          effectivities.push_back((errors->time + errors->space) / (exact - run.displacement));
+          gains.push_back(before / after);
+          ratios.push_back(bound / std::max(after, 1e-15));
+        }
+  }
+  const auto at = [](std::vector<double> values, const double part) {
+    std::ranges::sort(values);
+    return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+  };
+  std::cout << n << " runs, " << covered << " covered; effectivity " << at(effectivities, 0.05) << " "
+            << at(effectivities, 0.5) << " " << at(effectivities, 0.95) << "; gain " << at(gains, 0.05) << " "
+            << at(gains, 0.5) << "; bound/error " << at(ratios, 0.5) << '\n';
+  EXPECT_GE(n, 150u);
+  EXPECT_GE(covered, n - n / 100);
+  EXPECT_NEAR(at(effectivities, 0.5), 1., 0.03);
+  EXPECT_GE(at(gains, 0.5), 50.);
+}
