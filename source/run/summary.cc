@@ -116,6 +116,9 @@ namespace crawler
     Json json = summary_of(result);
     if (result.engine == "petsc")
       json["integrator"] = integrator_of_petsc(result.integrator);
+    json["displacement_corrected"] = nullptr;
+    if (result.corrected)
+      json["displacement_corrected"] = {{"value", result.corrected->value}, {"error", result.corrected->error}};
     json["sensitivities"] = nullptr;
     for (const EntrySensitivity &one : result.sensitivities)
     {
@@ -159,6 +162,9 @@ namespace crawler
                                   result.error->time,
                                   result.error->model);
     lines.push_back("  displacement      " + displacement);
+    if (result.corrected)
+      lines.push_back(fmt::format(
+        "  corrected         {:.12g} +- {:.2g} (by the adjoint)", result.corrected->value, result.corrected->error));
     if (result.cycles)
       lines.push_back(
         fmt::format("  cycles            {} of period {:.6g} computed, {} extrapolated with an error of at "

@@ -3,7 +3,7 @@
 // Derivatives of the displacement by the adjoint, against differences of runs.
 #include "../support/run_text.h"
 
-#include <crawler/run/displacement_gradient.h>
+#include <crawler/adjoint/displacement_gradient.h>
 #include <crawler/studies/core/compute.h>
 
 #include <gtest/gtest.h>
@@ -181,7 +181,8 @@ TEST(DisplacementGradient, OfJumpsAtTheEndThereIsNone)
   for (const int i : {-2, -1, 1, 2})
     near.push_back(scene_of(robot, "Active stress/Segments/Frequency", 1. + i * 1e-3));
   const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, 1e-3};
-  const RecordedRun run(scene, test::parameters_with(robot).time, numerics_for(scene, "radau 9", 8, 1e-8, {2, 0.25}), {});
+  const RecordedRun run(
+    scene, test::parameters_with(robot).time, numerics_for(scene, "radau 9", 8, 1e-8, {2, 0.25}), {});
   DisplacementGradient gradient(run);
   EXPECT_FALSE(gradient.derivatives({&variation, 1}).front());
 }
@@ -199,10 +200,7 @@ TEST(DisplacementGradient, ConvergesAsTheDisplacementDoes)
   const Variation variation = {{{&near[0], &near[1], &near[2], &near[3]}}, step};
   const auto derivative     = [&](const char *integrator, const unsigned int n_cells, const double tolerance) {
     const RecordedRun run(scene, time, numerics_for(scene, integrator, n_cells, tolerance), {});
-    return DisplacementGradient(run)
-      .derivatives({&variation, 1})
-      .front()
-      .value();
+    return DisplacementGradient(run).derivatives({&variation, 1}).front().value();
   };
   const double exact = derivative("radau 9", 12, 1e-13);
   EXPECT_NEAR(derivative("radau 9", 4, 1e-5), exact, 2e-4 * std::abs(exact));

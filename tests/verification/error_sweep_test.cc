@@ -3,7 +3,7 @@
 // Errors by the adjoint against true ones.
 #include "../support/run_text.h"
 
-#include <crawler/run/error_sweep.h>
+#include <crawler/adjoint/error_sweep.h>
 #include <crawler/studies/core/parameters.h>
 
 #include <gtest/gtest.h>

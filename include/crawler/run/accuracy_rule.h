@@ -194,6 +194,8 @@ namespace crawler::accuracy_rule
     inline constexpr double part_of_sums = 0.15;
     /// Below this stretch nothing is estimated.
     inline constexpr double least_stretch = 0.1;
+    /// Steps times cells of a run for which it is made, about a second.
+    inline constexpr double most_work = 5e4;
   } // namespace sweep
 
   // Derivatives of the displacement (studies/run/sensitivities.cc). Measured by

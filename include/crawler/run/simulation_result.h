@@ -44,7 +44,13 @@ namespace crawler
     double displacement = std::numeric_limits<double>::quiet_NaN();
     /// How: an integrator of time/integrators.h; petsc, fused, or "fused, petsc" where the fused engine gave up.
     std::string integrator, engine;
-    std::optional<DisplacementError> error;      ///< of the displacement
+    std::optional<DisplacementError> error; ///< of the displacement
+    /// The displacement corrected by its errors in space and time, and a bound of its own error [length].
+    struct Corrected
+    {
+      double value, error;
+    };
+    std::optional<Corrected> corrected;          ///< if the adjoint gave it
     std::optional<NumberErrors> errors;          ///< of other numbers, if a finer run measured them
     std::vector<EntrySensitivity> sensitivities; ///< if they are wanted, those that matter most first
     double largest_u  = 0.;                      ///< root mean square of u over the body, largest over time [length]

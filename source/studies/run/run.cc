@@ -2,6 +2,7 @@
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/numerics_choice.h>
 #include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/swept_error.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/stop_signal.h>
@@ -238,6 +239,8 @@ namespace crawler
       result.time.message = fmt::format("stopped by a signal at t = {:.6g}", result.time.time);
     }
     check_identities(result, parameters);
+    if (first && !shared && chosen)
+      sweep_error(parameters, input.scene, *chosen, result, keep_going);
     if (first && result.time.status == Status::finished && !input.sensitivities.empty())
       find_sensitivities(input, *chosen, folder, result, keep_going);
     if (result.time.status == Status::finished && parameters.error_estimate && !std::isfinite(result.error->total))

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/error_estimate.h>
+#include <crawler/adjoint/displacement_gradient.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/accuracy_rule.h>
-#include <crawler/run/displacement_gradient.h>
 #include <crawler/studies/run/sensitivities.h>
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/adjoint/displacement_gradient.h>
+#include <crawler/adjoint/forces_at_points.h>
 #include <crawler/lanes/lane_adjoint.h>
-#include <crawler/run/displacement_gradient.h>
-#include <crawler/run/forces_at_points.h>
 #include <crawler/time/radau_loops.h>
 #include <crawler/time/radau_tableau.h>
 
@@ -95,7 +95,8 @@ namespace crawler
         {
           local_.times.push_back(t * run_.units.time);
           for (std::size_t p = n_points; p-- > 0;)
-            local_.stress.push_back(mu_s[p] / (run_.steps.size(step) * tableau.b[i] * run_.units.force * run_.units.time));
+            local_.stress.push_back(mu_s[p] /
+                                    (run_.steps.size(step) * tableau.b[i] * run_.units.force * run_.units.time));
         }
         for (std::size_t number = 0; number < others.size(); ++number)
           for (std::size_t k = 0; k < 4; ++k)

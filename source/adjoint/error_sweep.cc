@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/adjoint/error_sweep.h>
+#include <crawler/adjoint/forces_at_points.h>
 #include <crawler/mesh/reference_element.h>
 #include <crawler/run/accuracy_rule.h>
-#include <crawler/run/error_sweep.h>
-#include <crawler/run/forces_at_points.h>
 #include <crawler/time/radau_loops.h>
 #include <crawler/time/radau_tableau.h>
 
@@ -17,8 +17,8 @@ namespace crawler
   {
     using namespace accuracy_rule::sweep;
 
-    /// The functions L_{q+1}, L_{q+2} at points x of [0,1]: integrals of Legendre polynomials, which vanish at both ends,
-    /// with int L_j' L_l' dx = delta_jl over a cell of size 1; and their derivatives there. [point][function]
+    /// The functions L_{q+1}, L_{q+2} at points x of [0,1]: integrals of Legendre polynomials, which vanish at both
+    /// ends, with int L_j' L_l' dx = delta_jl over a cell of size 1; and their derivatives there. [point][function]
     struct Bubbles
     {
       static constexpr unsigned int n = 2;
@@ -100,9 +100,9 @@ namespace crawler
       {
         double sum = 0.;
         for (std::size_t p = 0; p < per_cell; ++p)
-          sum += weights_[p] *
-                 (setup_.sizes[cell] * forces.f(cell * per_cell + p) * bubbles_.values[p * Bubbles::n + j] +
-                  forces.N(cell * per_cell + p) * bubbles_.slopes[p * Bubbles::n + j]);
+          sum +=
+            weights_[p] * (setup_.sizes[cell] * forces.f(cell * per_cell + p) * bubbles_.values[p * Bubbles::n + j] +
+                           forces.N(cell * per_cell + p) * bubbles_.slopes[p * Bubbles::n + j]);
         return sum;
       }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/run/forces_at_points.h>
+#include <crawler/adjoint/forces_at_points.h>
 
 namespace crawler
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/run/recorded_run.h>
+#include <crawler/adjoint/recorded_run.h>
 
 #include <optional>
 #include <vector>
@@ -11,9 +11,9 @@ namespace crawler
   /// The error of the displacement of a run, by one backward sweep [length]: D + time + space is nearer to the truth.
   struct SweptErrors
   {
-    double time, space;        ///< estimates, with their signs
+    double time, space;         ///< estimates, with their signs
     double time_sum, space_sum; ///< sums of the sizes over steps, and over cells
-    double space_change;       ///< of the last improvement of what the elements cannot represent
+    double space_change;        ///< of the last improvement of what the elements cannot represent
     std::vector<double> of_steps, of_cells;
 
     /// Does the estimate of the part in space settle? Not where a coarse mesh misses what a soft body does.

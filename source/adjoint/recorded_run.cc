@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/adjoint/recorded_run.h>
 #include <crawler/run/batch.h>
-#include <crawler/run/recorded_run.h>
 
 #include <cmath>
 #include <stdexcept>
@@ -36,9 +36,9 @@ namespace crawler
   }
 
   RecordedRun::RecordedRun(const Scene &its_scene,
-                                             const TimeParameters &time,
-                                             const Numerics &numerics,
-                                             const std::function<bool()> &keep_going)
+                           const TimeParameters &time,
+                           const Numerics &numerics,
+                           const std::function<bool()> &keep_going)
     : scene(its_scene)
     , units(natural_units(scene))
     , segments(*scene.active_stress, scene.end_time)
@@ -50,7 +50,7 @@ namespace crawler
     if (result.time.status != Status::finished)
       throw std::runtime_error("the run did not finish: " + result.time.message);
     displacement = result.displacement;
-    double from   = 0.;
+    double from  = 0.;
     for (std::size_t i = 0; i < steps.n_steps(); ++i)
     {
       if (std::abs(steps.time(i) - steps.size(i) - from) > 1e-9 * steps.size(i) + 1e-14)

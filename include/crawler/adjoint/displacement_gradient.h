@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/run/recorded_run.h>
+#include <crawler/adjoint/recorded_run.h>
 
 #include <array>
 #include <optional>

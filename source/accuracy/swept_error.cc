@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/answer.h>
+#include <crawler/accuracy/swept_error.h>
+#include <crawler/adjoint/error_sweep.h>
+#include <crawler/run/accuracy_rule.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace crawler
+{
+  void
+  sweep_error(const RunParameters &parameters,
+              const Scene &scene,
+              const NumericsChoice &choice,
+              SimulationResult &result,
+              const std::function<bool()> &keep_going)
+  {
+    using namespace accuracy_rule;
+    if (result.time.status != Status::finished || !result.error || !std::isfinite(result.error->total) ||
+        result.cycles || !RecordedRun::reason_against(scene, parameters.time, choice.numerics).empty() ||
+        static_cast<double>(result.time.steps) * result.most_cells > sweep::most_work)
+      return;
+    DisplacementError &error = *result.error;
+    try
+    {
+      const RecordedRun run(scene, parameters.time, choice.numerics, keep_going);
+      const auto swept = sweep_errors(run);
+      if (!swept || !swept->is_good())
+        return;
+      const double value = run.displacement + swept->time + swept->space;
+      const double bound = std::max(swept->bound_of_corrected(), finer_run::round_off * scene.body.length);
+      error.total        = std::max(error.total, std::abs(result.displacement - value) - bound);
+      if (bound < error.total)
+        result.corrected = {value, bound};
+      const double all = swept->time_sum + swept->space_sum;
+      if (all > 0.)
+      {
+        error.space = error.total * swept->space_sum / all;
+        error.time  = error.total - error.space;
+      }
+    }
+    catch (const std::runtime_error &) // the answer and its bound are there
+    {
+    }
+    if (!(error.total <= choice.wanted_error) && std::isfinite(choice.wanted_error))
+    {
+      result.time.status  = Status::failed;
+      result.time.reason  = accuracy_not_met;
+      result.time.message = fmt::format("the adjoint finds that the error of the displacement is about {:.2g}, but "
+                                        "Accuracy asks for {:.2g}",
+                                        error.total,
+                                        choice.wanted_error);
+    }
+  }
+} // namespace crawler
