@@ -89,7 +89,7 @@ namespace crawler
         for (std::size_t p = 0; p < n_points; ++p)
         {
           local_.elastic_modulus[p] += own.elastic(p, at.e[p]) * mu_s[p];
-          local_.friction[p] += own.f(p) * mu_at[p];
+          local_.friction[p] += own.friction(p) * mu_at[p];
         }
         if (keeps_stress)
         {
@@ -104,8 +104,8 @@ namespace crawler
             ForcesAtPoints &forces = *others[number][k];
             forces.evaluate(t, run_.steps.time(step), at);
             for (std::size_t p = 0; p < n_points; ++p) // the differences, since the sums nearly cancel
-              sums[number][k] +=
-                weights[p] * ((forces.N(p) - own.N(p)) * mu_s[p] + (forces.f(p) - own.f(p)) * mu_at[p]);
+              sums[number][k] += weights[p] * ((forces.body_force(p) - own.body_force(p)) * mu_s[p] +
+                                               (forces.friction(p) - own.friction(p)) * mu_at[p]);
             const bool is_start = step == 0 && i == 0, is_end = i + 1 == tableau.n;
             if (!(is_start || is_end) || !forces.has_between(t, is_start))
               continue;

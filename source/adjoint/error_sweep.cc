@@ -100,9 +100,9 @@ namespace crawler
       {
         double sum = 0.;
         for (std::size_t p = 0; p < per_cell; ++p)
-          sum +=
-            weights_[p] * (setup_.sizes[cell] * forces.f(cell * per_cell + p) * bubbles_.values[p * Bubbles::n + j] +
-                           forces.N(cell * per_cell + p) * bubbles_.slopes[p * Bubbles::n + j]);
+          sum += weights_[p] *
+                 (setup_.sizes[cell] * forces.friction(cell * per_cell + p) * bubbles_.values[p * Bubbles::n + j] +
+                  forces.body_force(cell * per_cell + p) * bubbles_.slopes[p * Bubbles::n + j]);
         return sum;
       }
 
@@ -228,7 +228,7 @@ namespace crawler
           for (std::size_t p = 0; p < at_.e.size(); ++p)
           {
             const double part = setup_.sizes[p / per_cell] * setup_.weights[p % per_cell] *
-                                (forces_.N(p) * mu_s[p] + forces_.f(p) * mu_at[p]);
+                                (forces_.body_force(p) * mu_s[p] + forces_.friction(p) * mu_at[p]);
             result_.of_steps[step] += part;
             of_cells[p / per_cell] -= part;
           }
@@ -283,7 +283,7 @@ namespace crawler
               fine_.evaluate(mu + i * n_, mu_at, mu_s);
               for (std::size_t p = 0; p < mu_at.size(); ++p)
                 of_cells[p / fine_.per_cell] +=
-                  fine_.weight(p) * (fine_forces_.N(p) * mu_s[p] + fine_forces_.f(p) * mu_at[p]);
+                  fine_.weight(p) * (fine_forces_.body_force(p) * mu_s[p] + fine_forces_.friction(p) * mu_at[p]);
             }
             for (std::size_t cell = 0; cell < setup_.n_cells && round < rounds; ++cell)
             {

@@ -112,7 +112,7 @@ def main():
             expect(result.returncode == 2 and words in result.stderr, f"Sensitivities = {wrong}: {result.stderr}")
         result, _ = crawler(folder, WAVE, "Model=kinematic", "Output/Sensitivities=all")
         expect(result.returncode == 2 and "nonlinear" in result.stderr, f"the kinematic level: {result.stderr}")
-    sys.exit("\n".join(failures))
+    sys.exit("\n".join(failures) or 0)
 
 
 if __name__ == "__main__":

@@ -243,13 +243,13 @@ namespace crawler
     }
 
     double
-    N(const std::size_t point) const
+    body_force(const std::size_t point) const
     {
       return body_->N[point];
     }
     /// For each length of the other body.
     double
-    f(const std::size_t point) const
+    friction(const std::size_t point) const
     {
       return longer_[point] * g_[point] * sliding_->force[point];
     }
