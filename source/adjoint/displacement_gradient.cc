@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/adjoint/displacement_gradient.h>
 #include <crawler/adjoint/forces_at_points.h>
-#include <crawler/lanes/lane_adjoint.h>
-#include <crawler/time/radau_loops.h>
-#include <crawler/time/radau_tableau.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +18,166 @@ namespace crawler
       return (8. * (values[2] - values[1]) - (values[3] - values[0])) / (12. * step);
     }
 
+    /// A number that varies: the forces in the four scenes, and what they change.
+    struct Direction
+    {
+      std::array<std::unique_ptr<ForcesAtPoints>, 4> forces;
+      std::array<double, 4> sums = {}; ///< of the displacement, in natural units
+      double at_edges            = 0.; ///< of them, by jumps at start and end
+    };
+
+    /// One backward sweep.
+    class Sweep
+    {
+    public:
+      Sweep(const RecordedRun &run, const std::span<const Variation> variations, LocalSensitivity &local)
+        : run_(run)
+        , local_(local)
+        , adjoint_(run.natural, run.method)
+        , setup_(adjoint_.tables().setup)
+        , tableau_(radau_tableau(setup_.n_stages))
+        , cells_(setup_)
+        , stages_(run.steps, tableau_)
+        , own_(run.scene, run.scene, cells_.points())
+        , at_(cells_.size())
+        , mu_(cells_.size())
+        , mu_s_(cells_.size())
+        , zeta_(cells_.size())
+        , zeta_s_(cells_.size())
+      {
+        for (const Variation &variation : variations)
+        {
+          Direction &direction = directions_.emplace_back();
+          for (std::size_t k = 0; k < 4; ++k)
+            direction.forces[k] = std::make_unique<ForcesAtPoints>(*variation.scenes[k], run.scene, cells_.points());
+        }
+        constexpr std::size_t most_samples = 4000000;
+        keeps_stress_                      = run.steps.n_steps() * tableau_.n * cells_.size() <= most_samples;
+        local_ = {cells_.points(), std::vector<double>(cells_.size()), std::vector<double>(cells_.size()), {}, {}};
+      }
+
+      void
+      make()
+      {
+        look_at_end();
+        const auto by_start = adjoint_.solve(run_.steps,
+                                             adjoint_.gradient_of_displacement(),
+                                             [this](const std::size_t step,
+                                                    const std::span<const double> mu,
+                                                    const std::span<const double> zeta) { look(step, mu, zeta); });
+        if (!by_start)
+          throw std::runtime_error("the adjoint of a step did not converge");
+        for (double &s : local_.s)
+          s *= run_.units.length;
+        std::ranges::reverse(local_.times);
+        std::ranges::reverse(local_.stress);
+      }
+
+      /// There is none where jumps at the edges count.
+      std::optional<double>
+      derivative(const std::size_t number, const double step) const
+      {
+        constexpr double nothing   = 1e-7;
+        const Direction &direction = directions_[number];
+        std::array<double, 4> lengths;
+        for (std::size_t k = 0; k < 4; ++k)
+          lengths[k] = direction.forces[k]->units().length;
+        const double L = run_.units.length;
+        const double result =
+          L * fourth_order(direction.sums, step) + run_.displacement / L * fourth_order(lengths, step);
+        return L * direction.at_edges <= nothing * step * std::abs(result) ? std::optional(result) : std::nullopt;
+      }
+
+    private:
+      /// The mean displacement of a body that is longer in some places.
+      void
+      look_at_end()
+      {
+        cells_.evaluate(run_.steps.end().data(), at_.u, at_.e);
+        for (Direction &direction : directions_)
+          for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t p = 0; p < cells_.size(); ++p)
+              direction.sums[k] += cells_.weight(p) * (direction.forces[k]->longer(p) - 1.) * at_.u[p];
+      }
+
+      void
+      look(const std::size_t step, const std::span<const double> mu, const std::span<const double> zeta)
+      {
+        const std::size_t n = mu.size() / tableau_.n;
+        const double end = run_.steps.time(step), h = run_.steps.size(step);
+        if (!zeta.empty())
+          cells_.evaluate(zeta.data(), zeta_, zeta_s_);
+        stages_.go_back(step);
+        for (unsigned int i = tableau_.n; i-- > 0;)
+        {
+          stages_.go_to_stage(i);
+          cells_.evaluate(stages_.u(), stages_.v(), at_);
+          cells_.evaluate(mu.data() + i * n, mu_, mu_s_);
+          own_.evaluate(stages_.time(), end, at_);
+          add_local(h * tableau_.b[i]);
+          const bool is_start = step == 0 && i == 0, is_end = i + 1 == tableau_.n;
+          for (Direction &direction : directions_)
+            for (std::size_t k = 0; k < 4; ++k)
+            {
+              ForcesAtPoints &forces = *direction.forces[k];
+              forces.evaluate(stages_.time(), end, at_);
+              for (std::size_t p = 0; p < cells_.size(); ++p) // the differences, since the sums nearly cancel
+                direction.sums[k] += cells_.weight(p) * ((forces.body_force(p) - own_.body_force(p)) * mu_s_[p] +
+                                                         (forces.friction(p) - own_.friction(p)) * mu_[p]);
+              if (is_end && forces.has_between(end, false))
+                add_impulse(direction, k, forces.between(end, false), zeta_s_, -1., end == 1.);
+              if (is_start && forces.has_between(0., true))
+                add_impulse(direction, k, forces.between(0., true), mu_s_, 1. / (h * tableau_.b[i]), true);
+            }
+        }
+      }
+
+      /// @p weight of the stage.
+      void
+      add_local(const double weight)
+      {
+        for (std::size_t p = 0; p < cells_.size(); ++p)
+        {
+          local_.elastic_modulus[p] += own_.elastic(p, at_.e[p]) * mu_s_[p];
+          local_.friction[p] += own_.friction(p) * mu_[p];
+        }
+        if (!keeps_stress_)
+          return;
+        local_.times.push_back(stages_.time() * run_.units.time);
+        for (std::size_t p = cells_.size(); p-- > 0;)
+          local_.stress.push_back(mu_s_[p] / (weight * run_.units.force * run_.units.time));
+      }
+
+      void
+      add_impulse(Direction &direction,
+                  const std::size_t k,
+                  const std::vector<double> &impulse,
+                  const std::vector<double> &effect,
+                  const double factor,
+                  const bool is_edge) const
+      {
+        double sum = 0.;
+        for (std::size_t p = 0; p < cells_.size(); ++p)
+          sum += factor * cells_.weight(p) * impulse[p] * effect[p];
+        direction.sums[k] += sum;
+        // Where friction is not linear in the velocity an impulse is more than its size.
+        if (is_edge || (setup_.laws & LaneLaws::nonlinear_in_velocity) != 0)
+          direction.at_edges = std::max(direction.at_edges, std::abs(sum));
+      }
+
+      const RecordedRun &run_;
+      LocalSensitivity &local_;
+      LaneAdjoint adjoint_;
+      const LaneSetup &setup_;
+      const RadauTableau &tableau_;
+      const CellPoints cells_;
+      BackwardStages stages_;
+      ForcesAtPoints own_;
+      std::vector<Direction> directions_;
+      bool keeps_stress_ = true;
+      StateAtPoints at_;
+      std::vector<double> mu_, mu_s_, zeta_, zeta_s_; ///< adjoint at the points, and its derivatives by s
+    };
   } // namespace
 
   bool
@@ -38,115 +195,11 @@ namespace crawler
   std::vector<std::optional<double>>
   DisplacementGradient::derivatives(const std::span<const Variation> variations)
   {
-    LaneAdjoint adjoint(run_.natural, run_.method);
-    const LaneTables &tables   = adjoint.tables();
-    const LaneSetup &setup     = tables.setup;
-    const std::size_t n_points = tables.points.size(), n = run_.steps.end().size();
-    const RadauTableau &tableau = radau_tableau(setup.n_stages);
-    const std::size_t per_cell  = setup.degree + 1;
-    std::vector<double> weights(n_points);
-    for (std::size_t i = 0; i < n_points; ++i)
-      weights[i] = setup.sizes[i / per_cell] * setup.weights[i % per_cell];
-
-    ForcesAtPoints own(run_.scene, run_.scene, tables.points);
-    std::vector<std::array<std::unique_ptr<ForcesAtPoints>, 4>> others(variations.size());
-    for (std::size_t i = 0; i < variations.size(); ++i)
-      for (std::size_t k = 0; k < 4; ++k)
-        others[i][k] = std::make_unique<ForcesAtPoints>(*variations[i].scenes[k], run_.scene, tables.points);
-    std::vector<std::array<double, 4>> sums(variations.size());
-    std::vector<double> at_edges(variations.size()); ///< of them, at start and end
-    constexpr std::size_t most_samples = 4000000;
-    const bool keeps_stress            = run_.steps.n_steps() * tableau.n * n_points <= most_samples;
-    local_ = {tables.points, std::vector<double>(n_points, 0.), std::vector<double>(n_points, 0.), {}, {}};
-
-    std::vector<double> y = run_.steps.end(), u(n), v(n), mu_at(n_points), mu_s(n_points);
-    StateAtPoints at(n_points);
-    const auto see = [&](const std::size_t step, const std::span<const double> mu, const std::span<const double> zeta) {
-      std::vector<double> zeta_at(n_points), zeta_s(n_points);
-      if (!zeta.empty())
-        evaluate_at_points(setup, zeta.data(), zeta_at, zeta_s);
-      const double *z = run_.steps.z(step);
-      for (std::size_t d = 0; d < n; ++d)
-        y[d] -= z[(tableau.n - 1) * n + d];
-      for (unsigned int i = tableau.n; i-- > 0;)
-      {
-        for (std::size_t d = 0; d < n; ++d)
-          u[d] = y[d] + z[i * n + d];
-        radau::stage_rate(static_cast<int>(tableau.n),
-                          tableau.inverse.data(),
-                          static_cast<int>(i),
-                          1. / run_.steps.size(step),
-                          z,
-                          static_cast<int>(n),
-                          v.data());
-        evaluate_at_points(setup, u.data(), at.u, at.e);
-        evaluate_at_points(setup, v.data(), at.v, at.rate);
-        for (std::size_t p = 0; p < n_points; ++p)
-          at.w[p] = 1. + at.e[p];
-        evaluate_at_points(setup, mu.data() + i * n, mu_at, mu_s);
-        const double t = run_.steps.time(step) - (1. - tableau.c[i]) * run_.steps.size(step);
-        own.evaluate(t, run_.steps.time(step), at);
-        for (std::size_t p = 0; p < n_points; ++p)
-        {
-          local_.elastic_modulus[p] += own.elastic(p, at.e[p]) * mu_s[p];
-          local_.friction[p] += own.friction(p) * mu_at[p];
-        }
-        if (keeps_stress)
-        {
-          local_.times.push_back(t * run_.units.time);
-          for (std::size_t p = n_points; p-- > 0;)
-            local_.stress.push_back(mu_s[p] /
-                                    (run_.steps.size(step) * tableau.b[i] * run_.units.force * run_.units.time));
-        }
-        for (std::size_t number = 0; number < others.size(); ++number)
-          for (std::size_t k = 0; k < 4; ++k)
-          {
-            ForcesAtPoints &forces = *others[number][k];
-            forces.evaluate(t, run_.steps.time(step), at);
-            for (std::size_t p = 0; p < n_points; ++p) // the differences, since the sums nearly cancel
-              sums[number][k] += weights[p] * ((forces.body_force(p) - own.body_force(p)) * mu_s[p] +
-                                               (forces.friction(p) - own.friction(p)) * mu_at[p]);
-            const bool is_start = step == 0 && i == 0, is_end = i + 1 == tableau.n;
-            if (!(is_start || is_end) || !forces.has_between(t, is_start))
-              continue;
-            const std::vector<double> between = forces.between(t, is_start);
-            double sum                        = 0.;
-            for (std::size_t p = 0; p < n_points; ++p)
-              sum -= weights[p] * between[p] * (is_end ? zeta_s[p] : -mu_s[p] / (run_.steps.size(step) * tableau.b[i]));
-            sums[number][k] += sum;
-            // Where friction is not linear in the velocity an impulse is more than its size.
-            if (is_start || run_.steps.time(step) == 1. || (setup.laws & LaneLaws::nonlinear_in_velocity) != 0)
-              at_edges[number] = std::max(at_edges[number], std::abs(sum));
-          }
-      }
-    };
-    evaluate_at_points(setup, y.data(), at.u, at.e);
-    for (std::size_t number = 0; number < others.size(); ++number)
-      for (std::size_t k = 0; k < 4; ++k)
-        for (std::size_t p = 0; p < n_points; ++p)
-          sums[number][k] += weights[p] * (others[number][k]->longer(p) - 1.) * at.u[p];
-    if (!adjoint.solve(run_.steps, adjoint.gradient_of_displacement(), see))
-      throw std::runtime_error("the adjoint of a step did not converge");
-
-    const double natural_displacement = run_.displacement / run_.units.length;
+    Sweep sweep(run_, variations, local_);
+    sweep.make();
     std::vector<std::optional<double>> result;
     for (std::size_t i = 0; i < variations.size(); ++i)
-    {
-      constexpr double nothing = 1e-7;
-      std::array<double, 4> lengths;
-      for (std::size_t k = 0; k < 4; ++k)
-        lengths[k] = others[i][k]->units().length;
-      const double derivative = run_.units.length * fourth_order(sums[i], variations[i].step) +
-                                natural_displacement * fourth_order(lengths, variations[i].step);
-      if (run_.units.length * at_edges[i] <= nothing * variations[i].step * std::abs(derivative))
-        result.push_back(derivative);
-      else
-        result.push_back(std::nullopt);
-    }
-    for (double &s : local_.s)
-      s *= run_.units.length;
-    std::reverse(local_.times.begin(), local_.times.end());
-    std::reverse(local_.stress.begin(), local_.stress.end());
+      result.push_back(sweep.derivative(i, variations[i].step));
     return result;
   }
 } // namespace crawler

@@ -3,10 +3,6 @@
 #include <crawler/adjoint/forces_at_points.h>
 #include <crawler/mesh/reference_element.h>
 #include <crawler/run/accuracy_rule.h>
-#include <crawler/time/radau_loops.h>
-#include <crawler/time/radau_tableau.h>
-
-#include <deal.II/base/quadrature_lib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,99 +32,22 @@ namespace crawler
       }
     };
 
-    /// A finer quadrature in the same cells, with the tables that go with it.
-    class FinePoints
+    /// The bubbles of all cells, @p c [cell][function], at the points of the cells.
+    void
+    add_bubbles(const Bubbles &bubbles,
+                const CellPoints &cells,
+                const LaneSetup &setup,
+                const double *c,
+                std::vector<double> &values,
+                std::vector<double> &slopes)
     {
-    public:
-      explicit FinePoints(const LaneSetup &setup)
-        : setup_(setup)
-        , per_cell(setup.degree + 1 + more_points)
-        , bubbles_(0, {})
-      {
-        const dealii::QGauss<1> gauss(per_cell);
-        std::vector<double> places;
-        for (unsigned int p = 0; p < per_cell; ++p)
+      for (std::size_t p = 0; p < cells.size(); ++p)
+        for (unsigned int j = 0; j < Bubbles::n; ++j)
         {
-          places.push_back(gauss.point(p)[0]);
-          weights_.push_back(gauss.weight(p));
+          const std::size_t cell = cells.cell_of(p), row = p % cells.per_cell() * Bubbles::n + j;
+          values[p] += c[cell * Bubbles::n + j] * bubbles.values[row];
+          slopes[p] += c[cell * Bubbles::n + j] * bubbles.slopes[row] / setup.sizes[cell];
         }
-        const ReferenceElement &element = reference_element(setup.degree);
-        values_                         = interpolation_matrix(element.nodes, places);
-        slopes_                         = interpolation_matrix(element.nodes, places, 1);
-        bubbles_                        = Bubbles(setup.degree, places);
-        double left                     = 0.;
-        for (std::size_t c = 0; c < setup.n_cells; left += setup.sizes[c++])
-          for (const double place : places)
-            points.push_back(left + place * setup.sizes[c]);
-      }
-
-      void
-      evaluate(const double *nodal, std::vector<double> &values, std::vector<double> &slopes) const
-      {
-        const std::size_t n = setup_.degree + 1;
-        for (std::size_t c = 0; c < setup_.n_cells; ++c)
-          for (std::size_t p = 0; p < per_cell; ++p)
-          {
-            double value = 0., slope = 0.;
-            for (std::size_t i = 0; i < n; ++i)
-            {
-              value += values_[p * n + i] * nodal[c * setup_.degree + i];
-              slope += slopes_[p * n + i] * nodal[c * setup_.degree + i];
-            }
-            values[c * per_cell + p] = value;
-            slopes[c * per_cell + p] = slope / setup_.sizes[c];
-          }
-      }
-
-      /// Adds sum_j c_j L_j, @p c [cell][function].
-      void
-      add_bubbles(const double *c, std::vector<double> &values, std::vector<double> &slopes) const
-      {
-        for (std::size_t cell = 0; cell < setup_.n_cells; ++cell)
-          for (std::size_t p = 0; p < per_cell; ++p)
-            for (unsigned int j = 0; j < Bubbles::n; ++j)
-            {
-              const double factor = c[cell * Bubbles::n + j];
-              values[cell * per_cell + p] += factor * bubbles_.values[p * Bubbles::n + j];
-              slopes[cell * per_cell + p] += factor * bubbles_.slopes[p * Bubbles::n + j] / setup_.sizes[cell];
-            }
-      }
-
-      /// int f L_j + N L_j' of a cell.
-      double
-      bubble_residual(const ForcesAtPoints &forces, const std::size_t cell, const unsigned int j) const
-      {
-        double sum = 0.;
-        for (std::size_t p = 0; p < per_cell; ++p)
-          sum += weights_[p] *
-                 (setup_.sizes[cell] * forces.friction(cell * per_cell + p) * bubbles_.values[p * Bubbles::n + j] +
-                  forces.body_force(cell * per_cell + p) * bubbles_.slopes[p * Bubbles::n + j]);
-        return sum;
-      }
-
-      double
-      weight(const std::size_t point) const
-      {
-        return weights_[point % per_cell] * setup_.sizes[point / per_cell];
-      }
-
-    private:
-      const LaneSetup &setup_;
-      std::vector<double> weights_, values_, slopes_; ///< of a cell of size 1: [point], [point][node]
-
-    public:
-      const std::size_t per_cell;
-      std::vector<double> points;
-
-    private:
-      Bubbles bubbles_;
-    };
-
-    /// The derivative at the points c_i of the polynomial through values there: [i][j].
-    std::vector<double>
-    derivative_at_stages(const std::vector<double> &c)
-    {
-      return interpolation_matrix(c, c, 1);
     }
 
     /// One backward sweep.
@@ -141,32 +60,29 @@ namespace crawler
         , adjoint_(run.natural, method_)
         , setup_(adjoint_.tables().setup)
         , tableau_(radau_tableau(method_.n_stages))
-        , fine_(setup_)
-        , slopes_(derivative_at_stages(tableau_.c))
-        , forces_(run.scene, run.scene, adjoint_.tables().points)
-        , fine_forces_(run.scene, run.scene, fine_.points)
-        , n_(run.steps.end().size())
+        , steps_(run.steps.at_places(radau_tableau(run.method.n_stages).c, tableau_.c))
+        , stages_(steps_, tableau_)
+        , cells_(setup_)
+        , fine_(setup_, more_points)
+        , bubbles_(setup_.degree, fine_.places())
+        , slopes_(interpolation_matrix(tableau_.c, tableau_.c, 1))
+        , forces_(run.scene, run.scene, cells_.points())
+        , fine_forces_(run.scene, run.scene, fine_.points())
         , n_bubbles_(setup_.n_cells * Bubbles::n)
-        , u_(n_)
-        , v_(n_)
-        , at_(adjoint_.tables().points.size())
-        , fine_at_(tableau_.n, StateAtPoints(fine_.points.size()))
+        , at_(cells_.size())
+        , fine_at_(tableau_.n, StateAtPoints(fine_.size()))
       {
       }
 
       std::optional<SweptErrors>
       compute()
       {
-        const LaneRecord steps = run_.steps.at_places(radau_tableau(run_.method.n_stages).c, tableau_.c);
-        result_                = {};
-        result_.of_steps.resize(steps.n_steps());
+        result_.of_steps.resize(steps_.n_steps());
         result_.of_cells.resize(setup_.n_cells);
-        y_               = steps.end();
-        const auto start = adjoint_.solve(steps,
-                                          adjoint_.gradient_of_displacement(),
-                                          [&](const std::size_t step, const std::span<const double> mu, const auto &) {
-                                            look(steps, step, mu.data());
-                                          });
+        const auto start = adjoint_.solve(
+          steps_,
+          adjoint_.gradient_of_displacement(),
+          [this](const std::size_t step, const std::span<const double> mu, const auto &) { look(step, mu); });
         if (!start || lost_)
           return std::nullopt;
         const double L = run_.units.length;
@@ -194,48 +110,29 @@ namespace crawler
         return method;
       }
 
-      double
-      time_of(const LaneRecord &steps, const std::size_t step, const unsigned int stage) const
-      {
-        return steps.time(step) - (1. - tableau_.c[stage]) * steps.size(step);
-      }
-
       void
-      look(const LaneRecord &steps, const std::size_t step, const double *mu)
+      look(const std::size_t step, const std::span<const double> mu)
       {
-        const double *z = steps.z(step);
-        for (std::size_t d = 0; d < n_; ++d)
-          y_[d] -= z[(tableau_.n - 1) * n_ + d];
-        std::vector<double> of_cells(setup_.n_cells, 0.), mu_at(at_.u.size()), mu_s(at_.u.size());
-        const std::size_t per_cell = setup_.degree + 1;
+        std::vector<double> of_cells(setup_.n_cells, 0.), mu_at(cells_.size()), mu_s(cells_.size());
+        const std::size_t n = mu.size() / tableau_.n;
+        times_.clear();
+        stages_.go_back(step);
         for (unsigned int i = 0; i < tableau_.n; ++i)
         {
-          for (std::size_t d = 0; d < n_; ++d)
-            u_[d] = y_[d] + z[i * n_ + d];
-          radau::stage_rate(static_cast<int>(tableau_.n),
-                            tableau_.inverse.data(),
-                            static_cast<int>(i),
-                            1. / steps.size(step),
-                            z,
-                            static_cast<int>(n_),
-                            v_.data());
-          evaluate_at_points(setup_, u_.data(), at_.u, at_.e);
-          evaluate_at_points(setup_, v_.data(), at_.v, at_.rate);
-          evaluate_at_points(setup_, mu + i * n_, mu_at, mu_s);
-          for (std::size_t p = 0; p < at_.e.size(); ++p)
-            at_.w[p] = 1. + at_.e[p];
-          forces_.evaluate(time_of(steps, step, i), steps.time(step), at_);
-          for (std::size_t p = 0; p < at_.e.size(); ++p)
+          stages_.go_to_stage(i);
+          times_.push_back(stages_.time());
+          cells_.evaluate(stages_.u(), stages_.v(), at_);
+          cells_.evaluate(mu.data() + i * n, mu_at, mu_s);
+          forces_.evaluate(stages_.time(), steps_.time(step), at_);
+          for (std::size_t p = 0; p < cells_.size(); ++p)
           {
-            const double part = setup_.sizes[p / per_cell] * setup_.weights[p % per_cell] *
-                                (forces_.body_force(p) * mu_s[p] + forces_.friction(p) * mu_at[p]);
+            const double part = cells_.weight(p) * (forces_.body_force(p) * mu_s[p] + forces_.friction(p) * mu_at[p]);
             result_.of_steps[step] += part;
-            of_cells[p / per_cell] -= part;
+            of_cells[cells_.cell_of(p)] -= part;
           }
-          fine_.evaluate(u_.data(), fine_at_[i].u, fine_at_[i].e);
-          fine_.evaluate(v_.data(), fine_at_[i].v, fine_at_[i].rate);
+          fine_.evaluate(stages_.u(), stages_.v(), fine_at_[i]);
         }
-        look_at_bubbles(steps, step, mu, of_cells);
+        look_at_bubbles(step, mu, of_cells);
       }
 
       /// The states of all stages with what the bubbles @p c [stage][cell][function] add.
@@ -250,25 +147,44 @@ namespace crawler
           for (unsigned int j = 0; j < tableau_.n; ++j)
             for (std::size_t b = 0; b < n_bubbles_; ++b)
               rate[b] += slopes_[i * tableau_.n + j] / h * c[j * n_bubbles_ + b];
-          fine_.add_bubbles(c.data() + i * n_bubbles_, states[i].u, states[i].e);
-          fine_.add_bubbles(rate.data(), states[i].v, states[i].rate);
+          add_bubbles(bubbles_, fine_, setup_, c.data() + i * n_bubbles_, states[i].u, states[i].e);
+          add_bubbles(bubbles_, fine_, setup_, rate.data(), states[i].v, states[i].rate);
           for (std::size_t p = 0; p < states[i].e.size(); ++p)
             states[i].w[p] = 1. + states[i].e[p];
         }
         return states;
       }
 
+      /// One round more for the bubbles of a stage: c_j <- c_j - F(U + e; L_j)/k.
       void
-      look_at_bubbles(const LaneRecord &steps,
-                      const std::size_t step,
-                      const double *mu,
-                      const std::vector<double> &without)
+      improve(double *c) const
       {
-        const double h = steps.size(step);
-        std::vector<double> c(tableau_.n * n_bubbles_, 0.), mu_at(fine_.points.size()), mu_s(fine_.points.size());
+        for (std::size_t cell = 0; cell < setup_.n_cells; ++cell)
+        {
+          double k = 0., residual[Bubbles::n] = {};
+          for (std::size_t i = 0; i < fine_.per_cell(); ++i)
+          {
+            const std::size_t p = cell * fine_.per_cell() + i;
+            k += fine_.weight(p) * fine_forces_.elastic(p, 1.);
+            for (unsigned int j = 0; j < Bubbles::n; ++j)
+              residual[j] += fine_.weight(p) *
+                             (fine_forces_.friction(p) * bubbles_.values[i * Bubbles::n + j] +
+                              fine_forces_.body_force(p) * bubbles_.slopes[i * Bubbles::n + j] / setup_.sizes[cell]);
+          }
+          for (unsigned int j = 0; j < Bubbles::n; ++j)
+            c[cell * Bubbles::n + j] -= residual[j] * setup_.sizes[cell] * setup_.sizes[cell] / k;
+        }
+      }
+
+      /// @p without: what the run itself has in each cell.
+      void
+      look_at_bubbles(const std::size_t step, const std::span<const double> mu, const std::vector<double> &without)
+      {
+        const std::size_t n = mu.size() / tableau_.n;
+        std::vector<double> c(tableau_.n * n_bubbles_, 0.), mu_at(fine_.size()), mu_s(fine_.size());
         for (unsigned int round = 0; round <= rounds; ++round)
         {
-          const auto states            = with_bubbles(c, h);
+          const auto states            = with_bubbles(c, steps_.size(step));
           std::vector<double> of_cells = without;
           for (unsigned int i = 0; i < tableau_.n; ++i)
           {
@@ -277,29 +193,21 @@ namespace crawler
               lost_ = true;
               return;
             }
-            fine_forces_.evaluate(time_of(steps, step, i), steps.time(step), states[i]);
+            fine_forces_.evaluate(times_[i], steps_.time(step), states[i]);
             if (round + 1 >= rounds) // of the last two
             {
-              fine_.evaluate(mu + i * n_, mu_at, mu_s);
-              for (std::size_t p = 0; p < mu_at.size(); ++p)
-                of_cells[p / fine_.per_cell] +=
+              fine_.evaluate(mu.data() + i * n, mu_at, mu_s);
+              for (std::size_t p = 0; p < fine_.size(); ++p)
+                of_cells[fine_.cell_of(p)] +=
                   fine_.weight(p) * (fine_forces_.body_force(p) * mu_s[p] + fine_forces_.friction(p) * mu_at[p]);
             }
-            for (std::size_t cell = 0; cell < setup_.n_cells && round < rounds; ++cell)
-            {
-              double k = 0.;
-              for (std::size_t p = 0; p < fine_.per_cell; ++p)
-                k += fine_.weight(cell * fine_.per_cell + p) * fine_forces_.elastic(cell * fine_.per_cell + p, 1.);
-              for (unsigned int j = 0; j < Bubbles::n; ++j)
-                c[i * n_bubbles_ + cell * Bubbles::n + j] -=
-                  fine_.bubble_residual(fine_forces_, cell, j) * setup_.sizes[cell] * setup_.sizes[cell] / k;
-            }
+            if (round < rounds)
+              improve(c.data() + i * n_bubbles_);
           }
-          if (round + 1 == rounds)
-            for (const double part : of_cells)
-              before_last_ += part;
-          if (round == rounds)
-            for (std::size_t cell = 0; cell < setup_.n_cells; ++cell)
+          for (std::size_t cell = 0; cell < setup_.n_cells; ++cell)
+            if (round + 1 == rounds)
+              before_last_ += of_cells[cell];
+            else if (round == rounds)
               result_.of_cells[cell] += of_cells[cell];
         }
       }
@@ -309,13 +217,16 @@ namespace crawler
       LaneAdjoint adjoint_;
       const LaneSetup &setup_;
       const RadauTableau &tableau_;
-      const FinePoints fine_;
-      const std::vector<double> slopes_; ///< derivatives at the stages
+      const LaneRecord steps_; ///< with the states at the stages of more
+      BackwardStages stages_;
+      const CellPoints cells_, fine_;
+      const Bubbles bubbles_;
+      const std::vector<double> slopes_; ///< derivatives at the stages of the polynomial through values there
       ForcesAtPoints forces_, fine_forces_;
-      const std::size_t n_, n_bubbles_;
-      std::vector<double> y_, u_, v_;
+      const std::size_t n_bubbles_;
       StateAtPoints at_;
       std::vector<StateAtPoints> fine_at_; ///< of the stages, without bubbles
+      std::vector<double> times_;          ///< of the stages
       SweptErrors result_{};
       double before_last_ = 0.; ///< error in space with one round less, in natural units
       bool lost_          = false;

@@ -1,41 +1,97 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/adjoint/forces_at_points.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace crawler
 {
-  std::vector<double>
-  breaks_in_space_of(const Scene &scene)
+  ForcesAtPoints::ForcesAtPoints(const Scene &physical, const Scene &other, const std::vector<double> &points)
+    : units_(natural_units(physical))
+    , segments_(*physical.active_stress, physical.end_time)
+    , scene_(in_units(physical, units_, &segments_))
+    , in_time_(breaks_in_time_of(other), segments_.breaks())
+    , at_(points.size())
+    , g_(points.size())
   {
-    std::vector<double> list = scene.breaks_in_space();
-    for (double &place : list)
-      place /= scene.body.length;
-    return list;
-  }
-
-  std::vector<double>
-  breaks_in_time_of(const Scene &scene)
-  {
-    return TimeSegments(*scene.active_stress, scene.end_time).breaks();
+    const BreakMap in_space(breaks_in_space_of(other), breaks_in_space_of(physical));
+    std::vector<double> own = points;
+    for (double &s : own)
+    {
+      const std::size_t piece = in_space.piece(s);
+      longer_.push_back(in_space.slope(piece));
+      s = in_space(piece, s);
+    }
+    body_.emplace(scene_, own);
+    sliding_.emplace(scene_, own);
   }
 
   void
-  evaluate_at_points(const LaneSetup &setup,
-                     const double *nodal,
-                     std::vector<double> &values,
-                     std::vector<double> &slopes)
+  ForcesAtPoints::evaluate(const double t, const double end, const StateAtPoints &at)
   {
-    const std::size_t n = setup.degree + 1;
-    for (std::size_t c = 0; c < setup.n_cells; ++c)
-      for (std::size_t p = 0; p < n; ++p)
-      {
-        double value = 0., slope = 0.;
-        for (std::size_t i = 0; i < n; ++i)
-        {
-          value += setup.values[p * n + i] * nodal[c * setup.degree + i];
-          slope += setup.derivatives[p * n + i] * nodal[c * setup.degree + i];
-        }
-        values[c * n + p] = value;
-        slopes[c * n + p] = slope / setup.sizes[c];
-      }
+    const std::size_t piece = in_time_.piece(end);
+    const double slower     = in_time_.slope(piece);
+    at_.u                   = at.u;
+    for (std::size_t p = 0; p < g_.size(); ++p)
+    {
+      at_.v[p]    = at.v[p] / slower;
+      at_.e[p]    = at.e[p] / longer_[p];
+      at_.w[p]    = 1. + at_.e[p];
+      at_.rate[p] = at.rate[p] / (longer_[p] * slower);
+    }
+    go_to(in_time_.image(piece), in_time_(piece, t));
+    sliding_->evaluate(at_.u, at_.v);
+    scene_.friction->values(at_.w, g_);
+  }
+
+  bool
+  ForcesAtPoints::has_between(const double time, const bool start) const
+  {
+    const std::size_t number = start ? 0 : in_time_.piece(time) + 1;
+    const bool is_edge       = start || in_time_.is_last(number - 1);
+    return in_time_.bunch(number).size() >= (is_edge ? 1 : 2) &&
+           (start || std::abs(time - in_time_.end(number - 1)) <= least_time_between_breaks);
+  }
+
+  std::vector<double>
+  ForcesAtPoints::between(const double time, const bool start)
+  {
+    const std::size_t number         = start ? 0 : in_time_.piece(time) + 1;
+    const std::vector<double> &edges = in_time_.bunch(number);
+    const double middle              = in_time_.image_of_break(number);
+    const std::size_t left = start ? 0 : in_time_.image(number - 1), right = left + edges.size();
+    const bool is_end = !start && in_time_.is_last(number - 1);
+    std::vector<double> sum(g_.size(), 0.);
+    const auto add = [&](const std::size_t piece, const double from, const double to) {
+      if (!(to > from))
+        return;
+      const double t = 0.5 * (from + to);
+      go_to(piece, t);
+      for (std::size_t p = 0; p < sum.size(); ++p)
+        sum[p] += (to - from) * body_->N[p];
+      go_to(t < middle || is_end ? left : right, t);
+      for (std::size_t p = 0; p < sum.size(); ++p)
+        sum[p] -= (to - from) * body_->N[p];
+    };
+    if (start)
+      add(left, 0., edges.front());
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i)
+    {
+      add(left + i + 1, edges[i], std::min(edges[i + 1], middle));
+      add(left + i + 1, std::max(edges[i], middle), edges[i + 1]);
+    }
+    if (is_end)
+      add(right, edges.back(), 1.);
+    return sum;
+  }
+
+  /// N at a time of a piece, or as near to it as the piece comes.
+  void
+  ForcesAtPoints::go_to(const std::size_t piece, const double t)
+  {
+    segments_.restart();
+    for (std::size_t i = 0; i < piece; ++i)
+      segments_.go_on();
+    body_->evaluate(segments_.inside(t), at_.e, {at_.w, at_.rate, {}, {}});
   }
 } // namespace crawler

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/lanes/lane_adjoint.h>
+#include <crawler/time/radau_tableau.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace crawler
+{
+  /// A state at all points: displacement, velocity, strain, stretch and its rate.
+  struct StateAtPoints
+  {
+    std::vector<double> u, v, e, w, rate;
+
+    explicit StateAtPoints(std::size_t n);
+  };
+
+  /// Gauss points of all cells, for a body of length 1.
+  class CellPoints
+  {
+  public:
+    /// @p n_more: in each cell, than the degree + 1 of the run itself. @p setup must outlive it.
+    explicit CellPoints(const LaneSetup &setup, unsigned int n_more = 0);
+
+    const std::vector<double> &
+    points() const
+    {
+      return points_;
+    }
+    std::size_t
+    size() const
+    {
+      return points_.size();
+    }
+    std::size_t
+    cell_of(const std::size_t point) const
+    {
+      return point / per_cell_;
+    }
+    std::size_t
+    per_cell() const
+    {
+      return per_cell_;
+    }
+    /// [per_cell()] in a cell of size 1.
+    const std::vector<double> &
+    places() const
+    {
+      return places_;
+    }
+    /// Of the quadrature.
+    double
+    weight(std::size_t point) const;
+
+    /// A field, and its derivative by s, from its values at the nodes.
+    void
+    evaluate(const double *nodal, std::vector<double> &values, std::vector<double> &slopes) const;
+    /// The state from displacement and velocity at the nodes.
+    void
+    evaluate(const std::vector<double> &u, const std::vector<double> &v, StateAtPoints &at) const;
+
+  private:
+    const LaneSetup &setup_;
+    const std::size_t per_cell_;
+    std::vector<double> places_, weights_, values_, slopes_; ///< of a cell of size 1: [point], [point][node]
+    std::vector<double> points_;
+  };
+
+  /// The states in the stages of a recorded run, step by step from the last one to the first.
+  class BackwardStages
+  {
+  public:
+    BackwardStages(const LaneRecord &steps, const RadauTableau &tableau);
+
+    /// To the step before the present one, which is the last one at first.
+    void
+    go_back(std::size_t step);
+
+    /// Of that step.
+    void
+    go_to_stage(unsigned int stage);
+
+    double
+    time() const
+    {
+      return time_;
+    }
+    const std::vector<double> &
+    u() const
+    {
+      return u_;
+    }
+    const std::vector<double> &
+    v() const
+    {
+      return v_;
+    }
+
+  private:
+    const LaneRecord &steps_;
+    const RadauTableau &tableau_;
+    std::size_t step_ = 0;
+    double time_      = 1.;
+    std::vector<double> y_, u_, v_; ///< at the start of the step; in the stage
+  };
+} // namespace crawler

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/adjoint/cell_points.h>
+#include <crawler/mesh/reference_element.h>
+#include <crawler/time/radau_loops.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+namespace crawler
+{
+  StateAtPoints::StateAtPoints(const std::size_t n)
+    : u(n)
+    , v(n)
+    , e(n)
+    , w(n)
+    , rate(n)
+  {
+  }
+
+  CellPoints::CellPoints(const LaneSetup &setup, const unsigned int n_more)
+    : setup_(setup)
+    , per_cell_(setup.degree + 1 + n_more)
+  {
+    const dealii::QGauss<1> gauss(static_cast<unsigned int>(per_cell_));
+    for (unsigned int p = 0; p < per_cell_; ++p)
+    {
+      places_.push_back(gauss.point(p)[0]);
+      weights_.push_back(gauss.weight(p));
+    }
+    const std::vector<double> &nodes = reference_element(setup.degree).nodes;
+    values_                          = interpolation_matrix(nodes, places_);
+    slopes_                          = interpolation_matrix(nodes, places_, 1);
+    double left                      = 0.;
+    for (std::size_t c = 0; c < setup.n_cells; left += setup.sizes[c++])
+      for (const double place : places_)
+        points_.push_back(left + place * setup.sizes[c]);
+  }
+
+  double
+  CellPoints::weight(const std::size_t point) const
+  {
+    return weights_[point % per_cell_] * setup_.sizes[cell_of(point)];
+  }
+
+  void
+  CellPoints::evaluate(const double *nodal, std::vector<double> &values, std::vector<double> &slopes) const
+  {
+    const std::size_t n = setup_.degree + 1;
+    for (std::size_t c = 0; c < setup_.n_cells; ++c)
+      for (std::size_t p = 0; p < per_cell_; ++p)
+      {
+        double value = 0., slope = 0.;
+        for (std::size_t i = 0; i < n; ++i)
+        {
+          value += values_[p * n + i] * nodal[c * setup_.degree + i];
+          slope += slopes_[p * n + i] * nodal[c * setup_.degree + i];
+        }
+        values[c * per_cell_ + p] = value;
+        slopes[c * per_cell_ + p] = slope / setup_.sizes[c];
+      }
+  }
+
+  void
+  CellPoints::evaluate(const std::vector<double> &u, const std::vector<double> &v, StateAtPoints &at) const
+  {
+    evaluate(u.data(), at.u, at.e);
+    evaluate(v.data(), at.v, at.rate);
+    for (std::size_t p = 0; p < size(); ++p)
+      at.w[p] = 1. + at.e[p];
+  }
+
+  BackwardStages::BackwardStages(const LaneRecord &steps, const RadauTableau &tableau)
+    : steps_(steps)
+    , tableau_(tableau)
+    , y_(steps.end())
+    , u_(steps.end())
+    , v_(y_.size())
+  {
+  }
+
+  void
+  BackwardStages::go_back(const std::size_t step)
+  {
+    step_           = step;
+    const double *z = steps_.z(step);
+    for (std::size_t d = 0; d < y_.size(); ++d)
+      y_[d] -= z[(tableau_.n - 1) * y_.size() + d];
+  }
+
+  void
+  BackwardStages::go_to_stage(const unsigned int stage)
+  {
+    const double *z = steps_.z(step_);
+    for (std::size_t d = 0; d < y_.size(); ++d)
+      u_[d] = y_[d] + z[stage * y_.size() + d];
+    radau::stage_rate(static_cast<int>(tableau_.n),
+                      tableau_.inverse.data(),
+                      static_cast<int>(stage),
+                      1. / steps_.size(step_),
+                      z,
+                      static_cast<int>(y_.size()),
+                      v_.data());
+    time_ = steps_.time(step_) - (1. - tableau_.c[stage]) * steps_.size(step_);
+  }
+} // namespace crawler
