@@ -40,11 +40,14 @@ def draw(folder, picture):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    for name in ("summary.json", "sensitivity_body.csv"):
-        if not (folder / name).is_file():
-            raise Problem(f"{folder / name} does not exist; the output folder of a finished run with "
-                          "Output/Sensitivities is expected")
-    entries = json.loads((folder / "summary.json").read_text(encoding="utf-8")).get("sensitivities") or {}
+    summary = folder / "summary.json"
+    entries = json.loads(summary.read_text(encoding="utf-8")).get("sensitivities") if summary.is_file() else None
+    if not entries:
+        raise Problem(f"{summary} has no sensitivities; the output folder of a finished run with Output/Sensitivities is "
+                      "expected")
+    if not (folder / "sensitivity_body.csv").is_file():
+        reason = next((one["reason"] for one in entries.values() if "reason" in one), "the run did not finish")
+        raise Problem(f"no sensitivity is known: {reason}")
     known = [(name, one["elasticity"]) for name, one in entries.items() if one["elasticity"] is not None]
     s, modulus, friction = read_table(folder / "sensitivity_body.csv")
     with_stress = (folder / "sensitivity_stress.csv").is_file()  # not for very many steps

@@ -25,6 +25,9 @@ namespace crawler
       return "they are not there for the stretch form, which computes this scene";
     if (scene.profiles.initial_stretch)
       return "they are not there for an initial stretch";
+    if (const StretchFeedback *feedback = scene.active_stress->feedback();
+        feedback != nullptr && (feedback->sees_near() || feedback->delay() > 0.))
+      return "they are not there for feedback by sensors elsewhere or with a delay";
     if (scene.active_stress->feedback() != nullptr &&
         !TimeSegments(*scene.active_stress, scene.end_time).breaks().empty())
       return "they are not there for feedback to an active stress that jumps in time";

@@ -65,7 +65,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       for (int l = 0; l < lanes; ++l)
         take_next(l);
-      while (any_busy())
+      while (any(lanes_, &Lane::busy))
       {
         if (friction_changed_)
           system_.sort_bodies();
@@ -106,15 +106,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (LaneSlopes<Pack> &slopes : slopes_)
         system_.lay_out(slopes, points, memory_);
       system_.lay_out(memory_);
-    }
-
-    bool
-    any_busy() const
-    {
-      for (const Lane &lane : lanes_)
-        if (lane.busy)
-          return true;
-      return false;
     }
 
     /// The next body for a lane, or one at rest that asks nothing.
@@ -245,7 +236,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         lane.iterating = lane.busy;
         lane.failed    = false;
       }
-      for (int pass = 0; pass < most_passes && any_iterating(); ++pass)
+      for (int pass = 0; pass < most_passes && any(lanes_, &Lane::iterating); ++pass)
       {
         multiply();
         for (int i = 0; i < s; ++i)
@@ -265,15 +256,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         lane.iterating = false;
       }
       multiply();
-    }
-
-    bool
-    any_iterating() const
-    {
-      for (const Lane &lane : lanes_)
-        if (lane.iterating)
-          return true;
-      return false;
     }
 
     /// One correction; lanes that are done keep what they have.

@@ -8,6 +8,17 @@
 /// Memory of the fused engine (included by radau_lanes.h).
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
+  /// Has one of the lanes this flag?
+  template <typename Lane, int n>
+  inline bool
+  any(const Lane (&lanes)[n], const bool Lane::*flag)
+  {
+    for (const Lane &lane : lanes)
+      if (lane.*flag)
+        return true;
+    return false;
+  }
+
   /// Pieces of a memory, one after the other; without memory only their sizes are added.
   class LaneMemory
   {

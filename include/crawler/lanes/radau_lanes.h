@@ -52,7 +52,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       for (int l = 0; l < lanes; ++l)
         take_next(l);
-      while (any_busy())
+      while (any(lanes_, &Lane::busy))
       {
         if (friction_changed_)
           system_.sort_bodies();
@@ -80,15 +80,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory_.piece(complex_, pairs * n);
       system_.lay_out(memory_);
       memory_.piece(scratch_, n_points_);
-    }
-
-    bool
-    any_busy() const
-    {
-      for (const Lane &lane : lanes_)
-        if (lane.busy)
-          return true;
-      return false;
     }
 
     /// The next body for a lane, or one at rest that asks nothing.
@@ -159,7 +150,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       for (Lane &lane : lanes_)
         lane.start_newton();
-      for (int it = 1; it <= most_newton && any_iterating(); ++it)
+      for (int it = 1; it <= most_newton && any(lanes_, &Lane::iterating); ++it)
       {
         Pack least = broadcast<Pack>(HUGE_VAL);
         for (int i = 0; i < s; ++i)
@@ -178,15 +169,6 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       for (Lane &lane : lanes_)
         if (lane.iterating)
           lane.fail();
-    }
-
-    bool
-    any_iterating() const
-    {
-      for (const Lane &lane : lanes_)
-        if (lane.iterating)
-          return true;
-      return false;
     }
 
     /// The square of the size of @p n elements in units of the tolerance.

@@ -151,7 +151,14 @@ namespace crawler
                         near.empty() ? "" : "; the nearest name is " + quoted_list(near)),
             own);
         }
-        names.push_back(path);
+        if (std::ranges::find(effective, path) == effective.end())
+          throw InputError(
+            fmt::format("Sensitivities has \"{}\", but that has no effect with the other settings; entries "
+                        "that have one are expected, or \"all\"",
+                        path),
+            own);
+        if (std::ranges::find(names, path) == names.end())
+          names.push_back(path);
       }
       return names;
     }

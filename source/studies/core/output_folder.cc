@@ -69,11 +69,30 @@ namespace crawler
     fs::create_directories(folder, error);
     if (error)
       throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
-    for (const char *name :
-         {"original.prm",  "parameters.prm",      "log.txt",       "summary.json", "kymograph.png", "results.csv",
-          "results.h5",    "results.h5.part",     "results.png",   "results.svg",  "atlas.csv",     "atlas.h5",
-          "atlas.h5.part", "atlas.png",           "atlas.svg",     "tradeoff.csv", "tradeoff.h5",   "tradeoff.png",
-          "tradeoff.svg",  "recommendations.prm", "reference.json"})
+    for (const char *name : {"original.prm",
+                             "parameters.prm",
+                             "log.txt",
+                             "summary.json",
+                             "kymograph.png",
+                             "sensitivity_body.csv",
+                             "sensitivity_stress.csv",
+                             "sensitivity.png",
+                             "results.csv",
+                             "results.h5",
+                             "results.h5.part",
+                             "results.png",
+                             "results.svg",
+                             "atlas.csv",
+                             "atlas.h5",
+                             "atlas.h5.part",
+                             "atlas.png",
+                             "atlas.svg",
+                             "tradeoff.csv",
+                             "tradeoff.h5",
+                             "tradeoff.png",
+                             "tradeoff.svg",
+                             "recommendations.prm",
+                             "reference.json"})
       fs::remove(folder / name, error);
     remove_fields(folder);
   }

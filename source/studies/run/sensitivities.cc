@@ -25,6 +25,7 @@ namespace crawler
     struct Varied
     {
       EntrySensitivity sensitivity;
+      bool may_vary = true;      ///< both ways
       std::vector<Scene> scenes; ///< four, or none if there is a reason
       double step;
     };
@@ -33,7 +34,7 @@ namespace crawler
     Varied
     vary(const Input &input, const std::string &entry, const double value)
     {
-      Varied one{{entry, value, {}, {}, ""}, {}, value != 0. ? step * std::abs(value) : step};
+      Varied one{{entry, value, {}, {}, ""}, true, {}, value != 0. ? step * std::abs(value) : step};
       try
       {
         for (const int i : {-2, -1, 1, 2})
@@ -48,6 +49,7 @@ namespace crawler
       catch (const InputError &error)
       {
         one.sensitivity.reason = error.what();
+        one.may_vary           = false;
       }
       if (!one.sensitivity.reason.empty())
         one.scenes.clear();
@@ -96,7 +98,7 @@ namespace crawler
       entries = vary_all(input);
     else
       for (const std::string &entry : input.sensitivities)
-        entries.push_back({{entry, 0., {}, {}, reason}, {}, 0.});
+        entries.push_back({{entry, 0., {}, {}, reason}, true, {}, 0.});
     std::vector<Variation> variations;
     std::vector<EntrySensitivity *> known;
     for (Varied &entry : entries)
@@ -124,7 +126,7 @@ namespace crawler
         const auto finer_values = finer.derivatives(variations);
         for (std::size_t i = 0; i < known.size(); ++i)
         {
-          using accuracy_rule::finer_run::factor_without_promise;
+          using namespace accuracy_rule::sensitivities;
           if (!values[i] || !finer_values[i])
           {
             known[i]->reason =
@@ -133,8 +135,12 @@ namespace crawler
             continue;
           }
           known[i]->value = values[i];
-          known[i]->error = factor_without_promise * std::abs(*finer_values[i] - *values[i]) +
-                            accuracy_rule::sensitivities::round_off * std::abs(*values[i]);
+          const double D = std::abs(result.displacement), size = std::abs(*values[i]),
+                       of_D = known[i]->at != 0. ? D / std::abs(known[i]->at) : D;
+          const double accuracy =
+            choice.is_users && result.error ? result.error->total / std::max(D, 1e-300) : parameters.accuracy;
+          known[i]->error = measured_factor * std::abs(*finer_values[i] - *values[i]) +
+                            promised_factor * accuracy * (size + of_D) + round_off * size;
         }
       }
     }
@@ -146,8 +152,8 @@ namespace crawler
     // Of all those that have no effect, or may not vary from where they are by default, are left out.
     const bool all = trimmed(parameters.output.sensitivities) == "all";
     for (Varied &entry : entries)
-      if (!all || (entry.sensitivity.value ? *entry.sensitivity.value != 0.
-                                           : input.file.assignment_of(entry.sensitivity.entry) != nullptr))
+      if (!all || (entry.may_vary ? entry.sensitivity.value != 0.
+                                  : input.file.assignment_of(entry.sensitivity.entry) != nullptr))
         result.sensitivities.push_back(std::move(entry.sensitivity));
     std::ranges::stable_sort(result.sensitivities, [](const EntrySensitivity &a, const EntrySensitivity &b) {
       const auto size = [](const EntrySensitivity &one) { return one.value ? std::abs(*one.value * one.at) : -1.; };

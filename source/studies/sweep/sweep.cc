@@ -174,6 +174,8 @@ namespace crawler
                          n_ranks == 1 ? "" : "s",
                          n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
 
+    if (!points.parameters(0).output.sensitivities.empty())
+      log.line("Note: Output/Sensitivities has no effect in a sweep");
     const std::function<bool()> interrupted = [&]() {
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - start > *own.time_limit);
     };
