@@ -93,21 +93,18 @@ namespace crawler
         settings.choice.numerics    = numerics;
         settings.relative_tolerance = relative_tolerance;
         std::vector<NumericsChoice> choices;
-        std::vector<TimeParameters> times;
         for (std::size_t i = 0; i < examples_.size(); ++i)
-        {
           choices.push_back(settings.choice_for(*examples_[i].scene, found_.sizes[i]));
-          times.push_back(examples_[i].parameters->time);
-        }
         std::vector<BatchRun> runs;
         for (std::size_t i = 0; i < examples_.size(); ++i)
         {
-          if (!batch_method(*examples_[i].scene, times[i], choices[i].numerics))
+          const TimeParameters &time = examples_[i].parameters->time;
+          if (!batch_method(*examples_[i].scene, time, choices[i].numerics))
             return {};
           auto cycles = cycle_wish(*examples_[i].parameters, *examples_[i].scene, /*has_pictures=*/false);
           if (cycles)
             cycles->accuracy = part_of_cycles * accuracy_;
-          runs.push_back({examples_[i].scene, &times[i], &choices[i].numerics, cycles});
+          runs.push_back({examples_[i].scene, &time, &choices[i].numerics, cycles});
         }
         Runs result{true, {}, 0.};
         for (const auto &one : run_batch(runs, {.energy_balance = false}, keep_going_))

@@ -144,7 +144,11 @@ namespace crawler
         }
       }
     }
-    catch (const std::runtime_error &error)
+    catch (const FileError &)
+    {
+      throw;
+    }
+    catch (const std::exception &error) // the run itself is there; for want of memory, perhaps
     {
       for (EntrySensitivity *one : known)
         one->reason = error.what();
