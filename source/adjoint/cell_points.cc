@@ -60,6 +60,19 @@ namespace crawler
   }
 
   void
+  CellPoints::add_to_nodes(const std::vector<double> &values, const std::vector<double> &slopes, double *nodal) const
+  {
+    const std::size_t n = setup_.degree + 1;
+    for (std::size_t at = 0; at < size(); ++at)
+    {
+      const std::size_t c = cell_of(at), p = at % per_cell_;
+      for (std::size_t i = 0; i < n; ++i)
+        nodal[c * setup_.degree + i] +=
+          values[at] * values_[p * n + i] + slopes[at] * slopes_[p * n + i] / setup_.sizes[c];
+    }
+  }
+
+  void
   CellPoints::evaluate(const std::vector<double> &u, const std::vector<double> &v, StateAtPoints &at) const
   {
     evaluate(u.data(), at.u, at.e);

@@ -13,6 +13,7 @@ namespace crawler
     , in_time_(breaks_in_time_of(other), segments_.breaks())
     , at_(points.size())
     , g_(points.size())
+    , w_dg_(points.size())
   {
     const BreakMap in_space(breaks_in_space_of(other), breaks_in_space_of(physical));
     std::vector<double> own = points;
@@ -42,6 +43,22 @@ namespace crawler
     go_to(in_time_.image(piece), in_time_(piece, t));
     sliding_->evaluate(at_.u, at_.v);
     scene_.friction->values(at_.w, g_);
+  }
+
+  void
+  ForcesAtPoints::slopes(std::vector<Slopes> &all)
+  {
+    scene_.friction->values_and_log_derivatives(at_.w, g_, w_dg_);
+    all.resize(g_.size());
+    for (std::size_t p = 0; p < g_.size(); ++p)
+    {
+      const bool sees_rate = !body_->by_rate.empty();
+      all[p]               = {body_->by_w[p] - body_->k[p],
+                sees_rate ? body_->by_rate[p] : 0.,
+                              g_[p] * sliding_->by_u[p],
+                              w_dg_[p] / at_.w[p] * sliding_->force[p],
+                              g_[p] * sliding_->by_v[p]};
+    }
   }
 
   bool

@@ -26,7 +26,7 @@ namespace crawler
   }
 
   LanePast
-  LaneRecord::past(const double *gradient) const
+  LaneRecord::past(const double *gradient, const bool has_sources) const
   {
     return {static_cast<unsigned int>(times_.size()),
             times_.data(),
@@ -34,7 +34,8 @@ namespace crawler
             z_.data(),
             end_.data(),
             starts_.data(),
-            gradient};
+            gradient,
+            has_sources};
   }
 
   LaneRecord
@@ -82,14 +83,18 @@ namespace crawler
   }
 
   std::optional<std::vector<double>>
-  LaneAdjoint::solve(const LaneRecord &record, const std::vector<double> &gradient, const Seer &see)
+  LaneAdjoint::solve(const LaneRecord &record,
+                     const std::vector<double> &gradient,
+                     const Seer &see,
+                     const Source &source)
   {
-    past_    = record.past(gradient.data());
+    past_    = record.past(gradient.data(), static_cast<bool>(source));
     started_ = false;
     see_     = &see;
+    source_  = &source;
     mu_.resize(tables_.setup.n_stages * gradient.size());
     by_start_.resize(gradient.size());
-    const LaneAdjointHost host = {this, next, step, done, laws};
+    const LaneAdjointHost host = {this, next, step, done, laws, sources};
     single_engine().adjoint(tables_.setup, host, memory_.get());
     return finished_ ? std::optional(by_start_) : std::nullopt;
   }
@@ -119,6 +124,12 @@ namespace crawler
     for (std::size_t i = 0; i < self.by_start_.size() && step.zeta != nullptr; ++i)
       self.zeta_.push_back(step.zeta[i * step.stride]);
     (*self.see_)(step.number, self.mu_, self.zeta_);
+  }
+
+  void
+  LaneAdjoint::sources(void *context, unsigned int, const unsigned int step, const LaneSources &sources)
+  {
+    (*static_cast<LaneAdjoint *>(context)->source_)(step, sources);
   }
 
   void

@@ -259,6 +259,31 @@ namespace crawler
     return result.errors ? known(result.errors->values[static_cast<std::size_t>(error)]) : ResultValue();
   }
 
+  double
+  ResultEntry::scale_in(const SimulationResult &result) const
+  {
+    switch (scale)
+    {
+      case Scale::exchanged_work:
+        return result.energy_balance ? result.energy_balance->exchanged_work : 0.;
+      case Scale::strain:
+        return std::max(1. - result.min_stretch.value, result.max_stretch.value - 1.);
+      case Scale::itself:
+      {
+        const ResultValue own = value(result);
+        const double *number  = std::get_if<double>(&own);
+        return number != nullptr ? std::abs(*number) : std::numeric_limits<double>::quiet_NaN();
+      }
+      case Scale::cost:
+        return result.gait && result.gait->energy_balance
+                 ? result.gait->energy_balance->exchanged_work / std::abs(result.gait->displacement)
+                 : 0.;
+      case Scale::none:
+        break;
+    }
+    return 0.;
+  }
+
   const std::vector<ResultEntry> &
   result_table()
   {

@@ -26,6 +26,22 @@ namespace crawler
                      parameters.accuracy));
   }
 
+  namespace
+  {
+    /// |W - Q - (elastic energy) ...| is made by the errors of all energies; any one of them may have all of it.
+    void
+    cover_residual(SimulationResult &result)
+    {
+      const auto &entries = entries_with_errors();
+      for (std::size_t i = 0; result.errors && i < entries.size(); ++i)
+        if (entries[i]->scale == ResultEntry::Scale::exchanged_work || entries[i]->scale == ResultEntry::Scale::cost)
+        {
+          double &error = result.errors->values[i];
+          error         = std::max(error, result.energy_balance->residual() * entries[i]->scale_in(result));
+        }
+    }
+  } // namespace
+
   void
   check_identities(SimulationResult &result, const RunParameters &parameters)
   {
@@ -55,7 +71,10 @@ namespace crawler
                     net_friction);
     }
     else
+    {
+      cover_residual(result);
       return;
+    }
     result.time.status = Status::failed;
   }
 } // namespace crawler

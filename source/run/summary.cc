@@ -127,6 +127,8 @@ namespace crawler
       entry["error"] = one.error ? Json(*one.error) : Json(nullptr);
       entry["elasticity"] =
         one.value && result.displacement != 0. ? Json(one.elasticity(result.displacement)) : Json(nullptr);
+      for (const EntrySensitivity::OfNumber &other : one.others)
+        entry[other.key] = {{"value", other.value}, {"error", other.error}};
       if (!one.reason.empty())
         entry["reason"] = one.reason;
     }

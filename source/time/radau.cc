@@ -22,6 +22,8 @@ namespace crawler
     /// Relative tolerance of the Krylov method then.
     constexpr double krylov_tolerance = 0.01;
     constexpr int krylov_iterations   = 30;
+    /// Of a step that cannot be judged, relative to the tolerance.
+    constexpr double hopeless_error = 1e6;
 
     struct Radau
     {
@@ -407,6 +409,11 @@ namespace crawler
         PetscReal absolute = 0., relative = 0.;
         TSErrorWeightedNorm(
           ts, radau.start.get(), radau.y.get(), ts->adapt->wnormtype, &radau.error, &absolute, &relative);
+        if (!std::isfinite(radau.error)) // the filter lost the stretch
+        {
+          radau.error = hopeless_error;
+          break;
+        }
         if (radau.error >= 1.)
           continue;
         if (round > 0)

@@ -57,6 +57,10 @@ namespace crawler
     /// A field, and its derivative by s, from its values at the nodes.
     void
     evaluate(const double *nodal, std::vector<double> &values, std::vector<double> &slopes) const;
+    /// Adds to what belongs to the nodes: for each node the sum of @p values times its shape function and of @p slopes
+    /// times the derivative of that.
+    void
+    add_to_nodes(const std::vector<double> &values, const std::vector<double> &slopes, double *nodal) const;
     /// The state from displacement and velocity at the nodes.
     void
     evaluate(const std::vector<double> &u, const std::vector<double> &v, StateAtPoints &at) const;

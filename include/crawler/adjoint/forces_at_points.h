@@ -59,6 +59,21 @@ namespace crawler
       return longer_[point];
     }
     double
+    stress(const std::size_t point) const
+    {
+      return body_->m[point];
+    }
+
+    /// Derivatives of active stress and friction at a point by displacement, stretch, velocity and stretch rate.
+    struct Slopes
+    {
+      double m_w, m_rate, f_u, f_w, f_v;
+    };
+    /// At all points, for the state that was evaluated last. Of the scene itself only, not of others.
+    void
+    slopes(std::vector<Slopes> &all);
+
+    double
     elastic(const std::size_t point, const double e) const
     {
       return body_->k[point] * e;
@@ -76,6 +91,6 @@ namespace crawler
     std::optional<BodyForceAtPoints> body_;
     std::optional<SlidingAtPoints> sliding_;
     StateAtPoints at_;
-    std::vector<double> g_;
+    std::vector<double> g_, w_dg_;
   };
 } // namespace crawler

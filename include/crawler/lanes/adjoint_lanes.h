@@ -19,7 +19,9 @@
  *
  *   K_i^T mu_i + (1/h) sum_j W_ji M_j mu_j = -delta_is lambda,     lambda <- lambda + sum_i K_i^T mu_i,
  *
- * from the last step to the first; then dJ/dp = sum over steps and stages of mu_i . dF_i/dp.
+ * from the last step to the first; then dJ/dp = sum over steps and stages of mu_i . dF_i/dp. Of a J that depends on the
+ * stages themselves, a_j = dJ/du_j and c_j = dJ/dv_j, the right-hand side also has -a_j - (1/h) sum_i W_ij c_i, lambda
+ * also + sum_i a_i, and there are the explicit parts of dJ/dp.
  */
 namespace crawler::CRAWLER_INSTRUCTION_SET
 {
@@ -71,6 +73,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           system_.sort_bodies();
         friction_changed_ = false;
         load_step();
+        ask_for_sources();
         look_at_break();
         look_at_stages();
         guess();
@@ -86,7 +89,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       LanePast past;
       bool busy = false, iterating = false, failed = false, has_old = false, at_break = false;
       unsigned int left = 0; ///< steps, this one too
-      double h = 1., old_h = 1.;
+      double h = 1., old_h = 1., last_change = 0.;
     };
 
     void
@@ -101,11 +104,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory_.piece(K_mu_, s * n);
       memory_.piece(M_mu_, s * n);
       memory_.piece(residual_, s * n);
+      memory_.piece(by_u_, s * n);
+      memory_.piece(by_velocity_, s * n);
       memory_.piece(real_, n);
       memory_.piece(complex_, pairs * n);
       for (LaneSlopes<Pack> &slopes : slopes_)
         system_.lay_out(slopes, points, memory_);
       system_.lay_out(memory_);
+      memory_.piece(scratch_, (1 + 2 * s) * n);
     }
 
     /// The next body for a lane, or one at rest that asks nothing.
@@ -152,6 +158,34 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
             times_[i][l] = lane.past.times[step] - (1. - setup_.c[i]) * lane.h;
         }
         set_lane(inverse_h_, l, 1. / lane.h);
+      }
+    }
+
+    /// What the quantity has of this step itself.
+    void
+    ask_for_sources()
+    {
+      has_sources_ = false;
+      for (int l = 0; l < lanes; ++l)
+      {
+        const Lane &lane = lanes_[l];
+        if (!lane.busy || !lane.past.has_sources)
+          continue;
+        if (!has_sources_)
+          for (int d = 0; d < s * n_; ++d)
+            by_u_[d] = by_velocity_[d] = Pack{};
+        has_sources_ = true;
+        for (int d = 0; d < (1 + 2 * s) * n_; ++d)
+          scratch_[d] = 0.;
+        const LaneSources sources = {scratch_, scratch_ + n_, scratch_ + (1 + s) * n_};
+        host_.sources(host_.context, static_cast<unsigned int>(l), lane.left - 1, sources);
+        for (int d = 0; d < n_; ++d)
+          set_lane(lambda_[d], l, get_lane(lambda_[d], l) + sources.by_end[d]);
+        for (int d = 0; d < s * n_; ++d)
+        {
+          set_lane(by_u_[d], l, sources.by_u[d]);
+          set_lane(by_velocity_[d], l, sources.by_velocity[d]);
+        }
       }
     }
 
@@ -233,8 +267,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       constexpr int most_passes = 60;
       for (Lane &lane : lanes_)
       {
-        lane.iterating = lane.busy;
-        lane.failed    = false;
+        lane.iterating   = lane.busy;
+        lane.failed      = false;
+        lane.last_change = HUGE_VAL;
       }
       for (int pass = 0; pass < most_passes && any(lanes_, &Lane::iterating); ++pass)
       {
@@ -245,7 +280,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
             Pack sum = setup_.inverse[i] * M_mu_[d];
             for (int j = 1; j < s; ++j)
               sum += setup_.inverse[j * s + i] * M_mu_[j * n_ + d];
-            const Pack right      = i + 1 < s ? Pack{} : -lambda_[d];
+            Pack right = i + 1 < s ? Pack{} : -lambda_[d];
+            if (has_sources_)
+            {
+              for (int j = 0; j < s; ++j)
+                sum += setup_.inverse[j * s + i] * by_velocity_[j * n_ + d];
+              right -= by_u_[i * n_ + d];
+            }
             residual_[i * n_ + d] = right - K_mu_[i * n_ + d] - inverse_h_ * sum;
           }
         correct();
@@ -262,7 +303,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     correct()
     {
-      constexpr double settled = 1e-13;
+      // On graded meshes round-off may be larger than what counts as settled.
+      constexpr double settled = 1e-13, nearly_settled = 1e-8;
       radau::to_eigenbasis(radau::Stages<s>{}, rows_, residual_, n_, real_, complex_);
       system_.solve_all(real_, complex_);
       Pack moves{}, change{}, size{};
@@ -279,8 +321,13 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
           size            = added<true>(size, moved < 0. ? -moved : moved);
         }
       for (int l = 0; l < lanes; ++l)
-        if (get_lane(change, l) <= settled * get_lane(size, l))
-          lanes_[l].iterating = false;
+      {
+        Lane &lane            = lanes_[l];
+        const double relative = get_lane(change, l) / get_lane(size, l);
+        if (!(relative > settled) || (relative <= nearly_settled && relative >= 0.5 * lane.last_change))
+          lane.iterating = false;
+        lane.last_change = relative;
+      }
     }
 
     void
@@ -292,7 +339,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       const auto counts = busy > 0.;
       for (int i = 0; i < s; ++i)
         for (int d = 0; d < n_; ++d)
-          lambda_[d] = counts ? lambda_[d] + K_mu_[i * n_ + d] : lambda_[d];
+        {
+          const Pack more = has_sources_ ? K_mu_[i * n_ + d] + by_u_[i * n_ + d] : K_mu_[i * n_ + d];
+          lambda_[d]      = counts ? lambda_[d] + more : lambda_[d];
+        }
       for (int l = 0; l < lanes; ++l)
       {
         Lane &lane = lanes_[l];
@@ -343,6 +393,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack *lambda_, *zeta_;                   ///< [unknown]
     Pack *mu_, *old_mu_;                     ///< [stage][unknown] of this step, and of the one after it
     Pack *K_mu_, *M_mu_, *residual_, *real_; ///< products, and right-hand sides in both bases
+    Pack *by_u_, *by_velocity_;              ///< [stage][unknown] sources
+    double *scratch_;                        ///< of one lane
+    bool has_sources_ = false;
     Number *complex_;
   };
 } // namespace crawler::CRAWLER_INSTRUCTION_SET

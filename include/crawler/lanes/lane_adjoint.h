@@ -49,7 +49,7 @@ namespace crawler
     }
 
     LanePast
-    past(const double *gradient) const;
+    past(const double *gradient, bool has_sources) const;
 
     /// The same steps with the states of their polynomials at other places than the stages @p c; the last is 1.
     LaneRecord
@@ -82,16 +82,21 @@ namespace crawler
     /// empty (LaneAdjointStep).
     using Seer = std::function<void(std::size_t step, std::span<const double> mu, std::span<const double> zeta)>;
 
-    /// The adjoint of what has this @p gradient by the last state. Returns its derivative by the first state; nothing
-    /// if the iteration for the stages did not converge.
+    /// Tells what the quantity has of a step itself, before that is seen.
+    using Source = std::function<void(std::size_t step, const LaneSources &sources)>;
+
+    /// The adjoint of what has this @p gradient by the last state, and @p source, if there is one. Returns its
+    /// derivative by the first state; nothing if the iteration for the stages did not converge.
     std::optional<std::vector<double>>
-    solve(const LaneRecord &record, const std::vector<double> &gradient, const Seer &see);
+    solve(const LaneRecord &record, const std::vector<double> &gradient, const Seer &see, const Source &source = {});
 
   private:
     static bool
     next(void *context, unsigned int lane, LaneJob &job, LanePast &past);
     static void
     step(void *context, unsigned int lane, const LaneAdjointStep &step);
+    static void
+    sources(void *context, unsigned int lane, unsigned int step, const LaneSources &sources);
     static void
     done(void *context, unsigned int lane, bool finished, std::size_t stride, const double *by_start);
     static bool
@@ -104,8 +109,9 @@ namespace crawler
     LaneStorage memory_;
     // Of the present solve.
     LanePast past_;
-    bool started_    = false;
-    const Seer *see_ = nullptr;
+    bool started_         = false;
+    const Seer *see_      = nullptr;
+    const Source *source_ = nullptr;
     std::vector<double> mu_, zeta_, by_start_;
     bool finished_ = false;
   };

@@ -124,6 +124,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     void
     control_step(const int n_stages, const bool keeps_try)
     {
+      failed   = failed || !(error < HUGE_VAL); // the filter of the error lost the stretch
       accepted = !failed && error <= 1.;
       if (failed)
       {

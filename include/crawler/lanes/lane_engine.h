@@ -172,6 +172,14 @@ namespace crawler
     const double *end           = nullptr;           ///< [unknowns] the last state
     const unsigned char *starts = nullptr;           ///< [n_steps] does a body start anew with this step? Null: never
     const double *gradient      = nullptr; ///< [unknowns] what one wants to know, differentiated by the last state
+    bool has_sources            = false;   ///< depends what one wants to know on the steps, too?
+  };
+
+  /// What one wants to know, differentiated by the states of a step themselves. The arrays are 0 before.
+  struct LaneSources
+  {
+    double *by_end;             ///< [unknowns] the state at the end of the step
+    double *by_u, *by_velocity; ///< [stages][unknowns] displacements and velocities in the stages
   };
 
   /// A step gone through backwards; element i is at [i*stride].
@@ -196,6 +204,8 @@ namespace crawler
     /// @p by_start: [unknowns] what one wants to know, differentiated by the first state; not good unless @p finished.
     void (*done)(void *context, unsigned int lane, bool finished, std::size_t stride, const double *by_start);
     bool (*laws)(void *context, unsigned int lane, const LanePoints &points) = nullptr; ///< as in LaneHost
+    /// Called before each step of a run that has sources.
+    void (*sources)(void *context, unsigned int lane, unsigned int step, const LaneSources &sources) = nullptr;
   };
 
   /// The engine as compiled for one instruction set and one number of lanes.

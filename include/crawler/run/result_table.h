@@ -39,6 +39,9 @@ namespace crawler
 
     ResultValue
     value_in(const SimulationResult &result) const;
+    /// What its error is measured by; 0 if it has none.
+    double
+    scale_in(const SimulationResult &result) const;
   };
 
   /// In the order of summary.json.

@@ -26,6 +26,14 @@ namespace crawler
     std::optional<double> value, error; ///< and its bound [length/unit of the entry]; nothing if it is not known
     std::string reason;                 ///< why it is not known
 
+    /// Of another number, by its key in the result table.
+    struct OfNumber
+    {
+      std::string key;
+      double value, error; ///< [its unit/unit of the entry]
+    };
+    std::vector<OfNumber> others = {}; ///< those that are known
+
     /// By how many per cent the displacement grows if the entry grows by one.
     double
     elasticity(const double displacement) const

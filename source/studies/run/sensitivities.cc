@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/error_estimate.h>
-#include <crawler/adjoint/displacement_gradient.h>
+#include <crawler/adjoint/run_gradient.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/accuracy_rule.h>
+#include <crawler/run/result_table.h>
 #include <crawler/studies/run/sensitivities.h>
 
 #include <fmt/format.h>
@@ -66,6 +67,68 @@ namespace crawler
       return list;
     }
 
+    /// A quantity in the result table.
+    struct Number
+    {
+      const char *key;
+      double (*of)(const SimulationResult &);
+    };
+
+    /// In the order of all_quantities.
+    constexpr std::array<Number, all_quantities.size()> numbers = {{
+      {"displacement", [](const SimulationResult &result) { return result.displacement; }},
+      {"stress_power", [](const SimulationResult &result) { return result.energy_balance->stress_work; }},
+      {"dissipation", [](const SimulationResult &result) { return result.energy_balance->dissipation; }},
+      {"positive_power", [](const SimulationResult &result) { return result.energy_balance->positive_work; }},
+      {"paper_energy", [](const SimulationResult &result) { return result.energy_balance->paper_energy(); }},
+    }};
+
+    std::vector<Quantity>
+    quantities_for(const Parameters &parameters)
+    {
+      if (parameters.output.energy_balance)
+        return {all_quantities.begin(), all_quantities.end()};
+      return {Quantity::displacement};
+    }
+
+    /// The derivatives, with bounds by those of the finer run. @p accuracy of the displacement, relative.
+    void
+    set(EntrySensitivity &entry,
+        const Derivatives &values,
+        const Derivatives &finer,
+        const SimulationResult &result,
+        const double accuracy)
+    {
+      using namespace accuracy_rule::sensitivities;
+      if (!values[0] || !finer[0])
+      {
+        entry.reason = "a jump of the active stress comes in or goes out at the start or the end of the run with it, "
+                       "where the displacement has a kink";
+        return;
+      }
+      for (std::size_t i = 0; i < values.size(); ++i)
+      {
+        if (!values[i] || !finer[i])
+          continue;
+        const double number = std::abs(numbers[i].of(result)), size = std::abs(*values[i]);
+        // Works are less accurate than the displacement, in units of what is exchanged.
+        const double scale   = i == 0 ? number : std::max(number, result.energy_balance->exchanged_work);
+        const double of_work = i == 0 ? 0. : error_bound(result, numbers[i].key).value_or(0.) / scale;
+        const double by_size = entry.at != 0. ? scale / std::abs(entry.at) : scale;
+        const double error =
+          measured_factor * std::abs(*finer[i] - *values[i]) +
+          (i == 0 ? promised_factor : promised_factor_of_works) * std::max(accuracy, of_work) * (size + by_size) +
+          round_off * size;
+        if (i == 0)
+        {
+          entry.value = values[i];
+          entry.error = error;
+        }
+        else
+          entry.others.push_back({numbers[i].key, *values[i], error});
+      }
+    }
+
     void
     write_local(const LocalSensitivity &local, const std::filesystem::path &folder)
     {
@@ -113,8 +176,9 @@ namespace crawler
       if (reason.empty())
       {
         const RecordedRun run(input.scene, parameters.time, choice.numerics, keep_going);
-        DisplacementGradient gradient(run);
-        const auto values = gradient.derivatives(variations);
+        const std::vector<Quantity> quantities = quantities_for(parameters);
+        RunGradient gradient(run);
+        const auto values = gradient.derivatives(variations, quantities);
         write_local(gradient.local(), folder);
         const TimeParameters finer_time = time_of_finer_run(parameters.time);
         const RecordedRun finer_run(
@@ -122,26 +186,12 @@ namespace crawler
           finer_time,
           numerics_of_finer_run(choice, parameters.time, input.scene, /*cycles_repeat=*/false),
           keep_going);
-        DisplacementGradient finer(finer_run);
-        const auto finer_values = finer.derivatives(variations);
+        const auto finer_values = RunGradient(finer_run).derivatives(variations, quantities);
+        const double D          = std::abs(result.displacement);
+        const double accuracy =
+          choice.is_users && result.error ? result.error->total / std::max(D, 1e-300) : parameters.accuracy;
         for (std::size_t i = 0; i < known.size(); ++i)
-        {
-          using namespace accuracy_rule::sensitivities;
-          if (!values[i] || !finer_values[i])
-          {
-            known[i]->reason =
-              "a jump of the active stress comes in or goes out at the start or the end of the run with "
-              "it, where the displacement has a kink";
-            continue;
-          }
-          known[i]->value = values[i];
-          const double D = std::abs(result.displacement), size = std::abs(*values[i]),
-                       of_D = known[i]->at != 0. ? D / std::abs(known[i]->at) : D;
-          const double accuracy =
-            choice.is_users && result.error ? result.error->total / std::max(D, 1e-300) : parameters.accuracy;
-          known[i]->error = measured_factor * std::abs(*finer_values[i] - *values[i]) +
-                            promised_factor * accuracy * (size + of_D) + round_off * size;
-        }
+          set(*known[i], values[i], finer_values[i], result, accuracy);
       }
     }
     catch (const FileError &)

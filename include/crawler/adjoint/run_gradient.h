@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/adjoint/recorded_run.h>
+#include <crawler/adjoint/works.h>
 
 #include <array>
 #include <optional>
@@ -29,24 +30,28 @@ namespace crawler
     std::vector<double> stress;
   };
 
+  /// Derivatives by one number; there may be none, see RunGradient.
+  using Derivatives = std::array<std::optional<double>, all_quantities.size()>;
+
   /**
-   * The derivative of the displacement by numbers of the scene, by the discrete adjoint of one run
+   * Derivatives of the displacement and of the works by numbers of the scene, by the discrete adjoint of one run
    * (lanes/adjoint_lanes.h; doc/numerics.md, "Sensitivities"): exact for its mesh and steps but for round-off and the
    * differences by which dF/dp is found at the points, of fourth order.
    */
-  class DisplacementGradient
+  class RunGradient
   {
   public:
     /// Of a run that is there; it must outlive it.
-    explicit DisplacementGradient(const RecordedRun &run);
+    explicit RunGradient(const RecordedRun &run);
 
-    /// The derivatives of the displacement [length/unit of p], one sweep for all. There is none where a jump of the
-    /// active stress comes in or goes out at the start or the end of the run: the displacement has a kink there. Throws
-    /// std::runtime_error if the adjoint cannot be found.
-    std::vector<std::optional<double>>
-    derivatives(std::span<const Variation> variations);
+    /// The derivatives [unit of the quantity/unit of p], one sweep for each quantity of a list. There is none of the
+    /// others, none where a jump of the active stress comes in or goes out at the start or the end of the run, since
+    /// the displacement has a kink there, and none of works where jumps come together in time. The paper's energy has
+    /// none with feedback. Throws std::runtime_error if the adjoint cannot be found.
+    std::vector<Derivatives>
+    derivatives(std::span<const Variation> variations, std::span<const Quantity> quantities);
 
-    /// Of the last derivatives().
+    /// Of the last derivatives(), if they were of the displacement, too.
     const LocalSensitivity &
     local() const
     {

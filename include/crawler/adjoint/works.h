@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/adjoint/cell_points.h>
+#include <crawler/adjoint/forces_at_points.h>
+
+#include <array>
+#include <vector>
+
+namespace crawler
+{
+  /// What a gradient may be of; the works over the whole run as in EnergyBalance.
+  enum class Quantity
+  {
+    displacement,
+    stress_work,
+    dissipation,
+    positive_work,
+    paper_energy
+  };
+
+  inline constexpr std::array<Quantity, 5> all_quantities = {{Quantity::displacement,
+                                                              Quantity::stress_work,
+                                                              Quantity::dissipation,
+                                                              Quantity::positive_work,
+                                                              Quantity::paper_energy}};
+
+  /// The forces of a scene at points in the body and at its ends.
+  struct ForcesOfScene
+  {
+    ForcesOfScene(const Scene &physical, const Scene &other, const std::vector<double> &points);
+
+    /// @p u, v at the nodes give @p at_ends.
+    void
+    evaluate(double t, double end, const StateAtPoints &at, const StateAtPoints &at_ends);
+
+    ForcesAtPoints inside, ends;
+  };
+
+  /// The rates at which works grow, in natural units; the displacement is none. The state is that of another scene,
+  /// and so are lengths and times: a rate is for each time of that scene.
+  class WorkRates
+  {
+  public:
+    explicit WorkRates(const CellPoints &points);
+
+    /// At a state that was evaluated.
+    double
+    rate(Quantity work, const ForcesOfScene &forces, const StateAtPoints &at, const StateAtPoints &at_ends) const;
+
+    /// @p weight times the derivatives of the rate by displacement and velocity at the nodes; of the scene itself.
+    void
+    add_slopes(Quantity work,
+               double weight,
+               const ForcesOfScene &forces,
+               const std::vector<ForcesAtPoints::Slopes> &slopes,
+               const StateAtPoints &at,
+               std::size_t n_nodes,
+               double *by_u,
+               double *by_v);
+
+  private:
+    const CellPoints &points_;
+    std::vector<double> by_u_, by_e_, by_v_, by_rate_;
+  };
+} // namespace crawler

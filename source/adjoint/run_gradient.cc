@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/adjoint/forces_at_points.h>
+#include <crawler/adjoint/run_gradient.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+namespace crawler
+{
+  namespace
+  {
+    /// f' from f(-2), f(-1), f(1), f(2).
+    double
+    fourth_order(const std::array<double, 4> &values, const double step)
+    {
+      return (8. * (values[2] - values[1]) - (values[3] - values[0])) / (12. * step);
+    }
+
+    /// A number that varies: the forces in the four scenes, and what they change.
+    struct Direction
+    {
+      /// Of a quantity, in natural units.
+      struct Change
+      {
+        std::array<double, 4> sums = {};
+        double at_breaks           = 0.; ///< by jumps at start and end, or that come together where that is not known
+      };
+      std::array<std::unique_ptr<ForcesOfScene>, 4> forces;
+      std::array<Change, all_quantities.size()> changes;
+    };
+
+    /// What is asked for: its adjoint in all steps, and its value.
+    struct Adjoint
+    {
+      Quantity quantity;
+      std::vector<double> mu;                ///< [step][stage][unknown]
+      std::vector<std::vector<double>> zeta; ///< [step], mostly empty
+      double value = 0.;                     ///< in natural units
+    };
+
+    /// A backward sweep for each quantity, and one that puts together what they give.
+    class Sweep
+    {
+    public:
+      Sweep(const RecordedRun &run,
+            const std::span<const Variation> variations,
+            const std::span<const Quantity> quantities,
+            LocalSensitivity &local)
+        : run_(run)
+        , local_(local)
+        , adjoint_(run.natural, run.method)
+        , setup_(adjoint_.tables().setup)
+        , tableau_(radau_tableau(setup_.n_stages))
+        , cells_(setup_)
+        , own_(run.scene, run.scene, cells_.points())
+        , works_(cells_)
+        , at_(cells_.size())
+        , at_ends_(2)
+        , mu_(cells_.size())
+        , mu_s_(cells_.size())
+        , zeta_(cells_.size())
+        , zeta_s_(cells_.size())
+      {
+        for (const Variation &variation : variations)
+        {
+          Direction &direction = directions_.emplace_back();
+          for (std::size_t k = 0; k < 4; ++k)
+            direction.forces[k] = std::make_unique<ForcesOfScene>(*variation.scenes[k], run.scene, cells_.points());
+        }
+        for (const Quantity quantity : quantities)
+          if (quantity != Quantity::paper_energy || run.scene.active_stress->feedback() == nullptr)
+            adjoints_.push_back({quantity, {}, std::vector<std::vector<double>>(run.steps.n_steps())});
+        constexpr std::size_t most_samples = 4000000;
+        keeps_stress_                      = run.steps.n_steps() * tableau_.n * cells_.size() <= most_samples;
+        local_ = {cells_.points(), std::vector<double>(cells_.size()), std::vector<double>(cells_.size()), {}, {}};
+      }
+
+      void
+      make()
+      {
+        for (Adjoint &adjoint : adjoints_)
+          solve(adjoint);
+        look_at_end();
+        BackwardStages stages(run_.steps, tableau_);
+        for (std::size_t step = run_.steps.n_steps(); step-- > 0;)
+          look(step, stages);
+        for (double &s : local_.s)
+          s *= run_.units.length;
+        std::ranges::reverse(local_.times);
+        std::ranges::reverse(local_.stress);
+      }
+
+      /// What there is of the quantities.
+      Derivatives
+      derivatives(const std::size_t number, const double step) const
+      {
+        constexpr double nothing   = 1e-7;
+        const Direction &direction = directions_[number];
+        Derivatives result;
+        for (const Adjoint &adjoint : adjoints_)
+        {
+          const auto unit = [&](const Units &units) {
+            return adjoint.quantity == Quantity::displacement ? units.length : units.energy();
+          };
+          std::array<double, 4> units;
+          for (std::size_t k = 0; k < 4; ++k)
+            units[k] = unit(direction.forces[k]->inside.units());
+          const Direction::Change &change = direction.changes[static_cast<std::size_t>(adjoint.quantity)];
+          const double own                = unit(run_.units);
+          const double value = own * fourth_order(change.sums, step) + adjoint.value * fourth_order(units, step);
+          if (own * change.at_breaks <= nothing * step * std::abs(value))
+            result[static_cast<std::size_t>(adjoint.quantity)] = value;
+        }
+        return result;
+      }
+
+    private:
+      void
+      go_to_stage(BackwardStages &stages, const unsigned int stage)
+      {
+        stages.go_to_stage(stage);
+        cells_.evaluate(stages.u(), stages.v(), at_);
+        at_ends_.u = {stages.u().front(), stages.u().back()};
+        at_ends_.v = {stages.v().front(), stages.v().back()};
+      }
+
+      void
+      solve(Adjoint &adjoint)
+      {
+        const bool is_work           = adjoint.quantity != Quantity::displacement;
+        std::vector<double> gradient = adjoint_.gradient_of_displacement();
+        if (is_work)
+          std::ranges::fill(gradient, 0.);
+        else
+          adjoint.value = run_.displacement / run_.units.length;
+        const std::size_t n = gradient.size(), n_mu = tableau_.n * n;
+        adjoint.mu.resize(run_.steps.n_steps() * n_mu);
+        BackwardStages stages(run_.steps, tableau_);
+        std::vector<ForcesAtPoints::Slopes> slopes;
+        const auto see =
+          [&](const std::size_t step, const std::span<const double> mu, const std::span<const double> zeta) {
+            std::ranges::copy(mu, adjoint.mu.begin() + static_cast<std::ptrdiff_t>(step * n_mu));
+            adjoint.zeta[step].assign(zeta.begin(), zeta.end());
+          };
+        const auto source = [&](const std::size_t step, const LaneSources &sources) {
+          stages.go_back(step);
+          for (unsigned int i = 0; i < tableau_.n; ++i)
+          {
+            const double weight = run_.steps.size(step) * tableau_.b[i];
+            go_to_stage(stages, i);
+            own_.evaluate(stages.time(), run_.steps.time(step), at_, at_ends_);
+            adjoint.value += weight * works_.rate(adjoint.quantity, own_, at_, at_ends_);
+            own_.inside.slopes(slopes);
+            works_.add_slopes(
+              adjoint.quantity, weight, own_, slopes, at_, n, sources.by_u + i * n, sources.by_velocity + i * n);
+          }
+        };
+        if (!adjoint_.solve(run_.steps, gradient, see, is_work ? LaneAdjoint::Source(source) : LaneAdjoint::Source()))
+          throw std::runtime_error("the adjoint of a step did not converge");
+      }
+
+      /// The mean displacement of a body that is longer in some places.
+      void
+      look_at_end()
+      {
+        cells_.evaluate(run_.steps.end().data(), at_.u, at_.e);
+        for (Direction &direction : directions_)
+          for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t p = 0; p < cells_.size(); ++p)
+              direction.changes[0].sums[k] +=
+                cells_.weight(p) * (direction.forces[k]->inside.longer(p) - 1.) * at_.u[p];
+      }
+
+      void
+      look(const std::size_t step, BackwardStages &stages)
+      {
+        const double end = run_.steps.time(step), h = run_.steps.size(step);
+        stages.go_back(step);
+        for (unsigned int i = tableau_.n; i-- > 0;)
+        {
+          const double weight = h * tableau_.b[i];
+          go_to_stage(stages, i);
+          own_.evaluate(stages.time(), end, at_, at_ends_);
+          for (Direction &direction : directions_)
+            for (std::size_t k = 0; k < 4; ++k)
+              direction.forces[k]->evaluate(stages.time(), end, at_, at_ends_);
+          for (const Adjoint &adjoint : adjoints_)
+          {
+            const std::size_t n = adjoint.mu.size() / (run_.steps.n_steps() * tableau_.n);
+            cells_.evaluate(adjoint.mu.data() + (step * tableau_.n + i) * n, mu_, mu_s_);
+            if (i + 1 == tableau_.n && !adjoint.zeta[step].empty())
+              cells_.evaluate(adjoint.zeta[step].data(), zeta_, zeta_s_);
+            if (adjoint.quantity == Quantity::displacement)
+              add_local(stages.time(), weight);
+            for (Direction &direction : directions_)
+              for (std::size_t k = 0; k < 4; ++k)
+              {
+                ForcesAtPoints &forces    = direction.forces[k]->inside;
+                Direction::Change &change = direction.changes[static_cast<std::size_t>(adjoint.quantity)];
+                add_forces(forces, change.sums[k]);
+                if (adjoint.quantity != Quantity::displacement)
+                  change.sums[k] += weight * (works_.rate(adjoint.quantity, *direction.forces[k], at_, at_ends_) -
+                                              works_.rate(adjoint.quantity, own_, at_, at_ends_));
+                if (i + 1 == tableau_.n && forces.has_between(end, false))
+                  add_impulse(adjoint, change, k, forces.between(end, false), zeta_s_, -1., end == 1.);
+                if (step == 0 && i == 0 && forces.has_between(0., true))
+                  add_impulse(adjoint, change, k, forces.between(0., true), mu_s_, 1. / weight, true);
+              }
+          }
+        }
+      }
+
+      /// What the forces change, by mu; the differences, since the sums nearly cancel.
+      void
+      add_forces(const ForcesAtPoints &forces, double &sum) const
+      {
+        for (std::size_t p = 0; p < cells_.size(); ++p)
+          sum += cells_.weight(p) * ((forces.body_force(p) - own_.inside.body_force(p)) * mu_s_[p] +
+                                     (forces.friction(p) - own_.inside.friction(p)) * mu_[p]);
+      }
+
+      /// @p weight of the stage.
+      void
+      add_local(const double time, const double weight)
+      {
+        for (std::size_t p = 0; p < cells_.size(); ++p)
+        {
+          local_.elastic_modulus[p] += own_.inside.elastic(p, at_.e[p]) * mu_s_[p];
+          local_.friction[p] += own_.inside.friction(p) * mu_[p];
+        }
+        if (!keeps_stress_)
+          return;
+        local_.times.push_back(time * run_.units.time);
+        for (std::size_t p = cells_.size(); p-- > 0;)
+          local_.stress.push_back(mu_s_[p] / (weight * run_.units.force * run_.units.time));
+      }
+
+      void
+      add_impulse(const Adjoint &adjoint,
+                  Direction::Change &change,
+                  const std::size_t k,
+                  const std::vector<double> &impulse,
+                  const std::vector<double> &effect,
+                  const double factor,
+                  const bool is_edge) const
+      {
+        double sum = 0., size = 0.;
+        for (std::size_t p = 0; p < cells_.size(); ++p)
+        {
+          sum += factor * cells_.weight(p) * impulse[p] * effect[p];
+          size += cells_.weight(p) * std::abs(impulse[p]);
+        }
+        change.sums[k] += sum;
+        // Where friction is not linear in the velocity an impulse is more than its size; and works grow in it.
+        if (adjoint.quantity != Quantity::displacement && size > 0.)
+          change.at_breaks = std::numeric_limits<double>::infinity();
+        else if (is_edge || (setup_.laws & LaneLaws::nonlinear_in_velocity) != 0)
+          change.at_breaks = std::max(change.at_breaks, std::abs(sum));
+      }
+
+      const RecordedRun &run_;
+      LocalSensitivity &local_;
+      LaneAdjoint adjoint_;
+      const LaneSetup &setup_;
+      const RadauTableau &tableau_;
+      const CellPoints cells_;
+      ForcesOfScene own_;
+      WorkRates works_;
+      std::vector<Direction> directions_;
+      std::vector<Adjoint> adjoints_;
+      bool keeps_stress_ = true;
+      StateAtPoints at_, at_ends_;
+      std::vector<double> mu_, mu_s_, zeta_, zeta_s_; ///< adjoint at the points, and its derivatives by s
+    };
+  } // namespace
+
+  bool
+  have_similar_breaks(const Scene &scene, const Scene &other)
+  {
+    return BreakMap(breaks_in_space_of(scene), breaks_in_space_of(other)).is_one_to_one() &&
+           BreakMap(breaks_in_time_of(scene), breaks_in_time_of(other)).is_good();
+  }
+
+  RunGradient::RunGradient(const RecordedRun &run)
+    : run_(run)
+  {
+  }
+
+  std::vector<Derivatives>
+  RunGradient::derivatives(const std::span<const Variation> variations, const std::span<const Quantity> quantities)
+  {
+    Sweep sweep(run_, variations, quantities, local_);
+    sweep.make();
+    std::vector<Derivatives> result;
+    for (std::size_t i = 0; i < variations.size(); ++i)
+      result.push_back(sweep.derivatives(i, variations[i].step));
+    return result;
+  }
+} // namespace crawler

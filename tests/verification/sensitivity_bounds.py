@@ -1,0 +1,57 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Are the bounds of sensitivities (Output/Sensitivities = all) above their errors? Each derivative at Accuracy 1e-3,
+1e-4 and 1e-6 is compared with that at 1e-9.
+
+    python3 sensitivity_bounds.py PATH_TO_CRAWLER FILE.prm...
+"""
+import collections
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+REFERENCE, ACCURACIES = 1e-9, (1e-3, 1e-4, 1e-6)
+
+
+def sensitivities(program, file, accuracy, folder):
+    """{(entry, number): (value, error)} of a run."""
+    command = [program, "run", file, "--overwrite", "--quiet", "--output", folder, "--set", f"Accuracy={accuracy}",
+               "--set", "Output/Sensitivities=all", "--set", "Output/Number of snapshots=0"]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=ENVIRONMENT)
+    found = {}
+    for entry, one in json.loads((pathlib.Path(folder) / "summary.json").read_text())["sensitivities"].items():
+        if one["value"] is not None:
+            found[entry, "displacement"] = one["value"], one["error"]
+        for number, other in one.items():
+            if isinstance(other, dict):
+                found[entry, number] = other["value"], other["error"]
+    return found
+
+
+def main():
+    """Prints the coverage of each number; returns what is wrong."""
+    ratios, failures = collections.defaultdict(list), []
+    with tempfile.TemporaryDirectory() as folder:
+        for file in sys.argv[2:]:
+            exact = sensitivities(sys.argv[1], file, REFERENCE, folder)
+            for accuracy in ACCURACIES:
+                for (entry, number), (value, error) in sensitivities(sys.argv[1], file, accuracy, folder).items():
+                    if (entry, number) not in exact:
+                        continue
+                    true, of_true = exact[entry, number]
+                    ratios[number].append(abs(value - true) / error)
+                    if abs(value - true) > error + of_true:
+                        failures.append(f"{file}, Accuracy {accuracy}: d({number})/d({entry}) = {value} +- {error}, "
+                                        f"but {true} +- {of_true} at Accuracy {REFERENCE}")
+    for number, list_of_one in ratios.items():
+        print(f"{number}: {len(list_of_one)} derivatives, true error/bound {statistics.median(list_of_one):.2g} in the "
+              f"median, {max(list_of_one):.2g} at most")
+    return failures or (["nothing was compared"] if not ratios else [])
+
+
+sys.exit("\n".join(main()) or 0)
