@@ -130,12 +130,12 @@ namespace crawler
         "Model");
     if (parameters.model != Model::linear && parameters.model != Model::nonlinear)
     {
-      if (!parameters.output.sensitivities.empty() && parameters.model == Model::automatic)
+      if (parameters.output.differentiates() && parameters.model == Model::automatic)
         return {Model::nonlinear, "Model nonlinear: simpler ones have no Sensitivities"};
-      if (!parameters.output.sensitivities.empty())
+      if (parameters.output.differentiates())
         throw InputError(fmt::format("Sensitivities are wanted, but Model is {}; nonlinear or auto is expected",
                                      word_of(parameters.model)),
-                         "Output/Sensitivities");
+                         parameters.output.sensitivities.empty() ? "Output/Uncertainty" : "Output/Sensitivities");
       if (!scene.is_plain())
         return {Model::nonlinear,
                 "Model nonlinear: simpler ones are for plain bodies and grounds, and here is " +

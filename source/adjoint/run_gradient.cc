@@ -12,11 +12,13 @@ namespace crawler
 {
   namespace
   {
-    /// f' from f(-2), f(-1), f(1), f(2).
+    /// f' of fourth order from f at the places of a variation, less f itself.
     double
-    fourth_order(const std::array<double, 4> &values, const double step)
+    derivative_of(const std::array<double, 4> &f, const Variation &variation)
     {
-      return (8. * (values[2] - values[1]) - (values[3] - values[0])) / (12. * step);
+      return (variation.is_one_sided ? 48. * f[0] - 36. * f[1] + 16. * f[2] - 3. * f[3]
+                                     : 8. * (f[2] - f[1]) - (f[3] - f[0])) /
+             (12. * variation.step);
     }
 
     /// A number that varies: the forces in the four scenes, and what they change.
@@ -95,7 +97,7 @@ namespace crawler
 
       /// What there is of the quantities.
       Derivatives
-      derivatives(const std::size_t number, const double step) const
+      derivatives(const std::size_t number, const Variation &variation) const
       {
         constexpr double nothing   = 1e-7;
         const Direction &direction = directions_[number];
@@ -107,11 +109,12 @@ namespace crawler
           };
           std::array<double, 4> units;
           for (std::size_t k = 0; k < 4; ++k)
-            units[k] = unit(direction.forces[k]->inside.units());
+            units[k] = unit(direction.forces[k]->inside.units()) - unit(run_.units);
           const Direction::Change &change = direction.changes[static_cast<std::size_t>(adjoint.quantity)];
           const double own                = unit(run_.units);
-          const double value = own * fourth_order(change.sums, step) + adjoint.value * fourth_order(units, step);
-          if (own * change.at_breaks <= nothing * step * std::abs(value))
+          const double value =
+            own * derivative_of(change.sums, variation) + adjoint.value * derivative_of(units, variation);
+          if (own * change.at_breaks <= nothing * std::abs(variation.step * value))
             result[static_cast<std::size_t>(adjoint.quantity)] = value;
         }
         return result;
@@ -296,7 +299,7 @@ namespace crawler
     sweep.make();
     std::vector<Derivatives> result;
     for (std::size_t i = 0; i < variations.size(); ++i)
-      result.push_back(sweep.derivatives(i, variations[i].step));
+      result.push_back(sweep.derivatives(i, variations[i]));
     return result;
   }
 } // namespace crawler

@@ -28,10 +28,15 @@ namespace crawler
       .means("Numbers of samples over s and over t, like 65, 129, of the active stress that are written to "
              "active_stress.csv, which the generator table reads. Nothing: no such file.");
     declarations.text("Sensitivities", sensitivities, "a list Section/Entry, Section/Entry, or the word \"all\"")
+      .means("Entries by which displacement and works are differentiated, numbers of the body, the ground, the active "
+             "stress or "
+             "the end time: how much each of them matters, in summary.json, on the screen and, along the body and over "
+             "time, in sensitivity_body.csv and sensitivity_stress.csv. all: all that have an effect. Nothing: none.");
+    declarations.text("Uncertainty", uncertainty, "a list like Section/Entry : 0.1; Section/Entry : 5 %")
       .means(
-        "Entries by which the displacement is differentiated, numbers of the body, the ground, the active stress or "
-        "the end time: how much each of them matters, in summary.json, on the screen and, along the body and over "
-        "time, in sensitivity_body.csv and sensitivity_stress.csv. all: all that have an effect. Nothing: none.");
+        "Entries that are not known exactly, numbers as for Sensitivities, and their standard deviations, in their "
+        "units or in per cent of them. Gives the standard deviation of the displacement and of the works, to first "
+        "order and as if the entries were independent.");
     declarations.leave();
   }
 } // namespace crawler

@@ -93,6 +93,9 @@ namespace crawler
                                                   ? fmt::format("  {:8.3g} %", one.elasticity(result.displacement))
                                                   : "")
                                   : fmt::format("    {:<{}}  not known: {}", one.entry, width, one.reason));
+      if (const auto deviation = result.standard_deviation("displacement"))
+        lines.push_back(fmt::format(
+          "  uncertain entries make the displacement uncertain by {:.2g} (standard deviation)", *deviation));
     }
   } // namespace
 
@@ -129,9 +132,15 @@ namespace crawler
         one.value && result.displacement != 0. ? Json(one.elasticity(result.displacement)) : Json(nullptr);
       for (const EntrySensitivity::OfNumber &other : one.others)
         entry[other.key] = {{"value", other.value}, {"error", other.error}};
+      if (one.standard_deviation > 0.)
+        entry["standard_deviation"] = one.standard_deviation;
       if (!one.reason.empty())
         entry["reason"] = one.reason;
     }
+    json["uncertainty"] = nullptr;
+    for (const ResultEntry &entry : result_table())
+      if (const auto deviation = result.standard_deviation(entry.key))
+        json["uncertainty"][entry.key] = *deviation;
     json["ranks"]        = n_ranks;
     json["versions"]     = versions();
     json["command_line"] = command_line;

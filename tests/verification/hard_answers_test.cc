@@ -330,8 +330,8 @@ TEST(HardAnswers, AFinerGradedMeshIsFiner)
                 "feedback by the stretch nearby");
 }
 
-/// The active stress is smooth, but not analytic, where its window ends: works converge more slowly than the displacement,
-/// and the finer run hardly differed. The energy balance knows.
+/// The active stress is smooth, but not analytic, where its window ends: works converge more slowly than the
+/// displacement, and the finer run hardly differed. The energy balance knows.
 TEST(HardAnswers, WorksOfAWindow)
 {
   const SimulationResult result = answer_to({{"Accuracy", "1e-6"},

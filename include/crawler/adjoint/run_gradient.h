@@ -11,11 +11,13 @@
 
 namespace crawler
 {
-  /// Scenes in which one number p differs: p - 2d, p - d, p + d, p + 2d. All have_similar_breaks().
+  /// Scenes in which one number p differs by d times -2, -1, 1 and 2, or 1, 2, 3 and 4 to one side. All
+  /// have_similar_breaks().
   struct Variation
   {
     std::array<const Scene *, 4> scenes;
-    double step; ///< d, in units of p
+    double step;               ///< d, in units of p
+    bool is_one_sided = false; ///< where p is at a limit
   };
 
   /// How a local change of the body changes the displacement: for k(s) (1 + x(s)) it is int density x ds.

@@ -29,7 +29,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   class AdjointLanes
   {
   public:
-    static constexpr int lanes = PackTraits<Pack>::size, pairs = (s - 1) / 2, middle = s / 2;
+    static constexpr int lanes = PackTraits<Pack>::size, pairs = (s - 1) / 2, middle = s / 2, most_directions = 12;
     using Number = Complex<Pack>;
 
     AdjointLanes(const LaneSetup &setup, const LaneAdjointHost &host, double *memory)
@@ -104,6 +104,7 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory_.piece(K_mu_, s * n);
       memory_.piece(M_mu_, s * n);
       memory_.piece(residual_, s * n);
+      memory_.piece(directions_, 2 * most_directions * s * n);
       memory_.piece(by_u_, s * n);
       memory_.piece(by_velocity_, s * n);
       memory_.piece(real_, n);
@@ -252,82 +253,161 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       }
     }
 
-    /// K_i^T mu_i and M_i mu_i.
+    /// K_i^T x_i and M_i x_i.
     void
-    multiply()
+    multiply(const Pack *x)
     {
       for (int i = 0; i < s; ++i)
-        system_.transposed(slopes_[i], mu_ + i * n_, K_mu_ + i * n_, M_mu_ + i * n_);
+        system_.transposed(slopes_[i], x + i * n_, K_mu_ + i * n_, M_mu_ + i * n_);
     }
 
-    /// The stages of the adjoint, by the transposed simplified Newton iteration.
+    /// The left-hand side of the equations for the stages.
+    void
+    apply(const Pack *x, Pack *result)
+    {
+      multiply(x);
+      for (int i = 0; i < s; ++i)
+        for (int d = 0; d < n_; ++d)
+        {
+          Pack sum = setup_.inverse[i] * M_mu_[d];
+          for (int j = 1; j < s; ++j)
+            sum += setup_.inverse[j * s + i] * M_mu_[j * n_ + d];
+          result[i * n_ + d] = K_mu_[i * n_ + d] + inverse_h_ * sum;
+        }
+    }
+
+    /// What the equations for the stages lack.
+    void
+    look_at_residual()
+    {
+      apply(mu_, residual_);
+      for (int i = 0; i < s; ++i)
+        for (int d = 0; d < n_; ++d)
+        {
+          Pack right = i + 1 < s ? Pack{} : -lambda_[d];
+          if (has_sources_)
+          {
+            Pack sum{};
+            for (int j = 0; j < s; ++j)
+              sum += setup_.inverse[j * s + i] * by_velocity_[j * n_ + d];
+            right -= by_u_[i * n_ + d] + inverse_h_ * sum;
+          }
+          residual_[i * n_ + d] = right - residual_[i * n_ + d];
+        }
+    }
+
+    /// The stages of the adjoint, by generalized conjugate residuals (Eisenstat, Elman, Schultz, SIAM J. Numer. Anal.
+    /// 20 (1983) 345) with the transposed systems of simplified Newton; that iteration alone may not converge where the
+    /// steps are long.
     void
     solve()
     {
-      constexpr int most_passes = 60;
+      constexpr int most_passes = 100;
       for (Lane &lane : lanes_)
       {
         lane.iterating   = lane.busy;
         lane.failed      = false;
         lane.last_change = HUGE_VAL;
       }
+      n_directions_ = 0;
+      look_at_residual();
       for (int pass = 0; pass < most_passes && any(lanes_, &Lane::iterating); ++pass)
       {
-        multiply();
-        for (int i = 0; i < s; ++i)
-          for (int d = 0; d < n_; ++d)
-          {
-            Pack sum = setup_.inverse[i] * M_mu_[d];
-            for (int j = 1; j < s; ++j)
-              sum += setup_.inverse[j * s + i] * M_mu_[j * n_ + d];
-            Pack right = i + 1 < s ? Pack{} : -lambda_[d];
-            if (has_sources_)
-            {
-              for (int j = 0; j < s; ++j)
-                sum += setup_.inverse[j * s + i] * by_velocity_[j * n_ + d];
-              right -= by_u_[i * n_ + d];
-            }
-            residual_[i * n_ + d] = right - K_mu_[i * n_ + d] - inverse_h_ * sum;
-          }
-        correct();
+        const bool settles = correct();
+        if (settles || n_directions_ == most_directions)
+        {
+          look_at_residual();
+          n_directions_ = 0;
+        }
       }
       for (Lane &lane : lanes_)
       {
         lane.failed    = lane.iterating;
         lane.iterating = false;
       }
-      multiply();
+      multiply(mu_);
     }
 
-    /// One correction; lanes that are done keep what they have.
+    Pack
+    product(const Pack *a, const Pack *b) const
+    {
+      Pack sum{};
+      for (int d = 0; d < s * n_; ++d)
+        sum += a[d] * b[d];
+      return sum;
+    }
+
+    /// a += factor b
     void
+    add(const Pack &factor, const Pack *b, Pack *a) const
+    {
+      for (int d = 0; d < s * n_; ++d)
+        a[d] += factor * b[d];
+    }
+
+    /// One correction; lanes that are done keep what they have. A lane is done if it would not change any more though
+    /// the residual is known anew. Returns whether that should be looked at.
+    bool
     correct()
     {
       // On graded meshes round-off may be larger than what counts as settled.
       constexpr double settled = 1e-13, nearly_settled = 1e-8;
+      const bool is_new = n_directions_ == 0;
+      Pack *const step  = directions_ + std::size_t(n_directions_) * s * n_, *const image =
+                                                                              step + most_directions * s * n_;
       radau::to_eigenbasis(radau::Stages<s>{}, rows_, residual_, n_, real_, complex_);
       system_.solve_all(real_, complex_);
-      Pack moves{}, change{}, size{};
-      for (int l = 0; l < lanes; ++l)
-        set_lane(moves, l, lanes_[l].iterating);
-      const auto moving = moves > 0.;
       for (int i = 0; i < s; ++i)
         for (int d = 0; d < n_; ++d)
-        {
-          const Pack step = radau::from_eigenbasis(radau::Stages<s>{}, vectors_, i, d, n_, real_, complex_);
-          Pack &moved     = mu_[i * n_ + d];
-          moved           = moving ? moved + step : moved;
-          change          = added<true>(change, step < 0. ? -step : step);
-          size            = added<true>(size, moved < 0. ? -moved : moved);
-        }
+          step[i * n_ + d] = radau::from_eigenbasis(radau::Stages<s>{}, vectors_, i, d, n_, real_, complex_);
+      apply(step, image);
+      for (int j = 0; j < n_directions_; ++j)
+      {
+        const Pack *const other = directions_ + std::size_t(j) * s * n_, *const its_image =
+                                                                           other + most_directions * s * n_;
+        const Pack part = -product(image, its_image);
+        add(part, other, step);
+        add(part, its_image, image);
+      }
+      const Pack square = product(image, image), along = product(residual_, image);
+      Pack scale{}, length{};
       for (int l = 0; l < lanes; ++l)
       {
-        Lane &lane            = lanes_[l];
-        const double relative = get_lane(change, l) / get_lane(size, l);
-        if (!(relative > settled) || (relative <= nearly_settled && relative >= 0.5 * lane.last_change))
-          lane.iterating = false;
-        lane.last_change = relative;
+        const double of_lane = get_lane(square, l);
+        set_lane(scale, l, of_lane > 0. ? 1. / ::sqrt(of_lane) : 0.);
+        set_lane(length, l, lanes_[l].iterating && of_lane > 0. ? get_lane(along, l) / of_lane : 0.);
       }
+      Pack change{}, size{};
+      for (int d = 0; d < s * n_; ++d)
+      {
+        const Pack moved = length * step[d];
+        mu_[d] += moved;
+        change = added<true>(change, moved < 0. ? -moved : moved);
+        size   = added<true>(size, mu_[d] < 0. ? -mu_[d] : mu_[d]);
+      }
+      add(-length, image, residual_);
+      for (int d = 0; d < s * n_; ++d)
+      {
+        step[d]  = scale * step[d];
+        image[d] = scale * image[d];
+      }
+      ++n_directions_;
+      bool looks = false;
+      for (int l = 0; l < lanes; ++l)
+      {
+        Lane &lane = lanes_[l];
+        if (!lane.iterating)
+          continue;
+        const double relative = get_lane(change, l) / get_lane(size, l);
+        const bool is_settled = !(relative > settled);
+        if (is_new && (is_settled || (relative <= nearly_settled && relative >= 0.5 * lane.last_change)))
+          lane.iterating = false;
+        else if (is_settled)
+          looks = true;
+        if (is_new)
+          lane.last_change = relative;
+      }
+      return looks;
     }
 
     void
@@ -393,8 +473,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     Pack *lambda_, *zeta_;                   ///< [unknown]
     Pack *mu_, *old_mu_;                     ///< [stage][unknown] of this step, and of the one after it
     Pack *K_mu_, *M_mu_, *residual_, *real_; ///< products, and right-hand sides in both bases
-    Pack *by_u_, *by_velocity_;              ///< [stage][unknown] sources
-    double *scratch_;                        ///< of one lane
+    Pack *directions_; ///< [direction][stage][unknown], then the same of what the equations make of them
+    int n_directions_ = 0;
+    Pack *by_u_, *by_velocity_; ///< [stage][unknown] sources
+    double *scratch_;           ///< of one lane
     bool has_sources_ = false;
     Number *complex_;
   };

@@ -19,6 +19,14 @@ namespace crawler
     std::optional<double> energy_balance_tolerance;
     std::vector<double> active_stress_table; ///< numbers of samples over s and t; empty: no table
     std::string sensitivities = "";          ///< entries, or "all" (studies/core/sensitivity_entries.h)
+    std::string uncertainty   = "";          ///< entries and their standard deviations (the same)
+
+    /// Are derivatives by entries wanted?
+    bool
+    differentiates() const
+    {
+      return !sensitivities.empty() || !uncertainty.empty();
+    }
 
     bool
     has_snapshots() const

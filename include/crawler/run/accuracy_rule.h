@@ -198,7 +198,7 @@ namespace crawler::accuracy_rule
     inline constexpr double most_work = 5e4;
   } // namespace sweep
 
-  // Derivatives by entries (studies/run/sensitivities.cc). Measured by
+  // Derivatives by entries (studies/core/sensitivities.cc). Measured by
   // tests/verification/sensitivity_bounds.py.
   namespace sensitivities
   {

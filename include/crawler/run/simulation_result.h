@@ -32,7 +32,13 @@ namespace crawler
       std::string key;
       double value, error; ///< [its unit/unit of the entry]
     };
-    std::vector<OfNumber> others = {}; ///< those that are known
+    std::vector<OfNumber> others = {};   ///< those that are known
+    bool may_vary                = true; ///< from where it is
+    double standard_deviation    = 0.;   ///< of the entry, if it is uncertain
+
+    /// Of a number by its key, the displacement too.
+    std::optional<OfNumber>
+    of(const std::string &key) const;
 
     /// By how many per cent the displacement grows if the entry grows by one.
     double
@@ -61,8 +67,13 @@ namespace crawler
     std::optional<Corrected> corrected;          ///< if the adjoint gave it
     std::optional<NumberErrors> errors;          ///< of other numbers, if a finer run measured them
     std::vector<EntrySensitivity> sensitivities; ///< if they are wanted, those that matter most first
-    double largest_u  = 0.;                      ///< root mean square of u over the body, largest over time [length]
-    double unresolved = 0.;                      ///< Resolution: largest highest_mode over largest strain, if looked at
+
+    /// The standard deviation of the number under a key of the result table that uncertain entries make, to first
+    /// order; nothing if there are none, or if a derivative is not known.
+    std::optional<double>
+    standard_deviation(const std::string &key) const;
+    double largest_u  = 0.; ///< root mean square of u over the body, largest over time [length]
+    double unresolved = 0.; ///< Resolution: largest highest_mode over largest strain, if looked at
     double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]
     std::optional<EnergyBalance> energy_balance;
     bool jumps_move     = false; ///< the energy balance's integrals in time are not those of a smooth active stress

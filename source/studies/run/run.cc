@@ -21,7 +21,7 @@
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/run_files.h>
 #include <crawler/studies/run/run.h>
-#include <crawler/studies/run/sensitivities.h>
+#include <crawler/studies/run/sensitivity_files.h>
 #include <crawler/time/failure.h>
 
 #include <fmt/format.h>
@@ -242,7 +242,7 @@ namespace crawler
     if (first && !shared && chosen)
       sweep_error(parameters, input.scene, *chosen, result, keep_going);
     if (first && result.time.status == Status::finished && !input.sensitivities.empty())
-      find_sensitivities(input, *chosen, folder, result, keep_going);
+      add_sensitivities(input, *chosen, folder, result, keep_going);
     if (result.time.status == Status::finished && parameters.error_estimate && !std::isfinite(result.error->total))
       log.warn("the error of the displacement is not known: the second run, which measures it, did not finish");
     report_unused_options(log);

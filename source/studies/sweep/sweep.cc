@@ -152,7 +152,7 @@ namespace crawler
     const fs::path path        = output_folder(options.output, options.file);
     const PointTable table     = {sweep_file,
                                   sweep_group,
-                                  sweep_columns(design, points.declarations()),
+                                  sweep_columns(points),
                                   1 + design.axes().size(),
                                   "status",
                                   {{"reason", "seconds"}},
@@ -174,8 +174,6 @@ namespace crawler
                          n_ranks == 1 ? "" : "s",
                          n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
 
-    if (!points.parameters(0).output.sensitivities.empty())
-      log.line("Note: Output/Sensitivities has no effect in a sweep");
     const std::function<bool()> interrupted = [&]() {
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - start > *own.time_limit);
     };
@@ -247,7 +245,7 @@ namespace crawler
     SweepPoints points(communicator, file);
     const SweepDesign &design = points.design();
     std::size_t bytes         = 0;
-    for (const RowFile::Column &column : sweep_columns(design, points.declarations()))
+    for (const RowFile::Column &column : sweep_columns(points))
       bytes += column.width == 0 ? sizeof(double) : column.width;
     // The time of some parts, spread over the sweep.
     constexpr unsigned long most_samples = 32;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_rows.h>
@@ -97,6 +98,7 @@ namespace crawler
     template <typename Point>
     void
     write(const std::vector<Point> &points,
+          const std::vector<SensitivityEntry> &sensitivities,
           RowFile &file,
           const std::function<void(unsigned long n, unsigned long failed)> &see)
     {
@@ -104,7 +106,7 @@ namespace crawler
       unsigned long failed = 0;
       for (std::size_t i = 0; i < points.size(); ++i)
       {
-        rows.push_back(sweep_row(points[i].task));
+        rows.push_back(sweep_row(points[i].task, sensitivities));
         failed += status_of(points[i].task).status != "finished";
         if (i + 1 < points.size() && points[i + 1].number == points[i].number + 1)
           continue;
@@ -184,6 +186,29 @@ namespace crawler
     return answers;
   }
 
+  void
+  SweepWork::differentiate(std::vector<Point> &points, const std::function<bool()> &interrupted)
+  {
+    if (points_.sensitivities().empty())
+      return;
+    for (Point &point : points)
+    {
+      Task &task = point.task;
+      if (interrupted())
+        return;
+      if (task.error || task.computed.result.time.status != Status::finished)
+        continue;
+      const double start = now();
+      find_sensitivities(points_.form(point.number),
+                         *task.scene,
+                         points_.sensitivities(),
+                         task.computed.choice,
+                         task.computed.result,
+                         [&]() { return now() - start <= time_limit_ && !interrupted(); });
+      task.seconds += now() - start;
+    }
+  }
+
   unsigned long
   SweepWork::try_out(const unsigned long number)
   {
@@ -213,10 +238,11 @@ namespace crawler
     for (unsigned long point = own.first; point < own.first + own.size; ++point)
       if (!done[point])
         missing.push_back(point);
-    const auto shared = compute_shared(block_of(number), missing, interrupted);
+    auto shared = compute_shared(block_of(number), missing, interrupted);
+    differentiate(shared, interrupted);
     if (interrupted())
       return false;
-    write(shared, file, see);
+    write(shared, points_.sensitivities(), file, see);
     for (const Point &point : shared)
       std::erase(missing, point.number);
 
@@ -239,7 +265,10 @@ namespace crawler
       std::vector<Point> ready;
       for (std::size_t i = from; i < to; ++i)
         ready.push_back({missing[i], std::move(few[i - from])});
-      write(ready, file, see);
+      differentiate(ready, interrupted);
+      if (interrupted())
+        return false;
+      write(ready, points_.sensitivities(), file, see);
     }
     return true;
   }

@@ -21,37 +21,10 @@ namespace crawler
     const std::string axes_entry = "Sweep/Axes";
   }
 
-  struct SweepPoints::Form
-  {
-    Form(const ParameterFile &file, const ParameterFile *scene)
-    {
-      const bool scene_has_terms = scene != nullptr && !scene->subsections("Active stress/Sum").empty();
-      parameters.count_terms(scene_has_terms ? *scene : file);
-      parameters.add_parameters(declarations);
-      file.apply(declarations);
-      for (const Assignment &assignment : scene != nullptr ? scene->assignments() : std::vector<Assignment>())
-        try
-        {
-          declarations.set(assignment.path, assignment.value, assignment.folder);
-        }
-        catch (const InputError &error)
-        {
-          throw InputError(assignment.place + ": " + error.what());
-        }
-      for (const Assignment &assignment : file.assignments())
-        if (assignment.is_override) // stronger than all files
-          declarations.set(assignment.path, assignment.value, assignment.folder);
-    }
-    Form(const Form &) = delete;
-
-    Parameters parameters;
-    Declarations declarations; ///< its entries are the members of parameters
-  };
-
   SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file)
     : file_(file)
   {
-    auto base = std::make_unique<Form>(file, nullptr);
+    auto base = std::make_unique<Form>(file);
     sweep_    = base->parameters.sweep;
     build(communicator, std::move(base));
   }
@@ -60,7 +33,7 @@ namespace crawler
     : file_(file)
     , sweep_(design)
   {
-    build(communicator, std::make_unique<Form>(file, nullptr));
+    build(communicator, std::make_unique<Form>(file));
   }
 
   void
@@ -96,14 +69,13 @@ namespace crawler
       require_words();
       require_scene();
       kept_points();
+      sensitivities_ = sensitivity_entries(form(0));
     }
     catch (const InputError &error)
     {
       throw file_.with_place(error);
     }
   }
-
-  SweepPoints::~SweepPoints() = default;
 
   const Declarations &
   SweepPoints::declarations() const
@@ -133,7 +105,7 @@ namespace crawler
           throw InputError(
             fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),
             axes_entry);
-      Form scratch(file_, nullptr);
+      Form scratch(file_);
       require_valid({axis.entry, axis.values}, axes_entry, scratch.declarations, design_->folder());
       if (axis.is_range) // most numbers in it are not whole
         require_valid({axis.entry, {design_->value(number, 0)}}, axes_entry, scratch.declarations);
@@ -150,8 +122,7 @@ namespace crawler
         {
           if (to_number(word))
             continue;
-          parameters(0);
-          Form &form = *forms_.at(file_axis_ < design_->axes().size() ? design_->value(file_axis_, 0) : "");
+          Form &form = this->form(0);
           form.declarations.set(axis.entry, word, design_->folder());
           try
           {
@@ -187,15 +158,15 @@ namespace crawler
     throw InputError(*wrong);
   }
 
-  const Parameters &
-  SweepPoints::parameters(const unsigned long point)
+  Form &
+  SweepPoints::form(const unsigned long point)
   {
     const auto &axes = design_->axes();
     Form &form       = *forms_.at(file_axis_ < axes.size() ? design_->value(file_axis_, point) : "");
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (i != file_axis_)
         form.declarations.set(axes[i].entry, design_->value(i, point), design_->folder());
-    return form.parameters;
+    return form;
   }
 
   std::vector<std::string>

@@ -4,14 +4,19 @@
 #include <crawler/base/versions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/result_table.h>
+#include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/core/table_csv.h>
 #include <crawler/studies/sweep/point_table.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace crawler
 {
@@ -33,6 +38,12 @@ namespace crawler
       if (const auto *count = std::get_if<unsigned long>(&value))
         return static_cast<double>(*count);
       return not_known;
+    }
+
+    bool
+    are_uncertain(const std::vector<SensitivityEntry> &entries)
+    {
+      return std::ranges::any_of(entries, [](const SensitivityEntry &one) { return one.standard_deviation > 0.; });
     }
 
     void
@@ -72,12 +83,26 @@ namespace crawler
   } // namespace
 
   std::vector<RowFile::Column>
-  sweep_columns(const SweepDesign &design, const Declarations &declarations)
+  sweep_columns(const SweepPoints &points)
   {
-    std::vector<RowFile::Column> columns = axis_columns(design, declarations, "axis of the sweep");
+    std::vector<RowFile::Column> columns = axis_columns(points.design(), points.declarations(), "axis of the sweep");
     for (const ResultEntry &entry : result_table())
       if (!entry.of_process)
         columns.push_back({entry.key, entry.unit, entry.meaning, entry.is_word ? word_width : 0});
+    for (const SensitivityEntry &entry : points.sensitivities())
+      for (const char *number : differentiated_numbers())
+      {
+        const std::string key = fmt::format(
+          "sensitivities.{}.{}", entry.path, number == std::string("displacement") ? "" : std::string(number) + ".");
+        columns.push_back({key + "value", "", fmt::format("d({})/d({})", number, entry.path), 0});
+        columns.push_back({key + "error", "", "its error bound", 0});
+      }
+    if (are_uncertain(points.sensitivities()))
+      for (const char *number : differentiated_numbers())
+        columns.push_back({std::string("uncertainty.") + number,
+                           "",
+                           std::string("standard deviation of ") + number + " by that of uncertain entries",
+                           0});
     columns.push_back(
       {"seconds", "s", "wall time of the point; points that were computed side by side share theirs", 0});
     columns.push_back({"reason", "", "name of what went wrong", reason_width});
@@ -111,7 +136,7 @@ namespace crawler
   }
 
   RowFile::Row
-  sweep_row(const Task &task)
+  sweep_row(const Task &task, const std::vector<SensitivityEntry> &sensitivities)
   {
     const PointStatus status = status_of(task);
     const bool has_result    = !task.error && task.computed.result.time.status != Status::none;
@@ -121,6 +146,21 @@ namespace crawler
         row.push_back(has_result      ? value_of(entry, task.computed.result)
                       : entry.is_word ? RowFile::Value(std::string())
                                       : RowFile::Value(not_known));
+    const SimulationResult &result = task.computed.result;
+    const auto add                 = [&](const std::optional<double> &value) {
+      row.emplace_back(std::in_place_type<double>, value.value_or(not_known));
+    };
+    for (const SensitivityEntry &entry : sensitivities)
+      for (const char *number : differentiated_numbers())
+      {
+        const auto one   = std::ranges::find(result.sensitivities, entry.path, &EntrySensitivity::entry);
+        const auto known = one != result.sensitivities.end() ? one->of(number) : std::nullopt;
+        add(known ? std::optional(known->value) : std::nullopt);
+        add(known ? std::optional(known->error) : std::nullopt);
+      }
+    if (are_uncertain(sensitivities))
+      for (const char *number : differentiated_numbers())
+        add(result.standard_deviation(number));
     row.insert(row.end(), {task.seconds, status.reason, shortened(status.message, message_width), status.status});
     return row;
   }

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <crawler/accuracy/model_choice.h>
-#include <crawler/parameters/parameter_file.h>
-#include <crawler/studies/core/parameters.h>
+#include <crawler/studies/core/sensitivity_entries.h>
 
 #include <mpi.h>
 
@@ -19,7 +18,7 @@ namespace crawler
     Parameters parameters;
     std::string effective; ///< all entries as they are used, as a .prm file
     Scene scene;
-    std::vector<std::string> sensitivities; ///< entries by which the displacement is differentiated
+    std::vector<SensitivityEntry> sensitivities;
     std::vector<std::string> notes; ///< what is perhaps not meant: entries without effect, tables beyond the body
   };
 

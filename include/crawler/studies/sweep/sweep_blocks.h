@@ -95,6 +95,10 @@ namespace crawler
                    const std::vector<unsigned long> &points,
                    const std::function<bool()> &interrupted);
 
+    /// Adds the sensitivities that are wanted to those that finished.
+    void
+    differentiate(std::vector<Point> &points, const std::function<bool()> &interrupted);
+
     SweepPoints &points_;
     const SweepBlocks blocks_;
     const SweepOrder order_;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/parameters/parameter_file.h>
-#include <crawler/studies/core/parameters.h>
+#include <crawler/studies/core/sensitivity_entries.h>
 #include <crawler/studies/sweep/sweep_design.h>
 
 #include <mpi.h>
@@ -14,8 +13,6 @@
 
 namespace crawler
 {
-  class Declarations;
-
   /// The parameters of all points of a sweep: the parameter file as a form in which the values of the axes are filled
   /// in.
   class SweepPoints
@@ -26,7 +23,6 @@ namespace crawler
     SweepPoints(MPI_Comm communicator, const ParameterFile &file);
     /// Another study's design; its axes come from another entry.
     SweepPoints(MPI_Comm communicator, const ParameterFile &file, const SweepParameters &design);
-    ~SweepPoints();
 
     const SweepDesign &
     design() const
@@ -54,9 +50,21 @@ namespace crawler
       return effective_;
     }
 
-    /// Of a point; good until the next call.
+    /// The entries of a point; good until the next call.
+    Form &
+    form(unsigned long point);
     const Parameters &
-    parameters(unsigned long point);
+    parameters(const unsigned long point)
+    {
+      return form(point).parameters;
+    }
+
+    /// By which the numbers of all points are differentiated.
+    const std::vector<SensitivityEntry> &
+    sensitivities() const
+    {
+      return sensitivities_;
+    }
 
     /// The same as overrides "Section/Entry=value" of a command line: the file of the axis, the user, the axes.
     std::vector<std::string>
@@ -67,8 +75,6 @@ namespace crawler
     kept_points() const;
 
   private:
-    struct Form;
-
     void
     build(MPI_Comm communicator, std::unique_ptr<Form> base);
 
@@ -83,6 +89,7 @@ namespace crawler
     SweepParameters sweep_;
     std::unique_ptr<SweepDesign> design_;
     std::string effective_;
+    std::vector<SensitivityEntry> sensitivities_;
     std::size_t file_axis_ = 0;                          ///< number of axes: none
     std::map<std::string, ParameterFile> scenes_;        ///< of the files on the file axis
     std::map<std::string, std::unique_ptr<Form>> forms_; ///< for each of them, or one for ""

@@ -17,15 +17,17 @@ namespace crawler
   class Declarations;
 
   /// The columns of results.h5 (a contract, doc/user_guide.md, "Sweep"): index, the axes, the numbers of summary.json
-  /// with dots for nesting, seconds, reason, message, and status, which is written last.
+  /// with dots for nesting, those of the sensitivities that are wanted, seconds, reason, message, and status, which is
+  /// written last.
   std::vector<RowFile::Column>
-  sweep_columns(const SweepDesign &design, const Declarations &declarations);
+  sweep_columns(const SweepPoints &points);
 
   extern const std::string sweep_file, sweep_group; ///< results.h5, and the group in it
 
   /// The row of a point that has been computed, in the columns after the known ones.
+  /// @p sensitivities: the entries by which it was differentiated.
   RowFile::Row
-  sweep_row(const Task &task);
+  sweep_row(const Task &task, const std::vector<SensitivityEntry> &sensitivities);
 
   /// What has become of a point, in a word, and why.
   struct PointStatus

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/error_estimate.h>
-#include <crawler/adjoint/run_gradient.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/base/files.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/accuracy_rule.h>
 #include <crawler/run/result_table.h>
-#include <crawler/studies/run/sensitivities.h>
+#include <crawler/studies/core/sensitivities.h>
 
 #include <fmt/format.h>
 
@@ -26,45 +24,43 @@ namespace crawler
     struct Varied
     {
       EntrySensitivity sensitivity;
-      bool may_vary = true;      ///< both ways
       std::vector<Scene> scenes; ///< four, or none if there is a reason
       double step;
+      bool is_one_sided = false;
     };
 
-    /// The scenes of the file in which an entry has four other values. An error in one of them is a reason.
+    /// The scenes in which an entry has other values, to one side if it is at a limit. An error in one of them is a
+    /// reason.
     Varied
-    vary(const Input &input, const std::string &entry, const double value)
+    vary(Form &form, const Scene &scene, const std::string &entry)
     {
-      Varied one{{entry, value, {}, {}, ""}, true, {}, value != 0. ? step * std::abs(value) : step};
-      try
-      {
-        for (const int i : {-2, -1, 1, 2})
+      const double value = *to_number(form.value(entry)), d = value != 0. ? step * std::abs(value) : step;
+      Varied one{{entry, value, {}, {}, ""}, {}, d};
+      const std::array<int, 4> around = {{-2, -1, 1, 2}}, above = {{1, 2, 3, 4}}, below = {{-1, -2, -3, -4}};
+      for (const auto &places : {around, above, below})
+        try
         {
-          ParameterFile file = input.file;
-          file.add_override(entry + "=" + to_text(value + i * one.step));
-          one.scenes.push_back(read_input(std::move(file)).scene);
-          if (!have_similar_breaks(input.scene, one.scenes.back()))
-            one.sensitivity.reason = "jumps of the active stress or the body come or go with it";
+          one.scenes.clear();
+          for (const int i : places)
+            one.scenes.push_back(form.scene_with(entry, value + i * d));
+          one.is_one_sided = places != around;
+          one.step         = places == below ? -d : d;
+          one.sensitivity.reason.clear();
+          for (const Scene &other : one.scenes)
+            if (!have_similar_breaks(scene, other))
+              one.sensitivity.reason = "jumps of the active stress or the body come or go with it";
+          one.sensitivity.may_vary = !one.is_one_sided || one.sensitivity.reason.empty();
+          break;
         }
-      }
-      catch (const InputError &error)
-      {
-        one.sensitivity.reason = error.what();
-        one.may_vary           = false;
-      }
+        catch (const InputError &error)
+        {
+          if (one.sensitivity.reason.empty())
+            one.sensitivity.reason = error.what();
+          one.sensitivity.may_vary = false;
+        }
       if (!one.sensitivity.reason.empty())
         one.scenes.clear();
       return one;
-    }
-
-    std::vector<Varied>
-    vary_all(const Input &input)
-    {
-      const ParameterFile effective = ParameterFile::from_text(input.effective, "parameters.prm");
-      std::vector<Varied> list;
-      for (const std::string &entry : input.sensitivities)
-        list.push_back(vary(input, entry, *to_number(effective.assignment_of(entry)->value)));
-      return list;
     }
 
     /// A quantity in the result table.
@@ -128,64 +124,62 @@ namespace crawler
           entry.others.push_back({numbers[i].key, *values[i], error});
       }
     }
-
-    void
-    write_local(const LocalSensitivity &local, const std::filesystem::path &folder)
-    {
-      std::string text = "s [length],elastic modulus [1],friction [1]\n";
-      for (std::size_t i = 0; i < local.s.size(); ++i)
-        fmt::format_to(std::back_inserter(text), "{},{},{}\n", local.s[i], local.elastic_modulus[i], local.friction[i]);
-      write_file(folder / "sensitivity_body.csv", text);
-      if (local.times.empty())
-        return;
-      text = "s [length],t [time],active stress [1/(force time)]\n";
-      for (std::size_t j = 0; j < local.times.size(); ++j)
-        for (std::size_t i = 0; i < local.s.size(); ++i)
-          fmt::format_to(
-            std::back_inserter(text), "{},{},{}\n", local.s[i], local.times[j], local.stress[j * local.s.size() + i]);
-      write_file(folder / "sensitivity_stress.csv", text);
-    }
   } // namespace
 
-  void
-  find_sensitivities(const Input &input,
+  const std::array<const char *, all_quantities.size()> &
+  differentiated_numbers()
+  {
+    static const auto keys = []() {
+      std::array<const char *, all_quantities.size()> list;
+      std::ranges::transform(numbers, list.begin(), &Number::key);
+      return list;
+    }();
+    return keys;
+  }
+
+  LocalSensitivity
+  find_sensitivities(Form &form,
+                     const Scene &scene,
+                     const std::vector<SensitivityEntry> &entries,
                      const NumericsChoice &choice,
-                     const std::filesystem::path &folder,
                      SimulationResult &result,
                      const std::function<bool()> &keep_going)
   {
-    const Parameters &parameters = input.parameters;
-    std::vector<Varied> entries;
-    std::string reason = RecordedRun::reason_against(input.scene, parameters.time, choice.numerics);
-    if (reason.empty())
-      entries = vary_all(input);
-    else
-      for (const std::string &entry : input.sensitivities)
-        entries.push_back({{entry, 0., {}, {}, reason}, true, {}, 0.});
+    const Parameters &parameters = form.parameters;
+    LocalSensitivity local;
+    const std::string reason = RecordedRun::reason_against(scene, parameters.time, choice.numerics);
+    std::vector<Varied> varied;
+    for (const SensitivityEntry &entry : entries)
+    {
+      if (reason.empty())
+        varied.push_back(vary(form, scene, entry.path));
+      else
+        varied.push_back({{entry.path, 0., {}, {}, reason}, {}, 0.});
+      varied.back().sensitivity.standard_deviation = entry.standard_deviation;
+    }
     std::vector<Variation> variations;
     std::vector<EntrySensitivity *> known;
-    for (Varied &entry : entries)
-      if (!entry.scenes.empty())
+    for (Varied &one : varied)
+      if (!one.scenes.empty())
       {
-        const auto &scenes = entry.scenes;
-        variations.push_back({{{&scenes[0], &scenes[1], &scenes[2], &scenes[3]}}, entry.step});
-        known.push_back(&entry.sensitivity);
+        const auto &scenes = one.scenes;
+        variations.push_back({{{&scenes[0], &scenes[1], &scenes[2], &scenes[3]}}, one.step, one.is_one_sided});
+        known.push_back(&one.sensitivity);
       }
     try
     {
       if (reason.empty())
       {
-        const RecordedRun run(input.scene, parameters.time, choice.numerics, keep_going);
+        const RecordedRun run(scene, parameters.time, choice.numerics, keep_going);
         const std::vector<Quantity> quantities = quantities_for(parameters);
         RunGradient gradient(run);
-        const auto values = gradient.derivatives(variations, quantities);
-        write_local(gradient.local(), folder);
+        const auto values               = gradient.derivatives(variations, quantities);
+        local                           = gradient.local();
         const TimeParameters finer_time = time_of_finer_run(parameters.time);
-        const RecordedRun finer_run(
-          input.scene,
-          finer_time,
-          numerics_of_finer_run(choice, parameters.time, input.scene, /*cycles_repeat=*/false),
-          keep_going);
+        const RecordedRun finer_run(scene,
+                                    finer_time,
+                                    numerics_of_finer_run(choice, parameters.time, scene, /*cycles_repeat=*/false),
+                                    keep_going);
         const auto finer_values = RunGradient(finer_run).derivatives(variations, quantities);
         const double D          = std::abs(result.displacement);
         const double accuracy =
@@ -194,24 +188,13 @@ namespace crawler
           set(*known[i], values[i], finer_values[i], result, accuracy);
       }
     }
-    catch (const FileError &)
-    {
-      throw;
-    }
     catch (const std::exception &error) // the run itself is there; for want of memory, perhaps
     {
       for (EntrySensitivity *one : known)
         one->reason = error.what();
     }
-    // Of all those that have no effect, or may not vary from where they are by default, are left out.
-    const bool all = trimmed(parameters.output.sensitivities) == "all";
-    for (Varied &entry : entries)
-      if (!all || (entry.may_vary ? entry.sensitivity.value != 0.
-                                  : input.file.assignment_of(entry.sensitivity.entry) != nullptr))
-        result.sensitivities.push_back(std::move(entry.sensitivity));
-    std::ranges::stable_sort(result.sensitivities, [](const EntrySensitivity &a, const EntrySensitivity &b) {
-      const auto size = [](const EntrySensitivity &one) { return one.value ? std::abs(*one.value * one.at) : -1.; };
-      return size(a) > size(b);
-    });
+    for (Varied &one : varied)
+      result.sensitivities.push_back(std::move(one.sensitivity));
+    return local;
   }
 } // namespace crawler

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/parameters/declarations.h>
+#include <crawler/parameters/parameter_file.h>
+#include <crawler/studies/core/parameters.h>
+
+#include <string>
+
+namespace crawler
+{
+  /// A parameter file as a form in which other values can be filled in.
+  struct Form
+  {
+    /// @p scene: another file whose entries are stronger than those of @p file, but for overrides. Throws InputError.
+    explicit Form(const ParameterFile &file, const ParameterFile *scene = nullptr);
+    Form(const Form &) = delete;
+
+    /// Of an entry that there is.
+    std::string
+    value(const std::string &path) const;
+
+    /// The scene in which a number is another one; the form is as before. Throws InputError.
+    Scene
+    scene_with(const std::string &path, double value);
+
+    Parameters parameters;
+    Declarations declarations; ///< its entries are the members of parameters
+  };
+} // namespace crawler

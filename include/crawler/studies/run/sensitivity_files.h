@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/accuracy/numerics_choice.h>
+#include <crawler/studies/core/input.h>
+
+#include <filesystem>
+#include <functional>
+
+namespace crawler
+{
+  /**
+   * The sensitivities that are wanted (Input::sensitivities, core/sensitivities.h) of a finished run into its
+   * @p result, those that matter most first; of all those that have no effect, or may not vary from where they are by
+   * default, are left out. Writes sensitivity_body.csv and sensitivity_stress.csv.
+   */
+  void
+  add_sensitivities(const Input &input,
+                    const NumericsChoice &choice,
+                    const std::filesystem::path &folder,
+                    SimulationResult &result,
+                    const std::function<bool()> &keep_going);
+} // namespace crawler

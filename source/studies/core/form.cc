@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/studies/core/form.h>
+
+#include <algorithm>
+
+namespace crawler
+{
+  Form::Form(const ParameterFile &file, const ParameterFile *scene)
+  {
+    const bool scene_has_terms = scene != nullptr && !scene->subsections("Active stress/Sum").empty();
+    parameters.count_terms(scene_has_terms ? *scene : file);
+    parameters.add_parameters(declarations);
+    file.apply(declarations);
+    if (scene == nullptr)
+      return;
+    for (const Assignment &assignment : scene->assignments())
+      try
+      {
+        declarations.set(assignment.path, assignment.value, assignment.folder);
+      }
+      catch (const InputError &error)
+      {
+        throw InputError(assignment.place + ": " + error.what());
+      }
+    for (const Assignment &assignment : file.assignments())
+      if (assignment.is_override) // stronger than all files
+        declarations.set(assignment.path, assignment.value, assignment.folder);
+  }
+
+  std::string
+  Form::value(const std::string &path) const
+  {
+    const auto &entries = declarations.entries();
+    const auto entry    = std::ranges::find(entries, path, &EntryInfo::path);
+    return declarations.value(static_cast<unsigned int>(entry - entries.begin()));
+  }
+
+  Scene
+  Form::scene_with(const std::string &path, const double value)
+  {
+    const std::string own = this->value(path);
+    try
+    {
+      declarations.set(path, to_text(value));
+      Scene scene = parameters.create_scene();
+      declarations.set(path, own);
+      return scene;
+    }
+    catch (const InputError &)
+    {
+      declarations.set(path, own);
+      throw;
+    }
+  }
+} // namespace crawler
