@@ -49,7 +49,8 @@ namespace crawler
     , method(method_of(natural, time, in_units(numerics, units)))
   {
     const SimulationResult result =
-      Simulation(MPI_COMM_SELF, scene, time, numerics).run({}, {.steps = &steps}, {}, keep_going);
+      Simulation(MPI_COMM_SELF, scene, time, numerics)
+        .run({}, {.gait = Simulation::GaitWish::declared, .steps = &steps}, {}, keep_going);
     if (result.time.status != Status::finished)
       throw std::runtime_error("the run did not finish: " + result.time.message);
     displacement = result.displacement;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/adjoint/forces_at_points.h>
 #include <crawler/adjoint/run_gradient.h>
+#include <crawler/run/gait.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,7 @@ namespace crawler
         double at_breaks           = 0.; ///< by jumps at start and end, or that come together where that is not known
       };
       std::array<std::unique_ptr<ForcesOfScene>, 4> forces;
+      std::array<double, 4> strides = {}; ///< the last ones, if they are known
       std::array<Change, all_quantities.size()> changes;
     };
 
@@ -42,6 +44,14 @@ namespace crawler
       std::vector<std::vector<double>> zeta; ///< [step], mostly empty
       double value = 0.;                     ///< in natural units
     };
+
+    /// The last stride, in units of the duration, if the active stress says how long it is.
+    std::optional<double>
+    last_stride_of(const Scene &scene)
+    {
+      const auto stride = stride_of(*scene.active_stress, scene.body.length, scene.end_time);
+      return stride && *stride <= 1. + 1e-9 ? stride : std::nullopt;
+    }
 
     /// A backward sweep for each quantity, and one that puts together what they give.
     class Sweep
@@ -72,8 +82,10 @@ namespace crawler
           for (std::size_t k = 0; k < 4; ++k)
             direction.forces[k] = std::make_unique<ForcesOfScene>(*variation.scenes[k], run.scene, cells_.points());
         }
+        find_stride(variations);
         for (const Quantity quantity : quantities)
-          if (quantity != Quantity::paper_energy || run.scene.active_stress->feedback() == nullptr)
+          if (is_work(quantity) ? quantity != Quantity::paper_energy || run.scene.active_stress->feedback() == nullptr
+                                : quantity == Quantity::displacement || stride_)
             adjoints_.push_back({quantity, {}, std::vector<std::vector<double>>(run.steps.n_steps())});
         constexpr std::size_t most_samples = 4000000;
         keeps_stress_                      = run.steps.n_steps() * tableau_.n * cells_.size() <= most_samples;
@@ -104,14 +116,16 @@ namespace crawler
         Derivatives result;
         for (const Adjoint &adjoint : adjoints_)
         {
-          const auto unit = [&](const Units &units) {
-            return adjoint.quantity == Quantity::displacement ? units.length : units.energy();
+          const auto unit = [&](const Units &units, const double stride) {
+            return is_work(adjoint.quantity)             ? units.energy()
+                   : adjoint.quantity == Quantity::speed ? units.velocity() / stride
+                                                         : units.length;
           };
+          const double own = unit(run_.units, stride_.value_or(1.));
           std::array<double, 4> units;
           for (std::size_t k = 0; k < 4; ++k)
-            units[k] = unit(direction.forces[k]->inside.units()) - unit(run_.units);
+            units[k] = unit(direction.forces[k]->inside.units(), stride_ ? direction.strides[k] : 1.) - own;
           const Direction::Change &change = direction.changes[static_cast<std::size_t>(adjoint.quantity)];
-          const double own                = unit(run_.units);
           const double value =
             own * derivative_of(change.sums, variation) + adjoint.value * derivative_of(units, variation);
           if (own * change.at_breaks <= nothing * std::abs(variation.step * value))
@@ -133,9 +147,9 @@ namespace crawler
       void
       solve(Adjoint &adjoint)
       {
-        const bool is_work           = adjoint.quantity != Quantity::displacement;
-        std::vector<double> gradient = adjoint_.gradient_of_displacement();
-        if (is_work)
+        const std::vector<double> mean = adjoint_.gradient_of_displacement();
+        std::vector<double> gradient   = mean;
+        if (is_work(adjoint.quantity))
           std::ranges::fill(gradient, 0.);
         else
           adjoint.value = run_.displacement / run_.units.length;
@@ -148,8 +162,20 @@ namespace crawler
             std::ranges::copy(mu, adjoint.mu.begin() + static_cast<std::ptrdiff_t>(step * n_mu));
             adjoint.zeta[step].assign(zeta.begin(), zeta.end());
           };
-        const auto source = [&](const std::size_t step, const LaneSources &sources) {
+        LaneAdjoint::Source source = [&](const std::size_t step, const LaneSources &sources) {
           stages.go_back(step);
+          if (!is_work(adjoint.quantity))
+          {
+            if (step != before_stride_)
+              return;
+            go_to_stage(stages, tableau_.n - 1);
+            for (std::size_t d = 0; d < n; ++d)
+            {
+              sources.by_end[d] = -mean[d];
+              adjoint.value -= mean[d] * stages.u()[d];
+            }
+            return;
+          }
           for (unsigned int i = 0; i < tableau_.n; ++i)
           {
             const double weight = run_.steps.size(step) * tableau_.b[i];
@@ -161,20 +187,76 @@ namespace crawler
               adjoint.quantity, weight, own_, slopes, at_, n, sources.by_u + i * n, sources.by_velocity + i * n);
           }
         };
-        if (!adjoint_.solve(run_.steps, gradient, see, is_work ? LaneAdjoint::Source(source) : LaneAdjoint::Source()))
+        if (adjoint.quantity == Quantity::displacement)
+          source = {};
+        if (!adjoint_.solve(run_.steps, gradient, see, source))
           throw std::runtime_error("the adjoint of a step did not converge");
       }
 
-      /// The mean displacement of a body that is longer in some places.
+      static Direction::Change &
+      change_of(Direction &direction, const Quantity quantity)
+      {
+        return direction.changes[static_cast<std::size_t>(quantity)];
+      }
+
+      /// The mean displacement of a body that is longer in some places, @p factor times.
+      void
+      add_lengths(const Quantity quantity, const double factor)
+      {
+        for (Direction &direction : directions_)
+          for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t p = 0; p < cells_.size(); ++p)
+              change_of(direction, quantity).sums[k] +=
+                factor * cells_.weight(p) * (direction.forces[k]->inside.longer(p) - 1.) * at_.u[p];
+      }
+
       void
       look_at_end()
       {
         cells_.evaluate(run_.steps.end().data(), at_.u, at_.e);
-        for (Direction &direction : directions_)
+        for (const Quantity quantity : {Quantity::displacement, Quantity::stride, Quantity::speed})
+          add_lengths(quantity, 1.);
+      }
+
+      /// The last stride starts at the end of this step; in other scenes at another time.
+      void
+      look_at_start_of_stride()
+      {
+        double velocity = 0.;
+        for (std::size_t p = 0; p < cells_.size(); ++p)
+          velocity += cells_.weight(p) * at_.v[p];
+        for (const Quantity quantity : {Quantity::stride, Quantity::speed})
+        {
+          add_lengths(quantity, -1.);
+          for (Direction &direction : directions_)
+            for (std::size_t k = 0; k < 4; ++k)
+              change_of(direction, quantity).sums[k] -=
+                velocity * (1. - direction.strides[k] - direction.forces[k]->inside.own_time(1. - *stride_));
+        }
+      }
+
+      /// The last stride of the run and of the scenes that differ; none unless a step ends where it starts.
+      void
+      find_stride(const std::span<const Variation> variations)
+      {
+        const auto stride = last_stride_of(run_.scene);
+        if (!stride)
+          return;
+        before_stride_ = run_.steps.n_steps();
+        for (std::size_t step = 0; step < run_.steps.n_steps(); ++step)
+          if (std::abs(run_.steps.time(step) - (1. - *stride)) <= 1e-9)
+            before_stride_ = step;
+        if (std::abs(*stride - 1.) > 1e-9 && before_stride_ == run_.steps.n_steps())
+          return;
+        for (std::size_t i = 0; i < variations.size(); ++i)
           for (std::size_t k = 0; k < 4; ++k)
-            for (std::size_t p = 0; p < cells_.size(); ++p)
-              direction.changes[0].sums[k] +=
-                cells_.weight(p) * (direction.forces[k]->inside.longer(p) - 1.) * at_.u[p];
+          {
+            const auto other = last_stride_of(*variations[i].scenes[k]);
+            if (!other)
+              return;
+            directions_[i].strides[k] = *other;
+          }
+        stride_ = stride;
       }
 
       void
@@ -186,6 +268,8 @@ namespace crawler
         {
           const double weight = h * tableau_.b[i];
           go_to_stage(stages, i);
+          if (stride_ && step == before_stride_ && i + 1 == tableau_.n)
+            look_at_start_of_stride();
           own_.evaluate(stages.time(), end, at_, at_ends_);
           for (Direction &direction : directions_)
             for (std::size_t k = 0; k < 4; ++k)
@@ -202,9 +286,9 @@ namespace crawler
               for (std::size_t k = 0; k < 4; ++k)
               {
                 ForcesAtPoints &forces    = direction.forces[k]->inside;
-                Direction::Change &change = direction.changes[static_cast<std::size_t>(adjoint.quantity)];
+                Direction::Change &change = change_of(direction, adjoint.quantity);
                 add_forces(forces, change.sums[k]);
-                if (adjoint.quantity != Quantity::displacement)
+                if (is_work(adjoint.quantity))
                   change.sums[k] += weight * (works_.rate(adjoint.quantity, *direction.forces[k], at_, at_ends_) -
                                               works_.rate(adjoint.quantity, own_, at_, at_ends_));
                 if (i + 1 == tableau_.n && forces.has_between(end, false))
@@ -258,7 +342,7 @@ namespace crawler
         }
         change.sums[k] += sum;
         // Where friction is not linear in the velocity an impulse is more than its size; and works grow in it.
-        if (adjoint.quantity != Quantity::displacement && size > 0.)
+        if (is_work(adjoint.quantity) && size > 0.)
           change.at_breaks = std::numeric_limits<double>::infinity();
         else if (is_edge || (setup_.laws & LaneLaws::nonlinear_in_velocity) != 0)
           change.at_breaks = std::max(change.at_breaks, std::abs(sum));
@@ -275,6 +359,8 @@ namespace crawler
       std::vector<Direction> directions_;
       std::vector<Adjoint> adjoints_;
       bool keeps_stress_ = true;
+      std::optional<double> stride_;  ///< of the run, if it is known
+      std::size_t before_stride_ = 0; ///< the step that ends where the last stride starts
       StateAtPoints at_, at_ends_;
       std::vector<double> mu_, mu_s_, zeta_, zeta_s_; ///< adjoint at the points, and its derivatives by s
     };

@@ -32,6 +32,13 @@ namespace crawler
     void
     evaluate(double t, double end, const StateAtPoints &at);
 
+    /// What a time of the other scene is for this one.
+    double
+    own_time(const double t) const
+    {
+      return in_time_(in_time_.piece(t), t);
+    }
+
     /// Is the end of a step where several jumps come together, or where some come in or go out of the run? (@p start:
     /// of the run.)
     bool

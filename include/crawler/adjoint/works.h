@@ -9,21 +9,32 @@
 
 namespace crawler
 {
-  /// What a gradient may be of; the works over the whole run as in EnergyBalance.
+  /// What a gradient may be of; the works over the whole run as in EnergyBalance, displacement and speed of the last
+  /// stride as in Gait.
   enum class Quantity
   {
     displacement,
     stress_work,
     dissipation,
     positive_work,
-    paper_energy
+    paper_energy,
+    stride,
+    speed
   };
 
-  inline constexpr std::array<Quantity, 5> all_quantities = {{Quantity::displacement,
+  inline constexpr std::array<Quantity, 7> all_quantities = {{Quantity::displacement,
                                                               Quantity::stress_work,
                                                               Quantity::dissipation,
                                                               Quantity::positive_work,
-                                                              Quantity::paper_energy}};
+                                                              Quantity::paper_energy,
+                                                              Quantity::stride,
+                                                              Quantity::speed}};
+
+  inline bool
+  is_work(const Quantity quantity)
+  {
+    return quantity >= Quantity::stress_work && quantity <= Quantity::paper_energy;
+  }
 
   /// The forces of a scene at points in the body and at its ends.
   struct ForcesOfScene

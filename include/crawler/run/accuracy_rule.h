@@ -205,7 +205,7 @@ namespace crawler::accuracy_rule
     /// The bound: so many times the difference to the finer numerics; since both may agree by chance so many times
     /// Accuracy of the derivative and of D/p, for works the relative error of the work and another factor; and relative
     /// round-off of the differences by which dF/dp is found.
-    inline constexpr double measured_factor = 2., promised_factor = 4., promised_factor_of_works = 40.,
+    inline constexpr double measured_factor = 2., promised_factor = 6., promised_factor_of_works = 40.,
                             round_off = 1e-10;
   } // namespace sensitivities
 

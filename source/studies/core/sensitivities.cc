@@ -77,14 +77,19 @@ namespace crawler
       {"dissipation", [](const SimulationResult &result) { return result.energy_balance->dissipation; }},
       {"positive_power", [](const SimulationResult &result) { return result.energy_balance->positive_work; }},
       {"paper_energy", [](const SimulationResult &result) { return result.energy_balance->paper_energy(); }},
+      {"gait.displacement", [](const SimulationResult &result) { return result.gait->displacement; }},
+      {"gait.speed", [](const SimulationResult &result) { return result.gait->speed(); }},
     }};
 
     std::vector<Quantity>
-    quantities_for(const Parameters &parameters)
+    quantities_for(const Parameters &parameters, const SimulationResult &result)
     {
-      if (parameters.output.energy_balance)
-        return {all_quantities.begin(), all_quantities.end()};
-      return {Quantity::displacement};
+      std::vector<Quantity> list;
+      std::ranges::copy_if(all_quantities, std::back_inserter(list), [&](const Quantity quantity) {
+        return is_work(quantity) ? parameters.output.energy_balance
+                                 : quantity == Quantity::displacement || result.gait.has_value();
+      });
+      return list;
     }
 
     /// The derivatives, with bounds by those of the finer run. @p accuracy of the displacement, relative.
@@ -108,12 +113,14 @@ namespace crawler
           continue;
         const double number = std::abs(numbers[i].of(result)), size = std::abs(*values[i]);
         // Works are less accurate than the displacement, in units of what is exchanged.
-        const double scale   = i == 0 ? number : std::max(number, result.energy_balance->exchanged_work);
-        const double of_work = i == 0 ? 0. : error_bound(result, numbers[i].key).value_or(0.) / scale;
+        const bool of_work = is_work(all_quantities[i]);
+        const double scale = of_work ? std::max(number, result.energy_balance->exchanged_work) : number;
+        const double of_number =
+          i == 0 ? 0. : error_bound(result, numbers[i].key).value_or(0.) / std::max(scale, 1e-300);
         const double by_size = entry.at != 0. ? scale / std::abs(entry.at) : scale;
         const double error =
           measured_factor * std::abs(*finer[i] - *values[i]) +
-          (i == 0 ? promised_factor : promised_factor_of_works) * std::max(accuracy, of_work) * (size + by_size) +
+          (of_work ? promised_factor_of_works : promised_factor) * std::max(accuracy, of_number) * (size + by_size) +
           round_off * size;
         if (i == 0)
         {
@@ -171,7 +178,7 @@ namespace crawler
       if (reason.empty())
       {
         const RecordedRun run(scene, parameters.time, choice.numerics, keep_going);
-        const std::vector<Quantity> quantities = quantities_for(parameters);
+        const std::vector<Quantity> quantities = quantities_for(parameters, result);
         RunGradient gradient(run);
         const auto values               = gradient.derivatives(variations, quantities);
         local                           = gradient.local();
