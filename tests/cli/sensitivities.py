@@ -82,6 +82,14 @@ def main():
                    f"{entry}: {one['value']} +- {one['error']}, but differences of runs are {by_difference}")
             expect(abs(one["elasticity"] - one["value"] * value / summary["displacement"]) < 1e-12, f"{entry}: elasticity")
             expect(entry in result.stdout, f"{entry} is not on the screen")
+        for number in ("stress_power", "dissipation", "positive_power", "paper_energy", "gait.displacement", "gait.speed"):
+            expect(found[K][number]["error"] > 0, f"{number} has no derivative by {K}")
+
+        _, summary = crawler(folder, WAVE, f"Output/Uncertainty={K} : 5 %; {P} : 0.2")
+        by_hand = np.hypot(0.05 * found[K]["value"], 0.2 * found[P]["value"])
+        expect(abs(summary["uncertainty"]["displacement"] - by_hand) < 1e-9 * by_hand,
+               f"the uncertainty is {summary['uncertainty']}, but {by_hand} by hand")
+        expect(set(summary["sensitivities"]) == {K, P}, f"uncertain entries: {list(summary['sensitivities'])}")
         sizes = [abs(one["elasticity"]) for one in found.values() if one["elasticity"] is not None]
         expect(sizes[:5] == sorted(sizes, reverse=True)[:5], "what matters most is not first")
 
@@ -106,13 +114,39 @@ def main():
         expect("kink" in summary["sensitivities"][phase].get("reason", ""), "a jump at the end of the run")
         _, summary = crawler(folder, WAVE, "Body/Elastic modulus=1e-4", "Accuracy=1e-3", "Output/Sensitivities=" + P)
         expect("stretch form" in summary["sensitivities"][P].get("reason", ""), "the stretch form")
+        for wrong, words in ((K, "colon"), (K + " : x", "positive number"), ("Accuracy : 1", "are expected"),
+                             ("Active stress/Optimal wave/Cosine coefficients : 5 %", "without %")):
+            result, _ = crawler(folder, WAVE, "Output/Uncertainty=" + wrong)
+            expect(result.returncode == 2 and words in result.stderr, f"Uncertainty = {wrong}: {result.stderr}")
         for wrong, words in (("Body/Elastic moduls", "Body/Elastic modulus"), ("Accuracy", "are expected"),
                              ("Active stress/Segments/Number of segments", "are expected")):
             result, _ = crawler(folder, WAVE, "Output/Sensitivities=" + wrong)
             expect(result.returncode == 2 and words in result.stderr, f"Sensitivities = {wrong}: {result.stderr}")
         result, _ = crawler(folder, WAVE, "Model=kinematic", "Output/Sensitivities=all")
         expect(result.returncode == 2 and "nonlinear" in result.stderr, f"the kinematic level: {result.stderr}")
+        in_sweeps(folder)
     sys.exit("\n".join(failures) or 0)
+
+
+def in_sweeps(folder):
+    """Columns of a sweep, against single runs."""
+    file, output = folder / "sweep.prm", folder / "sweep"
+    file.write_text(WAVE + f"subsection Sweep\n set Axes = {P} : 1.7, 3.2; {CHI} : 0.1, 0.35\nend\n", encoding="utf-8")
+    result = subprocess.run([sys.argv[1], "sweep", file, "--output", output, "--set", "Output/Sensitivities=" + K, "--set",
+                             f"Output/Uncertainty={P} : 0.1"], capture_output=True, text=True, check=False,
+                            env=ENVIRONMENT)
+    expect(result.returncode == 0, f"a sweep with sensitivities: {result.stderr}")
+    with open(output / "results.csv", newline="", encoding="utf-8") as table:
+        for row in csv.DictReader(table):
+            _, summary = crawler(folder, WAVE, f"{P}={row[P]}", f"{CHI}={row[CHI]}", f"Output/Sensitivities={K}, {P}")
+            for entry in (K, P):
+                one = summary["sensitivities"][entry]
+                for number, alone in (("", one), ("stress_power.", one["stress_power"]), ("gait.speed.", one["gait.speed"])):
+                    value, error = (float(row[f"sensitivities.{entry}.{number}{word}"]) for word in ("value", "error"))
+                    expect(abs(value - alone["value"]) <= error + alone["error"],
+                           f"{entry}, {number}: {value} in the sweep, {alone['value']} alone")
+            expect(abs(float(row["uncertainty.displacement"]) / abs(0.1 * float(row[f"sensitivities.{P}.value"])) - 1) < 1e-9,
+                   f"uncertainty in the sweep: {row['uncertainty.displacement']}")
 
 
 if __name__ == "__main__":

@@ -19,10 +19,13 @@ REFERENCE, ACCURACIES = 1e-9, (1e-3, 1e-4, 1e-6)
 
 
 def sensitivities(program, file, accuracy, folder):
-    """{(entry, number): (value, error)} of a run."""
+    """{(entry, number): (value, error)} of a run; nothing if it failed."""
     command = [program, "run", file, "--overwrite", "--quiet", "--output", folder, "--set", f"Accuracy={accuracy}",
                "--set", "Output/Sensitivities=all", "--set", "Output/Number of snapshots=0"]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=ENVIRONMENT)
+    done = subprocess.run(command, check=False, capture_output=True, text=True, env=ENVIRONMENT)
+    if done.returncode != 0:
+        print(f"{file}, Accuracy {accuracy}: {done.stderr.strip()}")
+        return {}
     found = {}
     for entry, one in json.loads((pathlib.Path(folder) / "summary.json").read_text())["sensitivities"].items():
         if one["value"] is not None:

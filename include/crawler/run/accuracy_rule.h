@@ -203,10 +203,10 @@ namespace crawler::accuracy_rule
   namespace sensitivities
   {
     /// The bound: so many times the difference to the finer numerics; since both may agree by chance so many times
-    /// Accuracy of the derivative and of D/p, for works the relative error of the work and another factor; and relative
+    /// Accuracy of the derivative and of D/p, for works the relative error of the work and other factors; and relative
     /// round-off of the differences by which dF/dp is found.
-    inline constexpr double measured_factor = 2., promised_factor = 6., promised_factor_of_works = 40.,
-                            round_off = 1e-10;
+    inline constexpr double measured_factor = 2., promised_factor = 12., promised_factor_of_works = 40.,
+                            promised_factor_of_positive_work = 160., round_off = 1e-10;
   } // namespace sensitivities
 
   // Bounds of other numbers than the displacement (finer_run_errors.cc). Calibrated by
