@@ -33,6 +33,7 @@ namespace crawler
       };
       std::array<std::unique_ptr<ForcesOfScene>, 4> forces;
       std::array<double, 4> strides = {}; ///< the last ones, if they are known
+      bool has_strides              = true;
       std::array<Change, all_quantities.size()> changes;
     };
 
@@ -116,6 +117,9 @@ namespace crawler
         Derivatives result;
         for (const Adjoint &adjoint : adjoints_)
         {
+          const bool is_of_stride = adjoint.quantity == Quantity::stride || adjoint.quantity == Quantity::speed;
+          if (is_of_stride && !direction.has_strides)
+            continue;
           const auto unit = [&](const Units &units, const double stride) {
             return is_work(adjoint.quantity)             ? units.energy()
                    : adjoint.quantity == Quantity::speed ? units.velocity() / stride
@@ -251,10 +255,9 @@ namespace crawler
         for (std::size_t i = 0; i < variations.size(); ++i)
           for (std::size_t k = 0; k < 4; ++k)
           {
-            const auto other = last_stride_of(*variations[i].scenes[k]);
-            if (!other)
-              return;
-            directions_[i].strides[k] = *other;
+            const auto other           = last_stride_of(*variations[i].scenes[k]);
+            directions_[i].strides[k]  = other.value_or(1.);
+            directions_[i].has_strides = directions_[i].has_strides && other;
           }
         stride_ = stride;
       }
