@@ -45,6 +45,8 @@ namespace crawler
       {
         now_.grading = {task_.accuracy < accurate ? first_levels_if_accurate : first_levels, coarse_ratio};
         now_.n_cells = std::max(now_.n_cells, least_cells(n_pieces_ - 1, now_.grading)); // fewer are the same mesh
+        while (smallest_size(task_.scene, now_) > std::max(task_.layer, smallest_layer) && task_.layer > 0.)
+          ++now_.grading.levels;
         if (task_.choose_tolerance)
           now_.tolerance = 1e-3 * task_.scale;
         // Too coarse a mesh or step can lose a stretch that is not lost.
@@ -102,13 +104,21 @@ namespace crawler
           refine(levels_change, one_more_level);
           if (is_ratio_fine() || try_one(ratio_change, with_finer_ratio))
             ratio_change = 0.;
-          again         = refine(cells_change, with_more_cells);
+          again = refine(cells_change, with_more_cells);
+          if (is_too_fine_ && cells_change <= last_part * wanted_)
+          {
+            rest_     = cells_change;
+            possible_ = true;
+            again     = false;
+          }
           space_change_ = levels_change + ratio_change + cells_change;
         }
         if (!possible_)
           return std::nullopt;
-        return GradedChoice{
-          first_step(now_), result_, std::max(space_change_, 1e-3 * wanted_) / std::max(time_change_, 1e-3 * wanted_)};
+        return GradedChoice{first_step(now_),
+                            result_,
+                            std::max(space_change_, 1e-3 * wanted_) / std::max(time_change_, 1e-3 * wanted_),
+                            rest_};
       }
 
     private:
@@ -123,9 +133,10 @@ namespace crawler
       bool
       run(const Numerics &numerics, SimulationResult &result)
       {
-        possible_ = possible_ && ++n_runs_ <= most_runs &&
-                    numerics.n_cells <= std::max(most_cells, most_cells_of_piece * n_pieces_) &&
-                    smallest_size(task_.scene, numerics) >= smallest_cell;
+        const unsigned int many = std::max(most_cells, most_cells_of_piece * n_pieces_);
+        is_too_fine_ = numerics.n_cells > (result_.time.steps * many > most_work ? many : more_cells_than_most * many);
+        possible_ =
+          possible_ && ++n_runs_ <= most_runs && !is_too_fine_ && smallest_size(task_.scene, numerics) >= smallest_cell;
         if (!possible_)
           return false;
         result    = task_.run(first_step(numerics));
@@ -174,8 +185,10 @@ namespace crawler
       const unsigned int n_pieces_; ///< of the body, between breaks
       SimulationResult result_;
       double wanted_ = 0., time_change_ = 0., space_change_ = 0.;
+      double rest_         = 0.; ///< the last change by more cells, if there may not be still more
       unsigned int n_runs_ = 0;
       bool possible_       = true;
+      bool is_too_fine_    = false; ///< the last mesh that was tried
     };
   } // namespace
 

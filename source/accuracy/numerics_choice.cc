@@ -228,6 +228,18 @@ namespace crawler
                !choice_.numerics.linear && adaptive_steps_ && !parameters_.discretization.mesh_tolerance;
       }
 
+      /// A sudden stress makes velocities like that to the power -1/2 of the time since then: so at first they are
+      /// above the one at which friction switches its direction, in a layer of this thickness, relative to the length.
+      /// No refinement shows that to a mesh that is much coarser.
+      double
+      fast_layer() const
+      {
+        const auto &direction = scene_.ground.direction;
+        return direction.ratio == 1. ? 0.
+                                     : scales_.sudden * scales_.stress /
+                                         (scene_.body.friction_coefficient * direction.switching_velocity * L_);
+      }
+
       /// A mesh that is graded towards the ends and breaks in space; returns whether there is one that is enough.
       bool
       graded()
@@ -256,6 +268,7 @@ namespace crawler
                             .tolerance_factor  = name == "radau 9"   ? graded_radau_9
                                                  : name == "radau 5" ? graded_radau_5
                                                                      : graded_others,
+                            .layer             = fast_layer(),
                             .run = [this](const Numerics &numerics) { return pilot(numerics, ResolutionWish::size); },
                             .size =
                               [this](const SimulationResult &result) {
@@ -269,9 +282,10 @@ namespace crawler
           size_ = 0.;
           return false;
         }
-        choice_.numerics = found->numerics;
-        pilot_           = found->result;
-        space_over_time_ = found->space_over_time;
+        choice_.numerics    = found->numerics;
+        pilot_              = found->result;
+        space_over_time_    = found->space_over_time;
+        choice_.least_error = found->rest;
         measure_size();
         return true;
       }

@@ -5,6 +5,7 @@
 #include <crawler/formula/formula_gradient.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
+#include <crawler/scene/breaks.h>
 #include <crawler/scene/profile.h>
 
 #include <fmt/format.h>
@@ -56,7 +57,7 @@ namespace crawler
       std::vector<double>
       breaks() const override
       {
-        return spline_ ? std::vector<double>{x_.front(), x_.back()} : x_;
+        return spline_ && x_.size() > most_knots_of_splines ? std::vector<double>{x_.front(), x_.back()} : x_;
       }
 
     private:

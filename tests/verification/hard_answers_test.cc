@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 using namespace crawler;
 
@@ -349,4 +350,28 @@ TEST(HardAnswers, WorksOfAWindow)
   expect_within(result, 0.1291981595902, 1e-6, "window");
   EXPECT_LE(std::abs(result.energy_balance->stress_work - 0.1384564528), error_bound(result, "stress_power").value());
   EXPECT_LE(std::abs(result.energy_balance->dissipation - 0.1125056274), error_bound(result, "dissipation").value());
+}
+
+/// Cells end at the knots of a spline, where its third derivative jumps: else errors fall like a small power of the
+/// size of a cell, and a slightly finer mesh has nearly the same.
+TEST(HardAnswers, ProfileByASpline)
+{
+  const std::string file = testing::TempDir() + "modulus_profile.csv";
+  std::ofstream(file)
+    << "s,value\n0,1.06\n0.21,1.03\n0.42,0.96\n0.63,1.06\n0.84,0.9\n1.05,1.05\n1.26,0.94\n1.47,1.02\n";
+  const auto at = [&](const char *accuracy) {
+    return answer_to({{"Accuracy", accuracy},
+                      {"Body/Length", "1.46"},
+                      {"Body/Friction coefficient", "0.3"},
+                      {"Body/Elastic modulus", "0.0087"},
+                      {"Body/Elastic modulus profile", file},
+                      {"Active stress/Optimal wave/Choose wave by", "wave speed"},
+                      {"Active stress/Optimal wave/Wave speed", "1"},
+                      {"Active stress/Optimal wave/Perturbation parameter", "0.06"},
+                      {"Time/End time", "2.5"}});
+  };
+  const SimulationResult exact = at("1e-10");
+  ASSERT_EQ(exact.time.status, Status::finished) << exact.time.message;
+  for (const char *accuracy : {"1e-4", "1e-5", "1e-6", "2.5e-7"})
+    expect_within(at(accuracy), exact.displacement, std::stod(accuracy), accuracy);
 }

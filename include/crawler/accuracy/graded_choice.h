@@ -27,6 +27,7 @@ namespace crawler
     bool choose_tolerance;   ///< else that of start is used
     bool choose_first_step;  ///< else that of start is used
     double tolerance_factor; ///< the first tolerance, relative to the wanted error
+    double layer;            ///< the first mesh has cells as small as this, relative to the length; 0: any
     std::function<SimulationResult(const Numerics &)> run;
     std::function<double(const SimulationResult &)> size; ///< of the displacement, of which accuracy is a part
   };
@@ -36,6 +37,7 @@ namespace crawler
     Numerics numerics;
     SimulationResult result;
     double space_over_time; ///< of the errors, as seen
+    double rest;            ///< error that may be left because the cells may not be smaller [length]
   };
 
   /**

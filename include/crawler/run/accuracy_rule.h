@@ -92,7 +92,13 @@ namespace crawler::accuracy_rule
     inline constexpr double same_size = 0.1;
     /// The search is given up beyond these.
     inline constexpr unsigned int most_runs = 40, most_cells = 96, most_cells_of_piece = 12;
+    /// So many times as many if that takes no longer than this, in cells times steps; the last change by more cells may
+    /// be this part of the wanted error then.
+    inline constexpr unsigned int more_cells_than_most = 4;
+    inline constexpr double most_work = 3e5, last_part = 0.5;
     inline constexpr double smallest_cell = 1e-7, emptied = 1e-3;
+    /// Layers thinner than this, relative to the length, do not count.
+    inline constexpr double smallest_layer = 1e-6;
     /// So often the search begins anew, with twice the cells, if its first mesh loses a stretch.
     inline constexpr unsigned int most_beginnings = 3;
     inline constexpr double more_cells = 1.5, finer_tolerance = 0.1;

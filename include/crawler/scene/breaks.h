@@ -16,6 +16,10 @@ namespace crawler
   std::vector<double>
   within(std::vector<double> places, double end);
 
+  /// At the knots of a cubic spline the third derivative jumps. So few are breaks: where more of them are, cells are
+  /// small anyway.
+  constexpr std::size_t most_knots_of_splines = 24;
+
   /// The breaks of an active stress in (0, @p length), ascending, each once [length]; an end of the body is none.
   std::vector<double>
   breaks_in_space(const ActiveStress &stress, double length);

@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/table.h>
+#include <crawler/scene/breaks.h>
 
 #include <fmt/format.h>
 
@@ -226,7 +227,7 @@ namespace crawler
     constexpr std::size_t most = 256;
     const auto &s              = table_.grid().s;
     const auto knots           = inside(s, length_);
-    if (parameters_.interpolation == "linear" && knots.size() <= most)
+    if (knots.size() <= (parameters_.interpolation == "linear" ? most : most_knots_of_splines))
       return knots;
     return inside({s.front(), s.back()}, length_); // where it is held
   }
