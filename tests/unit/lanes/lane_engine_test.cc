@@ -4,9 +4,12 @@
 // beside it.
 #include "../../support/lane_runs.h"
 
+#include <crawler/lanes/lane_control.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -234,4 +237,16 @@ TEST(LaneEngine, ABatchStopsAtOnce)
       EXPECT_LT(answers, runs.size() / 2);
     }
   }
+}
+
+/// The filter of the error estimate may lose the stretch; longer steps for ever are no way out.
+TEST(LaneEngine, AStepThatCannotBeJudgedIsMadeShorter)
+{
+  generic::Lane lane;
+  lane.h     = 0.1;
+  lane.error = std::numeric_limits<double>::quiet_NaN();
+  lane.control_step(3, /*keeps_try=*/false);
+  EXPECT_FALSE(lane.accepted);
+  EXPECT_LT(lane.next, lane.h);
+  EXPECT_EQ(lane.rejected, 1u);
 }

@@ -167,7 +167,7 @@ TEST(Table, PeriodIsFound)
     EXPECT_NEAR(values(table, {0.25}, t)[0], wave_of(0.25, 2. * t), 2e-3);
 }
 
-/// Kinks of linear interpolation, and where a table that is held begins and ends.
+/// Kinks of linear interpolation, knots of a spline with few, and where a table that is held begins and ends.
 TEST(Table, Breaks)
 {
   using List = std::vector<double>;
@@ -176,15 +176,16 @@ TEST(Table, Breaks)
   EXPECT_EQ(linear.breaks_in_space(), (List{0.25, 0.5, 0.75}));
   EXPECT_EQ(linear.breaks_in_time(), (List{0.25, 0.5, 0.75}));
   const ActiveStressTable cubic({.file = samples.csv}, 1., 1.);
-  EXPECT_EQ(cubic.breaks_in_space(), List());
+  EXPECT_EQ(cubic.breaks_in_space(), (List{0.25, 0.5, 0.75}));
   EXPECT_EQ(cubic.breaks_in_time(), List());
   const ActiveStressTable held({.file = samples.csv, .outside = "hold", .outside_in_s = "hold"}, 2., 3.);
-  EXPECT_EQ(held.breaks_in_space(), List{1.});
+  EXPECT_EQ(held.breaks_in_space(), (List{0.25, 0.5, 0.75, 1.}));
   EXPECT_EQ(held.breaks_in_time(), List{1.});
   const ActiveStressTable repeated({.file = samples.csv, .interpolation = "linear", .outside = "periodic"}, 1., 1.6);
   EXPECT_EQ(repeated.breaks_in_time(), (List{0.25, 0.5, 0.75, 1., 1.25, 1.5}));
   const ActiveStressTable fine({.file = Samples(300, 5, wave_of).csv, .interpolation = "linear"}, 1., 1.);
   EXPECT_EQ(fine.breaks_in_space(), List());
+  EXPECT_EQ(ActiveStressTable({.file = Samples(40, 5, wave_of).csv}, 1., 1.).breaks_in_space(), List());
 }
 
 /// Each entry has its range; the message names the entry and what is expected.
