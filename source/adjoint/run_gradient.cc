@@ -22,6 +22,17 @@ namespace crawler
              (12. * variation.step);
     }
 
+    /// Do both sides have other derivatives, by more than @p rough over the step?
+    bool
+    has_kink(const std::array<double, 4> &f, const Variation &variation, const double rough)
+    {
+      constexpr double same = 0.02;
+      if (variation.is_one_sided)
+        return false;
+      const double left = 0.5 * f[0] - 2. * f[1], right = 2. * f[2] - 0.5 * f[3]; // times the step
+      return std::abs(left - right) > same * (std::abs(left) + std::abs(right)) + rough;
+    }
+
     /// A number that varies: the forces in the four scenes, and what they change.
     struct Direction
     {
@@ -130,9 +141,14 @@ namespace crawler
           for (std::size_t k = 0; k < 4; ++k)
             units[k] = unit(direction.forces[k]->inside.units(), stride_ ? direction.strides[k] : 1.) - own;
           const Direction::Change &change = direction.changes[static_cast<std::size_t>(adjoint.quantity)];
-          const double value =
-            own * derivative_of(change.sums, variation) + adjoint.value * derivative_of(units, variation);
-          if (own * change.at_breaks <= nothing * std::abs(variation.step * value))
+          std::array<double, 4> all;
+          for (std::size_t k = 0; k < 4; ++k)
+            all[k] = own * change.sums[k] + adjoint.value * units[k];
+          const double value = derivative_of(all, variation);
+          // The positive part of a work has small kinks everywhere, from point to point.
+          const double rough =
+            (adjoint.quantity == Quantity::positive_work ? 1e-5 : 1e-7) * std::abs(own * adjoint.value);
+          if (own * change.at_breaks <= nothing * std::abs(variation.step * value) && !has_kink(all, variation, rough))
             result[static_cast<std::size_t>(adjoint.quantity)] = value;
         }
         return result;

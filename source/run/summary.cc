@@ -96,6 +96,8 @@ namespace crawler
       if (const auto deviation = result.standard_deviation("displacement"))
         lines.push_back(fmt::format(
           "  uncertain entries make the displacement uncertain by {:.2g} (standard deviation)", *deviation));
+      else if (std::ranges::any_of(result.sensitivities, [](const auto &one) { return one.standard_deviation > 0.; }))
+        lines.push_back("  what uncertain entries do to the displacement is not known, since a derivative is not");
     }
   } // namespace
 

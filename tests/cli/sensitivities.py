@@ -133,7 +133,7 @@ def in_sweeps(folder):
     file, output = folder / "sweep.prm", folder / "sweep"
     file.write_text(WAVE + f"subsection Sweep\n set Axes = {P} : 1.7, 3.2; {CHI} : 0.1, 0.35\nend\n", encoding="utf-8")
     result = subprocess.run([sys.argv[1], "sweep", file, "--output", output, "--set", "Output/Sensitivities=" + K, "--set",
-                             f"Output/Uncertainty={P} : 0.1"], capture_output=True, text=True, check=False,
+                             f"Output/Uncertainty={P} : 10 %"], capture_output=True, text=True, check=False,
                             env=ENVIRONMENT)
     expect(result.returncode == 0, f"a sweep with sensitivities: {result.stderr}")
     with open(output / "results.csv", newline="", encoding="utf-8") as table:
@@ -145,7 +145,8 @@ def in_sweeps(folder):
                     value, error = (float(row[f"sensitivities.{entry}.{number}{word}"]) for word in ("value", "error"))
                     expect(abs(value - alone["value"]) <= error + alone["error"],
                            f"{entry}, {number}: {value} in the sweep, {alone['value']} alone")
-            expect(abs(float(row["uncertainty.displacement"]) / abs(0.1 * float(row[f"sensitivities.{P}.value"])) - 1) < 1e-9,
+            expect(abs(float(row["uncertainty.displacement"])
+                       / abs(0.1 * float(row[P]) * float(row[f"sensitivities.{P}.value"])) - 1) < 1e-9,
                    f"uncertainty in the sweep: {row['uncertainty.displacement']}")
 
 

@@ -92,6 +92,13 @@ namespace crawler
       for (const std::string &note : profiles_beyond_the_body(scene))
         notes.push_back(note);
       auto sensitivities = sensitivity_entries(form);
+      for (const SensitivityEntry &one : sensitivities)
+        if (one.is_part && to_number(form.value(one.path)) == 0.)
+          throw InputError(
+            fmt::format("Uncertainty has {:g} % of \"{}\", but that is 0; a number without % is expected",
+                        100. * one.deviation,
+                        one.path),
+            "Output/Uncertainty");
       return {
         std::move(file), parameters, effective.str(), std::move(scene), std::move(sensitivities), std::move(notes)};
     }

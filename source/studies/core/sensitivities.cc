@@ -103,8 +103,9 @@ namespace crawler
       using namespace accuracy_rule::sensitivities;
       if (!values[0] || !finer[0])
       {
-        entry.reason = "a jump of the active stress comes in or goes out at the start or the end of the run with it, "
-                       "where the displacement has a kink";
+        entry.reason =
+          "the displacement has a kink there: a limit is reached, or a jump of the active stress comes in or "
+          "goes out at the start or the end of the run";
         return;
       }
       for (std::size_t i = 0; i < values.size(); ++i)
@@ -163,7 +164,7 @@ namespace crawler
         varied.push_back(vary(form, scene, entry.path));
       else
         varied.push_back({{entry.path, 0., {}, {}, reason}, {}, 0.});
-      varied.back().sensitivity.standard_deviation = entry.standard_deviation;
+      varied.back().sensitivity.standard_deviation = entry.standard_deviation(*to_number(form.value(entry.path)));
     }
     std::vector<Variation> variations;
     std::vector<EntrySensitivity *> known;

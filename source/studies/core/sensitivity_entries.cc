@@ -75,9 +75,9 @@ namespace crawler
       std::vector<std::string> all_, effective_;
     };
 
-    /// What "0.1" or "5 %" is of an entry's value.
-    double
-    standard_deviation(const std::string &text, const std::string &path, const Form &form, const std::string &own)
+    /// "0.1" or "5 %"
+    SensitivityEntry
+    uncertain_entry(const std::string &text, const std::string &path, const std::string &own)
     {
       const std::string given = trimmed(text);
       const bool is_part      = given.ends_with('%');
@@ -87,14 +87,7 @@ namespace crawler
           fmt::format(
             "Uncertainty has \"{}\" for \"{}\", but a positive number, or one with %, is expected", given, path),
           own);
-      if (!is_part)
-        return *number;
-      const double value = *to_number(form.value(path));
-      if (value == 0.)
-        throw InputError(
-          fmt::format("Uncertainty has \"{}\" of \"{}\", but that is 0; a number without % is expected", given, path),
-          own);
-      return *number / 100. * std::abs(value);
+      return {path, is_part ? *number / 100. : *number, is_part};
     }
 
     /// The parts of a list, which may be empty.
@@ -110,8 +103,11 @@ namespace crawler
       const auto same = std::ranges::find(list, one.path, &SensitivityEntry::path);
       if (same == list.end())
         list.push_back(one);
-      else
-        same->standard_deviation = std::max(same->standard_deviation, one.standard_deviation);
+      else if (same->deviation > 0. && one.deviation > 0.)
+        throw InputError(fmt::format("Uncertainty has \"{}\" twice; each entry once is expected", one.path),
+                         "Output/Uncertainty");
+      else if (one.deviation > 0.)
+        *same = one;
     }
   } // namespace
 
@@ -139,7 +135,7 @@ namespace crawler
                                      one),
                          own);
       const std::string path = candidates.find(one.substr(0, colon), own);
-      add(list, {path, standard_deviation(one.substr(colon + 1), path, form, own)});
+      add(list, uncertain_entry(one.substr(colon + 1), path, own));
     }
     return list;
   }

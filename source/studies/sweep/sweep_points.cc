@@ -100,7 +100,7 @@ namespace crawler
       const SweepAxis &axis = design_->axes()[number];
       if (axis.is_file())
         continue;
-      for (const char *section : {"Sweep/", "Atlas/", "Tradeoff/"})
+      for (const char *section : {"Sweep/", "Atlas/", "Tradeoff/", "Output/Sensitivities", "Output/Uncertainty"})
         if (axis.entry.starts_with(section))
           throw InputError(
             fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),

@@ -40,10 +40,17 @@ namespace crawler
       return not_known;
     }
 
+    /// Of a number by its key.
+    std::string
+    unit_of(const std::string &key)
+    {
+      return std::ranges::find(result_table(), key, &ResultEntry::key)->unit;
+    }
+
     bool
     are_uncertain(const std::vector<SensitivityEntry> &entries)
     {
-      return std::ranges::any_of(entries, [](const SensitivityEntry &one) { return one.standard_deviation > 0.; });
+      return std::ranges::any_of(entries, [](const SensitivityEntry &one) { return one.deviation > 0.; });
     }
 
     void
@@ -94,13 +101,14 @@ namespace crawler
       {
         const std::string key = fmt::format(
           "sensitivities.{}.{}", entry.path, number == std::string("displacement") ? "" : std::string(number) + ".");
-        columns.push_back({key + "value", "", fmt::format("d({})/d({})", number, entry.path), 0});
-        columns.push_back({key + "error", "", "its error bound", 0});
+        const std::string unit = unit_of(number) + " per unit of the entry";
+        columns.push_back({key + "value", unit, fmt::format("d({})/d({})", number, entry.path), 0});
+        columns.push_back({key + "error", unit, "its error bound", 0});
       }
     if (are_uncertain(points.sensitivities()))
       for (const char *number : differentiated_numbers())
         columns.push_back({std::string("uncertainty.") + number,
-                           "",
+                           unit_of(number),
                            std::string("standard deviation of ") + number + " by that of uncertain entries",
                            0});
     columns.push_back(

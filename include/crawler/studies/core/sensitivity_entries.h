@@ -3,6 +3,7 @@
 
 #include <crawler/studies/core/form.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,14 @@ namespace crawler
   struct SensitivityEntry
   {
     std::string path;
-    double standard_deviation; ///< 0 if it is not uncertain
+    double deviation;     ///< standard deviation, in units of the entry or as a part of it; 0 if it is not uncertain
+    bool is_part = false; ///< of the value of the entry
+
+    double
+    standard_deviation(const double value) const
+    {
+      return is_part ? deviation * std::abs(value) : deviation;
+    }
   };
 
   /// Those that Output/Sensitivities and Output/Uncertainty name, all of them numbers of the scene. Throws InputError.
