@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace crawler
 {
@@ -100,7 +101,7 @@ namespace crawler
           again = possible_ = true;
         while (again && possible_)
         {
-          double levels_change = 0., cells_change = 0., ratio_change = 0.;
+          double levels_change = 0., cells_change = std::numeric_limits<double>::infinity(), ratio_change = 0.;
           refine(levels_change, one_more_level);
           if (is_ratio_fine() || try_one(ratio_change, with_finer_ratio))
             ratio_change = 0.;

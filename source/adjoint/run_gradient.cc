@@ -96,8 +96,9 @@ namespace crawler
         }
         find_stride(variations);
         for (const Quantity quantity : quantities)
-          if (is_work(quantity) ? quantity != Quantity::paper_energy || run.scene.active_stress->feedback() == nullptr
-                                : quantity == Quantity::displacement || stride_)
+          if (quantity == Quantity::stride         ? stride_.has_value() // the speed is the same in other units
+              : quantity == Quantity::paper_energy ? run.scene.active_stress->feedback() == nullptr
+                                                   : quantity != Quantity::speed)
             adjoints_.push_back({quantity, {}, std::vector<std::vector<double>>(run.steps.n_steps())});
         constexpr std::size_t most_samples = 4000000;
         keeps_stress_                      = run.steps.n_steps() * tableau_.n * cells_.size() <= most_samples;
@@ -128,28 +129,32 @@ namespace crawler
         Derivatives result;
         for (const Adjoint &adjoint : adjoints_)
         {
-          const bool is_of_stride = adjoint.quantity == Quantity::stride || adjoint.quantity == Quantity::speed;
-          if (is_of_stride && !direction.has_strides)
-            continue;
-          const auto unit = [&](const Units &units, const double stride) {
-            return is_work(adjoint.quantity)             ? units.energy()
-                   : adjoint.quantity == Quantity::speed ? units.velocity() / stride
-                                                         : units.length;
+          const auto put = [&](const Quantity quantity, const double own, const std::array<double, 4> &units) {
+            const Direction::Change &change = direction.changes[static_cast<std::size_t>(adjoint.quantity)];
+            std::array<double, 4> all;
+            for (std::size_t k = 0; k < 4; ++k)
+              all[k] = own * change.sums[k] + adjoint.value * (units[k] - own);
+            const double value = derivative_of(all, variation);
+            // The positive part of a work has small kinks everywhere, from point to point.
+            const double rough = (quantity == Quantity::positive_work ? 1e-5 : 1e-7) * std::abs(own * adjoint.value);
+            if (own * change.at_breaks <= nothing * std::abs(variation.step * value) &&
+                !has_kink(all, variation, rough))
+              result[static_cast<std::size_t>(quantity)] = value;
           };
-          const double own = unit(run_.units, stride_.value_or(1.));
-          std::array<double, 4> units;
+          std::array<double, 4> energies, lengths, speeds;
           for (std::size_t k = 0; k < 4; ++k)
-            units[k] = unit(direction.forces[k]->inside.units(), stride_ ? direction.strides[k] : 1.) - own;
-          const Direction::Change &change = direction.changes[static_cast<std::size_t>(adjoint.quantity)];
-          std::array<double, 4> all;
-          for (std::size_t k = 0; k < 4; ++k)
-            all[k] = own * change.sums[k] + adjoint.value * units[k];
-          const double value = derivative_of(all, variation);
-          // The positive part of a work has small kinks everywhere, from point to point.
-          const double rough =
-            (adjoint.quantity == Quantity::positive_work ? 1e-5 : 1e-7) * std::abs(own * adjoint.value);
-          if (own * change.at_breaks <= nothing * std::abs(variation.step * value) && !has_kink(all, variation, rough))
-            result[static_cast<std::size_t>(adjoint.quantity)] = value;
+          {
+            const Units &units = direction.forces[k]->inside.units();
+            energies[k]        = units.energy();
+            lengths[k]         = units.length;
+            speeds[k]          = stride_ ? units.velocity() / direction.strides[k] : 0.;
+          }
+          if (is_work(adjoint.quantity))
+            put(adjoint.quantity, run_.units.energy(), energies);
+          else if (adjoint.quantity == Quantity::displacement || direction.has_strides)
+            put(adjoint.quantity, run_.units.length, lengths);
+          if (adjoint.quantity == Quantity::stride && direction.has_strides)
+            put(Quantity::speed, run_.units.velocity() / *stride_, speeds);
         }
         return result;
       }
@@ -234,7 +239,7 @@ namespace crawler
       look_at_end()
       {
         cells_.evaluate(run_.steps.end().data(), at_.u, at_.e);
-        for (const Quantity quantity : {Quantity::displacement, Quantity::stride, Quantity::speed})
+        for (const Quantity quantity : {Quantity::displacement, Quantity::stride})
           add_lengths(quantity, 1.);
       }
 
@@ -245,14 +250,11 @@ namespace crawler
         double velocity = 0.;
         for (std::size_t p = 0; p < cells_.size(); ++p)
           velocity += cells_.weight(p) * at_.v[p];
-        for (const Quantity quantity : {Quantity::stride, Quantity::speed})
-        {
-          add_lengths(quantity, -1.);
-          for (Direction &direction : directions_)
-            for (std::size_t k = 0; k < 4; ++k)
-              change_of(direction, quantity).sums[k] -=
-                velocity * (1. - direction.strides[k] - direction.forces[k]->inside.own_time(1. - *stride_));
-        }
+        add_lengths(Quantity::stride, -1.);
+        for (Direction &direction : directions_)
+          for (std::size_t k = 0; k < 4; ++k)
+            change_of(direction, Quantity::stride).sums[k] -=
+              velocity * (1. - direction.strides[k] - direction.forces[k]->inside.own_time(1. - *stride_));
       }
 
       /// The last stride of the run and of the scenes that differ; none unless a step ends where it starts.

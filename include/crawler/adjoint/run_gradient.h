@@ -47,10 +47,10 @@ namespace crawler
     explicit RunGradient(const RecordedRun &run);
 
     /// The derivatives [unit of the quantity/unit of p], one sweep for each quantity of a list. There is none of the
-    /// others, none of the last stride if the active stress does not say how long that is, none where a jump of the
-    /// active stress comes in or goes out at the start or the end of the run, since the displacement has a kink there,
-    /// and none of works where jumps come together in time. The paper's energy has none with feedback. Throws
-    /// std::runtime_error if the adjoint cannot be found.
+    /// others (the speed comes with the stride), none of the last stride if the active stress does not say how long
+    /// that is, none where a jump of the active stress comes in or goes out at the start or the end of the run, since
+    /// the displacement has a kink there, and none of works where jumps come together in time. The paper's energy has
+    /// none with feedback. Throws std::runtime_error if the adjoint cannot be found.
     std::vector<Derivatives>
     derivatives(std::span<const Variation> variations, std::span<const Quantity> quantities);
 

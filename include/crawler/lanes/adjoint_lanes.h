@@ -352,9 +352,10 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
     {
       // On graded meshes round-off may be larger than what counts as settled.
       constexpr double settled = 1e-13, nearly_settled = 1e-8;
-      const bool is_new = n_directions_ == 0;
-      Pack *const step  = directions_ + std::size_t(n_directions_) * s * n_, *const image =
-                                                                              step + most_directions * s * n_;
+      const bool is_new   = n_directions_ == 0;
+      const std::size_t n = std::size_t(s) * n_;
+      Pack *const step    = directions_ + n_directions_ * n;
+      Pack *const image   = step + most_directions * n;
       radau::to_eigenbasis(radau::Stages<s>{}, rows_, residual_, n_, real_, complex_);
       system_.solve_all(real_, complex_);
       for (int i = 0; i < s; ++i)
@@ -363,9 +364,9 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       apply(step, image);
       for (int j = 0; j < n_directions_; ++j)
       {
-        const Pack *const other = directions_ + std::size_t(j) * s * n_, *const its_image =
-                                                                           other + most_directions * s * n_;
-        const Pack part = -product(image, its_image);
+        const Pack *const other     = directions_ + j * n;
+        const Pack *const its_image = other + most_directions * n;
+        const Pack part             = -product(image, its_image);
         add(part, other, step);
         add(part, its_image, image);
       }
@@ -398,14 +399,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         Lane &lane = lanes_[l];
         if (!lane.iterating)
           continue;
-        const double relative = get_lane(change, l) / get_lane(size, l);
-        const bool is_settled = !(relative > settled);
-        if (is_new && (is_settled || (relative <= nearly_settled && relative >= 0.5 * lane.last_change)))
+        const double its_change = get_lane(change, l), its_size = get_lane(size, l);
+        const bool is_settled = its_change <= settled * its_size; // not if they are no numbers
+        if (is_new && (is_settled || (its_change <= nearly_settled * its_size && its_change >= 0.5 * lane.last_change)))
           lane.iterating = false;
         else if (is_settled)
           looks = true;
         if (is_new)
-          lane.last_change = relative;
+          lane.last_change = its_change;
       }
       return looks;
     }

@@ -6,12 +6,10 @@
 #include <crawler/studies/core/entry_rules.h>
 #include <crawler/studies/core/input.h>
 
-#include <sstream>
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <sstream>
 
 namespace crawler
 {

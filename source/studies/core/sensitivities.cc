@@ -6,12 +6,9 @@
 #include <crawler/run/result_table.h>
 #include <crawler/studies/core/sensitivities.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <memory>
 
 namespace crawler
 {
