@@ -205,7 +205,7 @@ TEST(Pictures, AreThereUntilTheBodyInverts)
   const Course lost = run(settings);
   ASSERT_EQ(lost.result.time.status, Status::inverted);
   ASSERT_TRUE(lost.result.inversion);
-  const Seen &last = lost.pictures().back();
+  const Seen last = lost.pictures().back(); // a copy: the pictures are a temporary
   EXPECT_LT(last.time, lost.result.inversion->t);
   EXPECT_GT(last.time, lost.result.inversion->t - 1. / 200. - 1e-12);
   EXPECT_GT(*std::min_element(last.stretch.begin(), last.stretch.end()), 0.);
