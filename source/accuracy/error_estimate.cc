@@ -29,6 +29,16 @@ namespace crawler
       return std::isfinite(choice.promised_error) && (feedback == nullptr || !feedback->sees_near());
     }
 
+    /// Steps for a tolerance that is so many times as large. Their limits go with it, as the steps of radau 9 do: steps
+    /// that only the limits make have an error, too.
+    void
+    change_steps(Numerics &numerics, const double factor)
+    {
+      numerics.tolerance *= factor;
+      for (StepLimit &limit : numerics.step_limits)
+        limit.longest *= std::min(1., std::pow(factor, steps_over_tolerances));
+    }
+
     Numerics
     finer(const NumericsChoice &choice, const std::string &integrator, const Scene &scene)
     {
@@ -45,12 +55,15 @@ namespace crawler
         n.parts *= 2; // one family of meshes
       else
       {
-        const double factor = promised ? more_cells : more_cells_without_promise;
+        const double factor = !promised         ? more_cells_without_promise
+                              : choice.is_rough ? more_cells_if_rough
+                                                : more_cells;
         n.n_cells           = finer_n_cells(factor, n.n_cells, scene.breaks_in_space().size(), n.grading);
       }
-      n.tolerance *= !promised                       ? finer_tolerance_without_promise
-                     : integrator == best_integrator ? finer_tolerance
-                                                     : finer_tolerance_than_others;
+      change_steps(n,
+                   !promised                       ? finer_tolerance_without_promise
+                   : integrator == best_integrator ? finer_tolerance
+                                                   : finer_tolerance_than_others);
       n.integrator = best_integrator;
       // Layers that neither mesh sees would be missed by the difference.
       const double k = scene.body.elastic_modulus / natural_units(scene).force;
@@ -126,7 +139,7 @@ namespace crawler
       n.mesh.tolerance *= refined_tolerance;
     else
       n.n_cells = finer_n_cells(refined_cells, n.n_cells, scene.breaks_in_space().size(), n.grading);
-    n.tolerance *= refined_tolerance;
+    change_steps(n, refined_tolerance);
     if (n.grading.levels > 0)
       n = with_finer_grading(scene, n);
     return next;
@@ -153,7 +166,7 @@ namespace crawler
     Numerics numerics =
       finer(choice, time.integrator == "automatic" ? choice.numerics.integrator : time.integrator, scene);
     if (cycles_repeat)
-      numerics.tolerance *= finer_tolerance_of_cycles;
+      change_steps(numerics, finer_tolerance_of_cycles);
     return numerics;
   }
 

@@ -69,6 +69,7 @@ namespace crawler
         n.degree                 = parameters.discretization.degree.value_or(automatic_degree);
         n.initial_step           = parameters.time.initial_step.value_or(multistep_start * T_);
         n.step_limits            = scales_.step_limits;
+        choice_.is_rough         = !scales_.is_smooth;
         n.least_event            = scales_.jumps_move ? 0. : least_event * scales_.stress;
         pilot_time_              = parameters.time;
         pilot_time_.step_control = StepControl::adaptive;
@@ -218,6 +219,20 @@ namespace crawler
         return stiffness() / largest;
       }
 
+      /// Are all layers wide enough to show in the modes of the stretch on so many cells? Where nothing starts suddenly
+      /// they are as wide as elasticity evens out, against the largest friction of the last pilot, while the active
+      /// stress changes.
+      bool
+      sees_layers(const unsigned int degree, const unsigned int n_cells) const
+      {
+        if (!scene_.is_plain() || !scales_.is_smooth || scales_.sudden > sudden_part * std::sqrt(accuracy_))
+          return false;
+        double time = T_; // in which the active stress changes
+        for (const StepLimit &limit : scales_.step_limits)
+          time = std::min(time, limit.longest);
+        return std::sqrt(stiffness_over_friction() * time / T_) * degree * n_cells >= widest_hidden_layer;
+      }
+
       /// Does the active stress make layers suddenly, and may a graded mesh be chosen for that?
       bool
       starts_or_jumps() const
@@ -359,7 +374,8 @@ namespace crawler
         const auto rate_of = [full_rate](const double coarse, const double fine) {
           return std::clamp(std::log2(coarse / fine), 0.5, full_rate);
         };
-        double unresolved = pilot_.unresolved, indicator = pilot_.largest_indicator, rate = 0., indicator_rate = 0.;
+        double unresolved = pilot_.unresolved, indicator = pilot_.largest_indicator;
+        double rate = sees_layers(pilot_degree, n_cells) ? full_rate : 0., indicator_rate = rate;
         const auto unbalanced = [&]() {
           return most < most_cells && indicator_factor * indicator > accuracy_ * pilot_.strain &&
                  indicator_rate < 0.5 * full_rate;

@@ -78,10 +78,11 @@ namespace crawler
             continue;
           }
           const Numerics a = found_.choice.numerics, &b = choice->numerics;
-          Numerics &n    = found_.choice.numerics;
-          n              = b.n_cells * b.degree > a.n_cells * a.degree ? b : a;
-          n.initial_step = std::min(a.initial_step, b.initial_step);
-          n.least_event  = std::min(a.least_event, b.least_event);
+          Numerics &n            = found_.choice.numerics;
+          n                      = b.n_cells * b.degree > a.n_cells * a.degree ? b : a;
+          n.initial_step         = std::min(a.initial_step, b.initial_step);
+          n.least_event          = std::min(a.least_event, b.least_event);
+          found_.choice.is_rough = found_.choice.is_rough || choice->is_rough;
         }
         return true;
       }

@@ -13,6 +13,9 @@ namespace crawler
 {
   namespace
   {
+    /// Places or times between samples, where they are close.
+    constexpr unsigned int fine = 512;
+
     /// Is one of @p breaks (ascending) between @p from and @p to?
     bool
     any_between(const std::vector<double> &breaks, const double from, const double to)
@@ -97,7 +100,7 @@ namespace crawler
         , in_space_(in_space)
         , in_time_(in_time)
       {
-        constexpr unsigned int fine = 512, coarse = 16, very_fine = 8192;
+        constexpr unsigned int coarse = 16, very_fine = 8192;
         look(fine, coarse);
         look(coarse, fine);
         // Where m is nearly 0 most of the time a short event may have been missed, unless the generator can tell.
@@ -109,7 +112,6 @@ namespace crawler
       void
       look_at(const double t)
       {
-        constexpr unsigned int fine = 512;
         sample(scene_.active_stress->at(places(fine)).get(), fine, t);
       }
 
@@ -147,10 +149,37 @@ namespace crawler
         return list;
       }
 
+      /// Do differences along the body fall like those of a function with many derivatives, between the breaks?
+      bool
+      is_smooth() const
+      {
+        constexpr double least_order = 5., nothing = 1e-10;
+        return coarse_difference_ <= nothing * largest ||
+               fine_difference_ * std::exp2(least_order) <= coarse_difference_;
+      }
+
       double largest = 0.; ///< |m|
       double along   = 0.; ///< |m_s| between the breaks
 
     private:
+      /// The largest sixth difference of neighbours that are @p apart samples from each other.
+      double
+      sixth_difference(const unsigned int n_points, const unsigned int apart) const
+      {
+        const double L = scene_.body.length;
+        double found   = 0.;
+        for (unsigned int i = 0; i + 6 * apart <= n_points; ++i)
+        {
+          const double *m         = m_.data() + i;
+          const double difference = m[0] + m[6 * apart] - 6. * (m[apart] + m[5 * apart]) +
+                                    15. * (m[2 * apart] + m[4 * apart]) - 20. * m[3 * apart];
+          if (std::abs(difference) > found &&
+              (in_space_.empty() || !any_between(in_space_, L * i / n_points, L * (i + 6 * apart) / n_points)))
+            found = std::abs(difference);
+        }
+        return found;
+      }
+
       std::vector<double>
       places(const unsigned int n) const
       {
@@ -171,6 +200,12 @@ namespace crawler
           largest = std::max(largest, std::abs(m_[i]));
           if (i > 0 && (in_space_.empty() || !any_between(in_space_, L * (i - 1) / n_points, L * i / n_points)))
             along = std::max(along, std::abs(m_[i] - m_[i - 1]) * n_points / L);
+        }
+        constexpr unsigned int near = 4; // closer ones differ by round-off
+        if (n_points == fine)
+        {
+          fine_difference_   = std::max(fine_difference_, sixth_difference(n_points, near));
+          coarse_difference_ = std::max(coarse_difference_, sixth_difference(n_points, 2 * near));
         }
       }
 
@@ -212,6 +247,7 @@ namespace crawler
       const double T_;
       const std::vector<double> &in_space_, &in_time_;
       std::vector<double> m_, rates_; ///< |m_t| between samples, largest along the body
+      double fine_difference_ = 0., coarse_difference_ = 0.;
     };
 
     /// Limits of the steps such that no step is longer than the time in which m can change by the largest |m|: where it
@@ -328,9 +364,9 @@ namespace crawler
   StressScales
   stress_scales(const Scene &scene)
   {
-    constexpr unsigned int fine = 512, most_looks = 64;
-    constexpr double jump_part = 0.05; // smaller jumps, relative to the largest |m|, are not looked for
-    const ActiveStress &stress = *scene.active_stress;
+    constexpr unsigned int most_looks = 64;
+    constexpr double jump_part        = 0.05; // smaller jumps, relative to the largest |m|, are not looked for
+    const ActiveStress &stress        = *scene.active_stress;
     const double L = scene.body.length, T = scene.end_time;
     // One period shows all.
     const double P                     = std::min(stress.period().value_or(T), T);
@@ -365,6 +401,7 @@ namespace crawler
             step_limits(changes, largest, usual, P, T),
             largest,
             found.is_complete || stress.stride(),
+            samples.is_smooth(),
             std::max(change.at_start, change.later) / unit,
             change.later / unit,
             in_space.size(),

@@ -3,6 +3,7 @@
 // Scenes whose answers were once wrong, with bounds that said otherwise: events that samples miss, gaits of hundreds of
 // strides, soft bodies, meshes of the user's own.
 #include "../support/run_text.h"
+#include "random_scenes.h"
 
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/run/result_table.h>
@@ -374,4 +375,13 @@ TEST(HardAnswers, ProfileByASpline)
   ASSERT_EQ(exact.time.status, Status::finished) << exact.time.message;
   for (const char *accuracy : {"1e-4", "1e-5", "1e-6", "2.5e-7"})
     expect_within(at(accuracy), exact.displacement, std::stod(accuracy), accuracy);
+}
+
+/// No step is longer than the time in which the active stress changes. Where it is that which makes the steps, and not
+/// the tolerance, a smaller tolerance alone shows no error.
+TEST(HardAnswers, StepsThatOnlyTheirLimitMakes)
+{
+  test::Settings settings = test::random_scene(336).settings;
+  settings.emplace_back("Accuracy", "1e-6");
+  expect_within(answer_to(settings), 0.013195775551215, 1e-6, "a wave");
 }

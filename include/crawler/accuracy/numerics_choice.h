@@ -24,6 +24,8 @@ namespace crawler
     double space_share = std::numeric_limits<double>::quiet_NaN();
     /// The reported error is at least this: what the indicators cannot see [length].
     double least_error = 0.;
+    /// The active stress is not smooth along the body: finer meshes have errors that are not much smaller.
+    bool is_rough = false;
     /// The user set cells or tolerances.
     bool is_users = false;
     /// Its promised error was measured with one mesh after the other: jumps of the active stress move.

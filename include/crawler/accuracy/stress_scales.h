@@ -15,8 +15,9 @@ namespace crawler
     double length;       ///< largest |m| over largest |m_s| between the breaks [length]
     /// No step is longer than the time in which m can change by the largest |m| between the breaks [time].
     std::vector<StepLimit> step_limits;
-    double stress; ///< largest |m| [force]
-    bool sees_all; ///< no event is too short to be seen: by ActiveStress::bounds(), or one stride shows all
+    double stress;  ///< largest |m| [force]
+    bool sees_all;  ///< no event is too short to be seen: by ActiveStress::bounds(), or one stride shows all
+    bool is_smooth; ///< m seems to have many derivatives along the body, between the breaks
     /// The largest sudden change of what makes layers, relative to the largest |m|: of m at the ends of the body and of
     /// its jumps in space, at the start and at the breaks in time [1].
     double sudden;

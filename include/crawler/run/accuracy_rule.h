@@ -37,8 +37,10 @@ namespace crawler::accuracy_rule
     inline constexpr double pilot_accuracy = 1e-2;
     /// A pilot's mesh is good enough to predict others if its `unresolved` is below this.
     inline constexpr double resolved = 1e-3;
+    /// Layers thinner than this, in distances between the unknowns, may look resolved when they are not.
+    inline constexpr double widest_hidden_layer = 1.;
     /// Error of the displacement in space, relative, is below this times `unresolved` of the mesh.
-    inline constexpr double space_factor = 4.;
+    inline constexpr double space_factor = 6.;
     /// Error of the displacement in time is below this times the number of steps times the tolerance.
     inline constexpr double time_factor = 0.25;
     /// The steps of radau 5 and 9 on uniform meshes in the position form end much more accurately than their tolerance
@@ -171,11 +173,15 @@ namespace crawler::accuracy_rule
     inline constexpr double promised_part_if_graded = 0.15;
     /// The finer run: cells and tolerances relative to the run's.
     inline constexpr double more_cells = 1.1, finer_tolerance = 0.2, finer_mesh_tolerance = 0.1;
+    /// Its cells if the active stress is not smooth, so that errors fall with the cells by a small power.
+    inline constexpr double more_cells_if_rough = 1.5;
     /// The same if the run is not by radau 9, which is more accurate for the same tolerance than all others.
     inline constexpr double finer_tolerance_than_others = 4.;
     /// The same if the user chose the numerics: it is not known whether mesh or steps are the problem.
     inline constexpr double more_cells_without_promise = 2., finer_tolerance_without_promise = 0.1;
     inline constexpr const char *best_integrator = "radau 9";
+    /// The power of the tolerance by which its steps go.
+    inline constexpr double steps_over_tolerances = 1. / 6.;
     /// Its first step, relative to the duration, at least: others start with smaller ones.
     inline constexpr double first_step = 1e-3;
     /// Bodies softer than this in natural units have layers at their ends, of a thickness of about that; the finer run
@@ -211,7 +217,7 @@ namespace crawler::accuracy_rule
     /// The bound: so many times the difference to the finer numerics; since both may agree by chance so many times
     /// Accuracy of the derivative and of D/p, for works the relative error of the work and other factors; and relative
     /// round-off of the differences by which dF/dp is found.
-    inline constexpr double measured_factor = 2., promised_factor = 12., promised_factor_of_works = 40.,
+    inline constexpr double measured_factor = 2., promised_factor = 16., promised_factor_of_works = 40.,
                             promised_factor_of_positive_work = 160., round_off = 1e-10;
   } // namespace sensitivities
 
