@@ -50,7 +50,7 @@ namespace crawler
     if (is_linear_)
       return true;
     const Scene &scene   = assembler_.scene();
-    const bool amplifies = relaxation_time_ < fast_relaxation || (scene.friction_exponent() > 0. && scene.is_plain());
+    const bool amplifies = relaxation_time_ < fast_relaxation || scene.friction_exponent() > 0.;
     return amplifies && position_ != nullptr;
   }
 

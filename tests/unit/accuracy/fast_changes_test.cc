@@ -71,6 +71,19 @@ TEST(FastChanges, OfASlowStressAreNone)
   }
 }
 
+/// Differences along the body tell whether the active stress has many derivatives there, wherever its kinks travel.
+TEST(StressScales, KnowWhatIsSmooth)
+{
+  for (const char *text :
+       {"0.1*sin(2*pi*(s+t))", "0.1*sin(6*pi*(s+t))+0.3*s^2*t", "0.3*exp(-((s-0.2-0.5*t)/0.3)^2)*sin(pi*t)^2", "0.2*s"})
+    EXPECT_TRUE(stress_scales(formula(text)).is_smooth) << text;
+  for (const char *text : {"0.1*abs(sin(pi*(s+0.7*t)))",
+                           "0.1*abs(sin(pi*(s+0.7*t)))^3",
+                           "0.3*exp(-((s-0.2-0.5*t)/0.01)^2)*sin(pi*t)^2",
+                           "s<0.3+0.4*t ? 0.1 : 0.2"})
+    EXPECT_FALSE(stress_scales(formula(text)).is_smooth) << text;
+}
+
 TEST(FastChanges, OfJumpsAreAsShortAsTheyCanBe)
 {
   const FastChanges found = changes_of(formula("t<0.4321 ? 0.1*s : 0.2*s"), 1.);
