@@ -22,6 +22,9 @@ namespace crawler
              (12. * variation.step);
     }
 
+    /// Of changes of a quantity that is 0, in natural units.
+    constexpr double round_off = 1e-15;
+
     /// Do both sides have other derivatives, by more than @p rough over the step?
     bool
     has_kink(const std::array<double, 4> &f, const Variation &variation, const double rough)
@@ -136,7 +139,8 @@ namespace crawler
               all[k] = own * change.sums[k] + adjoint.value * (units[k] - own);
             const double value = derivative_of(all, variation);
             // The positive part of a work has small kinks everywhere, from point to point.
-            const double rough = (quantity == Quantity::positive_work ? 1e-5 : 1e-7) * std::abs(own * adjoint.value);
+            const double rough =
+              own * std::max((quantity == Quantity::positive_work ? 1e-5 : 1e-7) * std::abs(adjoint.value), round_off);
             if (own * change.at_breaks <= nothing * std::abs(variation.step * value) &&
                 !has_kink(all, variation, rough))
               result[static_cast<std::size_t>(quantity)] = value;

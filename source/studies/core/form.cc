@@ -36,16 +36,16 @@ namespace crawler
     return declarations.value(static_cast<unsigned int>(entry - entries.begin()));
   }
 
-  Scene
-  Form::scene_with(const std::string &path, const double value)
+  Parameters
+  Form::parameters_with(const std::string &path, const double value)
   {
     const std::string own = this->value(path);
     try
     {
       declarations.set(path, to_text(value));
-      Scene scene = parameters.create_scene();
+      Parameters other = parameters;
       declarations.set(path, own);
-      return scene;
+      return other;
     }
     catch (const InputError &)
     {

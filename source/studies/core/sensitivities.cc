@@ -4,6 +4,8 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/accuracy_rule.h>
 #include <crawler/run/result_table.h>
+#include <crawler/studies/core/answer_differences.h>
+#include <crawler/studies/core/differentiated_numbers.h>
 #include <crawler/studies/core/sensitivities.h>
 
 #include <algorithm>
@@ -12,36 +14,41 @@
 
 namespace crawler
 {
+  using namespace accuracy_rule::sensitivities;
+
   namespace
   {
-    /// Relative to the entry.
+    /// Relative to the entry, for the forces at the points.
     constexpr double step = 1e-3;
 
     /// An entry, and the scenes in which it differs a little.
     struct Varied
     {
       EntrySensitivity sensitivity;
+      VariedAnswers answers;     ///< what makes the scenes
       std::vector<Scene> scenes; ///< four, or none if there is a reason
-      double step;
       bool is_one_sided = false;
     };
 
     /// The scenes in which an entry has other values, to one side if it is at a limit. An error in one of them is a
-    /// reason.
+    /// reason. @p step: between the values, relative.
     Varied
-    vary(Form &form, const Scene &scene, const std::string &entry)
+    vary(Form &form, const Scene &scene, const std::string &entry, const double step)
     {
       const double value = *to_number(form.value(entry)), d = value != 0. ? step * std::abs(value) : step;
-      Varied one{{entry, value, {}, {}, ""}, {}, d};
-      const std::array<int, 4> around = {{-2, -1, 1, 2}}, above = {{1, 2, 3, 4}}, below = {{-1, -2, -3, -4}};
+      Varied one{{entry, value, {}, {}, ""}, {}, {}};
+      const std::vector<int> around = {-2, -1, 1, 2}, above = {1, 2, 3, 4}, below = {-1, -2, -3, -4};
       for (const auto &places : {around, above, below})
         try
         {
           one.scenes.clear();
+          one.answers = {{}, places, places == below ? -d : d};
           for (const int i : places)
-            one.scenes.push_back(form.scene_with(entry, value + i * d));
+          {
+            one.answers.parameters.push_back(form.parameters_with(entry, value + i * d));
+            one.scenes.push_back(one.answers.parameters.back().create_scene());
+          }
           one.is_one_sided = places != around;
-          one.step         = places == below ? -d : d;
           one.sensitivity.reason.clear();
           for (const Scene &other : one.scenes)
             if (!have_similar_breaks(scene, other))
@@ -59,24 +66,6 @@ namespace crawler
         one.scenes.clear();
       return one;
     }
-
-    /// A quantity in the result table.
-    struct Number
-    {
-      const char *key;
-      double (*of)(const SimulationResult &);
-    };
-
-    /// In the order of all_quantities.
-    constexpr std::array<Number, all_quantities.size()> numbers = {{
-      {"displacement", [](const SimulationResult &result) { return result.displacement; }},
-      {"stress_power", [](const SimulationResult &result) { return result.energy_balance->stress_work; }},
-      {"dissipation", [](const SimulationResult &result) { return result.energy_balance->dissipation; }},
-      {"positive_power", [](const SimulationResult &result) { return result.energy_balance->positive_work; }},
-      {"paper_energy", [](const SimulationResult &result) { return result.energy_balance->paper_energy(); }},
-      {"gait.displacement", [](const SimulationResult &result) { return result.gait->displacement; }},
-      {"gait.speed", [](const SimulationResult &result) { return result.gait->speed(); }},
-    }};
 
     std::vector<Quantity>
     quantities_for(const Parameters &parameters, const SimulationResult &result)
@@ -97,7 +86,6 @@ namespace crawler
         const SimulationResult &result,
         const double accuracy)
     {
-      using namespace accuracy_rule::sensitivities;
       if (!values[0] || !finer[0])
       {
         entry.reason =
@@ -109,12 +97,12 @@ namespace crawler
       {
         if (!values[i] || !finer[i])
           continue;
-        const double number = std::abs(numbers[i].of(result)), size = std::abs(*values[i]);
+        const double number = std::abs(differentiated_numbers[i].of(result)), size = std::abs(*values[i]);
         // Works are less accurate than the displacement, in units of what is exchanged.
         const bool of_work = is_work(all_quantities[i]);
         const double scale = of_work ? std::max(number, result.energy_balance->exchanged_work) : number;
         const double of_number =
-          i == 0 ? 0. : error_bound(result, numbers[i].key).value_or(0.) / std::max(scale, 1e-300);
+          i == 0 ? 0. : error_bound(result, differentiated_numbers[i].key).value_or(0.) / std::max(scale, 1e-300);
         const double by_size  = entry.at != 0. ? scale / std::abs(entry.at) : scale;
         const double promised = all_quantities[i] == Quantity::positive_work ? promised_factor_of_positive_work
                                 : of_work                                    ? promised_factor_of_works
@@ -127,21 +115,10 @@ namespace crawler
           entry.error = error;
         }
         else
-          entry.others.push_back({numbers[i].key, *values[i], error});
+          entry.others.push_back({differentiated_numbers[i].key, *values[i], error});
       }
     }
   } // namespace
-
-  const std::array<const char *, all_quantities.size()> &
-  differentiated_numbers()
-  {
-    static const auto keys = []() {
-      std::array<const char *, all_quantities.size()> list;
-      std::ranges::transform(numbers, list.begin(), &Number::key);
-      return list;
-    }();
-    return keys;
-  }
 
   LocalSensitivity
   find_sensitivities(Form &form,
@@ -152,30 +129,35 @@ namespace crawler
                      const std::function<bool()> &keep_going)
   {
     const Parameters &parameters = form.parameters;
-    LocalSensitivity local;
-    const std::string reason = RecordedRun::reason_against(scene, parameters.time, choice.numerics);
-    std::vector<Varied> varied;
-    for (const SensitivityEntry &entry : entries)
-    {
-      if (reason.empty())
-        varied.push_back(vary(form, scene, entry.path));
-      else
-        varied.push_back({{entry.path, 0., {}, {}, reason}, {}, 0.});
-      varied.back().sensitivity.standard_deviation = entry.standard_deviation(*to_number(form.value(entry.path)));
-    }
-    std::vector<Variation> variations;
-    std::vector<EntrySensitivity *> known;
-    for (Varied &one : varied)
-      if (!one.scenes.empty())
+    const double D               = std::abs(result.displacement);
+    const double accuracy =
+      choice.is_users && result.error ? result.error->total / std::max(D, 1e-300) : parameters.accuracy;
+    const auto varied_by = [&](const double step) {
+      std::vector<Varied> varied;
+      for (const SensitivityEntry &entry : entries)
       {
-        const auto &scenes = one.scenes;
-        variations.push_back({{{&scenes[0], &scenes[1], &scenes[2], &scenes[3]}}, one.step, one.is_one_sided});
-        known.push_back(&one.sensitivity);
+        varied.push_back(vary(form, scene, entry.path, step));
+        varied.back().sensitivity.standard_deviation = entry.standard_deviation(varied.back().sensitivity.at);
       }
-    try
-    {
-      if (reason.empty())
+      return varied;
+    };
+    LocalSensitivity local;
+    std::vector<Varied> varied;
+    bool has_adjoint = RecordedRun::reason_against(scene, parameters.time, choice.numerics).empty();
+    if (has_adjoint)
+      try
       {
+        varied = varied_by(step);
+        std::vector<Variation> variations;
+        std::vector<EntrySensitivity *> known;
+        for (Varied &one : varied)
+          if (!one.scenes.empty())
+          {
+            const auto &scenes = one.scenes;
+            variations.push_back(
+              {{{&scenes[0], &scenes[1], &scenes[2], &scenes[3]}}, one.answers.step, one.is_one_sided});
+            known.push_back(&one.sensitivity);
+          }
         const RecordedRun run(scene, parameters.time, choice.numerics, keep_going);
         const std::vector<Quantity> quantities = quantities_for(parameters, result);
         RunGradient gradient(run);
@@ -187,17 +169,25 @@ namespace crawler
                                     numerics_of_finer_run(choice, parameters.time, scene, /*cycles_repeat=*/false),
                                     keep_going);
         const auto finer_values = RunGradient(finer_run).derivatives(variations, quantities);
-        const double D          = std::abs(result.displacement);
-        const double accuracy =
-          choice.is_users && result.error ? result.error->total / std::max(D, 1e-300) : parameters.accuracy;
         for (std::size_t i = 0; i < known.size(); ++i)
           set(*known[i], values[i], finer_values[i], result, accuracy);
       }
-    }
-    catch (const std::exception &error) // the run itself is there; for want of memory, perhaps
+      catch (const std::exception &) // the engine gave up a step, say
+      {
+        has_adjoint = false;
+        local       = {};
+      }
+    if (!has_adjoint)
     {
-      for (EntrySensitivity *one : known)
-        one->reason = error.what();
+      const double apart = step_of_differences(accuracy);
+      varied             = varied_by(apart);
+      for (Varied &one : varied)
+        if (!one.scenes.empty() && !differentiate_answers(std::move(one.answers), result, one.sensitivity, keep_going))
+        {
+          VariedAnswers closer = vary(form, scene, one.sensitivity.entry, closer_answers * apart).answers;
+          if (!differentiate_answers(std::move(closer), result, one.sensitivity, keep_going))
+            one.sensitivity.reason = "the displacement has a kink there, or changes a lot between values that are near";
+        }
     }
     for (Varied &one : varied)
       result.sensitivities.push_back(std::move(one.sensitivity));

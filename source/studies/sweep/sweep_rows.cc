@@ -4,7 +4,7 @@
 #include <crawler/base/versions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/result_table.h>
-#include <crawler/studies/core/sensitivities.h>
+#include <crawler/studies/core/differentiated_numbers.h>
 #include <crawler/studies/core/table_csv.h>
 #include <crawler/studies/sweep/point_table.h>
 #include <crawler/studies/sweep/sweep_rows.h>
@@ -97,7 +97,7 @@ namespace crawler
       if (!entry.of_process)
         columns.push_back({entry.key, entry.unit, entry.meaning, entry.is_word ? word_width : 0});
     for (const SensitivityEntry &entry : points.sensitivities())
-      for (const char *number : differentiated_numbers())
+      for (const auto &[number, of] : differentiated_numbers)
       {
         const std::string key = fmt::format(
           "sensitivities.{}.{}", entry.path, number == std::string("displacement") ? "" : std::string(number) + ".");
@@ -106,7 +106,7 @@ namespace crawler
         columns.push_back({key + "error", unit, "its error bound", 0});
       }
     if (are_uncertain(points.sensitivities()))
-      for (const char *number : differentiated_numbers())
+      for (const auto &[number, of] : differentiated_numbers)
         columns.push_back({std::string("uncertainty.") + number,
                            unit_of(number),
                            std::string("standard deviation of ") + number + " by that of uncertain entries",
@@ -159,7 +159,7 @@ namespace crawler
       row.emplace_back(std::in_place_type<double>, value.value_or(not_known));
     };
     for (const SensitivityEntry &entry : sensitivities)
-      for (const char *number : differentiated_numbers())
+      for (const auto &[number, of] : differentiated_numbers)
       {
         const auto one   = std::ranges::find(result.sensitivities, entry.path, &EntrySensitivity::entry);
         const auto known = one != result.sensitivities.end() ? one->of(number) : std::nullopt;
@@ -167,7 +167,7 @@ namespace crawler
         add(known ? std::optional(known->error) : std::nullopt);
       }
     if (are_uncertain(sensitivities))
-      for (const char *number : differentiated_numbers())
+      for (const auto &[number, of] : differentiated_numbers)
         add(result.standard_deviation(number));
     row.insert(row.end(), {task.seconds, status.reason, shortened(status.message, message_width), status.status});
     return row;

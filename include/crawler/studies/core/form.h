@@ -20,9 +20,9 @@ namespace crawler
     std::string
     value(const std::string &path) const;
 
-    /// The scene in which a number is another one; the form is as before. Throws InputError.
-    Scene
-    scene_with(const std::string &path, double value);
+    /// The parameters with another number; the form is as before. Throws InputError.
+    Parameters
+    parameters_with(const std::string &path, double value);
 
     Parameters parameters;
     Declarations declarations; ///< its entries are the members of parameters

@@ -5,20 +5,16 @@
 #include <crawler/adjoint/run_gradient.h>
 #include <crawler/studies/core/sensitivity_entries.h>
 
-#include <array>
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace crawler
 {
-  /// What is differentiated, by the keys of the result table; the displacement is the first.
-  const std::array<const char *, all_quantities.size()> &
-  differentiated_numbers();
-
   /**
    * The derivatives of displacement and works by @p entries, with the numerics of a finished run, into its @p result,
-   * in the same order; their errors from the same with the numerics of the finer run. @p scene is the one of @p form.
+   * in the same order; their errors from the same with the numerics of the finer run. Where there is no adjoint they
+   * are differences of answers (answer_differences.h). @p scene is the one of @p form.
    * An entry whose derivatives cannot be found has a reason instead. Returns where and when it matters, empty if that
    * is not known.
    */
