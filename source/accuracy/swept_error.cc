@@ -21,7 +21,7 @@ namespace crawler
   {
     using namespace accuracy_rule;
     if (result.time.status != Status::finished || !result.error || !std::isfinite(result.error->total) ||
-        result.cycles || !RecordedRun::reason_against(scene, parameters.time, choice.numerics).empty() ||
+        result.cycles || !RecordedRun::is_possible(scene, parameters.time, choice.numerics) ||
         static_cast<double>(result.time.steps) * result.most_cells > sweep::most_work)
       return;
     DisplacementError &error = *result.error;

@@ -16,26 +16,14 @@ namespace crawler
     }
   } // namespace
 
-  std::string
-  RecordedRun::reason_against(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
+  bool
+  RecordedRun::is_possible(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {
-    if (numerics.linear)
-      return "the displacement of the linear level is 0";
-    if (numerics.formulation != Formulation::position)
-      return "they are not there for the stretch form, which computes this scene";
-    if (scene.profiles.initial_stretch)
-      return "they are not there for an initial stretch";
-    if (const StretchFeedback *feedback = scene.active_stress->feedback();
-        feedback != nullptr && (feedback->sees_near() || feedback->delay() > 0.))
-      return "they are not there for feedback by sensors elsewhere or with a delay";
-    if (scene.active_stress->feedback() != nullptr &&
-        !TimeSegments(*scene.active_stress, scene.end_time).breaks().empty())
-      return "they are not there for feedback to an active stress that jumps in time";
-    if (numerics.jumps_move)
-      return "they are not there for jumps of the active stress that move";
-    if (!batch_method(scene, time, numerics))
-      return "they need the fused engine: radau, and a mesh that does not change";
-    return "";
+    const StretchFeedback *feedback = scene.active_stress->feedback();
+    const bool is_from_here         = feedback == nullptr || !(feedback->sees_near() || feedback->delay() > 0.);
+    return !numerics.linear && numerics.formulation == Formulation::position && !numerics.jumps_move &&
+           !scene.profiles.initial_stretch && is_from_here && batch_method(scene, time, numerics) &&
+           (feedback == nullptr || TimeSegments(*scene.active_stress, scene.end_time).breaks().empty());
   }
 
   RecordedRun::RecordedRun(const Scene &its_scene,

@@ -5,19 +5,19 @@
 #include <crawler/run/simulation.h>
 
 #include <functional>
-#include <string>
 
 namespace crawler
 {
   /// A run in the position form by the fused engine, with all its steps: what an adjoint goes through backwards.
   struct RecordedRun
   {
-    /// Why there is none for these scenes and settings; empty if there is.
-    static std::string
-    reason_against(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
+    /// Is there one for this scene and these settings? Not for the linear level, the stretch form, an initial stretch,
+    /// jumps that move, feedback from elsewhere or to what jumps in time, and what the fused engine does not compute.
+    static bool
+    is_possible(const Scene &scene, const TimeParameters &time, const Numerics &numerics);
 
-    /// Makes the run. Throws std::runtime_error if it does not finish. The scene must outlive it, and there must be no
-    /// reason against it.
+    /// Makes the run. Throws std::runtime_error if it does not finish. The scene must outlive it; only if it
+    /// is_possible().
     RecordedRun(const Scene &scene,
                 const TimeParameters &time,
                 const Numerics &numerics,

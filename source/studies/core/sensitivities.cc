@@ -143,7 +143,7 @@ namespace crawler
     };
     LocalSensitivity local;
     std::vector<Varied> varied;
-    bool has_adjoint = RecordedRun::reason_against(scene, parameters.time, choice.numerics).empty();
+    bool has_adjoint = RecordedRun::is_possible(scene, parameters.time, choice.numerics);
     if (has_adjoint)
       try
       {
