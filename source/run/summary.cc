@@ -84,15 +84,16 @@ namespace crawler
       for (const EntrySensitivity &one : result.sensitivities)
         width = std::max(width, one.entry.size());
       for (const EntrySensitivity &one : result.sensitivities)
-        lines.push_back(one.value ? fmt::format("    {:<{}}  {:12.6g} +- {:.2g}{}",
-                                                one.entry,
-                                                width,
-                                                *one.value,
-                                                one.error.value_or(std::numeric_limits<double>::quiet_NaN()),
-                                                result.displacement != 0. && one.at != 0.
-                                                  ? fmt::format("  {:8.3g} %", one.elasticity(result.displacement))
-                                                  : "")
-                                  : fmt::format("    {:<{}}  not known: {}", one.entry, width, one.reason));
+        lines.push_back(one.value
+                          ? fmt::format("    {:<{}}  {:12.6g} +- {:.2g}{}",
+                                        one.entry,
+                                        width,
+                                        *one.value,
+                                        one.error.value_or(std::numeric_limits<double>::quiet_NaN()),
+                                        result.displacement != 0. && one.at != 0. && std::abs(*one.value) > one.error
+                                          ? fmt::format("  {:8.3g} %", one.elasticity(result.displacement))
+                                          : "")
+                          : fmt::format("    {:<{}}  not known: {}", one.entry, width, one.reason));
       if (const auto deviation = result.standard_deviation("displacement"))
         lines.push_back(fmt::format(
           "  uncertain entries make the displacement uncertain by {:.2g} (standard deviation)", *deviation));

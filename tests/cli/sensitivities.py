@@ -9,9 +9,11 @@ import csv
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 import matplotlib.image
 import numpy as np
@@ -91,6 +93,25 @@ def answers_without_adjoint(folder):
     difference = (sides[1]["displacement"] - sides[0]["displacement"]) / 0.04
     expect(abs(found["value"] - difference) < 0.02 * abs(difference) and found["error"] < 0.02 * abs(difference),
            f"a soft body: {found}, but {difference} by runs")
+    # A kink beside the value, that both differences jump over.
+    _, summary = crawler(folder, WAVE, "Body/Elastic modulus=1000", f"{CHI}=0.4995", "Accuracy=1e-4",
+                         "Discretization/Formulation=stretch", f"Output/Sensitivities={CHI}")
+    found = summary["sensitivities"][CHI]
+    expect(found["value"] is None or abs(found["value"] - 2.2376) <= found["error"], f"beside a kink: {found}")
+    # A signal comes while they are computed.
+    feedback = (pathlib.Path(__file__).resolve().parents[2] / "prm/examples/feedback.prm").read_text(encoding="utf-8")
+    (folder / "feedback.prm").write_text(feedback, encoding="utf-8")
+    run = subprocess.Popen([sys.argv[1], "run", folder / "feedback.prm", "--output", folder / "stopped", "--set",
+                            f"Output/Sensitivities={K}, {P}"], stdout=subprocess.PIPE, text=True, env=ENVIRONMENT)
+    for line in run.stdout:
+        if line.startswith("100 %") or "100 %" in line:
+            break
+    time.sleep(5)
+    run.send_signal(signal.SIGINT)
+    run.communicate()
+    summary = json.loads((folder / "stopped/summary.json").read_text(encoding="utf-8"))
+    expect(run.returncode == 5 and summary["status"] == "stopped" and summary["displacement"] is not None,
+           f"stopped while sensitivities are computed: {run.returncode}, {summary['status']}")
 
 
 def main():

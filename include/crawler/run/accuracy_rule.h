@@ -219,9 +219,9 @@ namespace crawler::accuracy_rule
     /// round-off of the differences by which dF/dp is found.
     inline constexpr double measured_factor = 2., promised_factor = 16., promised_factor_of_works = 40.,
                             promised_factor_of_positive_work = 160., round_off = 1e-10;
-    /// Where there is no adjoint answers are compared whose entries differ by this, relative; a change of the slope
-    /// between neighbours that is larger than this part of it may be a kink, which values closer by this factor tell.
-    inline constexpr double least_step_of_answers = 2e-3, largest_step_of_answers = 0.03, kink = 0.1,
+    /// Where there is no adjoint answers are compared whose entries differ by such a step, relative; a slope that
+    /// changes by more than this part of it as a kink's does is suspicious, and values closer by this factor decide.
+    inline constexpr double least_step_of_answers = 1e-3, largest_step_of_answers = 0.01, suspicious = 0.1,
                             closer_answers = 0.25;
   } // namespace sensitivities
 

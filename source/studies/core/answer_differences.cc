@@ -35,13 +35,17 @@ namespace crawler
     /// Weights of the middle and of the four places.
     using Weights = std::array<double, 5>;
 
+    /// Two estimates of the derivative, and what a kink adds to the second differences and a smooth function does not.
     struct Differences
     {
-      Weights fourth_order, second_order;
+      Weights value, coarse, kink;
     };
 
-    constexpr Differences central   = {{{0., 1. / 12., -8. / 12., 8. / 12., -1. / 12.}}, {{0., 0., -0.5, 0.5, 0.}}};
-    constexpr Differences one_sided = {{{-25. / 12., 4., -3., 4. / 3., -0.25}}, {{-1.5, 2., -0.5, 0., 0.}}};
+    constexpr Differences central = {{{0., 1. / 120., -8. / 15., 8. / 15., -1. / 120.}},
+                                     {{0., -1. / 8., 0., 0., 1. / 8.}},
+                                     {{-15. / 8., -1. / 16., 1., 1., -1. / 16.}}};
+    /// A kink cannot be told from one side.
+    constexpr Differences one_sided = {{{-25. / 12., 4., -3., 4. / 3., -0.25}}, {{-0.75, 0., 1., 0., -0.25}}, {}};
 
     using Values = std::array<Known, 5>;
 
@@ -56,25 +60,13 @@ namespace crawler
       }
       return sum;
     }
-
-    /// Second differences of smooth functions grow by 4 with twice the step, those of kinks by 2.
-    bool
-    has_kink(const Values &values, const double step)
-    {
-      using accuracy_rule::sensitivities::kink;
-      const Known near  = applied({{-2., 0., 1., 1., 0.}}, values, step),
-                  far   = applied({{-2., 1., 0., 0., 1.}}, values, step);
-      const Known slope = applied(central.second_order, values, step);
-      return std::abs(near.value) > 2. * near.error + kink * std::abs(slope.value) &&
-             std::abs(far.value) < 3. * std::abs(near.value);
-    }
   } // namespace
 
   double
   step_of_differences(const double relative_error)
   {
     using namespace accuracy_rule::sensitivities;
-    return std::clamp(std::cbrt(relative_error), least_step_of_answers, largest_step_of_answers);
+    return std::clamp(0.5 * std::cbrt(relative_error), least_step_of_answers, largest_step_of_answers);
   }
 
   bool
@@ -95,6 +87,8 @@ namespace crawler
       const SimulationResult &other = task.computed.result;
       if (task.error)
         sensitivity.reason = "a run with another value failed: " + failure_of(task.error).message;
+      else if (other.time.status == Status::stopped)
+        sensitivity.reason = "it was stopped before it was known";
       else if (other.time.status != Status::finished)
         sensitivity.reason = "a run with another value did not finish: " + other.time.message;
       else if (!other.error || !std::isfinite(other.error->total))
@@ -102,6 +96,7 @@ namespace crawler
       if (!sensitivity.reason.empty())
         return true;
     }
+    using accuracy_rule::sensitivities::suspicious;
     const bool is_central          = varied.places.front() < 0 && varied.places.back() > 0;
     const Differences &differences = is_central ? central : one_sided;
     for (std::size_t number = 0; number < differentiated_numbers.size(); ++number)
@@ -113,20 +108,21 @@ namespace crawler
       values[0] = known(result, number);
       for (std::size_t i = 0; i < tasks.size(); ++i)
         values[i + 1] = known(tasks[i].computed.result, number);
-      if (number == 0 && is_central && has_kink(values, varied.step))
+      const Known value  = applied(differences.value, values, varied.step),
+                  coarse = applied(differences.coarse, values, varied.step),
+                  kink   = applied(differences.kink, values, varied.step);
+      if (number == 0 && std::abs(kink.value) > 2. * kink.error + suspicious * std::abs(value.value))
         return false;
-      const Known fourth = applied(differences.fourth_order, values, varied.step),
-                  second = applied(differences.second_order, values, varied.step);
-      const double error = fourth.error + std::abs(fourth.value - second.value);
+      const double error = value.error + std::abs(value.value - coarse.value) + std::abs(kink.value);
       if (!std::isfinite(error))
         continue;
       if (number == 0)
       {
-        sensitivity.value = fourth.value;
+        sensitivity.value = value.value;
         sensitivity.error = error;
       }
       else
-        sensitivity.others.push_back({differentiated_numbers[number].key, fourth.value, error});
+        sensitivity.others.push_back({differentiated_numbers[number].key, value.value, error});
     }
     if (!sensitivity.value)
       sensitivity.reason = "the error of the displacement is not known";

@@ -31,13 +31,15 @@ namespace crawler
     };
 
     /// The scenes in which an entry has other values, to one side if it is at a limit. An error in one of them is a
-    /// reason. @p step: between the values, relative.
+    /// reason. @p step: between the values, relative; @p both_sides: where they are, in steps.
     Varied
-    vary(Form &form, const Scene &scene, const std::string &entry, const double step)
+    vary(
+      Form &form, const Scene &scene, const std::string &entry, const double step, const std::array<int, 4> &both_sides)
     {
       const double value = *to_number(form.value(entry)), d = value != 0. ? step * std::abs(value) : step;
       Varied one{{entry, value, {}, {}, ""}, {}, {}};
-      const std::vector<int> around = {-2, -1, 1, 2}, above = {1, 2, 3, 4}, below = {-1, -2, -3, -4};
+      const std::vector<int> around(both_sides.begin(), both_sides.end()), above = {1, 2, 3, 4},
+                                                                           below = {-1, -2, -3, -4};
       for (const auto &places : {around, above, below})
         try
         {
@@ -132,11 +134,11 @@ namespace crawler
     const double D               = std::abs(result.displacement);
     const double accuracy =
       choice.is_users && result.error ? result.error->total / std::max(D, 1e-300) : parameters.accuracy;
-    const auto varied_by = [&](const double step) {
+    const auto varied_by = [&](const double step, const std::array<int, 4> &both_sides) {
       std::vector<Varied> varied;
       for (const SensitivityEntry &entry : entries)
       {
-        varied.push_back(vary(form, scene, entry.path, step));
+        varied.push_back(vary(form, scene, entry.path, step, both_sides));
         varied.back().sensitivity.standard_deviation = entry.standard_deviation(varied.back().sensitivity.at);
       }
       return varied;
@@ -147,7 +149,7 @@ namespace crawler
     if (has_adjoint)
       try
       {
-        varied = varied_by(step);
+        varied = varied_by(step, {{-2, -1, 1, 2}});
         std::vector<Variation> variations;
         std::vector<EntrySensitivity *> known;
         for (Varied &one : varied)
@@ -180,11 +182,12 @@ namespace crawler
     if (!has_adjoint)
     {
       const double apart = step_of_differences(accuracy);
-      varied             = varied_by(apart);
+      varied             = varied_by(apart, around_answer);
       for (Varied &one : varied)
         if (!one.scenes.empty() && !differentiate_answers(std::move(one.answers), result, one.sensitivity, keep_going))
         {
-          VariedAnswers closer = vary(form, scene, one.sensitivity.entry, closer_answers * apart).answers;
+          VariedAnswers closer =
+            vary(form, scene, one.sensitivity.entry, closer_answers * apart, around_answer).answers;
           if (!differentiate_answers(std::move(closer), result, one.sensitivity, keep_going))
             one.sensitivity.reason = "the displacement has a kink there, or changes a lot between values that are near";
         }

@@ -241,8 +241,20 @@ namespace crawler
     check_identities(result, parameters);
     if (first && !shared && chosen)
       sweep_error(parameters, input.scene, *chosen, result, keep_going);
-    if (first && result.time.status == Status::finished && !input.sensitivities.empty())
-      add_sensitivities(input, *chosen, folder, result, keep_going);
+    if (first && !input.sensitivities.empty())
+    {
+      if (result.time.status == Status::finished) // by this rank alone
+        add_sensitivities(
+          input, *chosen, folder, result, [&]() { return !stop_signal.arrived_anywhere(MPI_COMM_SELF); });
+      else
+        log.warn("there are no sensitivities, since the run did not end as it should");
+      if (result.time.status == Status::finished && stop_signal.arrived_anywhere(MPI_COMM_SELF))
+      {
+        result.time.status  = Status::stopped;
+        result.time.reason  = "signal";
+        result.time.message = "stopped by a signal after the end of the run, before all sensitivities were known";
+      }
+    }
     if (result.time.status == Status::finished && parameters.error_estimate && !std::isfinite(result.error->total))
       log.warn("the error of the displacement is not known: the second run, which measures it, did not finish");
     report_unused_options(log);
