@@ -6,8 +6,6 @@
 #include <crawler/studies/core/differentiated_numbers.h>
 #include <crawler/time/failure.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
