@@ -13,8 +13,9 @@ namespace crawler
 {
   namespace
   {
-    /// Places or times between samples, where they are close.
-    constexpr unsigned int fine = 512;
+    /// Places or times between samples, where they are close; and how many of them apart smoothness shows, not
+    /// round-off.
+    constexpr unsigned int fine = 512, near = 4;
 
     /// Is one of @p breaks (ascending) between @p from and @p to?
     bool
@@ -162,13 +163,14 @@ namespace crawler
       double along   = 0.; ///< |m_s| between the breaks
 
     private:
-      /// The largest sixth difference of neighbours that are @p apart samples from each other.
+      /// The largest sixth difference of neighbours that are @p apart samples from each other, beginning every
+      /// few samples.
       double
       sixth_difference(const unsigned int n_points, const unsigned int apart) const
       {
         const double L = scene_.body.length;
         double found   = 0.;
-        for (unsigned int i = 0; i + 6 * apart <= n_points; ++i)
+        for (unsigned int i = 0; i + 6 * apart <= n_points; i += near)
         {
           const double *m         = m_.data() + i;
           const double difference = m[0] + m[6 * apart] - 6. * (m[apart] + m[5 * apart]) +
@@ -201,7 +203,6 @@ namespace crawler
           if (i > 0 && (in_space_.empty() || !any_between(in_space_, L * (i - 1) / n_points, L * i / n_points)))
             along = std::max(along, std::abs(m_[i] - m_[i - 1]) * n_points / L);
         }
-        constexpr unsigned int near = 4; // closer ones differ by round-off
         if (n_points == fine)
         {
           fine_difference_   = std::max(fine_difference_, sixth_difference(n_points, near));

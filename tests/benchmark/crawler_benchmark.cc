@@ -13,9 +13,8 @@
 //                        run/batch_baseline are without the newer instructions, run/batch_energy_balance is with the
 //                        energy balance.
 //   answer/run/1e-4 ...  What Accuracy delivers: choice of the settings, run with the energy balance, bounds of the
-//   errors
-//                        (set-up of all objects included). "ratio" is its time over that of run/fused, "bound" the
-//                        bound of the error; also for the cases stiff, a=-3, a=2 and fig2.
+//                        errors (set-up of all objects included). "ratio" is its time over that of run/fused, "bound"
+//                        the bound of the error; also for the cases stiff, a=-3, a=2 and fig2.
 //   case/fig2/1e-6/...   20 strides (T = 20), by petsc, fused and batch.
 //   case/stiff/1e-6/...  The stiff body (a = -1, chi = 0.3, k = 100).
 //   general/*/...        Bodies and grounds that are not plain, and the plain one, with one setting: one body (fused),

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace crawler
 {
@@ -70,13 +69,12 @@ namespace crawler
     }
 
     std::vector<Quantity>
-    quantities_for(const Parameters &parameters, const SimulationResult &result)
+    quantities_of(const SimulationResult &result)
     {
       std::vector<Quantity> list;
-      std::ranges::copy_if(all_quantities, std::back_inserter(list), [&](const Quantity quantity) {
-        return is_work(quantity) ? parameters.output.energy_balance
-                                 : quantity == Quantity::displacement || result.gait.has_value();
-      });
+      for (std::size_t i = 0; i < all_quantities.size(); ++i)
+        if (has_number(i, result))
+          list.push_back(all_quantities[i]);
       return list;
     }
 
@@ -161,7 +159,7 @@ namespace crawler
             known.push_back(&one.sensitivity);
           }
         const RecordedRun run(scene, parameters.time, choice.numerics, keep_going);
-        const std::vector<Quantity> quantities = quantities_for(parameters, result);
+        const std::vector<Quantity> quantities = quantities_of(result);
         RunGradient gradient(run);
         const auto values               = gradient.derivatives(variations, quantities);
         local                           = gradient.local();

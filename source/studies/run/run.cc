@@ -248,7 +248,8 @@ namespace crawler
           input, *chosen, folder, result, [&]() { return !stop_signal.arrived_anywhere(MPI_COMM_SELF); });
       else
         log.warn("there are no sensitivities, since the run did not end as it should");
-      if (result.time.status == Status::finished && stop_signal.arrived_anywhere(MPI_COMM_SELF))
+      if (result.time.status == Status::finished && stop_signal.arrived_anywhere(MPI_COMM_SELF) &&
+          std::ranges::any_of(result.sensitivities, [](const auto &one) { return !one.value; }))
       {
         result.time.status  = Status::stopped;
         result.time.reason  = "signal";
