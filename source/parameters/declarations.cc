@@ -47,7 +47,8 @@ namespace crawler
       std::function<bool(const std::string &)> match_;
     };
 
-    const std::string automatic = "automatic";
+    const std::string automatic         = "automatic";
+    constexpr unsigned int longest_list = 100000; ///< that a place in brackets makes
 
     std::optional<unsigned int>
     to_count(const std::string &text)
@@ -104,6 +105,26 @@ namespace crawler
     section_of(const std::vector<std::string> &words)
     {
       return fmt::format("{}", fmt::join(words.begin(), words.end() - 1, "/"));
+    }
+
+    /// The place, from 1 on, that the last word of a path names in a list; it is taken away. Nothing if it names none.
+    std::optional<std::size_t>
+    take_place(std::vector<std::string> &words)
+    {
+      std::string &last       = words.back();
+      const std::size_t start = last.find('[');
+      if (start == std::string::npos || !last.ends_with(']'))
+        return std::nullopt;
+      const auto place = to_count(last.substr(start + 1, last.size() - start - 2));
+      if (!place || *place < 1 || *place > longest_list)
+        throw InputError(
+          fmt::format("\"{}\" should name a number of a list, but a whole number from 1 to {} is expected "
+                      "in the brackets",
+                      path_text(words),
+                      longest_list),
+          path_text(words));
+      last = trimmed(last.substr(0, start));
+      return place;
     }
 
     template <typename Value>
@@ -315,10 +336,12 @@ namespace crawler
   {
     const bool may_be_empty    = value.empty();
     const std::string expected = "a list of numbers separated by commas";
-    return entry(
+    Entry result               = entry(
       name, value, may_be_empty ? expected + ", or nothing" : expected, unit, [may_be_empty](const std::string &text) {
         return may_be_empty && text.empty() ? std::optional(std::vector<double>()) : to_numbers(text);
       });
+    result.info_.is_list = true;
+    return result;
   }
 
   Declarations::Entry
@@ -381,10 +404,16 @@ namespace crawler
   void
   Declarations::set(const std::string &path, const std::string &value, const std::filesystem::path &folder)
   {
-    const std::vector<std::string> words = split_path(path);
-    const EntryInfo &entry               = find(words);
-    const std::string text               = with_absolute_name(path, value, folder);
-    bool is_admissible                   = true;
+    std::vector<std::string> words = split_path(path);
+    const auto place               = take_place(words);
+    const EntryInfo &entry         = find(words);
+    if (place)
+    {
+      set(entry.path, with_number(entry, *place, value));
+      return;
+    }
+    const std::string text = with_absolute_name(path, value, folder);
+    bool is_admissible     = true;
     enter_sections(words);
     try
     {
@@ -407,16 +436,67 @@ namespace crawler
                      entry.path);
   }
 
+  /// Of the list @p entry, in which a @p place is named.
+  std::vector<double>
+  Declarations::numbers_of(const EntryInfo &entry, const std::size_t place) const
+  {
+    if (!entry.is_list)
+      throw InputError(
+        fmt::format("\"{0}[{1}]\" names a number of a list, but \"{0}\" is {2}", entry.path, place, entry.expected),
+        entry.path);
+    const std::string text = value(entry.path);
+    return text.empty() ? std::vector<double>() : *to_numbers(text);
+  }
+
+  /// The list @p entry with another number at a @p place.
+  std::string
+  Declarations::with_number(const EntryInfo &entry, const std::size_t place, const std::string &value) const
+  {
+    std::vector<double> numbers = numbers_of(entry, place);
+    const auto number           = to_number(trimmed(value));
+    if (!number)
+      throw InputError(
+        fmt::format(
+          "\"{}[{}]\" is \"{}\", but a number is expected{}", entry.path, place, value, number_hint(trimmed(value))),
+        entry.path);
+    numbers.resize(std::max(numbers.size(), place));
+    numbers[place - 1] = *number;
+    std::vector<std::string> texts;
+    for (const double one : numbers)
+      texts.push_back(to_text(one));
+    return fmt::format("{}", fmt::join(texts, ", "));
+  }
+
   std::string
   Declarations::with_absolute_name(const std::string &path,
                                    const std::string &value,
                                    const std::filesystem::path &folder) const
   {
-    const EntryInfo &entry = find(split_path(path));
+    const EntryInfo &entry = info(path);
     const std::string text = trimmed(value);
     if (!entry.names_file || text.empty() || !text.ends_with(entry.file_ending))
       return text;
     return std::filesystem::absolute(folder / text).lexically_normal().string();
+  }
+
+  const EntryInfo &
+  Declarations::info(const std::string &path) const
+  {
+    std::vector<std::string> words = split_path(path);
+    take_place(words);
+    return find(words);
+  }
+
+  std::string
+  Declarations::value(const std::string &path) const
+  {
+    std::vector<std::string> words = split_path(path);
+    const auto place               = take_place(words);
+    const EntryInfo &entry         = find(words);
+    if (!place)
+      return value(static_cast<unsigned int>(&entry - entries_.data()));
+    const auto numbers = numbers_of(entry, *place);
+    return *place <= numbers.size() ? to_text(numbers[*place - 1]) : "0";
   }
 
   const EntryInfo &

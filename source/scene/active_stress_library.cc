@@ -114,6 +114,7 @@ namespace crawler
         {"segments", Segments::description, create<Segments, &P::segments>},
         {"strain feedback", StrainFeedback::description, create<StrainFeedback, &P::strain_feedback>},
         {"table", ActiveStressTable::description, create<ActiveStressTable, &P::table>},
+        {"modes", Modes::description, create<Modes, &P::modes>},
         {name_of_sum, Sum::description, create_sum},
       };
       return list;
@@ -163,6 +164,7 @@ namespace crawler
     library.add_parameters(declarations);
     strain_feedback.add_parameters(declarations);
     table.add_parameters(declarations);
+    modes.add_parameters(declarations);
   }
 
   std::unique_ptr<ActiveStress>

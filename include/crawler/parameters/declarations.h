@@ -50,6 +50,7 @@ namespace crawler
     std::string documentation;
     bool names_file         = false; ///< its value is, or may be, the name of a file that is read
     std::string file_ending = "";    ///< without it a value is not the name of a file
+    bool is_list            = false; ///< of numbers; "Section/Entry[2]" is the second of them
   };
 
   /**
@@ -129,15 +130,25 @@ namespace crawler
          const std::string &unit   = "",
          const std::string &ending = "");
 
-    /// Sets the entry with the full name @p path. Throws InputError (naming the entry, what was found and
-    /// what was expected, with the nearest names) if there is no such entry or the value does not fit. The name of a
-    /// file counts from @p folder; it is kept, and printed, as an absolute one.
+    /// Sets the entry with the full name @p path, or one number of a list, "Section/Entry[2]" (the numbers before it
+    /// that are not there become 0). Throws InputError (naming the entry, what was found and what was expected, with
+    /// the nearest names) if there is no such entry or the value does not fit. The name of a file counts from @p
+    /// folder; it is kept, and printed, as an absolute one.
     void
     set(const std::string &path, const std::string &value, const std::filesystem::path &folder = "");
 
     /// The value that set() would keep: the name of a file, if the entry names one, as an absolute one.
     std::string
     with_absolute_name(const std::string &path, const std::string &value, const std::filesystem::path &folder) const;
+
+    /// The present value of the entry @p path, or of a number of a list; "0" if the list is shorter. Throws InputError
+    /// as set() does.
+    std::string
+    value(const std::string &path) const;
+
+    /// The entry itself; of a number of a list, the list.
+    const EntryInfo &
+    info(const std::string &path) const;
 
     /// Throws InputError with the nearest names unless @p path is a declared section.
     void
@@ -181,6 +192,10 @@ namespace crawler
     /// Throws InputError with the nearest names if there is no such entry.
     const EntryInfo &
     find(const std::vector<std::string> &path) const;
+    std::vector<double>
+    numbers_of(const EntryInfo &entry, std::size_t place) const;
+    std::string
+    with_number(const EntryInfo &entry, std::size_t place, const std::string &value) const;
     [[noreturn]] void
     refuse_name(const std::vector<std::string> &path) const;
 

@@ -4,6 +4,7 @@
 #include <crawler/scene/active_stress.h>
 #include <crawler/scene/active_stress/expression.h>
 #include <crawler/scene/active_stress/library.h>
+#include <crawler/scene/active_stress/modes.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
 #include <crawler/scene/active_stress/pulse.h>
@@ -38,6 +39,7 @@ namespace crawler
     LibraryParameters library;
     StrainFeedbackParameters strain_feedback;
     TableParameters table;
+    ModesParameters modes;
     SumParameters sum;
 
     void

@@ -31,7 +31,7 @@ namespace crawler
   {
     const std::string stress = "Active stress/", optimal = stress + "Optimal wave/",
                       travel = stress + "Travelling wave/", stand = stress + "Standing wave/",
-                      strain          = stress + "Prescribed strain/";
+                      strain = stress + "Prescribed strain/", modes = stress + "Modes/";
     const auto &wave                  = p.active_stress.optimal_wave;
     const auto &travelling            = p.active_stress.travelling_wave;
     const std::string &travel_profile = travelling.profile.profile,
@@ -59,6 +59,9 @@ namespace crawler
       {travel, {"Front width"}, "Profile", travel_profile, {"smoothed square"}},
       {stand, {"Duty cycle"}, "Profile", stand_profile, {"square", "smoothed square"}},
       {stand, {"Front width"}, "Profile", stand_profile, {"smoothed square"}},
+      {modes, {"Wave speed"}, "In time", p.active_stress.modes.in_time, {"travelling"}},
+      {modes, {"Period", "Time harmonics"}, "In time", p.active_stress.modes.in_time, {"harmonics"}},
+      {modes, {"Time cells"}, "In time", p.active_stress.modes.in_time, {"splines"}},
       {"Time/", {"Order"}, "Integrator", p.time.integrator, {"bdf", "automatic"}},
       {"Output/", {"Ledger tolerance"}, "Ledger", p.output.energy_balance ? "true" : "false", {"true"}},
     };

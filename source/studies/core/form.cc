@@ -2,7 +2,6 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/core/form.h>
 
-#include <algorithm>
 
 namespace crawler
 {
@@ -28,18 +27,10 @@ namespace crawler
         declarations.set(assignment.path, assignment.value, assignment.folder);
   }
 
-  std::string
-  Form::value(const std::string &path) const
-  {
-    const auto &entries = declarations.entries();
-    const auto entry    = std::ranges::find(entries, path, &EntryInfo::path);
-    return declarations.value(static_cast<unsigned int>(entry - entries.begin()));
-  }
-
   Parameters
   Form::parameters_with(const std::string &path, const double value)
   {
-    const std::string own = this->value(path);
+    const std::string own = declarations.value(path);
     try
     {
       declarations.set(path, to_text(value));

@@ -91,7 +91,7 @@ namespace crawler
         notes.push_back(note);
       auto sensitivities = sensitivity_entries(form);
       for (const SensitivityEntry &one : sensitivities)
-        if (one.is_part && to_number(form.value(one.path)) == 0.)
+        if (one.is_part && to_number(form.declarations.value(one.path)) == 0.)
           throw InputError(
             fmt::format("Uncertainty has {:g} % of \"{}\", but that is 0; a number without % is expected",
                         100. * one.deviation,

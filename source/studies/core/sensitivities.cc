@@ -35,7 +35,7 @@ namespace crawler
     vary(
       Form &form, const Scene &scene, const std::string &entry, const double step, const std::array<int, 4> &both_sides)
     {
-      const double value = *to_number(form.value(entry)), d = value != 0. ? step * std::abs(value) : step;
+      const double value = *to_number(form.declarations.value(entry)), d = value != 0. ? step * std::abs(value) : step;
       Varied one{{entry, value, {}, {}, ""}, {}, {}};
       const std::vector<int> around(both_sides.begin(), both_sides.end()), above = {1, 2, 3, 4},
                                                                            below = {-1, -2, -3, -4};

@@ -93,12 +93,9 @@ namespace crawler
     std::vector<RowFile::Column> columns   = {{"index", "1", "number of the point", 0}};
     for (const SweepAxis &axis : design.axes())
     {
-      std::string unit;
-      for (const EntryInfo &entry : declarations.entries())
-        if (entry.path == axis.entry)
-          unit = entry.unit;
-      bool is_number     = true;
-      std::size_t widest = 1;
+      const std::string unit = axis.is_file() ? "" : declarations.info(axis.entry).unit;
+      bool is_number         = true;
+      std::size_t widest     = 1;
       for (const std::string &value : axis.values)
       {
         is_number = is_number && to_number(value).has_value();

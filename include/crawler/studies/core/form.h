@@ -16,10 +16,6 @@ namespace crawler
     explicit Form(const ParameterFile &file, const ParameterFile *scene = nullptr);
     Form(const Form &) = delete;
 
-    /// Of an entry that there is.
-    std::string
-    value(const std::string &path) const;
-
     /// The parameters with another number; the form is as before. Throws InputError.
     Parameters
     parameters_with(const std::string &path, double value);

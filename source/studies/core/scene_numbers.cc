@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
+#include <crawler/studies/core/entry_rules.h>
+#include <crawler/studies/core/scene_numbers.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace crawler
+{
+  SceneNumbers::SceneNumbers(const Form &form)
+    : declarations_(form.declarations)
+  {
+    const auto rules = entry_rules(form.parameters);
+    for (unsigned int i = 0; i < declarations_.entries().size(); ++i)
+    {
+      const EntryInfo &entry = declarations_.entries()[i];
+      const bool is_of_scene = entry.path.starts_with("Body/") || entry.path.starts_with("Ground/") ||
+                               entry.path.starts_with("Active stress/") || entry.path == "Time/End time";
+      if (!is_of_scene || entry.expected.find("number") == std::string::npos ||
+          entry.expected.starts_with("a whole number"))
+        continue;
+      const std::string value = declarations_.value(i);
+      std::vector<std::string> paths;
+      if (entry.is_list)
+        for (std::size_t n = 1; n <= 1u + static_cast<std::size_t>(std::ranges::count(value, ',')) && !value.empty();
+             ++n)
+          paths.push_back(fmt::format("{}[{}]", entry.path, n));
+      else if (to_number(value))
+        paths.push_back(entry.path);
+      all_.insert(all_.end(), paths.begin(), paths.end());
+      if (std::ranges::none_of(rules, [&](const EntryRule &rule) { return rule.is_against(entry.path); }))
+        effective_.insert(effective_.end(), paths.begin(), paths.end());
+    }
+  }
+
+  std::string
+  SceneNumbers::find(const std::string &name, const std::string &own, const std::string &or_else) const
+  {
+    const std::string path = normal_path(name);
+    const auto word        = own.substr(own.rfind('/') + 1);
+    const auto is_in       = [&](const std::vector<std::string> &list) {
+      if (std::ranges::find(list, path) != list.end())
+        return true;
+      // A number behind those that a list has now.
+      const std::string first = path.substr(0, path.find('[')) + "[1]";
+      return path.ends_with(']') && std::ranges::find(list, first) != list.end();
+    };
+    if (!is_in(all_))
+    {
+      const auto near = nearest_names(path, all_, 1);
+      throw InputError(
+        fmt::format("{} has \"{}\", but entries of the body, the ground, the active stress or the end time that are "
+                    "numbers are expected{}{}",
+                    word,
+                    trimmed(name),
+                    or_else,
+                    near.empty() ? "" : "; the nearest name is " + quoted_list(near)),
+        own);
+    }
+    if (!is_in(effective_))
+      throw InputError(fmt::format("{} has \"{}\", but that has no effect with the other settings; entries that have "
+                                   "one are expected",
+                                   word,
+                                   path),
+                       own);
+    declarations_.value(path); // throws if it names no place
+    return path;
+  }
+} // namespace crawler
