@@ -10,6 +10,7 @@
 #include <crawler/parameters/parameter_file.h>
 #include <crawler/studies/atlas/atlas.h>
 #include <crawler/studies/core/parameters.h>
+#include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/sweep/sweep.h>
 #include <crawler/studies/tradeoff/tradeoff.h>
@@ -170,6 +171,11 @@ namespace crawler
                                      tradeoff,
                                      /*writes=*/true,
                                      /*is_study=*/true},
+                                    {"optimize",
+                                     "Looks for the best gait of section Optimize of a parameter file",
+                                     optimize,
+                                     /*writes=*/true,
+                                     /*is_study=*/true},
                                     {"sweep",
                                      "Runs all points of section Sweep of a parameter file and makes a table of them",
                                      sweep,
@@ -189,7 +195,7 @@ namespace crawler
         own->add_flag("--resume",
                       options.resume,
                       fmt::format("Goes on with {} {} that was stopped or killed",
-                                  command.name[0] == 'a' ? "an" : "a",
+                                  command.name[0] == 'a' || command.name[0] == 'o' ? "an" : "a",
                                   command.name));
       if (command.function == sweep)
         own->add_flag("--strict", options.strict, "Exit code 8 if the row of a point failed");
@@ -247,7 +253,8 @@ namespace crawler
       const auto command = std::find_if(
         std::begin(commands), std::end(commands), [&](const Command &c) { return c.name == chosen->get_name(); });
       if (!petsc_options.empty() &&
-          (command == std::end(commands) || command->function == atlas || command->function == tradeoff))
+          (command == std::end(commands) || command->function == atlas || command->function == tradeoff ||
+           command->function == optimize))
         throw InputError(fmt::format("behind \"--\" stands \"{}\", but the command \"{}\" has no use for PETSc options",
                                      petsc_options[0],
                                      chosen->get_name()));

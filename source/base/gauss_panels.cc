@@ -100,6 +100,38 @@ namespace crawler
     }
   }
 
+  void
+  GaussPanels::running_integral_transposed(const std::span<const double> x, const std::span<double> result) const
+  {
+    double later = 0.; // x of the panels behind
+    for (std::size_t first = points_.size(); first > 0;)
+    {
+      first -= n;
+      double own = 0.;
+      for (unsigned int j = 0; j < n; ++j)
+      {
+        double sum = 0.;
+        for (unsigned int i = 0; i < n; ++i)
+          sum += reference().running[i][j] * x[first + i];
+        result[first + j] = size_ * sum + weights_[first + j] * later;
+        own += x[first + j];
+      }
+      later += own;
+    }
+  }
+
+  unsigned int
+  GaussPanels::number_ending_at(const std::vector<double> &places, const unsigned int n, const unsigned int most)
+  {
+    constexpr double round_off = 1e-9;
+    for (unsigned int factor = 1; factor <= most / n; ++factor)
+      if (std::ranges::all_of(places, [&](const double x) {
+            return std::abs(x * n * factor - std::round(x * n * factor)) < round_off * n * factor;
+          }))
+        return n * factor;
+    return n;
+  }
+
   GaussPanels::Places::Places(const GaussPanels &panels, const std::vector<double> &places)
     : panel_weights_(panels.weights_)
     , before_(panels.n_panels_)

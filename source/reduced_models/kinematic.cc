@@ -208,7 +208,9 @@ namespace crawler
     constexpr double floor = 1e-12, share = 0.25;
     constexpr unsigned int most_space = 1024, most_time = 1u << 17, most_in_all = 1u << 20;
     KinematicResult result;
-    unsigned int n_space = 2, n_time = 4;
+    constexpr unsigned int most_at_start = 128; // panels that end where the strain is not smooth
+    unsigned int n_space = GaussPanels::number_ending_at(scene.active_stress->breaks_in_space(), 2, most_at_start),
+                 n_time  = GaussPanels::number_ending_at(scene.active_stress->breaks_in_time(), 4, most_at_start);
     for (;;)
     {
       const Sums coarse  = integrate(scene, strain, n_space, n_time, keep_going);

@@ -44,6 +44,15 @@ namespace crawler
     void
     running_integral(std::span<const double> f, std::span<double> result) const;
 
+    /// The transpose of running_integral(): sum_i x_i (running integral of f)_i = sum_j result_j f_j.
+    void
+    running_integral_transposed(std::span<const double> x, std::span<double> result) const;
+
+    /// The least number of equal panels on [0, 1], a multiple of @p n, so that one of them ends at each of these places;
+    /// @p n if that would take more than @p most.
+    static unsigned int
+    number_ending_at(const std::vector<double> &places, unsigned int n, unsigned int most);
+
     /// The integrals from the left end to any places: prepared once, then a few products for each.
     class Places
     {

@@ -92,6 +92,9 @@ namespace crawler
                              "tradeoff.png",
                              "tradeoff.svg",
                              "recommendations.prm",
+                             "starts.csv",
+                             "optimum.prm",
+                             "optimize.png",
                              "reference.json"})
       fs::remove(folder / name, error);
     remove_fields(folder);

@@ -93,11 +93,55 @@ namespace crawler
   }
 
   void
+  OptimizeParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Optimize");
+    declarations.choice("Objective", objective, {"displacement", "speed", "cost of transport", "merit"})
+      .means("What is made as good as possible: the displacement; the speed of the last stride (of the whole duration "
+             "at the kinematic level); the work of the active stress per displacement; or the merit D/sqrt(W T/(gamma "
+             "L)), which does not depend on how fast the gait is.");
+    declarations.choice("Direction", direction, {"forward", "backward"})
+      .means("Where the body should go: forward is towards growing s.");
+    declarations.text("Variables", variables, "\"Section/Entry : FROM to TO\", several of them separated by semicolons")
+      .means("The numbers of the scene that vary, with their ranges. The values in this file are the start. Of a list, "
+             "Section/Entry[2] is the second number, [1-5] are the first five, each a variable, and [*] are all.");
+    declarations.numbers("Work", work, "energy")
+      .means("Largest work of the active stress over the duration. Nothing: no limit. Several numbers: an optimum for "
+             "each, which gives the displacement against the work.");
+    declarations.number("Positive work", positive_work, positive(), "energy")
+      .means("Largest positive work of the active stress, for actuators that cannot recover energy. Automatic: no limit.");
+    declarations.number("Smallest strain", smallest_strain, between(-1., 0.), "1")
+      .means("The strain w - 1 must be at least this. Automatic: no limit.");
+    declarations.number("Largest strain", largest_strain, positive(), "1")
+      .means("The strain w - 1 must be at most this. Automatic: no limit.");
+    declarations.number("Mean-square strain", mean_square_strain, positive(), "1")
+      .means("Largest mean over body and duration of the strain squared; at the kinematic level. Automatic: no limit.");
+    declarations.number("Largest stress", largest_stress, positive(), "force")
+      .means("The size of the active stress must be at most this. Automatic: no limit.");
+    declarations.number("Largest stress rate", largest_stress_rate, positive(), "force/time")
+      .means("The size of its rate must be at most this. Automatic: no limit.");
+    declarations.whole_number("Starts", n_starts, 1, 100000)
+      .means("Number of starts: the values in this file, and others at random about them. Ranks share the starts.");
+    declarations.number("Start spread", spread, between(0., 1.), "1")
+      .means("How far the other starts are from the values in this file, as a share of the ranges.");
+    declarations.whole_number("Seed", seed, 0, std::numeric_limits<unsigned int>::max())
+      .means("Of the random starts: the same seed gives the same starts.");
+    declarations.number("Tolerance", tolerance, between(1e-12, 0.1), "1")
+      .means("The optimiser stops when the gradient and the violation of limits, both relative, are below this.");
+    declarations.whole_number("Most iterations", most_iterations, 1, 1000000)
+      .means("Of the optimiser, for each start.");
+    declarations.number("Time limit", time_limit, positive(), "s")
+      .means("Wall time after which the best so far is the result; --resume goes on. Automatic: none.");
+    declarations.leave();
+  }
+
+  void
   Parameters::add_parameters(Declarations &declarations)
   {
     RunParameters::add_parameters(declarations);
     sweep.add_parameters(declarations);
     atlas.add_parameters(declarations);
     tradeoff.add_parameters(declarations);
+    optimize.add_parameters(declarations);
   }
 } // namespace crawler

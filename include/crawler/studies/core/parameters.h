@@ -59,12 +59,32 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
+  /// Section "Optimize": the gait that `crawler optimize` looks for (optimize_settings.h reads the variables).
+  struct OptimizeParameters
+  {
+    std::string objective = "displacement";
+    std::string direction = "forward";
+    std::string variables = "";
+    std::vector<double> work = {}; ///< one limit, or several [energy]
+    std::optional<double> positive_work, smallest_strain, largest_strain, mean_square_strain, largest_stress,
+      largest_stress_rate;
+    unsigned int n_starts = 1, seed = 1;
+    double spread                = 0.2; ///< of the starts, in ranges of the variables
+    double tolerance             = 1e-6;
+    unsigned int most_iterations = 200;
+    std::optional<double> time_limit; ///< [s]
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
   /// All sections of the parameter file: those of one run, and those of each study of many runs.
   struct Parameters : RunParameters
   {
     SweepParameters sweep;
     AtlasParameters atlas;
     TradeoffParameters tradeoff;
+    OptimizeParameters optimize;
 
     void
     add_parameters(Declarations &declarations);

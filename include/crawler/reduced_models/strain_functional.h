@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/gauss_panels.h>
+#include <crawler/scene/friction_law.h>
+#include <crawler/scene/strain_history.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace crawler
+{
+  /// A strain and its rate, or weights of them, on a grid: [time][point].
+  struct StrainSamples
+  {
+    std::vector<double> strain, rate;
+
+    void
+    resize(const std::size_t n)
+    {
+      strain.resize(n);
+      rate.resize(n);
+    }
+  };
+
+  /**
+   * Displacement and works of a body with a given strain (KinematicBody) by quadrature on a grid that stays as it is,
+   * and their derivatives by the strain: what gaits are optimised with. In natural units. With the weights a, b of a
+   * number a strain e + x changes it by sum a x + b x_t to first order, exactly for this quadrature: from
+   *
+   *   d<v> = <(1 - g/<g>) dB_t> - <g' v de>/<g>,   dQ = <g' v^2 de> + 2 <g v dB_t>,   B_t = int_0^s e_t ds,
+   *
+   * where running integrals are transposed (doc/theory.md, "Prescribed strain").
+   */
+  class StrainFunctional
+  {
+  public:
+    /// What is computed, over 0 <= t <= 1.
+    enum Number
+    {
+      displacement,
+      dissipation,
+      stress_work,
+      positive_work,
+      mean_square, ///< int int e^2 ds dt
+      n_numbers
+    };
+    using Values = std::array<double, n_numbers>;
+
+    StrainFunctional(unsigned int n_space_panels, unsigned int n_time_panels);
+
+    /// Times and points of the grid: those of the quadrature, and both ends.
+    const std::vector<double> &
+    points() const
+    {
+      return points_;
+    }
+    const std::vector<double> &
+    times() const
+    {
+      return times_;
+    }
+
+    StrainSamples
+    sample(const StrainHistory &history) const;
+
+    /// Nothing if a stretch is not positive. @p k: elastic modulus.
+    std::optional<Values>
+    values(const StrainSamples &samples, const FrictionLaw &friction, double k) const;
+
+    /// The weights of one number.
+    StrainSamples
+    weights(Number number, const StrainSamples &samples, const FrictionLaw &friction, double k) const;
+
+  private:
+    struct State;
+    void
+    evaluate(std::size_t time, const StrainSamples &samples, const FrictionLaw &friction, double k, State &state) const;
+
+    const GaussPanels space_, time_;
+    const std::size_t n_; ///< points of the quadrature over the body
+    std::vector<double> points_, times_, time_weights_;
+  };
+} // namespace crawler

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crawler
+{
+  /// What objective and limits of a gait are made of, in the user's units.
+  enum class GaitNumber
+  {
+    displacement,
+    work,          ///< of the active stress over the duration
+    positive_work, ///< the same
+    mean_square,   ///< of the strain
+    speed,
+    friction_time ///< T/(gamma L): the merit is D/sqrt(W T/(gamma L))
+  };
+  inline constexpr std::size_t n_gait_numbers = 6;
+
+  /// Numbers that are limited at many places, and their derivatives by the variables: [place][variable].
+  struct LimitedValues
+  {
+    std::vector<double> values;
+    std::shared_ptr<const std::vector<double>> jacobian; ///< if it was asked for
+  };
+
+  /// What a gait gives.
+  struct GaitValues
+  {
+    std::string problem; ///< in words; empty if all is well
+    std::array<double, n_gait_numbers> numbers{};
+    std::array<std::vector<double>, n_gait_numbers> gradients; ///< by the variables, if they were asked for
+    LimitedValues strain, stress, stress_rate;                 ///< of what is limited
+
+    double
+    number(const GaitNumber one) const
+    {
+      return numbers[static_cast<std::size_t>(one)];
+    }
+    const std::vector<double> &
+    gradient(const GaitNumber one) const
+    {
+      return gradients[static_cast<std::size_t>(one)];
+    }
+  };
+
+  /// Which of them are wanted.
+  struct GaitWishes
+  {
+    std::array<bool, n_gait_numbers> numbers{};
+    bool strain = false, stress = false, stress_rate = false;
+
+    bool
+    has(const GaitNumber one) const
+    {
+      return numbers[static_cast<std::size_t>(one)];
+    }
+  };
+
+  /// Computes gaits for the values of the variables, on some level of the model.
+  class GaitModel
+  {
+  public:
+    virtual ~GaitModel() = default;
+
+    /// A gait that cannot be computed (the body inverts, a formula has no value) has a problem. Throws Interrupted.
+    virtual GaitValues
+    evaluate(const std::vector<double> &x, bool with_gradients) = 0;
+
+    /// Looks at a result more closely: makes the grid finer if it was too coarse there. Returns whether it did, so that
+    /// the optimum is to be looked for once more.
+    virtual bool
+    refine(const std::vector<double> &x) = 0;
+
+    /// The smallest and the largest strain over body and duration, between the places where they are limited, too.
+    virtual std::pair<double, double>
+    extreme_strains(const std::vector<double> &x) = 0;
+
+    /// In words, for the log.
+    virtual std::string
+    description() const = 0;
+
+    /// The computation was stopped from outside.
+    struct Interrupted
+    {
+    };
+  };
+} // namespace crawler

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/studies/core/parameters.h>
+#include <crawler/studies/optimize/gait_model.h>
+#include <crawler/studies/optimize/optimize_settings.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// A limit, and what it costs.
+  struct GaitLimit
+  {
+    std::string name; ///< its entry in section Optimize
+    double value;     ///< in the user's units
+    double multiplier; ///< by how much the objective would become better for one unit more
+  };
+
+  /// What each evaluation gave: a row of the table.
+  struct GaitRecord
+  {
+    std::vector<double> x;
+    double objective; ///< in the user's units, not a number if there is a problem
+    std::array<double, n_gait_numbers> numbers;
+    double violation; ///< of the limit that is violated most, relative to it
+    std::string problem;
+  };
+
+  /**
+   * The optimisation as the optimiser sees it: minimise f(y) subject to lower <= c(y) <= upper and 0 <= y <= 1, all of
+   * size 1. y are the variables in their ranges; f is the objective over its size at the start, with the sign that makes
+   * it small; c are the limited numbers, each over its limit.
+   */
+  class GaitProblem
+  {
+  public:
+    /// @p work: the limit, if there is one. Throws InputError if the start has a problem; GaitModel::Interrupted,
+    /// as soon as @p stops says so.
+    GaitProblem(GaitModel &model,
+                const OptimizeParameters &parameters,
+                const std::vector<OptimizeVariable> &variables,
+                std::optional<double> work,
+                const std::vector<double> &start,
+                std::function<bool()> stops);
+
+    /// Of the numbers that objective and limits are made of.
+    static GaitWishes
+    wishes(const OptimizeParameters &parameters);
+
+    struct Point
+    {
+      double objective;
+      std::vector<double> gradient, constraints;
+      std::vector<std::vector<double>> rows; ///< of the Jacobian: those of limited works
+      std::vector<std::shared_ptr<const std::vector<double>>> blocks; ///< the others, unscaled
+    };
+    const Point &
+    at(const std::vector<double> &y, bool with_gradients);
+
+    std::size_t
+    n_rows() const
+    {
+      return number_limits_.size();
+    }
+    const std::vector<double> &
+    lower() const
+    {
+      return lower_;
+    }
+    const std::vector<double> &
+    upper() const
+    {
+      return upper_;
+    }
+
+    /// The Jacobian of c at the point times a vector, and its transpose.
+    void
+    apply_jacobian(const Point &point, const std::vector<double> &v, std::vector<double> &result) const;
+    void
+    apply_transposed(const Point &point, const std::vector<double> &v, std::vector<double> &result) const;
+
+    std::vector<double>
+    to_x(const std::vector<double> &y) const;
+    std::vector<double>
+    to_y(const std::vector<double> &x) const;
+
+    /// The best admissible point so far; if there is none, the one that violates the limits least.
+    const GaitRecord &
+    best() const;
+    const std::vector<GaitRecord> &
+    records() const
+    {
+      return records_;
+    }
+
+    /// The limits, by the multipliers of c.
+    std::vector<GaitLimit>
+    limits(const std::vector<double> &multipliers) const;
+
+    static constexpr double admissible = 1e-5; ///< violation of a limit, relative to it
+
+  private:
+    struct NumberLimit
+    {
+      GaitNumber number;
+      std::string name;
+      double value;
+    };
+    struct BlockLimit
+    {
+      LimitedValues GaitValues::*values;
+      std::string lower_name, upper_name; ///< empty: there is none
+      double lower, upper, scale;
+    };
+
+    double
+    objective(const GaitValues &values, std::vector<double> *gradient) const;
+
+    GaitModel &model_;
+    const OptimizeParameters parameters_;
+    const std::vector<OptimizeVariable> variables_;
+    const std::function<bool()> stops_;
+    std::vector<NumberLimit> number_limits_;
+    std::vector<BlockLimit> block_limits_;
+    std::vector<std::size_t> block_sizes_;
+    std::vector<double> lower_, upper_;
+    double scale_ = 1.; ///< of the objective
+    std::vector<double> latest_y_;
+    bool latest_has_gradients_ = false;
+    Point latest_;
+    std::vector<GaitRecord> records_;
+  };
+} // namespace crawler

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/reduced_models/reduced_scene.h>
+#include <crawler/reduced_models/strain_functional.h>
+#include <crawler/studies/optimize/scene_family.h>
+
+#include <optional>
+
+namespace crawler
+{
+  /**
+   * Gaits of the kinematic level, where the strain is given: quadrature on a grid, and derivatives in closed form
+   * (reduced_models/strain_functional.h) times those of the strain, which are differences of it. Where the strain is
+   * linear in all variables, which is tried out, its derivatives are computed once, and no scene is built any more.
+   */
+  class KinematicGait : public GaitModel
+  {
+  public:
+    /// Throws InputError if the start does not make a scene with a given strain.
+    KinematicGait(SceneFamily &family, GaitWishes wishes, const std::vector<double> &start);
+
+    GaitValues
+    evaluate(const std::vector<double> &x, bool with_gradients) override;
+    bool
+    refine(const std::vector<double> &x) override;
+    std::pair<double, double>
+    extreme_strains(const std::vector<double> &x) override;
+    std::string
+    description() const override;
+
+  private:
+    struct State;
+
+    /// A strain: on the grid of the quadrature, and where it is limited, which is closer along the body.
+    struct Samples
+    {
+      StrainSamples on_grid;
+      std::vector<double> limited;
+
+      void
+      add(double factor, const Samples &others);
+    };
+    Samples
+    sample(const State &state) const;
+
+    void
+    look_for_linearity(const std::vector<double> &start);
+    Samples
+    linear_samples(const std::vector<double> &x) const;
+    std::array<double, n_gait_numbers>
+    numbers(const State &state, const StrainFunctional::Values &values) const;
+    void
+    add_gradients(const std::vector<double> &x,
+                  const State &state,
+                  const Samples &samples,
+                  GaitValues &values);
+
+    SceneFamily &family_;
+    const GaitWishes wishes_;
+    unsigned int n_space_, n_time_; ///< panels
+    std::optional<StrainFunctional> grid_;
+    /// Of a strain that is linear in the variables: at some x, and its derivatives [variable].
+    struct Linear
+    {
+      std::vector<double> x;
+      std::shared_ptr<const State> state; ///< all but the strain
+      Samples samples;
+      std::vector<Samples> slopes;
+    };
+    std::optional<Linear> linear_;
+    std::vector<Samples> slopes_;                         ///< at the last x, otherwise
+    std::shared_ptr<const std::vector<double>> jacobian_; ///< of the strain where it is limited, if it is linear
+  };
+} // namespace crawler

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/exceptions.h>
+#include <crawler/studies/core/command_options.h>
+
+#include <mpi.h>
+
+namespace crawler
+{
+  /**
+   * crawler optimize: the best gait of section Optimize (collective). Ranks share the starts; each ends as a file in the
+   * folder "starts", so that a study that was killed goes on with --resume. Then the best gait is written as
+   * optimum.prm and run with all files, into the folder "best".
+   *
+   * The parts, each used by those below it: optimize_settings.h, variables and starts; scene_family.h, the scenes that
+   * they make; kinematic_gait.h and simulated_gait.h, what a gait gives, with derivatives (gait_model.h);
+   * gait_problem.h, objective and limits; rol_optimizer.h; optimize_start.h, the search from one start;
+   * optimize_results.h, tables and summary.
+   */
+  ExitCode
+  optimize(MPI_Comm communicator, const CommandOptions &options);
+} // namespace crawler

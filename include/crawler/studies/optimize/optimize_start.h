@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/studies/optimize/gait_problem.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// What one start of the optimiser, with one limit of work, has found.
+  struct StartResult
+  {
+    std::optional<double> work; ///< the limit [energy]
+    unsigned long start = 0;
+    GaitRecord best     = {};
+    std::vector<GaitLimit> limits;
+    bool has_converged = false, was_interrupted = false;
+    std::string message; ///< if it has not converged
+    unsigned int iterations = 0;
+    double seconds          = 0.;
+    std::vector<GaitRecord> records; ///< all evaluations
+
+    /// Is there a gait that keeps to the limits?
+    bool
+    is_admissible() const
+    {
+      return best.problem.empty() && best.violation <= GaitProblem::admissible;
+    }
+  };
+
+  std::string
+  pack(const StartResult &result);
+  StartResult
+  unpack_start(const std::string &text);
+
+  /// The level on which gaits are computed: simulations, or the kinematic level if Model says so. Throws InputError.
+  std::unique_ptr<GaitModel>
+  make_gait_model(class SceneFamily &family, const std::vector<double> &start, const std::function<bool()> &stops);
+
+  /**
+   * Looks for the best gait from one start. Where the grid of the kinematic level was too coarse for what was found, and
+   * where the strain exceeds its limits between the places at which it is limited, the search goes on from there.
+   * An interrupted one has the best so far. Throws InputError.
+   */
+  StartResult
+  search(class SceneFamily &family, std::optional<double> work, unsigned long start, const std::function<bool()> &stops);
+} // namespace crawler

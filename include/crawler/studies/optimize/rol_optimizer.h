@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/studies/optimize/gait_problem.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// How an optimisation ended.
+  struct OptimizerEnd
+  {
+    bool has_converged;
+    std::string message;     ///< in words, if it has not
+    unsigned int iterations; ///< of the outer loop
+    std::vector<double> multipliers; ///< of c, positive where an upper bound holds
+  };
+
+  /**
+   * Minimises the problem from @p y on by Trilinos' ROL: an augmented Lagrangian whose subproblems, with bounds on y,
+   * are solved by a trust region method. The Hessians of objective and limited works are symmetric rank-one updates of
+   * their gradients (Nocedal and Wright, Numerical Optimization, section 6.2); the limits at many places are taken as
+   * linear. What it finds is problem.best(). Throws GaitModel::Interrupted.
+   */
+  OptimizerEnd
+  minimise(GaitProblem &problem, const std::vector<double> &y, double tolerance, unsigned int most_iterations);
+} // namespace crawler

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/studies/optimize/gait_model.h>
+#include <crawler/studies/optimize/optimize_settings.h>
+
+#include <functional>
+
+namespace crawler
+{
+  /// The scenes that the variables of an optimisation make.
+  class SceneFamily
+  {
+  public:
+    /// @p form must outlive it.
+    SceneFamily(Form &form, std::vector<OptimizeVariable> variables);
+
+    const std::vector<OptimizeVariable> &
+    variables() const
+    {
+      return variables_;
+    }
+    Form &
+    form()
+    {
+      return form_;
+    }
+
+    /// Throws InputError.
+    Parameters
+    parameters(const std::vector<double> &x)
+    {
+      return parameters_at(form_, variables_, x);
+    }
+
+    /// Where variable @p i differs a little: x + step @p places, all in its range; the weights of the values there make
+    /// the derivative, of fourth order inside of the range.
+    struct Stencil
+    {
+      std::vector<double> places, weights;
+    };
+    Stencil
+    stencil(const std::vector<double> &x, std::size_t i, double relative_step) const;
+
+    /// Derivatives by differences of what @p values gives of the parameters: [place][variable]. Throws InputError.
+    std::vector<double>
+    differences(const std::vector<double> &x,
+                const std::function<std::vector<double>(const Parameters &)> &values,
+                double relative_step);
+
+    /// The active stress (@p rate: its rate) on a grid over body and duration, where it is limited.
+    LimitedValues
+    stress(const std::vector<double> &x, bool rate, bool with_gradients);
+
+  private:
+    Form &form_;
+    const std::vector<OptimizeVariable> variables_;
+  };
+} // namespace crawler

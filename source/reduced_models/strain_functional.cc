@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/reduced_models/strain_functional.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  /// At one time; lists over the points of the quadrature.
+  struct StrainFunctional::State
+  {
+    explicit State(const std::size_t n)
+      : w(n)
+      , g(n)
+      , w_dg(n)
+      , v(n)
+      , B_t(n)
+      , gv(n)
+      , m(n)
+      , by_B(n)
+      , by_rate(n)
+    {
+    }
+
+    std::vector<double> w, g, w_dg, v, B_t, gv, m, by_B, by_rate;
+    double g_mean = 0., velocity = 0.;
+    bool is_possible = true;
+  };
+
+  StrainFunctional::StrainFunctional(const unsigned int n_space_panels, const unsigned int n_time_panels)
+    : space_(0., 1., n_space_panels)
+    , time_(0., 1., n_time_panels)
+    , n_(space_.points().size())
+    , points_(space_.points())
+    , times_(time_.points())
+    , time_weights_(time_.weights())
+  {
+    points_.insert(points_.end(), {0., 1.});
+    times_.insert(times_.end(), {0., 1.});
+    time_weights_.insert(time_weights_.end(), {0., 0.});
+  }
+
+  StrainSamples
+  StrainFunctional::sample(const StrainHistory &history) const
+  {
+    StrainSamples samples;
+    samples.resize(points_.size() * times_.size());
+    const auto at = history.at(points_);
+    for (std::size_t i = 0; i < times_.size(); ++i)
+    {
+      at->strain(times_[i], {&samples.strain[i * points_.size()], points_.size()});
+      at->rate(times_[i], {&samples.rate[i * points_.size()], points_.size()});
+    }
+    return samples;
+  }
+
+  void
+  StrainFunctional::evaluate(const std::size_t time,
+                             const StrainSamples &samples,
+                             const FrictionLaw &friction,
+                             const double k,
+                             State &state) const
+  {
+    const double *const e = &samples.strain[time * points_.size()], *const e_t = &samples.rate[time * points_.size()];
+    state.is_possible = std::all_of(e, e + points_.size(), [](const double one) { return 1. + one > 0.; });
+    if (!state.is_possible)
+      return;
+    const auto &weights = space_.weights();
+    space_.running_integral({e_t, n_}, state.B_t);
+    for (std::size_t i = 0; i < n_; ++i)
+      state.w[i] = 1. + e[i];
+    friction.values_and_log_derivatives(state.w, state.g, state.w_dg);
+    double g = 0., gB = 0., B = 0.;
+    for (std::size_t i = 0; i < n_; ++i)
+    {
+      g += weights[i] * state.g[i];
+      gB += weights[i] * state.g[i] * state.B_t[i];
+      B += weights[i] * state.B_t[i];
+    }
+    state.g_mean   = g;
+    state.velocity = B - gB / g;
+    for (std::size_t i = 0; i < n_; ++i)
+    {
+      state.v[i]  = state.B_t[i] - gB / g;
+      state.gv[i] = state.g[i] * state.v[i];
+    }
+    space_.running_integral(state.gv, state.m);
+    for (std::size_t i = 0; i < n_; ++i)
+      state.m[i] -= k * e[i];
+  }
+
+  std::optional<StrainFunctional::Values>
+  StrainFunctional::values(const StrainSamples &samples, const FrictionLaw &friction, const double k) const
+  {
+    const auto &weights = space_.weights();
+    State state(n_);
+    Values values{};
+    for (std::size_t time = 0; time < times_.size(); ++time)
+    {
+      evaluate(time, samples, friction, k, state);
+      if (!state.is_possible)
+        return std::nullopt;
+      const double *const e = &samples.strain[time * points_.size()], *const e_t = &samples.rate[time * points_.size()];
+      double dissipation_rate = 0., positive_power = 0., square = 0.;
+      for (std::size_t i = 0; i < n_; ++i)
+      {
+        dissipation_rate += weights[i] * state.gv[i] * state.v[i];
+        positive_power += weights[i] * std::max(-state.m[i] * e_t[i], 0.);
+        square += weights[i] * e[i] * e[i];
+      }
+      values[displacement] += time_weights_[time] * state.velocity;
+      values[dissipation] += time_weights_[time] * dissipation_rate;
+      values[positive_work] += time_weights_[time] * positive_power;
+      values[mean_square] += time_weights_[time] * square;
+      if (time + 2 == times_.size()) // the start
+        values[stress_work] -= 0.5 * k * square;
+      if (time + 1 == times_.size())
+        values[stress_work] += 0.5 * k * square;
+    }
+    values[stress_work] += values[dissipation];
+    return values;
+  }
+
+  StrainSamples
+  StrainFunctional::weights(const Number number,
+                            const StrainSamples &samples,
+                            const FrictionLaw &friction,
+                            const double k) const
+  {
+    const auto &w = space_.weights();
+    State state(n_);
+    StrainSamples result;
+    result.resize(samples.strain.size());
+    for (std::size_t time = 0; time < times_.size(); ++time)
+    {
+      const std::size_t first = time * points_.size();
+      const double *const e = &samples.strain[first], *const e_t = &samples.rate[first];
+      double *const by_e = &result.strain[first], *const by_rate = &result.rate[first];
+      const double weight = time_weights_[time];
+      if (number == stress_work && weight == 0.) // its energies at start and end
+        for (std::size_t i = 0; i < n_; ++i)
+          by_e[i] = (time + 1 == times_.size() ? 1. : -1.) * k * w[i] * e[i];
+      if (weight == 0.)
+        continue;
+      if (number == mean_square)
+      {
+        for (std::size_t i = 0; i < n_; ++i)
+          by_e[i] = 2. * weight * w[i] * e[i];
+        continue;
+      }
+      evaluate(time, samples, friction, k, state);
+      const auto dg = [&](const std::size_t i) { return state.w_dg[i] / state.w[i]; };
+      if (number == displacement)
+        for (std::size_t i = 0; i < n_; ++i)
+        {
+          by_e[i]       = -weight * w[i] * dg(i) * state.v[i] / state.g_mean;
+          state.by_B[i] = weight * w[i] * (1. - state.g[i] / state.g_mean);
+        }
+      else if (number == dissipation || number == stress_work)
+        for (std::size_t i = 0; i < n_; ++i)
+        {
+          by_e[i]       = weight * w[i] * dg(i) * state.v[i] * state.v[i];
+          state.by_B[i] = 2. * weight * w[i] * state.gv[i];
+        }
+      else
+      {
+        std::vector<double> &by_m = state.by_rate, &by_force = state.by_B; // of g v
+        for (std::size_t i = 0; i < n_; ++i)
+          by_m[i] = -state.m[i] * e_t[i] > 0. ? -weight * w[i] * e_t[i] : 0.;
+        space_.running_integral_transposed(by_m, by_force);
+        double by_drift = 0.;
+        for (std::size_t i = 0; i < n_; ++i)
+          by_drift += by_force[i] * state.g[i];
+        for (std::size_t i = 0; i < n_; ++i)
+        {
+          const double of_force = by_force[i] - by_drift * w[i] / state.g_mean;
+          by_e[i]               = of_force * dg(i) * state.v[i] - k * by_m[i];
+          state.by_B[i]         = of_force * state.g[i];
+        }
+      }
+      space_.running_integral_transposed(state.by_B, state.by_rate);
+      for (std::size_t i = 0; i < n_; ++i)
+        by_rate[i] = state.by_rate[i];
+      if (number == positive_work)
+        for (std::size_t i = 0; i < n_; ++i)
+          if (-state.m[i] * e_t[i] > 0.)
+            by_rate[i] -= weight * w[i] * state.m[i];
+    }
+    return result;
+  }
+} // namespace crawler

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/studies/optimize/gait_problem.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    constexpr double refused = 1e10; ///< the objective where there is a problem
+
+    double
+    sign_of_direction(const OptimizeParameters &parameters)
+    {
+      return parameters.direction == "forward" ? 1. : -1.;
+    }
+  } // namespace
+
+  GaitWishes
+  GaitProblem::wishes(const OptimizeParameters &p)
+  {
+    GaitWishes wishes;
+    const auto want = [&](const GaitNumber number, const bool is_wanted) {
+      wishes.numbers[static_cast<std::size_t>(number)] |= is_wanted;
+    };
+    want(GaitNumber::displacement, p.objective != "speed");
+    want(GaitNumber::speed, p.objective == "speed");
+    want(GaitNumber::work, !p.work.empty() || p.objective == "merit" || p.objective == "cost of transport");
+    want(GaitNumber::friction_time, p.objective == "merit");
+    want(GaitNumber::positive_work, p.positive_work.has_value());
+    want(GaitNumber::mean_square, p.mean_square_strain.has_value());
+    wishes.strain      = p.smallest_strain || p.largest_strain;
+    wishes.stress      = p.largest_stress.has_value();
+    wishes.stress_rate = p.largest_stress_rate.has_value();
+    return wishes;
+  }
+
+  GaitProblem::GaitProblem(GaitModel &model,
+                           const OptimizeParameters &parameters,
+                           const std::vector<OptimizeVariable> &variables,
+                           const std::optional<double> work,
+                           const std::vector<double> &start,
+                           std::function<bool()> stops)
+    : model_(model)
+    , parameters_(parameters)
+    , variables_(variables)
+    , stops_(std::move(stops))
+  {
+    const OptimizeParameters &p = parameters;
+    if (work)
+      number_limits_.push_back({GaitNumber::work, "Work", *work});
+    if (p.positive_work)
+      number_limits_.push_back({GaitNumber::positive_work, "Positive work", *p.positive_work});
+    if (p.mean_square_strain)
+      number_limits_.push_back({GaitNumber::mean_square, "Mean-square strain", *p.mean_square_strain});
+    if (p.smallest_strain || p.largest_strain)
+    {
+      const double lower = p.smallest_strain.value_or(-HUGE_VAL), upper = p.largest_strain.value_or(HUGE_VAL);
+      const double scale = std::max(std::isfinite(lower) ? -lower : 0., std::isfinite(upper) ? upper : 0.);
+      block_limits_.push_back({&GaitValues::strain,
+                               p.smallest_strain ? "Smallest strain" : "",
+                               p.largest_strain ? "Largest strain" : "",
+                               lower,
+                               upper,
+                               scale});
+    }
+    if (p.largest_stress)
+      block_limits_.push_back({&GaitValues::stress,
+                               "Largest stress",
+                               "Largest stress",
+                               -*p.largest_stress,
+                               *p.largest_stress,
+                               *p.largest_stress});
+    if (p.largest_stress_rate)
+      block_limits_.push_back({&GaitValues::stress_rate,
+                               "Largest stress rate",
+                               "Largest stress rate",
+                               -*p.largest_stress_rate,
+                               *p.largest_stress_rate,
+                               *p.largest_stress_rate});
+    lower_.assign(number_limits_.size(), -HUGE_VAL);
+    upper_.assign(number_limits_.size(), 1.);
+    const GaitValues values = model.evaluate(start, /*with_gradients=*/false);
+    if (!values.problem.empty())
+      throw InputError("the start cannot be computed: " + values.problem, "Optimize/Variables");
+    for (const BlockLimit &limit : block_limits_)
+    {
+      block_sizes_.push_back((values.*limit.values).values.size());
+      lower_.insert(lower_.end(), block_sizes_.back(), limit.lower / limit.scale);
+      upper_.insert(upper_.end(), block_sizes_.back(), limit.upper / limit.scale);
+    }
+    const double first = std::abs(objective(values, nullptr));
+    if (std::isfinite(first) && first > 0.)
+      scale_ = first;
+    // A start that hardly moves says little of what can be reached.
+    const Point &point = at(to_y(start), true);
+    double slope       = 0.;
+    for (const double one : point.gradient)
+      slope = std::max(slope, std::abs(one));
+    if (slope > 10.)
+      scale_ *= 0.1 * slope;
+    latest_y_.clear();
+    records_.clear();
+  }
+
+  std::vector<double>
+  GaitProblem::to_x(const std::vector<double> &y) const
+  {
+    std::vector<double> x(y.size());
+    for (std::size_t i = 0; i < y.size(); ++i)
+      x[i] =
+        std::clamp(variables_[i].from + y[i] * (variables_[i].to - variables_[i].from), variables_[i].from, variables_[i].to);
+    return x;
+  }
+
+  std::vector<double>
+  GaitProblem::to_y(const std::vector<double> &x) const
+  {
+    std::vector<double> y(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i)
+      y[i] = (x[i] - variables_[i].from) / (variables_[i].to - variables_[i].from);
+    return y;
+  }
+
+  /// In the user's units, larger is better; of the cost of transport its inverse.
+  double
+  GaitProblem::objective(const GaitValues &values, std::vector<double> *const gradient) const
+  {
+    const double sign = sign_of_direction(parameters_);
+    // f = sign D^1 W^power T^power
+    const GaitNumber first  = parameters_.objective == "speed" ? GaitNumber::speed : GaitNumber::displacement;
+    const double power_of_W = parameters_.objective == "merit"               ? -0.5
+                              : parameters_.objective == "cost of transport" ? -1.
+                                                                             : 0.,
+                 power_of_T = parameters_.objective == "merit" ? -0.5 : 0.;
+    const double D = values.number(first), W = values.number(GaitNumber::work),
+                 T = values.number(GaitNumber::friction_time);
+    if (power_of_W != 0. && !(W > 0.))
+      return NAN;
+    const double by_D = sign * (power_of_W != 0. ? std::pow(W, power_of_W) : 1.) *
+                        (power_of_T != 0. ? std::pow(T, power_of_T) : 1.);
+    if (gradient != nullptr)
+    {
+      gradient->assign(variables_.size(), 0.);
+      for (std::size_t i = 0; i < variables_.size(); ++i)
+      {
+        (*gradient)[i] = by_D * values.gradient(first)[i];
+        if (power_of_W != 0.)
+          (*gradient)[i] += by_D * D * power_of_W / W * values.gradient(GaitNumber::work)[i];
+        if (power_of_T != 0.)
+          (*gradient)[i] += by_D * D * power_of_T / T * values.gradient(GaitNumber::friction_time)[i];
+      }
+    }
+    return by_D * D;
+  }
+
+  const GaitProblem::Point &
+  GaitProblem::at(const std::vector<double> &y, const bool with_gradients)
+  {
+    if (y == latest_y_ && (latest_has_gradients_ || !with_gradients))
+      return latest_;
+    if (stops_())
+      throw GaitModel::Interrupted();
+    const bool is_new           = y != latest_y_;
+    const std::vector<double> x = to_x(y);
+    const GaitValues values     = model_.evaluate(x, with_gradients);
+    latest_y_                   = y;
+    latest_has_gradients_       = with_gradients;
+    latest_                     = {};
+    latest_.gradient.assign(y.size(), 0.);
+    latest_.constraints.assign(lower_.size(), 0.);
+    std::vector<double> gradient;
+    const bool is_possible = values.problem.empty();
+    const double f = is_possible ? objective(values, with_gradients ? &gradient : nullptr) : NAN;
+    double violation = 0.;
+    if (!std::isfinite(f))
+      latest_.objective = refused;
+    else
+    {
+      latest_.objective = -f / scale_;
+      const auto range  = [&](const std::size_t i) { return variables_[i].to - variables_[i].from; };
+      if (with_gradients)
+        for (std::size_t i = 0; i < y.size(); ++i)
+          latest_.gradient[i] = -gradient[i] * range(i) / scale_;
+      std::size_t next = 0;
+      for (const NumberLimit &limit : number_limits_)
+      {
+        latest_.constraints[next] = values.number(limit.number) / limit.value;
+        violation                 = std::max(violation, latest_.constraints[next] - 1.);
+        ++next;
+        if (!with_gradients)
+          continue;
+        latest_.rows.push_back(values.gradient(limit.number));
+        for (std::size_t i = 0; i < y.size(); ++i)
+          latest_.rows.back()[i] *= range(i) / limit.value;
+      }
+      for (const BlockLimit &limit : block_limits_)
+      {
+        const LimitedValues &own = values.*limit.values;
+        for (const double value : own.values)
+        {
+          latest_.constraints[next++] = value / limit.scale;
+          violation = std::max({violation, (value - limit.upper) / limit.scale, (limit.lower - value) / limit.scale});
+        }
+        latest_.blocks.push_back(own.jacobian);
+      }
+    }
+    if (is_new)
+    {
+      const double shown = parameters_.objective == "cost of transport" ? 1. / f : sign_of_direction(parameters_) * f;
+      records_.push_back({x, shown, values.numbers, violation, values.problem});
+    }
+    return latest_;
+  }
+
+  void
+  GaitProblem::apply_jacobian(const Point &point, const std::vector<double> &v, std::vector<double> &result) const
+  {
+    std::size_t next    = 0;
+    const std::size_t n = v.size();
+    result.assign(lower_.size(), 0.);
+    for (const auto &row : point.rows)
+    {
+      for (std::size_t i = 0; i < n; ++i)
+        result[next] += row[i] * v[i];
+      ++next;
+    }
+    next = number_limits_.size();
+    for (std::size_t b = 0; b < point.blocks.size(); ++b)
+    {
+      std::vector<double> scaled(n);
+      for (std::size_t i = 0; i < n; ++i)
+        scaled[i] = v[i] * (variables_[i].to - variables_[i].from) / block_limits_[b].scale;
+      const std::vector<double> &rows = *point.blocks[b];
+      for (std::size_t p = 0; p < block_sizes_[b]; ++p, ++next)
+        for (std::size_t i = 0; i < n; ++i)
+          result[next] += rows[p * n + i] * scaled[i];
+    }
+  }
+
+  void
+  GaitProblem::apply_transposed(const Point &point, const std::vector<double> &v, std::vector<double> &result) const
+  {
+    const std::size_t n = variables_.size();
+    result.assign(n, 0.);
+    for (std::size_t r = 0; r < point.rows.size(); ++r)
+      for (std::size_t i = 0; i < n; ++i)
+        result[i] += v[r] * point.rows[r][i];
+    std::size_t next = number_limits_.size();
+    for (std::size_t b = 0; b < point.blocks.size(); ++b)
+    {
+      std::vector<double> sum(n);
+      const std::vector<double> &rows = *point.blocks[b];
+      for (std::size_t p = 0; p < block_sizes_[b]; ++p, ++next)
+        if (v[next] != 0.)
+          for (std::size_t i = 0; i < n; ++i)
+            sum[i] += v[next] * rows[p * n + i];
+      for (std::size_t i = 0; i < n; ++i)
+        result[i] += sum[i] * (variables_[i].to - variables_[i].from) / block_limits_[b].scale;
+    }
+  }
+
+  const GaitRecord &
+  GaitProblem::best() const
+  {
+    const bool is_cost = parameters_.objective == "cost of transport";
+    const double sign  = sign_of_direction(parameters_);
+    const auto rank    = [&](const GaitRecord &record) {
+      return is_cost ? sign / record.objective : sign * record.objective; // of costs those in the wrong direction are worst
+    };
+    const GaitRecord *best = &records_.front();
+    for (const GaitRecord &record : records_)
+    {
+      if (!record.problem.empty() || !std::isfinite(record.objective))
+        continue;
+      const bool is_good = record.violation <= admissible, best_is_good = best->violation <= admissible;
+      const bool is_first = !best->problem.empty() || !std::isfinite(best->objective);
+      if (is_first || (is_good && !best_is_good) || (is_good && rank(record) > rank(*best)) ||
+          (!is_good && !best_is_good && record.violation < best->violation))
+        best = &record;
+    }
+    return *best;
+  }
+
+  std::vector<GaitLimit>
+  GaitProblem::limits(const std::vector<double> &multipliers) const
+  {
+    std::vector<GaitLimit> list;
+    std::size_t next = 0;
+    for (const NumberLimit &limit : number_limits_)
+      list.push_back({limit.name, limit.value, std::max(multipliers[next++], 0.) * scale_ / limit.value});
+    for (std::size_t b = 0; b < block_limits_.size(); ++b)
+    {
+      const BlockLimit &limit = block_limits_[b];
+      double of_lower = 0., of_upper = 0.;
+      for (std::size_t p = 0; p < block_sizes_[b]; ++p, ++next)
+        (multipliers[next] > 0. ? of_upper : of_lower) += std::abs(multipliers[next]) * scale_ / limit.scale;
+      if (limit.lower_name == limit.upper_name)
+        list.push_back({limit.upper_name, limit.upper, of_lower + of_upper});
+      else
+      {
+        if (!limit.lower_name.empty())
+          list.push_back({limit.lower_name, limit.lower, -of_lower});
+        if (!limit.upper_name.empty())
+          list.push_back({limit.upper_name, limit.upper, of_upper});
+      }
+    }
+    return list;
+  }
+} // namespace crawler

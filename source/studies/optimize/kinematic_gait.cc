@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/reduced_models/kinematic.h>
+#include <crawler/studies/optimize/kinematic_gait.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace crawler
+{
+  namespace
+  {
+    constexpr double accurate_enough = 1e-6; ///< the quadrature, relative to displacement and works
+    constexpr std::size_t most_places = 6000; ///< where the strain is limited
+
+    double
+    dot(const std::vector<double> &a, const std::vector<double> &b)
+    {
+      return std::inner_product(a.begin(), a.end(), b.begin(), 0.);
+    }
+  } // namespace
+
+  void
+  KinematicGait::Samples::add(const double factor, const Samples &others)
+  {
+    const auto put = [factor](std::vector<double> &sum, const std::vector<double> &what) {
+      sum.resize(what.size());
+      for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] += factor * what[i];
+    };
+    put(on_grid.strain, others.on_grid.strain);
+    put(on_grid.rate, others.on_grid.rate);
+    put(limited, others.limited);
+  }
+
+  /// A scene of the family, and how it is computed.
+  struct KinematicGait::State
+  {
+    explicit State(const Parameters &parameters)
+      : physical(parameters.create_scene())
+      , reduced(physical)
+    {
+      if (reduced.strain() == nullptr)
+        throw InputError("the kinematic level needs a strain that is given, or an active stress that knows its rate and "
+                         "does not jump",
+                         "Model");
+    }
+
+    const FrictionLaw &
+    friction() const
+    {
+      return *reduced.scene().friction;
+    }
+    double
+    k() const
+    {
+      return reduced.scene().body.elastic_modulus;
+    }
+
+    /// Are body, ground, units and time those of another one, so that only the strain may differ?
+    bool
+    is_like(const State &other) const
+    {
+      std::array<double, 3> w = {{0.5, 1., 1.7}}, own{}, others{};
+      friction().values(w, own);
+      other.friction().values(w, others);
+      const Units &a = reduced.units(), &b = other.reduced.units();
+      return own == others && k() == other.k() && a.length == b.length && a.time == b.time && a.force == b.force;
+    }
+
+    const Scene physical;
+    const ReducedScene reduced;
+  };
+
+  KinematicGait::Samples
+  KinematicGait::sample(const State &state) const
+  {
+    constexpr unsigned int closer = 4; // than the points of the quadrature
+    Samples samples{grid_->sample(*state.reduced.strain()), {}};
+    if (!wishes_.strain)
+      return samples;
+    const unsigned int n_points = closer * GaussPanels::n_points * n_space_ + 1;
+    const std::size_t n_times = grid_->times().size(), stride = 1 + n_points * n_times / most_places;
+    std::vector<double> points;
+    for (unsigned int i = 0; i < n_points; ++i)
+      points.push_back(static_cast<double>(i) / (n_points - 1));
+    const auto at = state.reduced.strain()->at(points);
+    for (std::size_t t = 0; t < n_times; ++t)
+      if (t % stride == 0 || t + 2 >= n_times) // the last two are start and end
+      {
+        samples.limited.resize(samples.limited.size() + n_points);
+        at->strain(grid_->times()[t], {samples.limited.data() + samples.limited.size() - n_points, n_points});
+      }
+    return samples;
+  }
+
+  KinematicGait::KinematicGait(SceneFamily &family, const GaitWishes wishes, const std::vector<double> &start)
+    : family_(family)
+    , wishes_(wishes)
+    , n_space_(2)
+    , n_time_(4)
+  {
+    constexpr unsigned int most = 128;
+    const State state(family.parameters(start));
+    const ActiveStress &stress = *state.reduced.scene().active_stress;
+    n_space_ = GaussPanels::number_ending_at(stress.breaks_in_space(), n_space_, most);
+    n_time_  = GaussPanels::number_ending_at(stress.breaks_in_time(), n_time_, most);
+    grid_.emplace(n_space_, n_time_);
+    while (refine(start))
+      ;
+    look_for_linearity(start);
+  }
+
+  std::string
+  KinematicGait::description() const
+  {
+    return fmt::format("kinematic level, {} x {} points of quadrature in s and t{}",
+                       grid_->points().size(),
+                       grid_->times().size(),
+                       linear_ ? ", the strain is linear in the variables" : "");
+  }
+
+  /// The derivatives of the strain are measured at the start; another strain, all variables being different, shows
+  /// whether they hold there.
+  void
+  KinematicGait::look_for_linearity(const std::vector<double> &start)
+  {
+    constexpr double step = 1e-2, round_off = 1e-11;
+    linear_.reset();
+    jacobian_.reset();
+    const auto &variables = family_.variables();
+    const auto n          = static_cast<double>(start.size());
+    Linear linear{start, std::make_shared<const State>(family_.parameters(start)), {}, {}};
+    linear.samples = sample(*linear.state);
+    const auto base = linear.state;
+    // A little: at large values the strain may not be admissible.
+    const auto away = [&](const std::size_t i, const double part) {
+      const double range = variables[i].to - variables[i].from;
+      return part * range * (start[i] + part * range > variables[i].to ? -1. : 1.);
+    };
+    try
+    {
+      const auto at = [&](const std::vector<double> &x, Samples &samples) {
+        const State state(family_.parameters(x));
+        samples = sample(state);
+        return state.is_like(*base);
+      };
+      for (std::size_t i = 0; i < start.size(); ++i)
+      {
+        std::vector<double> x = start;
+        const double d        = away(i, step);
+        x[i] += d;
+        Samples samples;
+        if (!at(x, samples))
+          return;
+        samples.add(-1., linear.samples);
+        linear.slopes.emplace_back().add(1. / d, samples);
+      }
+      linear_ = std::move(linear);
+      for (const double part : {0.31, 0.77})
+      {
+        std::vector<double> x = start;
+        for (std::size_t i = 0; i < x.size(); ++i)
+          x[i] += away(i, part / (3. * n) * (1. + 0.3 * std::sin(static_cast<double>(i))));
+        Samples samples;
+        at(x, samples);
+        const Samples guess = linear_samples(x);
+        for (const auto member : {&StrainSamples::strain, &StrainSamples::rate})
+        {
+          const std::vector<double> &own = samples.on_grid.*member, &first = linear_->samples.on_grid.*member,
+                                    &guessed = guess.on_grid.*member;
+          double size = 0., largest = 0.;
+          for (std::size_t i = 0; i < own.size(); ++i)
+          {
+            size    = std::max({size, std::abs(own[i]), std::abs(first[i])});
+            largest = std::max(largest, std::abs(guessed[i] - own[i]));
+          }
+          if (largest > round_off * std::max(size, 1e-3))
+          {
+            linear_.reset();
+            return;
+          }
+        }
+      }
+    }
+    catch (const InputError &) // the strain is not admissible there
+    {
+      linear_.reset();
+    }
+  }
+
+  KinematicGait::Samples
+  KinematicGait::linear_samples(const std::vector<double> &x) const
+  {
+    Samples samples = linear_->samples;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (x[i] != linear_->x[i])
+        samples.add(x[i] - linear_->x[i], linear_->slopes[i]);
+    return samples;
+  }
+
+  std::array<double, n_gait_numbers>
+  KinematicGait::numbers(const State &state, const StrainFunctional::Values &values) const
+  {
+    const Units &units  = state.reduced.units();
+    const Scene &scene  = state.physical;
+    const double energy = units.energy(), D = units.length * values[StrainFunctional::displacement];
+    return {{D,
+             energy * values[StrainFunctional::stress_work],
+             energy * values[StrainFunctional::positive_work],
+             values[StrainFunctional::mean_square],
+             D / scene.end_time,
+             scene.end_time / (scene.body.friction_coefficient * scene.body.length)}};
+  }
+
+  GaitValues
+  KinematicGait::evaluate(const std::vector<double> &x, const bool with_gradients)
+  {
+    GaitValues result;
+    std::shared_ptr<const State> state;
+    Samples samples;
+    try
+    {
+      state   = linear_ ? linear_->state : std::make_shared<const State>(family_.parameters(x));
+      samples = linear_ ? linear_samples(x) : sample(*state);
+      const auto values = grid_->values(samples.on_grid, state->friction(), state->k());
+      if (!values)
+      {
+        result.problem = "the body inverts: the strain reaches -1";
+        return result;
+      }
+      result.numbers = numbers(*state, *values);
+      if (wishes_.strain)
+        result.strain.values = samples.limited;
+      if (wishes_.stress)
+        result.stress = family_.stress(x, /*rate=*/false, with_gradients);
+      if (wishes_.stress_rate)
+        result.stress_rate = family_.stress(x, /*rate=*/true, with_gradients);
+      if (with_gradients)
+        add_gradients(x, *state, samples, result);
+    }
+    catch (const InputError &error)
+    {
+      result.problem = error.what();
+    }
+    return result;
+  }
+
+  void
+  KinematicGait::add_gradients(const std::vector<double> &x,
+                               const State &state,
+                               const Samples &samples,
+                               GaitValues &values)
+  {
+    constexpr double step = 1e-3;
+    for (auto &gradient : values.gradients)
+      gradient.assign(x.size(), 0.);
+    std::vector<bool> only_strain(x.size(), true);
+    if (!linear_)
+    {
+      slopes_.assign(x.size(), {});
+      for (std::size_t i = 0; i < x.size(); ++i)
+      {
+        const auto around = family_.stencil(x, i, step);
+        std::array<double, n_gait_numbers> derivatives{};
+        for (std::size_t k = 0; k < around.places.size(); ++k)
+        {
+          std::vector<double> other = x;
+          other[i] += around.places[k];
+          const State there(family_.parameters(other));
+          const Samples its = sample(there);
+          slopes_[i].add(around.weights[k], its);
+          only_strain[i] = only_strain[i] && there.is_like(state);
+          if (const auto its_values = grid_->values(its.on_grid, there.friction(), there.k()))
+          {
+            const auto its_numbers = numbers(there, *its_values);
+            for (std::size_t j = 0; j < n_gait_numbers; ++j)
+              derivatives[j] += around.weights[k] * its_numbers[j];
+          }
+        }
+        if (!only_strain[i]) // of body, ground or time
+          for (std::size_t j = 0; j < n_gait_numbers; ++j)
+            values.gradients[j][i] = derivatives[j];
+      }
+    }
+    const std::vector<Samples> &slopes = linear_ ? linear_->slopes : slopes_;
+    const Units &units                       = state.reduced.units();
+    const auto put = [&](const StrainFunctional::Number number, const GaitNumber what, const double unit) {
+      const StrainSamples weights = grid_->weights(number, samples.on_grid, state.friction(), state.k());
+      for (std::size_t i = 0; i < x.size(); ++i)
+        if (only_strain[i])
+          values.gradients[static_cast<std::size_t>(what)][i] =
+            unit * (dot(weights.strain, slopes[i].on_grid.strain) + dot(weights.rate, slopes[i].on_grid.rate));
+    };
+    if (wishes_.has(GaitNumber::displacement))
+      put(StrainFunctional::displacement, GaitNumber::displacement, units.length);
+    if (wishes_.has(GaitNumber::speed))
+      put(StrainFunctional::displacement, GaitNumber::speed, units.length / state.physical.end_time);
+    if (wishes_.has(GaitNumber::work))
+      put(StrainFunctional::stress_work, GaitNumber::work, units.energy());
+    if (wishes_.has(GaitNumber::positive_work))
+      put(StrainFunctional::positive_work, GaitNumber::positive_work, units.energy());
+    if (wishes_.has(GaitNumber::mean_square))
+      put(StrainFunctional::mean_square, GaitNumber::mean_square, 1.);
+    if (!wishes_.strain)
+      return;
+    if (!linear_ || !jacobian_)
+    {
+      std::vector<double> rows(values.strain.values.size() * x.size());
+      for (std::size_t i = 0; i < x.size(); ++i)
+      {
+        for (std::size_t p = 0; p < values.strain.values.size(); ++p)
+          rows[p * x.size() + i] = slopes[i].limited[p];
+      }
+      jacobian_ = std::make_shared<const std::vector<double>>(std::move(rows));
+    }
+    values.strain.jacobian = jacobian_;
+  }
+
+  std::pair<double, double>
+  KinematicGait::extreme_strains(const std::vector<double> &x)
+  {
+    const State state(family_.parameters(x));
+    const StrainExtremes extremes = find_extremes(*state.reduced.strain(), 1., 1., 8 * n_space_ + 1, 8 * n_time_ + 1);
+    return {extremes.smallest.strain, extremes.largest.strain};
+  }
+
+  bool
+  KinematicGait::refine(const std::vector<double> &x)
+  {
+    constexpr std::size_t most = 400000;
+    const State state(family_.parameters(x));
+    const auto with = [&](const unsigned int n_space, const unsigned int n_time) {
+      const StrainFunctional grid(n_space, n_time);
+      return grid.values(grid.sample(*state.reduced.strain()), state.friction(), state.k());
+    };
+    const auto own = with(n_space_, n_time_);
+    if (!own)
+      return false;
+    const auto differs = [&](const std::optional<StrainFunctional::Values> &other) {
+      for (const auto number : {StrainFunctional::displacement, StrainFunctional::stress_work})
+        if (other && std::abs((*other)[number] - (*own)[number]) > accurate_enough * std::abs((*other)[number]) + 1e-13)
+          return true;
+      return false;
+    };
+    const bool in_space = differs(with(2 * n_space_, n_time_)), in_time = differs(with(n_space_, 2 * n_time_));
+    if ((!in_space && !in_time) || grid_->points().size() * grid_->times().size() > most)
+      return false;
+    n_space_ *= in_space ? 2 : 1;
+    n_time_ *= in_time ? 2 : 1;
+    grid_.emplace(n_space_, n_time_);
+    if (linear_)
+      look_for_linearity(linear_->x);
+    jacobian_.reset();
+    return true;
+  }
+} // namespace crawler

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/adjoint/run_gradient.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/studies/core/answer_differences.h>
+#include <crawler/studies/optimize/simulated_gait.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /// What the adjoint differentiates, for each number.
+    constexpr std::array<std::optional<Quantity>, n_gait_numbers> quantities = {{Quantity::displacement,
+                                                                                 Quantity::stress_work,
+                                                                                 Quantity::positive_work,
+                                                                                 std::nullopt,
+                                                                                 Quantity::speed,
+                                                                                 std::nullopt}};
+
+    std::string
+    problem_of(const Task &task)
+    {
+      if (task.error)
+        try
+        {
+          std::rethrow_exception(task.error);
+        }
+        catch (const std::exception &error)
+        {
+          return error.what();
+        }
+      const TimeOutcome &end = task.computed.result.time;
+      if (end.status == Status::finished)
+        return "";
+      return end.reason.empty() ? word_of(end.status) : end.reason + ": " + end.message;
+    }
+  } // namespace
+
+  SimulatedGait::SimulatedGait(SceneFamily &family, const GaitWishes wishes, std::function<bool()> interrupted)
+    : family_(family)
+    , wishes_(wishes)
+    , interrupted_(std::move(interrupted))
+  {
+    if (wishes.has(GaitNumber::mean_square))
+      throw InputError("the mean-square strain is limited at the kinematic level only; Model = kinematic, or another "
+                       "limit, is expected",
+                       "Optimize/Mean-square strain");
+  }
+
+  std::string
+  SimulatedGait::description() const
+  {
+    return "simulations, with derivatives by the adjoint";
+  }
+
+  std::pair<double, double>
+  SimulatedGait::extreme_strains(const std::vector<double> &x)
+  {
+    evaluate(x, /*with_gradients=*/false);
+    const SimulationResult &result = latest_.front().computed.result;
+    return {result.min_stretch.value - 1., result.max_stretch.value - 1.};
+  }
+
+  std::vector<Task>
+  SimulatedGait::answers(const std::vector<std::vector<double>> &places)
+  {
+    std::vector<Task> tasks;
+    for (const auto &x : places)
+    {
+      tasks.emplace_back();
+      tasks.back().parameters = family_.parameters(x);
+      tasks.back().gait       = wishes_.has(GaitNumber::speed);
+    }
+    compute_all(tasks, HUGE_VAL, interrupted_);
+    if (interrupted_())
+      throw Interrupted();
+    return tasks;
+  }
+
+  std::array<double, n_gait_numbers>
+  SimulatedGait::numbers(const Task &task) const
+  {
+    const SimulationResult &result = task.computed.result;
+    const Scene &scene             = *task.scene;
+    std::array<double, n_gait_numbers> list;
+    list.fill(NAN);
+    list[static_cast<std::size_t>(GaitNumber::displacement)] = result.displacement;
+    if (result.energy_balance)
+    {
+      list[static_cast<std::size_t>(GaitNumber::work)]          = result.energy_balance->stress_work;
+      list[static_cast<std::size_t>(GaitNumber::positive_work)] = result.energy_balance->positive_work;
+    }
+    if (result.gait)
+      list[static_cast<std::size_t>(GaitNumber::speed)] = result.gait->speed();
+    list[static_cast<std::size_t>(GaitNumber::friction_time)] =
+      scene.end_time / (scene.body.friction_coefficient * scene.body.length);
+    return list;
+  }
+
+  GaitValues
+  SimulatedGait::evaluate(const std::vector<double> &x, const bool with_gradients)
+  {
+    GaitValues values;
+    try
+    {
+      if (latest_.empty() || latest_x_ != x)
+      {
+        latest_   = answers({x});
+        latest_x_ = x;
+      }
+      const Task &task = latest_.front();
+      values.problem   = problem_of(task);
+      if (!values.problem.empty())
+        return values;
+      values.numbers = numbers(task);
+      for (std::size_t i = 0; i < n_gait_numbers; ++i)
+        if (wishes_.numbers[i] && !std::isfinite(values.numbers[i]))
+          values.problem = i == static_cast<std::size_t>(GaitNumber::speed)
+                             ? "the speed is not known, since the active stress does not say how long its stride is"
+                             : "a work is not known there";
+      if (wishes_.strain)
+        values.strain.values = {task.computed.result.min_stretch.value - 1., task.computed.result.max_stretch.value - 1.};
+      if (wishes_.stress)
+        values.stress = family_.stress(x, /*rate=*/false, with_gradients);
+      if (wishes_.stress_rate)
+        values.stress_rate = family_.stress(x, /*rate=*/true, with_gradients);
+      if (with_gradients && values.problem.empty())
+      {
+        for (auto &gradient : values.gradients)
+          gradient.assign(x.size(), 0.);
+        const std::vector<bool> is_known = add_adjoint_gradients(x, task, values);
+        values.gradients[static_cast<std::size_t>(GaitNumber::friction_time)] = family_.differences(
+          x,
+          [](const Parameters &there) {
+            return std::vector<double>(1, there.time.end_time / (there.body.friction_coefficient * there.body.length));
+          },
+          1e-3);
+        if (wishes_.strain || std::ranges::find(is_known, false) != is_known.end())
+          add_differences(x, is_known, values);
+      }
+    }
+    catch (const InputError &error)
+    {
+      values.problem = error.what();
+    }
+    return values;
+  }
+
+  /// Returns for which variables all wanted numbers have their derivatives.
+  std::vector<bool>
+  SimulatedGait::add_adjoint_gradients(const std::vector<double> &x, const Task &task, GaitValues &values)
+  {
+    constexpr double step = 1e-3;
+    std::vector<bool> is_known(x.size(), false);
+    const Parameters &parameters = task.parameters;
+    const NumericsChoice &choice = task.computed.choice;
+    if (task.computed.result.model == Model::kinematic || choice.is_family ||
+        !RecordedRun::is_possible(*task.scene, parameters.time, choice.numerics))
+      return is_known;
+    std::vector<Quantity> wanted;
+    for (std::size_t k = 0; k < n_gait_numbers; ++k)
+      if (wishes_.numbers[k] && quantities[k] && *quantities[k] != Quantity::speed)
+        wanted.push_back(*quantities[k]);
+    if (wishes_.has(GaitNumber::speed))
+      wanted.push_back(Quantity::stride); // the speed comes with it
+    std::vector<std::vector<Scene>> scenes(x.size());
+    std::vector<Variation> variations;
+    std::vector<std::size_t> own;
+    for (std::size_t i = 0; i < x.size(); ++i)
+    {
+      const auto around = family_.stencil(x, i, step);
+      bool is_similar   = true;
+      for (const double place : around.places)
+        if (place != 0.)
+        {
+          std::vector<double> other = x;
+          other[i] += place;
+          scenes[i].push_back(family_.parameters(other).create_scene());
+          is_similar = is_similar && have_similar_breaks(*task.scene, scenes[i].back());
+        }
+      if (!is_similar)
+        continue;
+      const bool is_one_sided = around.places[0] == 0.;
+      variations.push_back({{{&scenes[i][0], &scenes[i][1], &scenes[i][2], &scenes[i][3]}},
+                            around.places[is_one_sided ? 1 : 2],
+                            is_one_sided});
+      own.push_back(i);
+    }
+    try
+    {
+      const RecordedRun run(*task.scene, parameters.time, choice.numerics, [&]() { return !interrupted_(); });
+      const auto derivatives = RunGradient(run).derivatives(variations, wanted);
+      for (std::size_t v = 0; v < own.size(); ++v)
+      {
+        const std::size_t i = own[v];
+        is_known[i]         = true;
+        for (std::size_t k = 0; k < n_gait_numbers; ++k)
+          if (wishes_.numbers[k] && quantities[k])
+          {
+            const auto &value      = derivatives[v][static_cast<std::size_t>(*quantities[k])];
+            is_known[i]            = is_known[i] && value.has_value();
+            values.gradients[k][i] = value.value_or(0.);
+          }
+      }
+    }
+    catch (const std::exception &) // the engine gave up a step, say
+    {
+      if (interrupted_())
+        throw Interrupted();
+      is_known.assign(x.size(), false);
+    }
+    return is_known;
+  }
+
+  void
+  SimulatedGait::add_differences(const std::vector<double> &x, const std::vector<bool> &is_known, GaitValues &values)
+  {
+    const double step = step_of_differences(latest_.front().parameters.accuracy);
+    std::vector<std::vector<double>> places;
+    std::vector<std::pair<std::size_t, double>> weights; // variable and weight of each place
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (!is_known[i] || wishes_.strain)
+      {
+        const auto around = family_.stencil(x, i, step);
+        for (std::size_t k = 0; k < around.places.size(); ++k)
+        {
+          places.push_back(x);
+          places.back()[i] += around.places[k];
+          weights.emplace_back(i, around.weights[k]);
+        }
+      }
+    std::vector<double> extremes(2 * x.size()); // [smallest, largest][variable]
+    const std::vector<Task> tasks = answers(places);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (!is_known[i])
+        for (auto &gradient : values.gradients)
+          gradient[i] = 0.;
+    for (std::size_t j = 0; j < tasks.size(); ++j)
+    {
+      const auto [i, weight] = weights[j];
+      if (const std::string problem = problem_of(tasks[j]); !problem.empty())
+      {
+        values.problem = "beside it: " + problem;
+        return;
+      }
+      const auto there = numbers(tasks[j]);
+      if (!is_known[i])
+        for (std::size_t k = 0; k < n_gait_numbers; ++k)
+          values.gradients[k][i] += weight * there[k];
+      extremes[i] += weight * tasks[j].computed.result.min_stretch.value;
+      extremes[x.size() + i] += weight * tasks[j].computed.result.max_stretch.value;
+    }
+    if (wishes_.strain)
+      values.strain.jacobian = std::make_shared<const std::vector<double>>(std::move(extremes));
+  }
+} // namespace crawler
