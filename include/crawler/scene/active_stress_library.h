@@ -11,6 +11,7 @@
 #include <crawler/scene/active_stress/strain_feedback.h>
 #include <crawler/scene/active_stress/sum.h>
 #include <crawler/scene/active_stress/table.h>
+#include <crawler/scene/active_stress/two_level_wave.h>
 #include <crawler/scene/active_stress/waves.h>
 
 namespace crawler
@@ -35,6 +36,7 @@ namespace crawler
     SegmentsParameters segments;
     ExpressionParameters expression;
     PrescribedStrainParameters prescribed_strain;
+    TwoLevelWaveParameters two_level_wave;
     LibraryParameters library;
     StrainFeedbackParameters strain_feedback;
     TableParameters table;
