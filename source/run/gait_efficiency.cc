@@ -1,20 +1,43 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/run/gait_efficiency.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace crawler
 {
+  bool
+  starts_from_rest(const EnergyBalance &balance)
+  {
+    constexpr double round_off = 1e-12;
+    return balance.initial_energy <= round_off * balance.exchanged_work;
+  }
+
+  double
+  energy_of_bound(const EnergyBalance &balance)
+  {
+    return starts_from_rest(balance) ? balance.stress_work : balance.dissipation;
+  }
+
   std::optional<double>
   gait_efficiency(const Scene &scene, const SimulationResult &result)
   {
-    if (!result.energy_balance || !scene.is_plain()) // the bound is for plain bodies and grounds
+    constexpr double smallest_range = 1e-8; // what is below it is round-off of the stretches
+    const double from = result.min_stretch.value, to = result.max_stretch.value;
+    if (!result.energy_balance || scene.profiles.friction || !scene.ground.is_plain() || !(from > 0.))
       return std::nullopt;
-    const double min_stretch = result.min_stretch.value, max_stretch = result.max_stretch.value;
-    const double work = result.energy_balance->stress_work, a = scene.body.friction_exponent();
-    const double F     = std::abs(std::pow(min_stretch, -a / 2.) - std::pow(max_stretch, -a / 2.));
-    const double bound = F * std::sqrt(work * scene.end_time / (scene.body.friction_coefficient * scene.body.length));
-    return min_stretch > 0. && bound > 0. && std::isfinite(bound) ? std::optional(std::abs(result.displacement) / bound)
-                                                                  : std::nullopt;
+    // The power law is monotone; others may have their extremes anywhere.
+    const std::size_t n = scene.has_power_law() ? 2 : 1025;
+    std::vector<double> w(n), g(n);
+    for (std::size_t i = 0; i < n; ++i)
+      w[i] = from + (to - from) * static_cast<double>(i) / static_cast<double>(n - 1);
+    scene.friction->values(w, g);
+    const auto [least, most] = std::minmax_element(g.begin(), g.end());
+    const double largest = 1. / std::sqrt(*least), F = largest - 1. / std::sqrt(*most);
+    const double bound = F * std::sqrt(energy_of_bound(*result.energy_balance) * scene.end_time / scene.body.length);
+    return F > smallest_range * largest && bound > 0. && std::isfinite(bound)
+             ? std::optional(std::abs(result.displacement) / bound)
+             : std::nullopt;
   }
 } // namespace crawler

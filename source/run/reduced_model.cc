@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/run/reduced_model.h>
+#include <crawler/run/result_table.h>
 #include <crawler/run/user_units.h>
 
 #include <fmt/format.h>
@@ -121,6 +122,12 @@ namespace crawler
     if (!energy_balance)
       result.energy_balance.reset();
     result = in_user_units(std::move(result), scene_, reduced_scene_.units());
+    // Of quadrature alone: the motion of the kinematic level is one that a body can have. That of a series is not.
+    if (result.gait_efficiency && model_ == Model::kinematic && result.displacement != 0.)
+      set_error_bound(result,
+                      "gait.efficiency",
+                      2. * (result.error->space + result.error->time) / std::abs(result.displacement) *
+                        *result.gait_efficiency);
     if (result.inversion)
     {
       const double s      = result.inversion->s;

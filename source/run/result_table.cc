@@ -314,6 +314,17 @@ namespace crawler
     return std::nullopt;
   }
 
+  void
+  set_error_bound(SimulationResult &result, const std::string &key, const double bound)
+  {
+    const auto &entries = entries_with_errors();
+    if (!result.errors)
+      result.errors.emplace();
+    for (std::size_t i = 0; i < entries.size(); ++i)
+      if (entries[i]->key == key)
+        result.errors->values.at(i) = bound;
+  }
+
   std::string
   error_bound_in_words(const SimulationResult &result, const std::string &key)
   {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/run/accuracy_rule.h>
+#include <crawler/run/gait_efficiency.h>
 #include <crawler/run/result_table.h>
 #include <crawler/run/self_check.h>
 
@@ -40,6 +41,25 @@ namespace crawler
           error         = std::max(error, result.energy_balance->residual() * entries[i]->scale_in(result));
         }
     }
+
+    /// No gait is better than the bound, but by the error of its efficiency and what the energy balance lacks.
+    std::string
+    complaint_about_efficiency(const SimulationResult &result)
+    {
+      const auto error = error_bound(result, "gait.efficiency");
+      if (!result.gait_efficiency || !error)
+        return "";
+      const EnergyBalance &balance = *result.energy_balance;
+      const double efficiency      = *result.gait_efficiency,
+                   lacking = 0.5 * balance.residual() * balance.exchanged_work / energy_of_bound(balance) * efficiency;
+      if (!(efficiency > 1. + *error + lacking))
+        return "";
+      return fmt::format(
+        "the gait efficiency is {:.6g} +- {:.2g}, but no gait has more than 1; a smaller Accuracy or a "
+        "finer mesh is needed",
+        efficiency,
+        *error + lacking);
+    }
   } // namespace
 
   void
@@ -73,7 +93,10 @@ namespace crawler
     else
     {
       cover_residual(result);
-      return;
+      result.time.message = complaint_about_efficiency(result);
+      if (result.time.message.empty())
+        return;
+      result.time.reason = "gait_efficiency";
     }
     result.time.status = Status::failed;
   }

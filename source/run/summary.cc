@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/petsc_object.h>
 #include <crawler/base/versions.h>
+#include <crawler/run/gait_efficiency.h>
 #include <crawler/run/result_table.h>
 #include <crawler/run/summary.h>
 
@@ -207,6 +208,12 @@ namespace crawler
                   result.max_stretch.s,
                   result.max_stretch.t));
     add_gait_lines(result, lines);
+    if (result.gait_efficiency)
+      lines.push_back(
+        fmt::format("  efficiency        reaches {:.3g} % of what any gait with this {} and these strains "
+                    "could",
+                    100. * *result.gait_efficiency,
+                    starts_from_rest(*result.energy_balance) ? "work" : "dissipation"));
     add_sensitivity_lines(result, lines);
     return lines;
   }

@@ -110,6 +110,7 @@ namespace crawler
         {"pulse", Pulse::description, create<Pulse, &P::pulse>},
         {"expression", Expression::description, create<Expression, &P::expression>},
         {"prescribed strain", PrescribedStrain::description, create_prescribed_strain},
+        {"two-level wave", TwoLevelWave::description, create<TwoLevelWave, &P::two_level_wave>},
         {"library", Library::description, create<Library, &P::library>},
         {"segments", Segments::description, create<Segments, &P::segments>},
         {"strain feedback", StrainFeedback::description, create<StrainFeedback, &P::strain_feedback>},
@@ -149,7 +150,7 @@ namespace crawler
         continue;
       documentation += (names.empty() ? "" : "; ") + entry.name + " (" + entry.description + ")";
       names.push_back(entry.name);
-      if (entry.name != "none" && entry.name != "prescribed strain")
+      if (entry.name != "none" && entry.name != "prescribed strain" && entry.name != "two-level wave")
         of_strain.push_back(entry.name);
     }
     declarations.choice("Generator", generator, names)
@@ -161,6 +162,7 @@ namespace crawler
     segments.add_parameters(declarations);
     expression.add_parameters(declarations);
     prescribed_strain.add_parameters(declarations, of_strain);
+    two_level_wave.add_parameters(declarations);
     library.add_parameters(declarations);
     strain_feedback.add_parameters(declarations);
     table.add_parameters(declarations);

@@ -10,10 +10,20 @@ namespace crawler
 {
   /**
    * The part of the largest displacement that any gait with these extreme stretches and this work can reach, at most 1:
-   * D/(F sqrt(W T/(gamma L))), F = |w_min^(-a/2) - w_max^(-a/2)| (doc/theory.md, "Gait efficiency"). For the
-   * p-model of friction and a run from rest. Nothing if it is not defined: no work, no strain or no resistance
-   * that depends on it.
+   * D/(F sqrt(W T/L)), F = 1/sqrt(g_min) - 1/sqrt(g_max) with the least and the largest friction per velocity between
+   * these stretches (doc/theory.md, "Gait efficiency"). W is energy_of_bound(). Nothing if there is no such bound,
+   * since the friction depends on the place or the direction, or if it is not defined: no work, no strain or no
+   * resistance that depends on it.
    */
   std::optional<double>
   gait_efficiency(const Scene &scene, const SimulationResult &result);
+
+  /// The energy that the bound needs [energy]: the work of the active stress if the body starts unstretched, else the
+  /// dissipation, which that work is not sure to exceed.
+  double
+  energy_of_bound(const EnergyBalance &balance);
+
+  /// Does the body start unstretched?
+  bool
+  starts_from_rest(const EnergyBalance &balance);
 } // namespace crawler

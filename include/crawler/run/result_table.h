@@ -56,6 +56,10 @@ namespace crawler
   std::optional<double>
   error_bound(const SimulationResult &result, const std::string &key);
 
+  /// Sets it.
+  void
+  set_error_bound(SimulationResult &result, const std::string &key, double bound);
+
   /// The same as " +- 1e-6", or nothing.
   std::string
   error_bound_in_words(const SimulationResult &result, const std::string &key);

@@ -11,7 +11,7 @@ namespace crawler
   energy_balance_tolerance(const SimulationResult &result, const RunParameters &parameters);
 
   /// Names a finished run whose identities do not hold a failure: the energy balance must close, the friction forces
-  /// balance.
+  /// balance, and the gait efficiency is at most 1 (doc/theory.md, "Gait efficiency").
   void
   check_identities(SimulationResult &result, const RunParameters &parameters);
 } // namespace crawler

@@ -12,6 +12,7 @@
 #include <crawler/scene/active_stress/strain_feedback.h>
 #include <crawler/scene/active_stress/sum.h>
 #include <crawler/scene/active_stress/table.h>
+#include <crawler/scene/active_stress/two_level_wave.h>
 #include <crawler/scene/active_stress/waves.h>
 
 namespace crawler
@@ -36,6 +37,7 @@ namespace crawler
     SegmentsParameters segments;
     ExpressionParameters expression;
     PrescribedStrainParameters prescribed_strain;
+    TwoLevelWaveParameters two_level_wave;
     LibraryParameters library;
     StrainFeedbackParameters strain_feedback;
     TableParameters table;

@@ -31,11 +31,13 @@ namespace crawler
   {
     const std::string stress = "Active stress/", optimal = stress + "Optimal wave/",
                       travel = stress + "Travelling wave/", stand = stress + "Standing wave/",
-                      strain = stress + "Prescribed strain/", modes = stress + "Modes/";
+                      strain = stress + "Prescribed strain/", two_level = stress + "Two-level wave/",
+                      modes = stress + "Modes/";
     const auto &wave                  = p.active_stress.optimal_wave;
     const auto &travelling            = p.active_stress.travelling_wave;
     const std::string &travel_profile = travelling.profile.profile,
                       &given_by       = p.active_stress.prescribed_strain.given_by,
+                      &two_level_by   = p.active_stress.two_level_wave.given_by,
                       &stand_profile  = p.active_stress.standing_wave.profile.profile;
     std::vector<EntryRule> rules;
     add_rules_of_generators(stress, p.active_stress, rules);
@@ -57,6 +59,9 @@ namespace crawler
       {travel, {"Wave speed"}, "Given by", travelling.given_by, {"wave speed"}},
       {travel, {"Duty cycle"}, "Profile", travel_profile, {"square", "smoothed square"}},
       {travel, {"Front width"}, "Profile", travel_profile, {"smoothed square"}},
+      {two_level, {"Frequency"}, "Given by", two_level_by, {"frequency"}},
+      {two_level, {"Wave speed"}, "Given by", two_level_by, {"wave speed"}},
+      {two_level, {"Work"}, "Given by", two_level_by, {"work"}},
       {stand, {"Duty cycle"}, "Profile", stand_profile, {"square", "smoothed square"}},
       {stand, {"Front width"}, "Profile", stand_profile, {"smoothed square"}},
       {modes, {"Wave speed"}, "In time", p.active_stress.modes.in_time, {"travelling"}},

@@ -75,7 +75,7 @@ namespace crawler
       return ExitCode::inverted;
     if (outcome.status == Status::stopped)
       return ExitCode::stopped;
-    if (outcome.reason == "ledger_residual" || outcome.reason == "net_friction")
+    if (outcome.reason == "ledger_residual" || outcome.reason == "net_friction" || outcome.reason == "gait_efficiency")
       return ExitCode::self_check_failed;
     return ExitCode::numerical_failure;
   }

@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 namespace crawler
 {
@@ -78,40 +80,76 @@ namespace crawler
   KinematicGait::Samples
   KinematicGait::sample(const State &state) const
   {
-    constexpr unsigned int closer = 4; // than the points of the quadrature
     Samples samples{grid_->sample(*state.reduced.strain()), {}};
     if (!wishes_.strain)
       return samples;
-    const unsigned int n_points = closer * GaussPanels::n_points * n_space_ + 1;
-    const std::size_t n_times = grid_->times().size(), stride = 1 + n_points * n_times / most_places;
-    std::vector<double> points;
-    for (unsigned int i = 0; i < n_points; ++i)
-      points.push_back(static_cast<double>(i) / (n_points - 1));
+    std::vector<double> points, strain(n_limited_s_ + 1);
+    for (unsigned int i = 0; i <= n_limited_s_; ++i)
+      points.push_back(static_cast<double>(i) / n_limited_s_);
     const auto at = state.reduced.strain()->at(points);
-    for (std::size_t t = 0; t < n_times; ++t)
-      if (t % stride == 0 || t + 2 >= n_times) // the last two are start and end
-      {
-        samples.limited.resize(samples.limited.size() + n_points);
-        at->strain(grid_->times()[t], {samples.limited.data() + samples.limited.size() - n_points, n_points});
-      }
+    for (unsigned int j = 0; j <= n_limited_t_; ++j)
+    {
+      at->strain(static_cast<double>(j) / n_limited_t_, strain);
+      samples.limited.insert(samples.limited.end(), strain.begin(), strain.end());
+    }
     return samples;
   }
 
   KinematicGait::KinematicGait(SceneFamily &family, const GaitWishes wishes, const std::vector<double> &start)
     : family_(family)
     , wishes_(wishes)
-    , n_space_(2)
-    , n_time_(4)
+    , n_space_(1)
+    , n_time_(1)
   {
     constexpr unsigned int most = 128;
     const State state(family.parameters(start));
     const ActiveStress &stress = *state.reduced.scene().active_stress;
-    n_space_ = GaussPanels::number_ending_at(stress.breaks_in_space(), n_space_, most);
-    n_time_  = GaussPanels::number_ending_at(stress.breaks_in_time(), n_time_, most);
+    n_space_ = GaussPanels::number_ending_at(stress.breaks_in_space(), 1, most);
+    n_time_  = GaussPanels::number_ending_at(stress.breaks_in_time(), 1, most);
     grid_.emplace(n_space_, n_time_);
     while (refine(start))
       ;
+    choose_limited_places();
     look_for_linearity(start);
+  }
+
+  /// Where the strain is limited: equally spaced, so that a wave of constant shape is the same at many of them.
+  void
+  KinematicGait::choose_limited_places()
+  {
+    constexpr unsigned int closer = 8, most_times = 128; // than the points of the quadrature
+    n_limited_s_ = closer * GaussPanels::n_points * n_space_;
+    n_limited_t_ = std::min(std::bit_ceil(GaussPanels::n_points * n_time_), most_times);
+  }
+
+  /// Of places where a linear strain is the same for all values of the variables one is enough; of those that are left,
+  /// as many as is good for the optimiser.
+  void
+  KinematicGait::leave_out_places()
+  {
+    constexpr double digits = 1e9;
+    const auto &base        = linear_->samples.limited;
+    std::set<std::vector<long>> seen;
+    std::vector<std::size_t> kept;
+    std::vector<long> key(linear_->slopes.size() + 1);
+    for (std::size_t p = 0; p < base.size(); ++p)
+    {
+      key[0] = std::lround(digits * base[p]);
+      for (std::size_t i = 0; i < linear_->slopes.size(); ++i)
+        key[i + 1] = std::lround(digits * linear_->slopes[i].limited[p]);
+      if (seen.insert(key).second)
+        kept.push_back(p);
+    }
+    const std::size_t stride = 1 + kept.size() / most_places;
+    const auto take          = [&](std::vector<double> &list) {
+      std::vector<double> rest;
+      for (std::size_t j = 0; j < kept.size(); j += stride)
+        rest.push_back(list[kept[j]]);
+      list = std::move(rest);
+    };
+    take(linear_->samples.limited);
+    for (Samples &slope : linear_->slopes)
+      take(slope.limited);
   }
 
   std::string
@@ -190,6 +228,8 @@ namespace crawler
     {
       linear_.reset();
     }
+    if (linear_)
+      leave_out_places();
   }
 
   KinematicGait::Samples
@@ -352,8 +392,9 @@ namespace crawler
     n_space_ *= in_space ? 2 : 1;
     n_time_ *= in_time ? 2 : 1;
     grid_.emplace(n_space_, n_time_);
+    choose_limited_places();
     if (linear_)
-      look_for_linearity(linear_->x);
+      look_for_linearity(std::vector<double>(linear_->x));
     jacobian_.reset();
     return true;
   }

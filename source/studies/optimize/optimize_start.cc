@@ -128,7 +128,8 @@ namespace crawler
     result.start                    = start;
     const OptimizeParameters wanted = family.form().parameters.optimize;
     OptimizeParameters parameters   = wanted;
-    std::vector<double> x           = start_values(wanted, family.variables(), start);
+    std::vector<double> x           = start_values(wanted, family.variables(), start), multipliers;
+    double scale                    = 1.; // of the objective, for the multipliers
     try
     {
       const auto model = make_gait_model(family, x, stops);
@@ -141,8 +142,14 @@ namespace crawler
         };
         try
         {
+          if (multipliers.size() != problem.lower().size())
+            multipliers.clear();
+          for (double &one : multipliers)
+            one *= scale / problem.scale();
           const OptimizerEnd end =
-            minimise(problem, problem.to_y(x), parameters.tolerance, parameters.most_iterations);
+            minimise(problem, problem.to_y(x), multipliers, parameters.tolerance, parameters.most_iterations);
+          multipliers = end.multipliers;
+          scale       = problem.scale();
           keep();
           result.has_converged = end.has_converged;
           result.message       = end.message;

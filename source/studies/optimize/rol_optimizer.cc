@@ -173,13 +173,18 @@ namespace crawler
   } // namespace
 
   OptimizerEnd
-  minimise(GaitProblem &problem, const std::vector<double> &y, const double tolerance, const unsigned int most_iterations)
+  minimise(GaitProblem &problem,
+           const std::vector<double> &y,
+           std::vector<double> first_multipliers,
+           const double tolerance,
+           const unsigned int most_iterations)
   {
     const auto unknowns = vector_of(y);
     ROL::Ptr<ROL::Problem<double>> rol =
       ROL::makePtr<ROL::Problem<double>>(ROL::makePtr<Objective>(problem), unknowns);
     rol->addBoundConstraint(bounds_of(List(y.size(), 0.), List(y.size(), 1.)));
-    const auto multipliers = vector_of(List(problem.lower().size(), 0.));
+    first_multipliers.resize(problem.lower().size());
+    const auto multipliers  = vector_of(first_multipliers);
     ROL::ParameterList list = settings(tolerance, most_iterations);
     if (problem.lower().empty())
       list.sublist("Step").set("Type", "Trust Region");

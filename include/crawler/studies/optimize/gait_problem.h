@@ -83,6 +83,13 @@ namespace crawler
     void
     apply_transposed(const Point &point, const std::vector<double> &v, std::vector<double> &result) const;
 
+    /// Of the objective.
+    double
+    scale() const
+    {
+      return scale_;
+    }
+
     std::vector<double>
     to_x(const std::vector<double> &y) const;
     std::vector<double>

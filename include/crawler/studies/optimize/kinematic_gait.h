@@ -45,6 +45,10 @@ namespace crawler
     sample(const State &state) const;
 
     void
+    choose_limited_places();
+    void
+    leave_out_places();
+    void
     look_for_linearity(const std::vector<double> &start);
     Samples
     linear_samples(const std::vector<double> &x) const;
@@ -60,6 +64,7 @@ namespace crawler
     const GaitWishes wishes_;
     unsigned int n_space_, n_time_; ///< panels
     std::optional<StrainFunctional> grid_;
+    unsigned int n_limited_s_ = 1, n_limited_t_ = 1; ///< parts of body and duration; the strain is limited at their ends
     /// Of a strain that is linear in the variables: at some x, and its derivatives [variable].
     struct Linear
     {

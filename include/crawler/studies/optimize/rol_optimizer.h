@@ -18,11 +18,15 @@ namespace crawler
   };
 
   /**
-   * Minimises the problem from @p y on by Trilinos' ROL: an augmented Lagrangian whose subproblems, with bounds on y,
+   * Minimises the problem from @p y and a guess of the multipliers (as many as limits, or none) on by Trilinos' ROL: an augmented Lagrangian whose subproblems, with bounds on y,
    * are solved by a trust region method. The Hessians of objective and limited works are symmetric rank-one updates of
    * their gradients (Nocedal and Wright, Numerical Optimization, section 6.2); the limits at many places are taken as
    * linear. What it finds is problem.best(). Throws GaitModel::Interrupted.
    */
   OptimizerEnd
-  minimise(GaitProblem &problem, const std::vector<double> &y, double tolerance, unsigned int most_iterations);
+  minimise(GaitProblem &problem,
+           const std::vector<double> &y,
+           std::vector<double> multipliers,
+           double tolerance,
+           unsigned int most_iterations);
 } // namespace crawler

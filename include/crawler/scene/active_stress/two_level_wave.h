@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/scene/active_stress/prescribed_strain.h>
+
+#include <optional>
+#include <string>
+
+namespace crawler
+{
+  class Declarations;
+
+  /// Section "Active stress/Two-level wave".
+  struct TwoLevelWaveParameters
+  {
+    double smallest_strain = -0.3, largest_strain = 0.3; ///< [1]
+    std::optional<double> share;                         ///< of a period at the largest strain [1]; nothing: the best
+    double front_width    = 0.05;                        ///< [1], a share of the period
+    double wave_number    = 1.;                          ///< waves on the body [1]
+    std::string direction = "from head to tail";
+    std::string given_by  = "frequency";
+    double frequency      = 1.;   ///< [1/time]
+    double wave_speed     = 1.;   ///< [length/time]
+    double work           = 0.01; ///< over the whole duration [force length]
+    double phase          = 0.;   ///< [rad]
+    double ramp_duration  = 0.;   ///< [time]
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
+  /**
+   * The gait that goes farthest of all with its work and its extreme strains (doc/theory.md, "Gait efficiency"): a wave
+   * of strain that runs at constant speed and has two levels, e = emax on the share p of each period and emin on the
+   * rest, with smooth fronts. It is a TravellingWave that is read as strain. The best share is
+   * p = 1/(1 + ((1+emax)/(1+emin))^(a/2)); the shorter its fronts, the closer the wave comes to the bound.
+   */
+  class TwoLevelWave : public PrescribedStrain
+  {
+  public:
+    static constexpr const char *description =
+      "the strain with two levels that goes farthest of all for its work, and the stress that brings it about";
+
+    /// Throws InputError if the strains are not in order, if the fronts do not fit, if there are too many periods, or
+    /// if the work is given, but the wave number is not whole or there is a ramp.
+    TwoLevelWave(const TwoLevelWaveParameters &parameters, const Body &body, double end_time);
+
+    /// What was chosen and what it could reach.
+    void
+    report(std::ostream &out) const override;
+
+    /// What follows from the entries. The merit of a gait is D/sqrt(W T/(gamma L)) of displacement D and work W.
+    struct Numbers
+    {
+      double share;     ///< p [1]
+      double frequency; ///< [1/time]
+      double merit;     ///< of whole waves with these fronts at full strain [1]
+      double bound;     ///< F, above which no gait with these strains has its merit [1]
+    };
+    const Numbers &
+    numbers() const
+    {
+      return numbers_;
+    }
+
+  private:
+    const TwoLevelWaveParameters parameters_;
+    const double length_;
+    const Numbers numbers_;
+  };
+} // namespace crawler

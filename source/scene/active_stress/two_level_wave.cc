@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/two_level_wave.h>
+#include <crawler/scene/active_stress/waves.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ostream>
+
+namespace crawler
+{
+  namespace
+  {
+    const std::string section = "Active stress/Two-level wave/";
+
+    /// The frequency of the wave that does the work W = gamma c^2 L T X [1/time].
+    double
+    frequency_by_work(const TwoLevelWaveParameters &p, const Body &body, const double end_time, const double X)
+    {
+      if (p.wave_number != std::round(p.wave_number))
+        throw InputError(fmt::format("the wave number is {:g}, but a whole one is expected where the work is given, "
+                                     "since that of others depends on the phase",
+                                     p.wave_number),
+                         section + "Given by");
+      if (p.ramp_duration > 0.)
+        throw InputError("there is a ramp, but Ramp duration = 0 is expected where the work is given, since the work "
+                         "of the ramp depends on the phase",
+                         section + "Given by");
+      const double L = body.length, c = std::sqrt(p.work / (body.friction_coefficient * L * end_time * X));
+      return p.wave_number * c / L;
+    }
+
+    /// For a wave of speed c, D = c T (<e> - <g e>/<g>) and W = gamma c^2 L T X, X = <g e^2> - <g e>^2/<g>, with the
+    /// means over a period; both are the same if a constant is added to the factor e.
+    TwoLevelWave::Numbers
+    numbers_of(const TwoLevelWaveParameters &p, const Body &body, const double end_time)
+    {
+      const double low = p.smallest_strain, high = p.largest_strain, a = body.friction_exponent();
+      if (!(low < high))
+        throw InputError(
+          fmt::format("the largest strain is {:g}, but one above the smallest, {:g}, is expected", high, low),
+          section + "Largest strain");
+      const double share = p.share.value_or(1. / (1. + std::pow((1. + high) / (1. + low), 0.5 * a)));
+      double mean = 0., g_sum = 0., ge = 0., gee = 0.;
+      const auto add = [&](const double weight, const double level) { // from -1/2, emin, to 1/2, emax
+        const double e = (high - low) * level, g = weight * std::pow(1. + 0.5 * (low + high) + e, a);
+        mean += weight * e;
+        g_sum += g;
+        ge += g * e;
+        gee += g * e * e;
+      };
+      add(share - p.front_width, 0.5);
+      add(1. - share - p.front_width, -0.5);
+      constexpr unsigned int n = 1024; // all derivatives vanish at both ends of a front
+      for (unsigned int i = 0; i < n; ++i)
+        add(2. * p.front_width / n, smooth_step((i + 0.5) / n) - 0.5);
+      const double X = gee - ge * ge / g_sum;
+      return {share,
+              p.given_by == "frequency"    ? p.frequency
+              : p.given_by == "wave speed" ? p.wave_number * p.wave_speed / body.length
+                                           : frequency_by_work(p, body, end_time, X),
+              std::abs(mean - ge / g_sum) / std::sqrt(X),
+              std::abs(std::pow(1. + low, -0.5 * a) - std::pow(1. + high, -0.5 * a))};
+    }
+
+    std::unique_ptr<const ActiveStress>
+    strain_of(const TwoLevelWaveParameters &p, const Body &body, const double end_time)
+    {
+      const auto numbers = numbers_of(p, body, end_time);
+      TravellingWaveParameters wave;
+      wave.amplitude              = 0.5 * (p.largest_strain - p.smallest_strain);
+      wave.offset                 = 0.5 * (p.largest_strain + p.smallest_strain);
+      wave.wave_number            = p.wave_number;
+      wave.direction              = p.direction;
+      wave.frequency              = numbers.frequency;
+      wave.phase                  = p.phase;
+      wave.profile                = {"smoothed square", numbers.share, p.front_width};
+      wave.envelope.ramp_duration = p.ramp_duration;
+      return std::make_unique<TravellingWave>(wave, body.length, end_time);
+    }
+  } // namespace
+
+  void
+  TwoLevelWaveParameters::add_parameters(Declarations &declarations)
+  {
+    const Range strains{.lower = -1., .upper = 1e6, .upper_included = true};
+    declarations.enter("Two-level wave");
+    declarations.number("Smallest strain", smallest_strain, strains, "1")
+      .means("Strain emin on the rest of each period.");
+    declarations.number("Largest strain", largest_strain, strains, "1")
+      .means("Strain emax on a share of each period, above the smallest one.");
+    declarations.number("Share", share, {.lower = 0., .upper = 1.}, "1")
+      .means("Share of each period at the largest strain; automatic: the one with which the wave goes farthest, "
+             "1/(1 + ((1+emax)/(1+emin))^(a/2)) with a = 1 - p.");
+    declarations.number("Front width", front_width, {.lower = 0., .upper = 0.5, .upper_included = true}, "1")
+      .means("Width of each front between the two strains, a smooth step, as a share of the period.");
+    declarations.number("Wave number", wave_number, {.lower = 0., .upper = 1000., .upper_included = true}, "1")
+      .means("Number n of waves on the body; only whole ones reach the bound.");
+    declare_direction(direction, declarations);
+    declarations.choice("Given by", given_by, {"frequency", "wave speed", "work"})
+      .means("What says how fast the wave runs; frequency = wave number * wave speed/L.");
+    const Range not_negative{.lower = 0., .lower_included = true};
+    declarations.number("Frequency", frequency, not_negative, "1/time")
+      .means("Frequency f; with 0 the wave stands still. Used if given by frequency.");
+    declarations.number("Wave speed", wave_speed, not_negative, "length/time")
+      .means("Speed of the wave along the body. Used if given by wave speed.");
+    declarations.number("Work", work, positive(), "force length")
+      .means("Work that the wave does until the end time. Used if given by work; then the wave number must be whole "
+             "and there is no ramp.");
+    declarations.number("Phase", phase, any_number(), "1").means("Phase of the wave at s = 0, t = 0, in radians.");
+    declarations.number("Ramp duration", ramp_duration, not_negative, "time")
+      .means("How long the strain takes to grow, by a smooth step, from 0 at t = 0 to its full size; the nonlinear "
+             "model starts from rest and needs it.");
+    declarations.leave();
+  }
+
+  TwoLevelWave::TwoLevelWave(const TwoLevelWaveParameters &parameters, const Body &body, const double end_time)
+  try : PrescribedStrain({.given_by = "two-level wave"}, body, end_time, strain_of(parameters, body, end_time)),
+    parameters_(parameters), length_(body.length), numbers_(numbers_of(parameters, body, end_time))
+  {
+  }
+  catch (const InputError &error) // the wave believes that it stands alone
+  {
+    const std::string speed = parameters.given_by == "frequency"    ? "Frequency"
+                              : parameters.given_by == "wave speed" ? "Wave speed"
+                                                                    : "Work";
+    throw InputError(error.what(),
+                     error.entry.starts_with(section)      ? error.entry
+                     : error.entry.ends_with("/Frequency") ? section + speed
+                                                           : section + "Front width");
+  }
+
+  void
+  TwoLevelWave::report(std::ostream &out) const
+  {
+    const auto &[share, frequency, merit, bound] = numbers_;
+    out << fmt::format(
+      "Two-level wave: strain {:g} on the share {:.6g} of each period and {:g} on the rest, frequency "
+      "{:.8g}, speed {:.8g}\n"
+      "Displacement/sqrt(work * duration/(friction coefficient * length)) is {:.6g} for whole waves at "
+      "full strain; no gait with these strains is above {:.6g}\n",
+      parameters_.largest_strain,
+      share,
+      parameters_.smallest_strain,
+      frequency,
+      frequency * length_ / parameters_.wave_number,
+      merit,
+      bound);
+    PrescribedStrain::report(out);
+  }
+} // namespace crawler

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The generator "two-level wave" against theory.md, "Gait efficiency": its strain, its share, what it reaches on the
+// kinematic level and in the nonlinear model, and what it refuses.
+#include "../../support/lane_runs.h"
+
+#include <crawler/base/exceptions.h>
+#include <crawler/run/reduced_model.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace crawler;
+using test::Settings;
+
+namespace
+{
+  const std::string section = "Active stress/Two-level wave/";
+
+  Settings
+  wave(const double a, const Settings &own, const Settings &others = {})
+  {
+    Settings settings = {{"Active stress/Generator", "two-level wave"},
+                         {"Body/Anchoring exponent", test::text(1. - a)}};
+    for (const auto &[entry, value] : own)
+      settings.emplace_back(section + entry, value);
+    settings.insert(settings.end(), others.begin(), others.end());
+    return settings;
+  }
+
+  SimulationResult
+  kinematic(const Settings &settings, const double accuracy = 1e-7)
+  {
+    const Scene scene = test::parameters_with(settings).create_scene();
+    return ReducedModel(scene, Model::kinematic).compute(accuracy, /*energy_balance=*/true);
+  }
+
+  TwoLevelWave::Numbers
+  numbers(const Settings &settings)
+  {
+    const Scene scene = test::parameters_with(settings).create_scene();
+    return dynamic_cast<const TwoLevelWave &>(*scene.active_stress).numbers();
+  }
+
+  void
+  expect_complaint(const Settings &own, const std::string &entry, const std::string &part)
+  {
+    try
+    {
+      test::parameters_with(wave(-1., own)).create_scene();
+      ADD_FAILURE() << entry << ": nothing is refused";
+    }
+    catch (const InputError &error)
+    {
+      EXPECT_EQ(error.entry, section + entry);
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+} // namespace
+
+TEST(TwoLevelWave, HasItsTwoStrains)
+{
+  const Settings own = {{"Smallest strain", "-0.2"}, {"Largest strain", "0.5"}, {"Share", "0.3"}};
+  const Scene scene  = test::parameters_with(wave(-1., own, {{"Body/Length", "2"}})).create_scene();
+  std::vector<double> e(6);
+  const auto strain = scene.active_stress->prescribed_strain()->at({0., 0.06, 0.54, 0.6, 0.66, 1.94});
+  strain->strain(/*t=*/0., e); // the fronts are about s = 0 and s = 0.3 L, 0.05 L wide
+  const std::vector<double> expected = {0.15, 0.5, 0.5, 0.15, -0.2, -0.2};
+  for (std::size_t i = 0; i < e.size(); ++i)
+    EXPECT_NEAR(e[i], expected[i], 1e-14) << i;
+  scene.active_stress->prescribed_strain()->at({1.})->strain(/*t=*/0.75, {e.data(), 1}); // from head to tail
+  EXPECT_NEAR(e[0], 0.5, 1e-14);
+  EXPECT_NEAR(scene.active_stress->period().value_or(0.), 1., 1e-14);
+}
+
+TEST(TwoLevelWave, TheBestShareIsThatOfTheTheory)
+{
+  for (const double a : {-1., 2.})
+  {
+    const auto best = numbers(wave(a, {{"Front width", "1e-3"}}));
+    EXPECT_NEAR(best.share, 1. / (1. + std::pow(1.3 / 0.7, 0.5 * a)), 1e-14);
+    EXPECT_NEAR(best.bound, a < 0. ? 0.303515 : 0.659341, 5e-7);
+    EXPECT_NEAR(best.merit, best.bound, 1e-3 * best.bound);
+    for (const double other : {0.9 * best.share, 1.1 * best.share})
+      EXPECT_LT(numbers(wave(a, {{"Front width", "1e-3"}, {"Share", test::text(other)}})).merit, best.merit) << other;
+  }
+}
+
+/// What the kinematic level measures is what the wave says of itself, close to the bound and never above. The waves of
+/// a = -1 run against the motion, those of a = 2 with it.
+TEST(TwoLevelWave, NearlyReachesTheBound)
+{
+  for (const double a : {-1., 2.})
+    for (const double front : {0.05, 0.1})
+      for (const bool to_head : {false, true})
+      {
+        const Settings settings = wave(
+          a, {{"Front width", test::text(front)}, {"Direction", to_head ? "from tail to head" : "from head to tail"}});
+        const auto result = kinematic(settings);
+        const auto own    = numbers(settings);
+        ASSERT_TRUE(result.gait_efficiency);
+        EXPECT_GT(*result.gait_efficiency, front < 0.07 ? 0.97 : 0.95) << a << " " << front;
+        EXPECT_LT(*result.gait_efficiency, 1.);
+        EXPECT_NEAR(*result.gait_efficiency, own.merit / own.bound, 1e-6);
+        EXPECT_EQ(result.displacement > 0., to_head == (a > 0.)) << a;
+      }
+}
+
+TEST(TwoLevelWave, DoesTheWorkThatIsGiven)
+{
+  const Settings body = {{"Body/Length", "3"},
+                         {"Body/Friction coefficient", "0.4"},
+                         {"Body/Elastic modulus", "7"},
+                         {"Time/End time", "1.7"}};
+  for (const char *n : {"1", "2"})
+    for (const char *phase : {"0", "0.7"})
+    {
+      const auto result =
+        kinematic(wave(-1., {{"Given by", "work"}, {"Work", "0.25"}, {"Wave number", n}, {"Phase", phase}}, body));
+      EXPECT_NEAR(result.energy_balance->stress_work, 0.25, 1e-6 * 0.25) << n;
+    }
+  const auto by_speed =
+    numbers(wave(-1., {{"Given by", "wave speed"}, {"Wave speed", "0.6"}, {"Wave number", "2"}}, body));
+  EXPECT_DOUBLE_EQ(by_speed.frequency, 0.4);
+}
+
+/// A ramp, so that the nonlinear model can start from rest; there the recovered stress brings the same motion about.
+TEST(TwoLevelWave, DrivesTheNonlinearModel)
+{
+  const Settings settings = wave(-1., {{"Ramp duration", "0.5"}}, {{"Accuracy", "1e-4"}});
+  const auto strain = kinematic(settings, 1e-6), full = test::run_with(settings).result;
+  EXPECT_EQ(full.time.status, Status::finished);
+  EXPECT_GT(strain.displacement, 0.05);
+  EXPECT_NEAR(full.displacement, strain.displacement, 1e-4 * strain.displacement);
+  ASSERT_TRUE(full.gait_efficiency && strain.gait_efficiency);
+  EXPECT_NEAR(*full.gait_efficiency, *strain.gait_efficiency, 0.03); // strains overshoot a little
+}
+
+TEST(TwoLevelWave, SaysWhatDoesNotFit)
+{
+  expect_complaint({{"Largest strain", "-0.3"}}, "Largest strain", "one above the smallest, -0.3, is expected");
+  expect_complaint({{"Share", "0.02"}}, "Front width", "at most 0.02 is expected");
+  expect_complaint({{"Frequency", "1e12"}}, "Frequency", "periods");
+  expect_complaint({{"Given by", "wave speed"}, {"Wave speed", "1e12"}}, "Wave speed", "periods");
+  const Settings work = {{"Given by", "work"}};
+  expect_complaint(test::with(work, {{"Wave number", "1.5"}}), "Given by", "a whole one is expected");
+  expect_complaint(test::with(work, {{"Ramp duration", "0.5"}}), "Given by", "Ramp duration = 0 is expected");
+}
