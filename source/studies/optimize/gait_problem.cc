@@ -263,6 +263,17 @@ namespace crawler
   }
 
   const GaitRecord &
+  GaitProblem::record(const std::vector<double> &y)
+  {
+    const std::vector<double> x = to_x(y);
+    for (auto record = records_.rbegin(); record != records_.rend(); ++record)
+      if (record->x == x)
+        return *record;
+    at(y, false);
+    return records_.back();
+  }
+
+  const GaitRecord &
   GaitProblem::best() const
   {
     const bool is_cost = parameters_.objective == "cost of transport";

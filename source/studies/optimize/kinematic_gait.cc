@@ -16,7 +16,6 @@ namespace crawler
   namespace
   {
     constexpr double accurate_enough = 1e-6; ///< the quadrature, relative to displacement and works
-    constexpr std::size_t most_places = 6000; ///< where the strain is limited
 
     double
     dot(const std::vector<double> &a, const std::vector<double> &b)
@@ -117,9 +116,9 @@ namespace crawler
   void
   KinematicGait::choose_limited_places()
   {
-    constexpr unsigned int closer = 8, most_times = 128; // than the points of the quadrature
-    n_limited_s_ = closer * GaussPanels::n_points * n_space_;
+    constexpr unsigned int most_times = 128, most = 65536, closer = 32; // than the points of the quadrature
     n_limited_t_ = std::min(std::bit_ceil(GaussPanels::n_points * n_time_), most_times);
+    n_limited_s_ = std::min(closer * GaussPanels::n_points * n_space_, most / n_limited_t_);
   }
 
   /// Of places where a linear strain is the same for all values of the variables one is enough; of those that are left,
@@ -127,20 +126,20 @@ namespace crawler
   void
   KinematicGait::leave_out_places()
   {
-    constexpr double digits = 1e9;
-    const auto &base        = linear_->samples.limited;
+    constexpr double digits    = 1e9;
+    constexpr std::size_t most = 3000;
     std::set<std::vector<long>> seen;
     std::vector<std::size_t> kept;
     std::vector<long> key(linear_->slopes.size() + 1);
-    for (std::size_t p = 0; p < base.size(); ++p)
+    for (std::size_t p = 0; p < linear_->samples.limited.size(); ++p)
     {
-      key[0] = std::lround(digits * base[p]);
+      key[0] = std::lround(digits * linear_->samples.limited[p]);
       for (std::size_t i = 0; i < linear_->slopes.size(); ++i)
         key[i + 1] = std::lround(digits * linear_->slopes[i].limited[p]);
       if (seen.insert(key).second)
         kept.push_back(p);
     }
-    const std::size_t stride = 1 + kept.size() / most_places;
+    const std::size_t stride = 1 + kept.size() / most;
     const auto take          = [&](std::vector<double> &list) {
       std::vector<double> rest;
       for (std::size_t j = 0; j < kept.size(); j += stride)
@@ -150,6 +149,7 @@ namespace crawler
     take(linear_->samples.limited);
     for (Samples &slope : linear_->slopes)
       take(slope.limited);
+    jacobian_.reset();
   }
 
   std::string
@@ -228,7 +228,7 @@ namespace crawler
     {
       linear_.reset();
     }
-    if (linear_)
+    if (linear_ && wishes_.strain)
       leave_out_places();
   }
 
@@ -394,8 +394,7 @@ namespace crawler
     grid_.emplace(n_space_, n_time_);
     choose_limited_places();
     if (linear_)
-      look_for_linearity(std::vector<double>(linear_->x));
-    jacobian_.reset();
+      look_for_linearity(x);
     return true;
   }
 } // namespace crawler

@@ -121,7 +121,8 @@ namespace crawler
          const unsigned long start,
          const std::function<bool()> &stops)
   {
-    constexpr unsigned int most_rounds = 6;
+    constexpr unsigned int most_rounds = 12;
+    constexpr double roughly           = 1e-3; // while the grid is still too coarse
     const double begin                 = now();
     StartResult result;
     result.work                     = work;
@@ -130,14 +131,15 @@ namespace crawler
     OptimizeParameters parameters   = wanted;
     std::vector<double> x           = start_values(wanted, family.variables(), start), multipliers;
     double scale                    = 1.; // of the objective, for the multipliers
+    bool is_rough                   = true;
     try
     {
       const auto model = make_gait_model(family, x, stops);
       for (unsigned int round = 0; round < most_rounds; ++round)
       {
         GaitProblem problem(*model, parameters, family.variables(), work, x, stops);
-        const auto keep = [&]() {
-          result.best = problem.best();
+        const auto keep = [&](const GaitRecord &best) {
+          result.best = best;
           result.records.insert(result.records.end(), problem.records().begin(), problem.records().end());
         };
         try
@@ -146,11 +148,14 @@ namespace crawler
             multipliers.clear();
           for (double &one : multipliers)
             one *= scale / problem.scale();
-          const OptimizerEnd end =
-            minimise(problem, problem.to_y(x), multipliers, parameters.tolerance, parameters.most_iterations);
+          const OptimizerEnd end = minimise(problem,
+                                            problem.to_y(x),
+                                            multipliers,
+                                            is_rough ? std::max(roughly, parameters.tolerance) : parameters.tolerance,
+                                            parameters.most_iterations);
           multipliers = end.multipliers;
           scale       = problem.scale();
-          keep();
+          keep(end.has_converged ? problem.record(end.y) : problem.best());
           result.has_converged = end.has_converged;
           result.message       = end.message;
           result.iterations += end.iterations;
@@ -164,17 +169,20 @@ namespace crawler
         catch (const GaitModel::Interrupted &)
         {
           if (!problem.records().empty())
-            keep();
+            keep(problem.best());
           throw;
         }
         if (!result.best.problem.empty())
           break;
         x                  = result.best.x;
         const bool is_fine = !model->refine(x);
+        if (!is_fine) // the limits are looked at in other places
+          parameters = wanted;
         const bool exceeds =
-          (wanted.smallest_strain || wanted.largest_strain) && tighten(parameters, wanted, model->extreme_strains(x));
-        if (is_fine && !exceeds)
+          is_fine && (wanted.smallest_strain || wanted.largest_strain) && tighten(parameters, wanted, model->extreme_strains(x));
+        if (is_fine && !exceeds && !is_rough)
           break;
+        is_rough = is_rough && !is_fine;
         if (round + 1 == most_rounds)
           result.message = "the limits of strain are exceeded between the places where they are looked at";
       }

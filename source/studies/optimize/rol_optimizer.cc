@@ -5,10 +5,10 @@
 #include <ROL_ParameterList.hpp>
 #include <ROL_Problem.hpp>
 #include <ROL_Solver.hpp>
-#include <ROL_StdConstraint.hpp>
 #include <ROL_StdObjective.hpp>
 #include <ROL_StdVector.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -67,73 +67,74 @@ namespace crawler
       List y_, gradient_, matrix_;
     };
 
-    class Objective : public ROL::StdObjective<double>
+    /**
+     * The augmented Lagrangian f + sum (t^2 - mu^2)/(2 rho), where t = mu + rho (c - bound) if that pulls c back to the
+     * bound, and 0 otherwise (Rockafellar 1974): the slack variables of the limits are eliminated.
+     */
+    class Lagrangian : public ROL::StdObjective<double>
     {
     public:
-      explicit Objective(GaitProblem &problem)
-        : problem_(problem)
+      explicit Lagrangian(GaitProblem &problem, List multipliers)
+        : mu(std::move(multipliers))
+        , problem_(problem)
+        , hessians_(problem.n_rows())
       {
       }
+
+      List mu; ///< multipliers of c
+      double rho = 1.;
+
+      /// t of all limits.
+      List
+      forces(const List &c) const
+      {
+        List t(c.size());
+        for (std::size_t i = 0; i < c.size(); ++i)
+          t[i] = std::max(mu[i] + rho * (c[i] - problem_.upper()[i]), 0.) +
+                 std::min(mu[i] + rho * (c[i] - problem_.lower()[i]), 0.);
+        return t;
+      }
+
       double
       value(const List &y, double &) override
       {
-        return problem_.at(y, false).objective;
+        const GaitProblem::Point &point = problem_.at(y, false);
+        const List t                    = forces(point.constraints);
+        double sum                      = point.objective;
+        for (std::size_t i = 0; i < t.size(); ++i)
+          sum += (t[i] * t[i] - mu[i] * mu[i]) / (2. * rho);
+        return sum;
       }
       void
       gradient(List &gradient, const List &y, double &) override
       {
-        gradient = problem_.at(y, true).gradient;
+        const GaitProblem::Point &point = problem_.at(y, true);
+        problem_.apply_transposed(point, forces(point.constraints), gradient);
+        for (std::size_t i = 0; i < y.size(); ++i)
+          gradient[i] += point.gradient[i];
       }
       void
       hessVec(List &result, const List &v, const List &y, double &) override
       {
-        hessian_.see(y, problem_.at(y, true).gradient);
-        result.assign(v.size(), 0.);
-        hessian_.add(1., v, result);
-      }
-
-    private:
-      GaitProblem &problem_;
-      RankOneHessian hessian_;
-    };
-
-    class Constraint : public ROL::StdConstraint<double>
-    {
-    public:
-      explicit Constraint(GaitProblem &problem)
-        : problem_(problem)
-        , hessians_(problem.n_rows())
-      {
-      }
-      void
-      value(List &c, const List &y, double &) override
-      {
-        c = problem_.at(y, false).constraints;
-      }
-      void
-      applyJacobian(List &result, const List &v, const List &y, double &) override
-      {
-        problem_.apply_jacobian(problem_.at(y, true), v, result);
-      }
-      void
-      applyAdjointJacobian(List &result, const List &v, const List &y, double &) override
-      {
-        problem_.apply_transposed(problem_.at(y, true), v, result);
-      }
-      void
-      applyAdjointHessian(List &result, const List &u, const List &v, const List &y, double &) override
-      {
         const GaitProblem::Point &point = problem_.at(y, true);
-        result.assign(v.size(), 0.);
+        const List t                    = forces(point.constraints);
+        List change;
+        problem_.apply_jacobian(point, v, change);
+        for (std::size_t i = 0; i < t.size(); ++i)
+          change[i] *= t[i] != 0. ? rho : 0.;
+        problem_.apply_transposed(point, change, result);
+        hessian_.see(y, point.gradient);
+        hessian_.add(1., v, result);
         for (std::size_t r = 0; r < point.rows.size(); ++r)
         {
           hessians_[r].see(y, point.rows[r]);
-          hessians_[r].add(u[r], v, result);
+          hessians_[r].add(t[r], v, result);
         }
       }
 
     private:
       GaitProblem &problem_;
+      RankOneHessian hessian_;
       std::vector<RankOneHessian> hessians_;
     };
 
@@ -143,67 +144,68 @@ namespace crawler
       return ROL::makePtr<ROL::StdVector<double>>(ROL::makePtr<List>(list));
     }
 
-    ROL::Ptr<ROL::BoundConstraint<double>>
-    bounds_of(const List &lower, const List &upper)
+    ROL::ParameterList
+    settings(const double tolerance)
     {
-      const auto finite = [](List list) {
-        for (double &one : list)
-          one = std::isfinite(one) ? one : std::copysign(ROL::ROL_INF<double>(), one);
-        return vector_of(list);
-      };
-      return ROL::makePtr<ROL::Bounds<double>>(finite(lower), finite(upper));
+      constexpr int most_steps = 300;
+      ROL::ParameterList list;
+      list.sublist("Step").set("Type", "Trust Region");
+      ROL::ParameterList &test = list.sublist("Status Test");
+      test.set("Gradient Tolerance", tolerance);
+      test.set("Step Tolerance", 1e-14);
+      test.set("Iteration Limit", most_steps);
+      return list;
     }
 
-    ROL::ParameterList
-    settings(const double tolerance, const unsigned int most_iterations)
+    /// The largest violation of a limit.
+    double
+    violation(const GaitProblem &problem, const List &c)
     {
-      ROL::ParameterList list;
-      ROL::ParameterList &step = list.sublist("Step"), &lagrangian = step.sublist("Augmented Lagrangian"),
-                         &test = list.sublist("Status Test");
-      step.set("Type", "Augmented Lagrangian");
-      lagrangian.set("Use Default Problem Scaling", false);
-      lagrangian.set("Subproblem Iteration Limit", 200);
-      lagrangian.set("Initial Optimality Tolerance", 1e-2);
-      test.set("Gradient Tolerance", tolerance);
-      test.set("Constraint Tolerance", 0.1 * tolerance);
-      test.set("Step Tolerance", 1e-12);
-      test.set("Iteration Limit", static_cast<int>(most_iterations));
-      return list;
+      double largest = 0.;
+      for (std::size_t i = 0; i < c.size(); ++i)
+        largest = std::max({largest, c[i] - problem.upper()[i], problem.lower()[i] - c[i]});
+      return largest;
     }
   } // namespace
 
   OptimizerEnd
   minimise(GaitProblem &problem,
            const std::vector<double> &y,
-           std::vector<double> first_multipliers,
+           std::vector<double> multipliers,
            const double tolerance,
            const unsigned int most_iterations)
   {
-    const auto unknowns = vector_of(y);
-    ROL::Ptr<ROL::Problem<double>> rol =
-      ROL::makePtr<ROL::Problem<double>>(ROL::makePtr<Objective>(problem), unknowns);
-    rol->addBoundConstraint(bounds_of(List(y.size(), 0.), List(y.size(), 1.)));
-    first_multipliers.resize(problem.lower().size());
-    const auto multipliers  = vector_of(first_multipliers);
-    ROL::ParameterList list = settings(tolerance, most_iterations);
-    if (problem.lower().empty())
-      list.sublist("Step").set("Type", "Trust Region");
-    else
-    {
-      const ROL::Ptr<ROL::Constraint<double>> limits = ROL::makePtr<Constraint>(problem);
-      const ROL::Ptr<ROL::Vector<double>> of_limits  = multipliers;
-      rol->addConstraint("limits", limits, of_limits, bounds_of(problem.lower(), problem.upper()));
-    }
+    constexpr double first_tolerance = 1e-2, first_penalty = 10., largest_penalty = 1e8, less = 0.25;
+    multipliers.resize(problem.lower().size());
+    const auto lagrangian = ROL::makePtr<Lagrangian>(problem, std::move(multipliers));
+    lagrangian->rho       = first_penalty;
+    const auto unknowns   = vector_of(y);
+    const bool has_limits = !problem.lower().empty();
+    double inner = has_limits ? std::max(first_tolerance, tolerance) : tolerance, before = HUGE_VAL;
     std::ostringstream unread;
-    rol->finalize(false, false, unread);
-    ROL::Solver<double> solver(rol, list);
-    solver.solve(unread);
-    const auto state = solver.getAlgorithmState();
-    const bool is_good =
-      state->statusFlag == ROL::EXITSTATUS_CONVERGED || state->statusFlag == ROL::EXITSTATUS_STEPTOL;
-    return {is_good,
-            is_good ? "" : ROL::EExitStatusToString(state->statusFlag),
-            static_cast<unsigned int>(state->iter),
-            *multipliers->getVector()};
+    for (unsigned int i = 1; i <= most_iterations; ++i)
+    {
+      const ROL::Ptr<ROL::Problem<double>> rol = ROL::makePtr<ROL::Problem<double>>(lagrangian, unknowns);
+      rol->addBoundConstraint(
+        ROL::makePtr<ROL::Bounds<double>>(vector_of(List(y.size(), 0.)), vector_of(List(y.size(), 1.))));
+      rol->finalize(false, false, unread);
+      ROL::ParameterList list = settings(inner);
+      ROL::Solver<double> solver(rol, list);
+      solver.solve(unread);
+      const ROL::EExitStatus end = solver.getAlgorithmState()->statusFlag;
+      const bool is_good         = end == ROL::EXITSTATUS_CONVERGED || end == ROL::EXITSTATUS_STEPTOL;
+      const List c               = problem.at(*unknowns->getVector(), false).constraints;
+      const double now           = violation(problem, c);
+      lagrangian->mu             = lagrangian->forces(c);
+      if (is_good && inner <= tolerance && now <= tolerance)
+        return {*unknowns->getVector(), true, "", i, lagrangian->mu};
+      if (!has_limits && !is_good)
+        return {*unknowns->getVector(), false, ROL::EExitStatusToString(end), i, {}};
+      if (now > less * before && now > tolerance)
+        lagrangian->rho = std::min(10. * lagrangian->rho, largest_penalty);
+      before = now;
+      inner  = std::max(0.1 * inner, tolerance);
+    }
+    return {*unknowns->getVector(), false, "too many iterations", most_iterations, lagrangian->mu};
   }
 } // namespace crawler

@@ -98,6 +98,9 @@ namespace crawler
     /// The best admissible point so far; if there is none, the one that violates the limits least.
     const GaitRecord &
     best() const;
+    /// The latest evaluation at @p y, or a new one.
+    const GaitRecord &
+    record(const std::vector<double> &y);
     const std::vector<GaitRecord> &
     records() const
     {

@@ -11,6 +11,7 @@ namespace crawler
   /// How an optimisation ended.
   struct OptimizerEnd
   {
+    std::vector<double> y;
     bool has_converged;
     std::string message;     ///< in words, if it has not
     unsigned int iterations; ///< of the outer loop
@@ -18,10 +19,11 @@ namespace crawler
   };
 
   /**
-   * Minimises the problem from @p y and a guess of the multipliers (as many as limits, or none) on by Trilinos' ROL: an augmented Lagrangian whose subproblems, with bounds on y,
-   * are solved by a trust region method. The Hessians of objective and limited works are symmetric rank-one updates of
-   * their gradients (Nocedal and Wright, Numerical Optimization, section 6.2); the limits at many places are taken as
-   * linear. What it finds is problem.best(). Throws GaitModel::Interrupted.
+   * Minimises the problem from @p y and a guess of the multipliers on (as many as limits, or none). Minima of augmented
+   * Lagrangians with bounds on y are found by the trust region method of Lin and More in Trilinos' ROL. The Hessians of
+   * objective and limited works are symmetric rank-one updates of their gradients (Nocedal and Wright, Numerical
+   * Optimization, section 6.2); the limits at many places are taken as linear. Throws
+   * GaitModel::Interrupted.
    */
   OptimizerEnd
   minimise(GaitProblem &problem,
