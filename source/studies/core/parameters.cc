@@ -129,7 +129,7 @@ namespace crawler
     declarations.number("Tolerance", tolerance, between(1e-12, 0.1), "1")
       .means("The optimiser stops when the gradient and the violation of limits, both relative, are below this.");
     declarations.whole_number("Most iterations", most_iterations, 1, 1000000)
-      .means("Of the optimiser, for each start.");
+      .means("Of the optimiser (its outer loop, in which the multipliers of the limits are found), for each start.");
     declarations.number("Time limit", time_limit, positive(), "s")
       .means("Wall time after which the best so far is the result; --resume goes on. Automatic: none.");
     declarations.leave();

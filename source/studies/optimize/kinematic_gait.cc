@@ -116,7 +116,7 @@ namespace crawler
   void
   KinematicGait::choose_limited_places()
   {
-    constexpr unsigned int most_times = 128, most = 65536, closer = 32; // than the points of the quadrature
+    constexpr unsigned int most_times = 128, most = 65536, closer = 64; // than the points of the quadrature
     n_limited_t_ = std::min(std::bit_ceil(GaussPanels::n_points * n_time_), most_times);
     n_limited_s_ = std::min(closer * GaussPanels::n_points * n_space_, most / n_limited_t_);
   }
@@ -127,7 +127,7 @@ namespace crawler
   KinematicGait::leave_out_places()
   {
     constexpr double digits    = 1e9;
-    constexpr std::size_t most = 3000;
+    constexpr std::size_t most = 4096;
     std::set<std::vector<long>> seen;
     std::vector<std::size_t> kept;
     std::vector<long> key(linear_->slopes.size() + 1);

@@ -123,6 +123,7 @@ namespace crawler
   {
     constexpr unsigned int most_rounds = 12;
     constexpr double roughly           = 1e-3; // while the grid is still too coarse
+    constexpr double above_noise       = 10.;
     const double begin                 = now();
     StartResult result;
     result.work                     = work;
@@ -131,10 +132,11 @@ namespace crawler
     OptimizeParameters parameters   = wanted;
     std::vector<double> x           = start_values(wanted, family.variables(), start), multipliers;
     double scale                    = 1.; // of the objective, for the multipliers
-    bool is_rough                   = true;
+    bool is_rough                   = true; // of simulations all is known after the first round
     try
     {
       const auto model = make_gait_model(family, x, stops);
+      is_rough         = model->noise() == 0.;
       for (unsigned int round = 0; round < most_rounds; ++round)
       {
         GaitProblem problem(*model, parameters, family.variables(), work, x, stops);
@@ -148,10 +150,11 @@ namespace crawler
             multipliers.clear();
           for (double &one : multipliers)
             one *= scale / problem.scale();
+          const double tolerance = std::max(parameters.tolerance, above_noise * model->noise());
           const OptimizerEnd end = minimise(problem,
                                             problem.to_y(x),
                                             multipliers,
-                                            is_rough ? std::max(roughly, parameters.tolerance) : parameters.tolerance,
+                                            is_rough ? std::max(roughly, tolerance) : tolerance,
                                             parameters.most_iterations);
           multipliers = end.multipliers;
           scale       = problem.scale();
@@ -179,7 +182,7 @@ namespace crawler
         if (!is_fine) // the limits are looked at in other places
           parameters = wanted;
         const bool exceeds =
-          is_fine && (wanted.smallest_strain || wanted.largest_strain) && tighten(parameters, wanted, model->extreme_strains(x));
+          is_fine && !is_rough && (wanted.smallest_strain || wanted.largest_strain) && tighten(parameters, wanted, model->extreme_strains(x));
         if (is_fine && !exceeds && !is_rough)
           break;
         is_rough = is_rough && !is_fine;

@@ -147,12 +147,12 @@ namespace crawler
     ROL::ParameterList
     settings(const double tolerance)
     {
-      constexpr int most_steps = 300;
+      constexpr int most_steps = 200;
       ROL::ParameterList list;
       list.sublist("Step").set("Type", "Trust Region");
       ROL::ParameterList &test = list.sublist("Status Test");
       test.set("Gradient Tolerance", tolerance);
-      test.set("Step Tolerance", 1e-14);
+      test.set("Step Tolerance", 1e-2 * tolerance);
       test.set("Iteration Limit", most_steps);
       return list;
     }
@@ -175,12 +175,14 @@ namespace crawler
            const double tolerance,
            const unsigned int most_iterations)
   {
-    constexpr double first_tolerance = 1e-2, first_penalty = 10., largest_penalty = 1e8, less = 0.25;
+    constexpr double first_tolerance = 1e-2, first_penalty = 10., largest_penalty = 1e6, less = 0.25;
+    constexpr unsigned int most_idle = 5;
     multipliers.resize(problem.lower().size());
     const auto lagrangian = ROL::makePtr<Lagrangian>(problem, std::move(multipliers));
     lagrangian->rho       = first_penalty;
     const auto unknowns   = vector_of(y);
     const bool has_limits = !problem.lower().empty();
+    unsigned int n_idle   = 0; // iterations in which nothing became better
     double inner = has_limits ? std::max(first_tolerance, tolerance) : tolerance, before = HUGE_VAL;
     std::ostringstream unread;
     for (unsigned int i = 1; i <= most_iterations; ++i)
@@ -201,6 +203,14 @@ namespace crawler
         return {*unknowns->getVector(), true, "", i, lagrangian->mu};
       if (!has_limits && !is_good)
         return {*unknowns->getVector(), false, ROL::EExitStatusToString(end), i, {}};
+      n_idle = (is_good && now <= tolerance) || now < 0.9 * before ? 0 : n_idle + 1;
+      if (n_idle == most_idle)
+        return {*unknowns->getVector(),
+                false,
+                now > tolerance ? "the limits seem to contradict each other, or the start is too far from them"
+                                : "the optimiser makes no progress",
+                i,
+                lagrangian->mu};
       if (now > less * before && now > tolerance)
         lagrangian->rho = std::min(10. * lagrangian->rho, largest_penalty);
       before = now;

@@ -71,7 +71,7 @@ namespace crawler
     unsigned int n_starts = 1, seed = 1;
     double spread                = 0.2; ///< of the starts, in ranges of the variables
     double tolerance             = 1e-6;
-    unsigned int most_iterations = 200;
+    unsigned int most_iterations = 50;
     std::optional<double> time_limit; ///< [s]
 
     void

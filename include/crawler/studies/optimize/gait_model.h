@@ -80,6 +80,13 @@ namespace crawler
     virtual std::pair<double, double>
     extreme_strains(const std::vector<double> &x) = 0;
 
+    /// How exact the numbers are, relative: the optimiser cannot come closer.
+    virtual double
+    noise() const
+    {
+      return 0.;
+    }
+
     /// In words, for the log.
     virtual std::string
     description() const = 0;

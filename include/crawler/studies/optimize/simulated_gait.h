@@ -29,6 +29,11 @@ namespace crawler
     }
     std::pair<double, double>
     extreme_strains(const std::vector<double> &x) override;
+    double
+    noise() const override
+    {
+      return family_.form().parameters.accuracy;
+    }
     std::string
     description() const override;
 
