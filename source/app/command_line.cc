@@ -197,6 +197,10 @@ namespace crawler
                       fmt::format("Goes on with {} {} that was stopped or killed",
                                   command.name[0] == 'a' || command.name[0] == 'o' ? "an" : "a",
                                   command.name));
+      if (command.function == optimize)
+        own->add_flag("--check-gradient",
+                      options.check_gradient,
+                      "Compares the derivatives at the start with differences, and optimises nothing");
       if (command.function == sweep)
         own->add_flag("--strict", options.strict, "Exit code 8 if the row of a point failed");
       if (command.writes)

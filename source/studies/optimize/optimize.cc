@@ -8,6 +8,7 @@
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/core/study_folder.h>
+#include <crawler/studies/optimize/gradient_check.h>
 #include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/optimize/optimize_results.h>
 #include <crawler/studies/optimize/scene_family.h>
@@ -202,6 +203,10 @@ namespace crawler
                              ? fmt::format(" for each of {} limits of work", form.parameters.optimize.work.size())
                              : "",
                            model->description()));
+      if (options.check_gradient)
+        return check_gradient(*model, *family, GaitProblem::wishes(form.parameters.optimize), start, log)
+                 ? ExitCode::finished
+                 : ExitCode::self_check_failed;
       const GaitProblem problem(*model,
                                 form.parameters.optimize,
                                 family->variables(),

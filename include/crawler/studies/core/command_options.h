@@ -16,6 +16,7 @@ namespace crawler
     bool resume    = false;
     bool strict    = false;
     bool quiet     = false;
+    bool check_gradient = false;
     std::string command_line;
     std::string petsc_options; ///< behind "--"
   };

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/studies/core/log.h>
+#include <crawler/studies/optimize/scene_family.h>
+
+namespace crawler
+{
+  /// Prints the derivatives of all wanted numbers, and of the limited ones where they are most extreme, at @p x beside
+  /// differences of what the model gives. Returns whether they agree to 1e-6 of the gradient's size, or, where gaits are
+  /// simulated, to what the accuracy of these allows.
+  bool
+  check_gradient(GaitModel &model, const SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &x, Log &log);
+} // namespace crawler

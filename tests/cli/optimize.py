@@ -1,0 +1,149 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""crawler optimize: the numbers of doc/theory.md ("Gait efficiency"), the bound that no evaluation exceeds, gradients,
+a study that is killed and resumed, ranks, and answers to bad input.
+
+    python3 optimize.py PATH_TO_CRAWLER PATH_TO_PRM MPIEXEC...
+"""
+import csv
+import json
+import math
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+CRAWLER, PRM, MPIEXEC = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3:]
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+MODES = "Active stress/Modes/"
+EIGHT = [MODES + "Harmonics=8", "Optimize/Variables=" + MODES + "Coefficients[1-17] : -1 to 1"]
+failures = []
+
+
+def expect(condition, what):
+    """Notes what is wrong."""
+    if not condition:
+        failures.append(what)
+
+
+def run(study, folder, *settings, options=(), ranks=1):
+    """The finished process; the study is the name of one in prm/studies."""
+    command = (MPIEXEC + ["-n", str(ranks)] if ranks > 1 else []) + [CRAWLER, "optimize", str(PRM / (study + ".prm"))]
+    for setting in settings:
+        command += ["--set", setting]
+    return subprocess.run(command + ["--output", str(folder), *options], env=ENVIRONMENT, capture_output=True, text=True,
+                          timeout=300)
+
+
+def summary(folder):
+    return json.loads((folder / "summary.json").read_text())
+
+
+def rows(folder):
+    with open(folder / "results.csv", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def merits(folder):
+    """No merit is above the bound for strains of at most 0.3 and a = -1, where they are admissible."""
+    bound = 0.7 ** 0.5 - 1.3 ** 0.5
+    return [float(row["objective"]) / abs(bound) for row in rows(folder)
+            if row["objective"] and float(row["violation"]) < 1e-5]
+
+
+with tempfile.TemporaryDirectory() as place:
+    place = pathlib.Path(place)
+
+    # Best merits. The references, 0.22619, 0.25105 and 0.27819, exceed their limits of strain by about 1e-5.
+    for name, settings, reference in [("two", [], 0.22618),
+                                      ("three", [MODES + "Harmonics=3",
+                                                 "Optimize/Variables=" + MODES + "Coefficients[1-7] : -1 to 1"], 0.25104),
+                                      ("eight", EIGHT, 0.27818)]:
+        done = run("optimize_harmonics", place / name, *settings)
+        expect(done.returncode == 0, f"{name} harmonics: exit code {done.returncode}: {done.stderr}")
+        best = summary(place / name)
+        optimum = best["optimize"]["optima"][0]
+        expect(optimum["objective"] >= reference, f"{name} harmonics: merit {optimum['objective']}, wanted {reference}")
+        expect(best["min_stretch"]["value"] >= 0.7 - 1e-5 and best["max_stretch"]["value"] <= 1.3 + 1e-5,
+               f"{name} harmonics: stretch {best['min_stretch']} to {best['max_stretch']}")
+        expect(0.7 < best["gait"]["efficiency"] < 1, f"{name} harmonics: efficiency {best['gait']['efficiency']}")
+        merit = best["displacement"] / math.sqrt(best["stress_power"])
+        expect(abs(merit - optimum["objective"]) < 1e-6, f"{name} harmonics: the run gives the merit {merit}")
+        expect(max(merits(place / name)) <= 1, f"{name} harmonics: an evaluation is better than any gait can be")
+
+    # The optimum is a parameter file that runs.
+    again = subprocess.run([CRAWLER, "run", str(place / "two" / "optimum.prm"), "--output", str(place / "again")],
+                           env=ENVIRONMENT, capture_output=True, text=True, timeout=60)
+    expect(again.returncode == 0 and summary(place / "again")["displacement"] == summary(place / "two")["displacement"],
+           "optimum.prm does not give the displacement of the summary")
+
+    # The theorem: a travelling wave, D = 1e-4 to leading order, and one more part of either limit brings half a part.
+    done = run("optimize_theorem", place / "theorem")
+    optimum = summary(place / "theorem")["optimize"]["optima"][0]
+    expect(abs(optimum["objective"] - 1e-4) < 1e-6, f"theorem: displacement {optimum['objective']}")
+    for limit in ("Work", "Mean-square strain"):
+        expect(abs(optimum["limits"][limit]["multiplier"] - 0.5) < 0.01, f"theorem: {limit} {optimum['limits'][limit]}")
+
+    # Robots, by simulations.
+    done = run("optimize_robot", place / "robot")
+    expect(done.returncode == 0, f"robot: exit code {done.returncode}: {done.stderr}")
+    expect(summary(place / "robot")["displacement"] > 0.0669, f"robot: {summary(place / 'robot')['displacement']}")
+
+    # Several limits of work and starts, on one rank and on two, killed and resumed: the same table.
+    budgets = ["Optimize/Work=0.001, 0.003", "Optimize/Objective=displacement", "Optimize/Starts=3"]
+    run("optimize_harmonics", place / "one", *budgets)
+    optima = summary(place / "one")["optimize"]["optima"]
+    expect([o["work_limit"] for o in optima] == [0.001, 0.003], f"budgets: {optima}")
+    expect(all(o["stress_power"] <= o["work_limit"] * (1 + 1e-5) for o in optima), f"budgets: {optima}")
+    expect(run("optimize_harmonics", place / "both", *budgets, ranks=2).returncode == 0, "two ranks")
+    without_times = [[{k: v for k, v in row.items() if k != "seconds"} for row in rows(place / folder)]
+                     for folder in ("one", "both")]
+    expect(without_times[0] == without_times[1], "two ranks have another table")
+    command = [CRAWLER, "optimize", str(PRM / "optimize_harmonics.prm"), "--output", str(place / "killed")]
+    for setting in budgets:
+        command += ["--set", setting]
+    process = subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    limit = time.monotonic() + 60
+    while process.poll() is None and time.monotonic() < limit and not list((place / "killed" / "starts").glob("*.json")):
+        time.sleep(0.005)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    expect(run("optimize_harmonics", place / "killed", *budgets, options=["--resume"]).returncode == 0, "resume")
+    expect(rows(place / "killed") == rows(place / "one"), "a resumed study has another table")
+    refused = run("optimize_harmonics", place / "one", "Optimize/Largest strain=0.2", options=["--resume"])
+    expect(refused.returncode == 2 and "Largest strain was 0.3, is 0.2" in refused.stderr, f"resume: {refused.stderr}")
+
+    # A time limit ends with the best so far.
+    stopped = run("optimize_from_rest", place / "stopped", "Optimize/Time limit=1")
+    expect(stopped.returncode == 5 and summary(place / "stopped")["optimize"]["status"] == "stopped"
+           and (place / "stopped" / "best" / "summary.json").exists(), f"time limit: {stopped.stderr}")
+
+    # Gradients.
+    for study, settings in [("optimize_harmonics", []), ("optimize_harmonics", ["Optimize/Work=0.01",
+                            "Optimize/Mean-square strain=0.01", "Optimize/Largest stress=1"]),
+                            ("optimize_theorem", []), ("optimize_robot", ["Accuracy=1e-6"])]:
+        done = run(study, place / "nothing", *settings, options=["--check-gradient"])
+        expect(done.returncode == 0, f"gradient of {study}: {done.stdout}{done.stderr}")
+    expect(not (place / "nothing").exists(), "--check-gradient writes files")
+
+    # Bad input.
+    no_limit = ["Optimize/Smallest strain=automatic", "Optimize/Largest strain=automatic"]
+    for settings, words in [(["Optimize/Variables="], "Variables is empty"),
+                            (["Optimize/Variables=Body/Lenght : 1 to 2"], "nearest name is \"Body/Length\""),
+                            (["Optimize/Variables=Active stress/Modes/Harmonics : 1 to 2"], "are numbers are expected"),
+                            (["Optimize/Variables=Body/Length : 2 to 3"], "in its range, from 2 to 3"),
+                            (["Optimize/Variables=Body/Length : 1 to 1"], "increasing numbers"),
+                            (["Optimize/Variables=Body/Length : -1 to 2"], "positive number"),
+                            (["Optimize/Variables=Body/Length"], "FROM to TO"),
+                            (["Optimize/Variables=" + MODES + "Coefficients[0] : -1 to 1"], "from 1 to"),
+                            (no_limit, "has no maximum"),
+                            (["Model=perturbation"], "perturbation")]:
+        bad = run("optimize_harmonics", place / "bad", *settings)
+        expect(bad.returncode == 2 and words in bad.stderr and bad.stderr.count("\n") == 1,
+               f"{settings}: exit code {bad.returncode}: {bad.stderr}")
+    expect(not (place / "bad").exists(), "bad input leaves a folder")
+
+sys.exit("\n".join(failures) or 0)

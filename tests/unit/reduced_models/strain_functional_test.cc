@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/reduced_models/kinematic.h>
+#include <crawler/reduced_models/strain_functional.h>
+#include <crawler/scene/evaluators.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace crawler;
+
+namespace
+{
+  constexpr double pi = std::numbers::pi;
+
+  /// A strain that is no wave, and from rest.
+  StrainByEvaluators
+  strain()
+  {
+    return StrainByEvaluators([](const std::vector<double> &s) -> StrainByEvaluators::Evaluators {
+      return {stress_at_points([=](const double t, const std::span<double> e) {
+                for (std::size_t i = 0; i < e.size(); ++i)
+                  e[i] = 0.2 * (std::sin(2. * pi * (s[i] + t)) - std::sin(2. * pi * s[i])) + 0.1 * t * std::cos(pi * s[i]);
+              }),
+              stress_at_points([=](const double t, const std::span<double> e_t) {
+                for (std::size_t i = 0; i < e_t.size(); ++i)
+                  e_t[i] = 0.4 * pi * std::cos(2. * pi * (s[i] + t)) + 0.1 * std::cos(pi * s[i]);
+              })};
+    });
+  }
+} // namespace
+
+/// theory.md, section 6: a = -1, e = 0.3 sin 2 pi (s + t) gives D = Q = 1 - sqrt(1 - 0.09).
+TEST(StrainFunctional, OfASineWaveIsExact)
+{
+  const StrainByEvaluators wave([](const std::vector<double> &s) -> StrainByEvaluators::Evaluators {
+    return {stress_at_points([=](const double t, const std::span<double> e) {
+              for (std::size_t i = 0; i < e.size(); ++i)
+                e[i] = 0.3 * std::sin(2. * pi * (s[i] + t));
+            }),
+            stress_at_points([=](const double t, const std::span<double> e_t) {
+              for (std::size_t i = 0; i < e_t.size(); ++i)
+                e_t[i] = 0.6 * pi * std::cos(2. * pi * (s[i] + t));
+            })};
+  });
+  const StrainFunctional grid(4, 2);
+  const auto values = grid.values(grid.sample(wave), PowerFriction(1., -1.), 1.);
+  ASSERT_TRUE(values);
+  const double exact = 1. - std::sqrt(1. - 0.09);
+  EXPECT_NEAR((*values)[StrainFunctional::displacement], exact, 1e-10);
+  EXPECT_NEAR((*values)[StrainFunctional::dissipation], exact, 1e-10);
+  EXPECT_NEAR((*values)[StrainFunctional::stress_work], exact, 1e-10); // the strain repeats
+  EXPECT_NEAR((*values)[StrainFunctional::mean_square], 0.045, 1e-10);
+}
+
+/// The weights are exact derivatives of the quadrature: against differences in some direction.
+TEST(StrainFunctional, WeightsAreDerivatives)
+{
+  constexpr double step = 1e-5, k = 0.7;
+  const StrainFunctional grid(3, 3);
+  const StrainSamples samples = grid.sample(strain());
+  for (const double a : {-3., -1., 0.5, 2.})
+  {
+    const PowerFriction friction(1., a);
+    for (const auto number : {StrainFunctional::displacement,
+                              StrainFunctional::dissipation,
+                              StrainFunctional::stress_work,
+                              StrainFunctional::positive_work,
+                              StrainFunctional::mean_square})
+    {
+      const StrainSamples weights = grid.weights(number, samples, friction, k);
+      double derivative           = 0.;
+      StrainSamples before = samples, after = samples;
+      for (std::size_t i = 0; i < samples.strain.size(); ++i)
+      {
+        const double x = std::sin(0.37 * static_cast<double>(i)), y = std::cos(0.53 * static_cast<double>(i));
+        derivative += weights.strain[i] * x + weights.rate[i] * y;
+        before.strain[i] -= step * x;
+        before.rate[i] -= step * y;
+        after.strain[i] += step * x;
+        after.rate[i] += step * y;
+      }
+      const double difference =
+        ((*grid.values(after, friction, k))[number] - (*grid.values(before, friction, k))[number]) / (2. * step);
+      // The positive part of the power changes its sign somewhere.
+      const double tolerance = number == StrainFunctional::positive_work ? 1e-4 : 1e-8;
+      EXPECT_NEAR(derivative, difference, tolerance * std::max(std::abs(difference), 0.01))
+        << "number " << number << ", a = " << a;
+    }
+  }
+}
+
+TEST(StrainFunctional, RefusesABodyThatInverts)
+{
+  const StrainFunctional grid(1, 1);
+  StrainSamples samples = grid.sample(strain());
+  samples.strain[5]     = -1.;
+  EXPECT_FALSE(grid.values(samples, PowerFriction(1., -1.), 1.));
+}
+
+/// The transpose of running integrals: x . (R f) = (R^T x) . f
+TEST(GaussPanels, RunningIntegralIsTransposed)
+{
+  const GaussPanels panels(0., 2., 3);
+  const std::size_t n = panels.points().size();
+  std::vector<double> f(n), x(n), of_f(n), of_x(n);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    f[i] = std::sin(1.3 * static_cast<double>(i));
+    x[i] = std::cos(0.7 * static_cast<double>(i));
+  }
+  panels.running_integral(f, of_f);
+  panels.running_integral_transposed(x, of_x);
+  double left = 0., right = 0.;
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    left += x[i] * of_f[i];
+    right += of_x[i] * f[i];
+  }
+  EXPECT_NEAR(left, right, 1e-13);
+  EXPECT_EQ(GaussPanels::number_ending_at({0.1, 0.7}, 4, 128), 20u);
+  EXPECT_EQ(GaussPanels::number_ending_at({1. / std::numbers::pi}, 4, 128), 4u);
+}
