@@ -256,9 +256,8 @@ namespace crawler
         throw InputError("behind \"--output\" stands \"\", but the name of a folder is expected");
       const auto command = std::find_if(
         std::begin(commands), std::end(commands), [&](const Command &c) { return c.name == chosen->get_name(); });
-      if (!petsc_options.empty() &&
-          (command == std::end(commands) || command->function == atlas || command->function == tradeoff ||
-           command->function == optimize))
+      if (!petsc_options.empty() && (command == std::end(commands) || command->function == atlas ||
+                                     command->function == tradeoff || command->function == optimize))
         throw InputError(fmt::format("behind \"--\" stands \"{}\", but the command \"{}\" has no use for PETSc options",
                                      petsc_options[0],
                                      chosen->get_name()));

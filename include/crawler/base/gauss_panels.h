@@ -48,7 +48,8 @@ namespace crawler
     void
     running_integral_transposed(std::span<const double> x, std::span<double> result) const;
 
-    /// The least number of equal panels on [0, 1], a multiple of @p n, so that one of them ends at each of these places;
+    /// The least number of equal panels on [0, 1], a multiple of @p n, so that one of them ends at each of these
+    /// places;
     /// @p n if that would take more than @p most.
     static unsigned int
     number_ending_at(const std::vector<double> &places, unsigned int n, unsigned int most);

@@ -32,7 +32,7 @@ namespace crawler
     const std::string stress = "Active stress/", optimal = stress + "Optimal wave/",
                       travel = stress + "Travelling wave/", stand = stress + "Standing wave/",
                       strain = stress + "Prescribed strain/", two_level = stress + "Two-level wave/",
-                      modes = stress + "Modes/";
+                      modes           = stress + "Modes/";
     const auto &wave                  = p.active_stress.optimal_wave;
     const auto &travelling            = p.active_stress.travelling_wave;
     const std::string &travel_profile = travelling.profile.profile,

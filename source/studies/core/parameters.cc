@@ -109,7 +109,8 @@ namespace crawler
       .means("Largest work of the active stress over the duration. Nothing: no limit. Several numbers: an optimum for "
              "each, which gives the displacement against the work.");
     declarations.number("Positive work", positive_work, positive(), "energy")
-      .means("Largest positive work of the active stress, for actuators that cannot recover energy. Automatic: no limit.");
+      .means(
+        "Largest positive work of the active stress, for actuators that cannot recover energy. Automatic: no limit.");
     declarations.number("Smallest strain", smallest_strain, between(-1., 0.), "1")
       .means("The strain w - 1 must be at least this. Automatic: no limit.");
     declarations.number("Largest strain", largest_strain, positive(), "1")

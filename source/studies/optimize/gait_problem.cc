@@ -110,8 +110,8 @@ namespace crawler
   {
     std::vector<double> x(y.size());
     for (std::size_t i = 0; i < y.size(); ++i)
-      x[i] =
-        std::clamp(variables_[i].from + y[i] * (variables_[i].to - variables_[i].from), variables_[i].from, variables_[i].to);
+      x[i] = std::clamp(
+        variables_[i].from + y[i] * (variables_[i].to - variables_[i].from), variables_[i].from, variables_[i].to);
     return x;
   }
 
@@ -139,8 +139,8 @@ namespace crawler
                  T = values.number(GaitNumber::friction_time);
     if (power_of_W != 0. && !(W > 0.))
       return NAN;
-    const double by_D = sign * (power_of_W != 0. ? std::pow(W, power_of_W) : 1.) *
-                        (power_of_T != 0. ? std::pow(T, power_of_T) : 1.);
+    const double by_D =
+      sign * (power_of_W != 0. ? std::pow(W, power_of_W) : 1.) * (power_of_T != 0. ? std::pow(T, power_of_T) : 1.);
     if (gradient != nullptr)
     {
       gradient->assign(variables_.size(), 0.);
@@ -173,8 +173,8 @@ namespace crawler
     latest_.constraints.assign(lower_.size(), 0.);
     std::vector<double> gradient;
     const bool is_possible = values.problem.empty();
-    const double f = is_possible ? objective(values, with_gradients ? &gradient : nullptr) : NAN;
-    double violation = 0.;
+    const double f         = is_possible ? objective(values, with_gradients ? &gradient : nullptr) : NAN;
+    double violation       = 0.;
     if (!std::isfinite(f))
       latest_.objective = refused;
     else
@@ -279,7 +279,7 @@ namespace crawler
     const bool is_cost = parameters_.objective == "cost of transport";
     const double sign  = sign_of_direction(parameters_);
     const auto rank    = [&](const GaitRecord &record) {
-      return is_cost ? sign / record.objective : sign * record.objective; // of costs those in the wrong direction are worst
+      return is_cost ? 1. / record.objective : sign * record.objective;
     };
     const GaitRecord *best = &records_.front();
     for (const GaitRecord &record : records_)

@@ -34,11 +34,10 @@ namespace crawler
       for (const auto place : {least, most})
       {
         const auto p = static_cast<std::size_t>(place - values.begin());
-        list.push_back({fmt::format("{} {}", place == least ? "smallest" : "largest", name),
-                        [=](const GaitValues &there) { return (there.*block).values[p]; },
-                        [=](const GaitValues &there, const std::size_t i) {
-                          return (*(there.*block).jacobian)[p * n + i];
-                        }});
+        list.push_back(
+          {fmt::format("{} {}", place == least ? "smallest" : "largest", name),
+           [=](const GaitValues &there) { return (there.*block).values[p]; },
+           [=](const GaitValues &there, const std::size_t i) { return (*(there.*block).jacobian)[p * n + i]; }});
       }
     }
   } // namespace

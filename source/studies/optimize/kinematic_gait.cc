@@ -45,9 +45,10 @@ namespace crawler
       , reduced(physical)
     {
       if (reduced.strain() == nullptr)
-        throw InputError("the kinematic level needs a strain that is given, or an active stress that knows its rate and "
-                         "does not jump",
-                         "Model");
+        throw InputError(
+          "the kinematic level needs a strain that is given, or an active stress that knows its rate and "
+          "does not jump",
+          "Model");
     }
 
     const FrictionLaw &
@@ -103,8 +104,8 @@ namespace crawler
     constexpr unsigned int most = 128;
     const State state(family.parameters(start));
     const ActiveStress &stress = *state.reduced.scene().active_stress;
-    n_space_ = GaussPanels::number_ending_at(stress.breaks_in_space(), 1, most);
-    n_time_  = GaussPanels::number_ending_at(stress.breaks_in_time(), 1, most);
+    n_space_                   = GaussPanels::number_ending_at(stress.breaks_in_space(), 1, most);
+    n_time_                    = GaussPanels::number_ending_at(stress.breaks_in_time(), 1, most);
     grid_.emplace(n_space_, n_time_);
     while (refine(start))
       ;
@@ -172,7 +173,7 @@ namespace crawler
     const auto &variables = family_.variables();
     const auto n          = static_cast<double>(start.size());
     Linear linear{start, std::make_shared<const State>(family_.parameters(start)), {}, {}};
-    linear.samples = sample(*linear.state);
+    linear.samples  = sample(*linear.state);
     const auto base = linear.state;
     // A little: at large values the strain may not be admissible.
     const auto away = [&](const std::size_t i, const double part) {
@@ -264,8 +265,8 @@ namespace crawler
     Samples samples;
     try
     {
-      state   = linear_ ? linear_->state : std::make_shared<const State>(family_.parameters(x));
-      samples = linear_ ? linear_samples(x) : sample(*state);
+      state             = linear_ ? linear_->state : std::make_shared<const State>(family_.parameters(x));
+      samples           = linear_ ? linear_samples(x) : sample(*state);
       const auto values = grid_->values(samples.on_grid, state->friction(), state->k());
       if (!values)
       {
@@ -327,7 +328,7 @@ namespace crawler
       }
     }
     const std::vector<Samples> &slopes = linear_ ? linear_->slopes : slopes_;
-    const Units &units                       = state.reduced.units();
+    const Units &units                 = state.reduced.units();
     const auto put = [&](const StrainFunctional::Number number, const GaitNumber what, const double unit) {
       const StrainSamples weights = grid_->weights(number, samples.on_grid, state.friction(), state.k());
       for (std::size_t i = 0; i < x.size(); ++i)

@@ -61,10 +61,7 @@ namespace crawler
     }
 
     void
-    begin_or_resume(MPI_Comm communicator,
-                    StudyFolder &folder,
-                    const ParameterFile &file,
-                    const std::string &effective)
+    begin_or_resume(MPI_Comm communicator, StudyFolder &folder, const ParameterFile &file, const std::string &effective)
     {
       on_first_rank(communicator, [&]() -> std::string {
         const fs::path starts = folder.path() / "starts";
@@ -138,10 +135,8 @@ namespace crawler
         summaries.push_back(
           run_optimum(family, best, results.best.size() > 1 ? fmt::format("-{}", i + 1) : "", folder, options));
       }
-      const std::string status = !is_whole                        ? "stopped"
-                                 : is_admissible && has_converged ? "finished"
-                                                                  : "failed";
-      const std::string why    = !is_whole         ? reason
+      const std::string status = !is_whole ? "stopped" : is_admissible && has_converged ? "finished" : "failed";
+      const std::string why    = !is_whole        ? reason
                                  : !is_admissible ? "limits_exceeded"
                                  : !has_converged ? "optimiser_not_converged"
                                                   : "";
@@ -149,28 +144,29 @@ namespace crawler
                  optimize_json(results, summaries, status, why, now() - begin, options.command_line));
       for (const std::string &line : in_words(results, summaries))
         log.line(line);
+      if (!results.best.empty())
+        draw("optimize.py", folder, log);
       if (!is_whole)
-        log.warn(fmt::format("stopped by {}; --resume goes on", reason == "signal" ? "a signal" : "Optimize/Time limit"));
+        log.warn(
+          fmt::format("stopped by {}; --resume goes on", reason == "signal" ? "a signal" : "Optimize/Time limit"));
       else if (status == "failed")
-        log.warn(why == "limits_exceeded"
-                   ? "no gait that keeps to all limits was found; the limits may contradict each other, or the start is "
-                     "far from them"
-                   : "the optimiser did not converge; more iterations, a larger Tolerance or another start may help");
-      log.line(fmt::format("{} evaluations from {} start{}, {:.1f} s. The best gait is in {}/optimum{}.prm, its run in "
-                           "{}/best{}/.",
-                           evaluations.front().values.index() == 0
-                             ? std::get<std::vector<double>>(evaluations.front().values).size()
-                             : 0,
-                           results.starts.size(),
-                           results.starts.size() == 1 ? "" : "s",
-                           now() - begin,
-                           folder.string(),
-                           results.best.size() > 1 ? "-N" : "",
-                           folder.string(),
-                           results.best.size() > 1 ? "-N" : ""));
-      return !is_whole               ? ExitCode::stopped
-             : status == "finished" ? ExitCode::finished
-                                    : ExitCode::numerical_failure;
+        log.warn(
+          why == "limits_exceeded"
+            ? "no gait that keeps to all limits was found; the limits may contradict each other, or the start is "
+              "far from them"
+            : "the optimiser did not converge; more iterations, a larger Tolerance or another start may help");
+      log.line(fmt::format(
+        "{} evaluations from {} start{}, {:.1f} s. The best gait is in {}/optimum{}.prm, its run in "
+        "{}/best{}/.",
+        evaluations.front().values.index() == 0 ? std::get<std::vector<double>>(evaluations.front().values).size() : 0,
+        results.starts.size(),
+        results.starts.size() == 1 ? "" : "s",
+        now() - begin,
+        folder.string(),
+        results.best.size() > 1 ? "-N" : "",
+        folder.string(),
+        results.best.size() > 1 ? "-N" : ""));
+      return !is_whole ? ExitCode::stopped : status == "finished" ? ExitCode::finished : ExitCode::numerical_failure;
     }
   } // namespace
 
@@ -191,7 +187,7 @@ namespace crawler
     {
       form.parameters.create_scene();
       family.emplace(form, read_variables(form));
-      parts = parts_of(form.parameters.optimize);
+      parts            = parts_of(form.parameters.optimize);
       const auto start = start_values(form.parameters.optimize, family->variables(), 0);
       const auto model = make_gait_model(*family, start, []() { return false; });
       log.line(fmt::format("Optimisation of the {}: {} variables, {} start{}{}; {}.",
@@ -207,12 +203,9 @@ namespace crawler
         return check_gradient(*model, *family, GaitProblem::wishes(form.parameters.optimize), start, log)
                  ? ExitCode::finished
                  : ExitCode::self_check_failed;
-      const GaitProblem problem(*model,
-                                form.parameters.optimize,
-                                family->variables(),
-                                parts.front().work,
-                                start,
-                                []() { return false; }); // throws if the start has a problem
+      const GaitProblem problem(*model, form.parameters.optimize, family->variables(), parts.front().work, start, []() {
+        return false;
+      }); // throws if the start has a problem
     }
     catch (const InputError &error)
     {
@@ -220,21 +213,20 @@ namespace crawler
     }
     const OptimizeParameters own = form.parameters.optimize;
     const fs::path path          = output_folder(options.output, options.file);
-    StudyFolder folder(
-      {"optimization", {"starts"}, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
+    StudyFolder folder({"optimization", {"starts"}, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
     begin_or_resume(communicator, folder, file, effective);
 
     const std::function<bool()> interrupted = [&]() {
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - begin > *own.time_limit);
     };
-    const auto n_missing = static_cast<unsigned long>(
-      std::ranges::count_if(parts, [&](const Part &part) { return !is_done(part, path); }));
-    const bool is_whole = share_work(communicator,
+    const auto n_missing =
+      static_cast<unsigned long>(std::ranges::count_if(parts, [&](const Part &part) { return !is_done(part, path); }));
+    const bool is_whole      = share_work(communicator,
                                      {parts.size(),
-                                      n_missing,
-                                      "starts",
-                                      interrupted,
-                                      [&](const unsigned long number, const auto &stops, const auto &see) {
+                                           n_missing,
+                                           "starts",
+                                           interrupted,
+                                           [&](const unsigned long number, const auto &stops, const auto &see) {
                                         const Part &part = parts[number];
                                         if (is_done(part, path))
                                           return true;
@@ -246,8 +238,7 @@ namespace crawler
                                      log);
     const std::string reason = is_whole ? "" : stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
     const std::string code   = on_first_rank(communicator, [&]() {
-      const ExitCode end =
-        write_results(*family, parts, options, effective, is_whole, reason, begin, path, log);
+      const ExitCode end = write_results(*family, parts, options, effective, is_whole, reason, begin, path, log);
       folder.leave();
       return fmt::format("{}", static_cast<int>(end));
     });

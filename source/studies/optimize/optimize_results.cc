@@ -90,7 +90,7 @@ namespace crawler
     const double sign = parameters.direction == "forward" ? 1. : -1.;
     const auto value  = [&](const std::size_t i) {
       const double f = starts[i].best.objective;
-      return sign * (objective == "cost of transport" ? 1. / f : f);
+      return objective == "cost of transport" ? 1. / f : sign * f;
     };
     const auto is_better = [&](const std::size_t i, const std::size_t j) {
       if (starts[i].is_admissible() != starts[j].is_admissible())
@@ -99,7 +99,7 @@ namespace crawler
     };
     for (std::size_t i = 0; i < starts.size(); ++i)
     {
-      if (starts[i].best.x.empty())
+      if (starts[i].best.x.empty() || !starts[i].best.problem.empty())
         continue;
       if (best.empty() || starts[i].work != starts[best.back()].work)
         best.push_back(i);
@@ -160,14 +160,14 @@ namespace crawler
                 const double seconds,
                 const std::string &command_line)
   {
-    Json all = summaries.empty() ? Json::object() : Json::parse(summaries.back());
-    Json own = {{"status", status},
-                {"reason", reason.empty() ? Json() : Json(reason)},
-                {"objective", results.objective},
-                {"starts", results.starts.size()},
-                {"seconds", seconds},
-                {"command_line", command_line},
-                {"optima", Json::array()}};
+    Json all                = summaries.empty() ? Json::object() : Json::parse(summaries.back());
+    Json own                = {{"status", status},
+                               {"reason", reason.empty() ? Json() : Json(reason)},
+                               {"objective", results.objective},
+                               {"starts", results.starts.size()},
+                               {"seconds", seconds},
+                               {"command_line", command_line},
+                               {"optima", Json::array()}};
     std::size_t evaluations = 0;
     for (const StartResult &start : results.starts)
       evaluations += start.records.size();
@@ -175,15 +175,15 @@ namespace crawler
     for (std::size_t i = 0; i < results.best.size(); ++i)
     {
       const StartResult &start = results.starts[results.best[i]];
-      Json one = {{"work_limit", start.work ? Json(*start.work) : Json()},
-                  {"start", start.start},
-                  {"has_converged", start.has_converged},
-                  {"message", start.message.empty() ? Json() : Json(start.message)},
-                  {"objective", json_number(start.best.objective)},
-                  {"violation", json_number(start.best.violation)},
-                  {"is_admissible", start.is_admissible()},
-                  {"variables", Json::object()},
-                  {"limits", Json::object()}};
+      Json one                 = {{"work_limit", start.work ? Json(*start.work) : Json()},
+                                  {"start", start.start},
+                                  {"has_converged", start.has_converged},
+                                  {"message", start.message.empty() ? Json() : Json(start.message)},
+                                  {"objective", json_number(start.best.objective)},
+                                  {"violation", json_number(start.best.violation)},
+                                  {"is_admissible", start.is_admissible()},
+                                  {"variables", Json::object()},
+                                  {"limits", Json::object()}};
       for (std::size_t k = 0; k < results.variables.size(); ++k)
         one["variables"][results.variables[k].path] = start.best.x[k];
       for (const GaitLimit &limit : start.limits)
@@ -209,12 +209,13 @@ namespace crawler
     for (std::size_t i = 0; i < results.best.size(); ++i)
     {
       const StartResult &start = results.starts[results.best[i]];
-      lines.push_back(fmt::format("Best {}{}: {:.8g}{}{}",
-                                  results.objective,
-                                  start.work ? fmt::format(" with work up to {:g}", *start.work) : "",
-                                  start.best.objective,
-                                  start.is_admissible() ? "" : " (a limit is EXCEEDED: no gait that keeps to all limits was found)",
-                                  start.has_converged ? "" : fmt::format(" (the optimiser did not converge: {})", start.message)));
+      lines.push_back(
+        fmt::format("Best {}{}: {:.8g}{}{}",
+                    results.objective,
+                    start.work ? fmt::format(" with work up to {:g}", *start.work) : "",
+                    start.best.objective,
+                    start.is_admissible() ? "" : " (a limit is EXCEEDED: no gait that keeps to all limits was found)",
+                    start.has_converged ? "" : fmt::format(" (the optimiser did not converge: {})", start.message)));
       if (i < summaries.size())
       {
         const Json run = Json::parse(summaries[i]);
@@ -228,10 +229,8 @@ namespace crawler
         lines.push_back(fmt::format("  and {} more variables", results.variables.size() - most_variables));
       for (const GaitLimit &limit : start.limits)
         if (limit.multiplier != 0.)
-          lines.push_back(fmt::format("  {} = {:g} holds it back: one unit more would add {:.4g}",
-                                      limit.name,
-                                      limit.value,
-                                      limit.multiplier));
+          lines.push_back(fmt::format(
+            "  {} = {:g} holds it back: one unit more would add {:.4g}", limit.name, limit.value, limit.multiplier));
     }
     return lines;
   }

@@ -21,7 +21,8 @@ namespace crawler
     [[noreturn]] void
     refuse(fmt::format_string<Arguments...> sentence, Arguments &&...arguments)
     {
-      throw InputError(fmt::format("\"{}\": {}", own, fmt::format(sentence, std::forward<Arguments>(arguments)...)), own);
+      throw InputError(fmt::format("\"{}\": {}", own, fmt::format(sentence, std::forward<Arguments>(arguments)...)),
+                       own);
     }
 
     /// "List[2-4]" and "List[*]" are several numbers of a list.
@@ -83,10 +84,11 @@ namespace crawler
         return;
       for (const OptimizeVariable &variable : variables) // ranges are limits, but not meant as such
         if (variable.path.starts_with("Active stress/Modes/Coefficients"))
-          throw InputError("there is no limit on strain, stress or work: the " + p.objective +
-                             " has no maximum (doc/theory.md, \"Gait efficiency\"); at least one of Work, Positive work, "
-                             "Largest strain and Smallest strain, Mean-square strain, Largest stress is expected",
-                           own);
+          throw InputError(
+            "there is no limit on strain, stress or work: the " + p.objective +
+              " has no maximum (doc/theory.md, \"Gait efficiency\"); at least one of Work, Positive work, "
+              "Largest strain and Smallest strain, Mean-square strain, Largest stress is expected",
+            own);
     }
   } // namespace
 

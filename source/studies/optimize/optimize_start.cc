@@ -57,6 +57,146 @@ namespace crawler
       const bool is_lower = closer(parameters.smallest_strain, wanted.smallest_strain, extremes.first);
       return closer(parameters.largest_strain, wanted.largest_strain, extremes.second) || is_lower;
     }
+
+    /// The rounds of one start. Each is an optimisation; the next one knows better where to look.
+    class Search
+    {
+    public:
+      Search(SceneFamily &family,
+             const std::optional<double> work,
+             const unsigned long start,
+             const std::function<bool()> &stops)
+        : family_(family)
+        , stops_(stops)
+        , wanted_(family.form().parameters.optimize)
+        , parameters_(wanted_)
+        , x_(start_values(wanted_, family.variables(), start))
+      {
+        result_.work  = work;
+        result_.start = start;
+      }
+
+      StartResult
+      make()
+      {
+        const double begin = now();
+        try
+        {
+          go_on();
+        }
+        catch (const InputError &error) // this start makes no gait
+        {
+          result_.best          = {x_, NAN, {}, NAN, error.what()};
+          result_.records       = {result_.best};
+          result_.has_converged = false;
+          result_.message       = "no gait";
+        }
+        catch (const GaitModel::Interrupted &)
+        {
+          result_.was_interrupted = true;
+          result_.has_converged   = false;
+          result_.message         = "stopped";
+        }
+        judge();
+        result_.seconds = now() - begin;
+        return std::move(result_);
+      }
+
+    private:
+      void
+      go_on()
+      {
+        constexpr unsigned int most_rounds = 12;
+        const auto model                   = make_gait_model(family_, x_, stops_);
+        bool is_rough                      = model->noise() == 0.; // of simulations all is known after the first round
+        for (unsigned int round = 0; round < most_rounds; ++round)
+        {
+          improve(*model, is_rough);
+          if (!result_.best.problem.empty())
+            return;
+          x_                 = result_.best.x;
+          const bool is_fine = !model->refine(x_);
+          if (!is_fine) // the limits are looked at in other places
+            parameters_ = wanted_;
+          const bool exceeds = is_fine && !is_rough && (wanted_.smallest_strain || wanted_.largest_strain) &&
+                               tighten(parameters_, wanted_, model->extreme_strains(x_));
+          if (is_fine && !exceeds && !is_rough)
+            return;
+          is_rough = is_rough && !is_fine;
+        }
+        result_.has_converged = false;
+        result_.message       = "the grid became finer and finer, or the strain exceeds its limits between its points";
+      }
+
+      /// From x on; @p is_rough: the grid may be too coarse, so that a rough optimum will do.
+      void
+      improve(GaitModel &model, const bool is_rough)
+      {
+        constexpr double roughly = 1e-3, above_noise = 10.;
+        GaitProblem problem(model, parameters_, family_.variables(), result_.work, x_, stops_);
+        const auto keep = [&](const GaitRecord &best) {
+          result_.best = best;
+          result_.records.insert(result_.records.end(), problem.records().begin(), problem.records().end());
+        };
+        if (multipliers_.size() != problem.lower().size())
+          multipliers_.clear();
+        for (double &one : multipliers_)
+          one *= scale_ / problem.scale();
+        const double tolerance = std::max(parameters_.tolerance, above_noise * model.noise());
+        try
+        {
+          const OptimizerEnd end = minimise(problem,
+                                            problem.to_y(x_),
+                                            multipliers_,
+                                            is_rough ? std::max(roughly, tolerance) : tolerance,
+                                            parameters_.most_iterations);
+          multipliers_           = end.multipliers;
+          scale_                 = problem.scale();
+          keep(end.has_converged ? problem.record(end.y) : problem.best());
+          result_.has_converged = end.has_converged;
+          result_.message       = end.message;
+          result_.iterations += end.iterations;
+          result_.limits = problem.limits(end.multipliers);
+        }
+        catch (const GaitModel::Interrupted &)
+        {
+          if (!problem.records().empty())
+            keep(problem.best());
+          throw;
+        }
+      }
+
+      /// Is it an optimum, and what do the limits cost?
+      void
+      judge()
+      {
+        constexpr double least_motion = 1e-12;
+        const bool is_cost            = wanted_.objective == "cost of transport"; // positive in the wanted direction
+        const double sign             = wanted_.direction == "forward" || is_cost ? 1. : -1.;
+        if (result_.has_converged && !(sign * result_.best.objective > least_motion))
+        {
+          result_.has_converged = false;
+          result_.message = "what was found does not move the body in the wanted direction; another start is needed";
+        }
+        for (GaitLimit &limit : result_.limits)
+        {
+          if (is_cost) // the multiplier is that of D/W
+            limit.multiplier *= -result_.best.objective * result_.best.objective;
+          if (limit.name == "Smallest strain") // as it was wanted, not tightened
+            limit.value = *wanted_.smallest_strain;
+          if (limit.name == "Largest strain")
+            limit.value = *wanted_.largest_strain;
+        }
+      }
+
+      SceneFamily &family_;
+      const std::function<bool()> &stops_;
+      const OptimizeParameters wanted_;
+      OptimizeParameters parameters_; ///< with limits of strain that may be tightened
+      std::vector<double> x_, multipliers_;
+      double scale_ = 1.; ///< of the objective, for the multipliers
+      StartResult result_;
+    };
   } // namespace
 
   std::string
@@ -121,82 +261,6 @@ namespace crawler
          const unsigned long start,
          const std::function<bool()> &stops)
   {
-    constexpr unsigned int most_rounds = 12;
-    constexpr double roughly           = 1e-3; // while the grid is still too coarse
-    constexpr double above_noise       = 10.;
-    const double begin                 = now();
-    StartResult result;
-    result.work                     = work;
-    result.start                    = start;
-    const OptimizeParameters wanted = family.form().parameters.optimize;
-    OptimizeParameters parameters   = wanted;
-    std::vector<double> x           = start_values(wanted, family.variables(), start), multipliers;
-    double scale                    = 1.; // of the objective, for the multipliers
-    bool is_rough                   = true; // of simulations all is known after the first round
-    try
-    {
-      const auto model = make_gait_model(family, x, stops);
-      is_rough         = model->noise() == 0.;
-      for (unsigned int round = 0; round < most_rounds; ++round)
-      {
-        GaitProblem problem(*model, parameters, family.variables(), work, x, stops);
-        const auto keep = [&](const GaitRecord &best) {
-          result.best = best;
-          result.records.insert(result.records.end(), problem.records().begin(), problem.records().end());
-        };
-        try
-        {
-          if (multipliers.size() != problem.lower().size())
-            multipliers.clear();
-          for (double &one : multipliers)
-            one *= scale / problem.scale();
-          const double tolerance = std::max(parameters.tolerance, above_noise * model->noise());
-          const OptimizerEnd end = minimise(problem,
-                                            problem.to_y(x),
-                                            multipliers,
-                                            is_rough ? std::max(roughly, tolerance) : tolerance,
-                                            parameters.most_iterations);
-          multipliers = end.multipliers;
-          scale       = problem.scale();
-          keep(end.has_converged ? problem.record(end.y) : problem.best());
-          result.has_converged = end.has_converged;
-          result.message       = end.message;
-          result.iterations += end.iterations;
-          result.limits = problem.limits(end.multipliers);
-          for (GaitLimit &limit : result.limits) // as they were wanted, not tightened
-            if (limit.name == "Smallest strain")
-              limit.value = *wanted.smallest_strain;
-            else if (limit.name == "Largest strain")
-              limit.value = *wanted.largest_strain;
-        }
-        catch (const GaitModel::Interrupted &)
-        {
-          if (!problem.records().empty())
-            keep(problem.best());
-          throw;
-        }
-        if (!result.best.problem.empty())
-          break;
-        x                  = result.best.x;
-        const bool is_fine = !model->refine(x);
-        if (!is_fine) // the limits are looked at in other places
-          parameters = wanted;
-        const bool exceeds =
-          is_fine && !is_rough && (wanted.smallest_strain || wanted.largest_strain) && tighten(parameters, wanted, model->extreme_strains(x));
-        if (is_fine && !exceeds && !is_rough)
-          break;
-        is_rough = is_rough && !is_fine;
-        if (round + 1 == most_rounds)
-          result.message = "the limits of strain are exceeded between the places where they are looked at";
-      }
-    }
-    catch (const GaitModel::Interrupted &)
-    {
-      result.was_interrupted = true;
-      result.has_converged   = false;
-      result.message         = "stopped";
-    }
-    result.seconds = now() - begin;
-    return result;
+    return Search(family, work, start, stops).make();
   }
 } // namespace crawler

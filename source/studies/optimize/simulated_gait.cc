@@ -121,7 +121,8 @@ namespace crawler
                              ? "the speed is not known, since the active stress does not say how long its stride is"
                              : "a work is not known there";
       if (wishes_.strain)
-        values.strain.values = {task.computed.result.min_stretch.value - 1., task.computed.result.max_stretch.value - 1.};
+        values.strain.values = {task.computed.result.min_stretch.value - 1.,
+                                task.computed.result.max_stretch.value - 1.};
       if (wishes_.stress)
         values.stress = family_.stress(x, /*rate=*/false, with_gradients);
       if (wishes_.stress_rate)
@@ -130,7 +131,7 @@ namespace crawler
       {
         for (auto &gradient : values.gradients)
           gradient.assign(x.size(), 0.);
-        const std::vector<bool> is_known = add_adjoint_gradients(x, task, values);
+        const std::vector<bool> is_known                                      = add_adjoint_gradients(x, task, values);
         values.gradients[static_cast<std::size_t>(GaitNumber::friction_time)] = family_.differences(
           x,
           [](const Parameters &there) {

@@ -21,7 +21,8 @@ namespace
     return StrainByEvaluators([](const std::vector<double> &s) -> StrainByEvaluators::Evaluators {
       return {stress_at_points([=](const double t, const std::span<double> e) {
                 for (std::size_t i = 0; i < e.size(); ++i)
-                  e[i] = 0.2 * (std::sin(2. * pi * (s[i] + t)) - std::sin(2. * pi * s[i])) + 0.1 * t * std::cos(pi * s[i]);
+                  e[i] =
+                    0.2 * (std::sin(2. * pi * (s[i] + t)) - std::sin(2. * pi * s[i])) + 0.1 * t * std::cos(pi * s[i]);
               }),
               stress_at_points([=](const double t, const std::span<double> e_t) {
                 for (std::size_t i = 0; i < e_t.size(); ++i)

@@ -12,10 +12,10 @@ namespace crawler
     std::string file;
     std::vector<std::string> overrides;
     std::string output;
-    bool overwrite = false;
-    bool resume    = false;
-    bool strict    = false;
-    bool quiet     = false;
+    bool overwrite      = false;
+    bool resume         = false;
+    bool strict         = false;
+    bool quiet          = false;
     bool check_gradient = false;
     std::string command_line;
     std::string petsc_options; ///< behind "--"

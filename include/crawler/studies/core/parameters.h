@@ -62,9 +62,9 @@ namespace crawler
   /// Section "Optimize": the gait that `crawler optimize` looks for (optimize_settings.h reads the variables).
   struct OptimizeParameters
   {
-    std::string objective = "displacement";
-    std::string direction = "forward";
-    std::string variables = "";
+    std::string objective    = "displacement";
+    std::string direction    = "forward";
+    std::string variables    = "";
     std::vector<double> work = {}; ///< one limit, or several [energy]
     std::optional<double> positive_work, smallest_strain, largest_strain, mean_square_strain, largest_stress,
       largest_stress_rate;

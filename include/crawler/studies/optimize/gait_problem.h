@@ -15,8 +15,8 @@ namespace crawler
   /// A limit, and what it costs.
   struct GaitLimit
   {
-    std::string name; ///< its entry in section Optimize
-    double value;     ///< in the user's units
+    std::string name;  ///< its entry in section Optimize
+    double value;      ///< in the user's units
     double multiplier; ///< by how much the objective would become better for one unit more
   };
 
@@ -32,8 +32,8 @@ namespace crawler
 
   /**
    * The optimisation as the optimiser sees it: minimise f(y) subject to lower <= c(y) <= upper and 0 <= y <= 1, all of
-   * size 1. y are the variables in their ranges; f is the objective over its size at the start, with the sign that makes
-   * it small; c are the limited numbers, each over its limit.
+   * size 1. y are the variables in their ranges; f is the objective over its size at the start, with the sign that
+   * makes it small; c are the limited numbers, each over its limit.
    */
   class GaitProblem
   {
@@ -55,7 +55,7 @@ namespace crawler
     {
       double objective;
       std::vector<double> gradient, constraints;
-      std::vector<std::vector<double>> rows; ///< of the Jacobian: those of limited works
+      std::vector<std::vector<double>> rows;                          ///< of the Jacobian: those of limited works
       std::vector<std::shared_ptr<const std::vector<double>>> blocks; ///< the others, unscaled
     };
     const Point &

@@ -55,16 +55,14 @@ namespace crawler
     std::array<double, n_gait_numbers>
     numbers(const State &state, const StrainFunctional::Values &values) const;
     void
-    add_gradients(const std::vector<double> &x,
-                  const State &state,
-                  const Samples &samples,
-                  GaitValues &values);
+    add_gradients(const std::vector<double> &x, const State &state, const Samples &samples, GaitValues &values);
 
     SceneFamily &family_;
     const GaitWishes wishes_;
     unsigned int n_space_, n_time_; ///< panels
     std::optional<StrainFunctional> grid_;
-    unsigned int n_limited_s_ = 1, n_limited_t_ = 1; ///< parts of body and duration; the strain is limited at their ends
+    unsigned int n_limited_s_ = 1,
+                 n_limited_t_ = 1; ///< parts of body and duration; the strain is limited at their ends
     /// Of a strain that is linear in the variables: at some x, and its derivatives [variable].
     struct Linear
     {

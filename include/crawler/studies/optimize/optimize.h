@@ -9,8 +9,8 @@
 namespace crawler
 {
   /**
-   * crawler optimize: the best gait of section Optimize (collective). Ranks share the starts; each ends as a file in the
-   * folder "starts", so that a study that was killed goes on with --resume. Then the best gait is written as
+   * crawler optimize: the best gait of section Optimize (collective). Ranks share the starts; each ends as a file in
+   * the folder "starts", so that a study that was killed goes on with --resume. Then the best gait is written as
    * optimum.prm and run with all files, into the folder "best".
    *
    * The parts, each used by those below it: optimize_settings.h, variables and starts; scene_family.h, the scenes that

@@ -42,10 +42,13 @@ namespace crawler
   make_gait_model(class SceneFamily &family, const std::vector<double> &start, const std::function<bool()> &stops);
 
   /**
-   * Looks for the best gait from one start. Where the grid of the kinematic level was too coarse for what was found, and
-   * where the strain exceeds its limits between the places at which it is limited, the search goes on from there.
+   * Looks for the best gait from one start. Where the grid of the kinematic level was too coarse for what was found,
+   * and where the strain exceeds its limits between the places at which it is limited, the search goes on from there.
    * An interrupted one has the best so far. Throws InputError.
    */
   StartResult
-  search(class SceneFamily &family, std::optional<double> work, unsigned long start, const std::function<bool()> &stops);
+  search(class SceneFamily &family,
+         std::optional<double> work,
+         unsigned long start,
+         const std::function<bool()> &stops);
 } // namespace crawler

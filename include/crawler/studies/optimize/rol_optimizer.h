@@ -13,8 +13,8 @@ namespace crawler
   {
     std::vector<double> y;
     bool has_converged;
-    std::string message;     ///< in words, if it has not
-    unsigned int iterations; ///< of the outer loop
+    std::string message;             ///< in words, if it has not
+    unsigned int iterations;         ///< of the outer loop
     std::vector<double> multipliers; ///< of c, positive where an upper bound holds
   };
 
