@@ -24,12 +24,11 @@ namespace crawler
         continue;
       const std::string value = declarations_.value(i);
       std::vector<std::string> paths;
-      if (entry.is_list)
-        for (std::size_t n = 1; n <= 1u + static_cast<std::size_t>(std::ranges::count(value, ',')) && !value.empty();
-             ++n)
-          paths.push_back(fmt::format("{}[{}]", entry.path, n));
-      else if (to_number(value))
+      if (to_number(value)) // also a list of one
         paths.push_back(entry.path);
+      else if (entry.is_list && !value.empty())
+        for (std::ptrdiff_t n = 0; n <= std::ranges::count(value, ','); ++n)
+          paths.push_back(fmt::format("{}[{}]", entry.path, n + 1));
       all_.insert(all_.end(), paths.begin(), paths.end());
       if (std::ranges::none_of(rules, [&](const EntryRule &rule) { return rule.is_against(entry.path); }))
         effective_.insert(effective_.end(), paths.begin(), paths.end());
@@ -44,9 +43,10 @@ namespace crawler
     const auto is_in       = [&](const std::vector<std::string> &list) {
       if (std::ranges::find(list, path) != list.end())
         return true;
-      // A number behind those that a list has now.
-      const std::string first = path.substr(0, path.find('[')) + "[1]";
-      return path.ends_with(']') && std::ranges::find(list, first) != list.end();
+      // A list of one by its place, or a number behind those that a list has now.
+      const std::string entry = path.substr(0, path.find('['));
+      return path.ends_with(']') && declarations_.info(path).is_list &&
+             (std::ranges::find(list, entry) != list.end() || std::ranges::find(list, entry + "[1]") != list.end());
     };
     if (!is_in(all_))
     {
