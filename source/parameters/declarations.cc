@@ -48,7 +48,7 @@ namespace crawler
     };
 
     const std::string automatic         = "automatic";
-    constexpr unsigned int longest_list = 100000; ///< that a place in brackets makes
+    constexpr unsigned int longest_list = 10000; ///< that a place in brackets makes
 
     std::optional<unsigned int>
     to_count(const std::string &text)

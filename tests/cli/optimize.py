@@ -150,6 +150,9 @@ with tempfile.TemporaryDirectory() as place:
                             (["Optimize/Variables=Body/Length : -1 to 2"], "positive number"),
                             (["Optimize/Variables=Body/Length"], "FROM to TO"),
                             (["Optimize/Variables=" + MODES + "Coefficients[0] : -1 to 1"], "from 1 to"),
+                            (["Optimize/Variables=Body/Length : 1e-9 to 1e300"], "narrower"),
+                            (["Optimize/Work=0"], "positive numbers"),
+                            (["Optimize/Work=0.1, -1"], "positive numbers"),
                             (no_limit, "has no maximum"),
                             (["Model=perturbation"], "perturbation")]:
         bad = run("optimize_harmonics", place / "bad", *settings)

@@ -159,10 +159,10 @@ namespace crawler
   const GaitProblem::Point &
   GaitProblem::at(const std::vector<double> &y, const bool with_gradients)
   {
-    if (y == latest_y_ && (latest_has_gradients_ || !with_gradients))
-      return latest_;
     if (stops_())
       throw GaitModel::Interrupted();
+    if (y == latest_y_ && (latest_has_gradients_ || !with_gradients))
+      return latest_;
     const bool is_new           = y != latest_y_;
     const std::vector<double> x = to_x(y);
     const GaitValues values     = model_.evaluate(x, with_gradients);
@@ -286,7 +286,7 @@ namespace crawler
     {
       if (!record.problem.empty() || !std::isfinite(record.objective))
         continue;
-      const bool is_good = record.violation <= admissible, best_is_good = best->violation <= admissible;
+      const bool is_good = record.violation <= admissible(), best_is_good = best->violation <= admissible();
       const bool is_first = !best->problem.empty() || !std::isfinite(best->objective);
       if (is_first || (is_good && !best_is_good) || (is_good && rank(record) > rank(*best)) ||
           (!is_good && !best_is_good && record.violation < best->violation))

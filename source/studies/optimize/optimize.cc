@@ -154,7 +154,7 @@ namespace crawler
           why == "limits_exceeded"
             ? "no gait that keeps to all limits was found; the limits may contradict each other, or the start is "
               "far from them"
-            : "the optimiser did not converge; more iterations, a larger Tolerance or another start may help");
+            : "the optimiser did not converge; the lines above say why");
       log.line(fmt::format(
         "{} evaluations from {} start{}, {:.1f} s. The best gait is in {}/optimum{}.prm, its run in "
         "{}/best{}/.",
@@ -190,9 +190,10 @@ namespace crawler
       parts            = parts_of(form.parameters.optimize);
       const auto start = start_values(form.parameters.optimize, family->variables(), 0);
       const auto model = make_gait_model(*family, start, []() { return false; });
-      log.line(fmt::format("Optimisation of the {}: {} variables, {} start{}{}; {}.",
+      log.line(fmt::format("Optimisation of the {}: {} variable{}, {} start{}{}; {}.",
                            form.parameters.optimize.objective,
                            family->variables().size(),
+                           family->variables().size() == 1 ? "" : "s",
                            form.parameters.optimize.n_starts,
                            form.parameters.optimize.n_starts == 1 ? "" : "s",
                            form.parameters.optimize.work.size() > 1

@@ -100,7 +100,14 @@ namespace crawler
       throw InputError("Variables is empty, but \"Section/Entry : FROM to TO\" is expected: what may vary", own);
     const SceneNumbers numbers(form);
     std::vector<OptimizeVariable> variables;
-    for (const std::string &part : split_parts(p.variables, ';'))
+    for (const double limit : p.work)
+      if (!(limit > 0.) || std::ranges::count(p.work, limit) > 1)
+        throw InputError(fmt::format("\"Optimize/Work\" has {:g}, but positive numbers are expected, each once", limit),
+                         "Optimize/Work");
+    std::string list = trimmed(p.variables);
+    if (list.ends_with(';'))
+      list.pop_back();
+    for (const std::string &part : split_parts(list, ';'))
     {
       const auto colon = part.rfind(':');
       if (colon == std::string::npos)
@@ -117,6 +124,15 @@ namespace crawler
                  text,
                  to_text(from),
                  to_text(to));
+        constexpr double widest = 1e8;
+        if (start != 0. && !(to - from <= widest * std::abs(start)))
+          refuse(
+            "the range of \"{}\", from {} to {}, is more than {:g} times the start, {}; a narrower one is expected",
+            path,
+            to_text(from),
+            to_text(to),
+            widest,
+            text);
         if (std::ranges::find(variables, path, &OptimizeVariable::path) != variables.end())
           refuse("\"{}\" is there twice, but once is expected", path);
         for (const double end : {from, to})

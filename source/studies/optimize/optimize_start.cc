@@ -7,6 +7,7 @@
 #include <crawler/studies/optimize/rol_optimizer.h>
 #include <crawler/studies/optimize/simulated_gait.h>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -44,12 +45,12 @@ namespace crawler
     bool
     tighten(OptimizeParameters &parameters, const OptimizeParameters &wanted, const std::pair<double, double> &extremes)
     {
-      constexpr double more = 1.02;
-      const auto closer     = [&](std::optional<double> &limit, const std::optional<double> &own, const double value) {
+      constexpr double more = 1.02, exact = 1e-5;
+      const auto closer = [&](std::optional<double> &limit, const std::optional<double> &own, const double value) {
         if (!own)
           return false;
         const double excess = (std::abs(value) - std::abs(*own)) * more;
-        if (!(std::abs(value) > std::abs(*own) * (1. + GaitProblem::admissible)) || value * *own < 0.)
+        if (!(std::abs(value) > std::abs(*own) * (1. + exact)) || value * *own < 0.)
           return false;
         *limit = std::copysign(std::max(std::abs(*limit) - excess, 0.5 * std::abs(*own)), *own);
         return true;
@@ -107,7 +108,10 @@ namespace crawler
       go_on()
       {
         constexpr unsigned int most_rounds = 12;
+        constexpr double above_noise       = 10.;
         const auto model                   = make_gait_model(family_, x_, stops_);
+        wanted_.tolerance                  = std::max(wanted_.tolerance, above_noise * model->noise());
+        parameters_                        = wanted_;
         bool is_rough                      = model->noise() == 0.; // of simulations all is known after the first round
         for (unsigned int round = 0; round < most_rounds; ++round)
         {
@@ -132,7 +136,7 @@ namespace crawler
       void
       improve(GaitModel &model, const bool is_rough)
       {
-        constexpr double roughly = 1e-3, above_noise = 10.;
+        constexpr double roughly = 1e-3;
         GaitProblem problem(model, parameters_, family_.variables(), result_.work, x_, stops_);
         const auto keep = [&](const GaitRecord &best) {
           result_.best = best;
@@ -142,7 +146,8 @@ namespace crawler
           multipliers_.clear();
         for (double &one : multipliers_)
           one *= scale_ / problem.scale();
-        const double tolerance = std::max(parameters_.tolerance, above_noise * model.noise());
+        const double tolerance = parameters_.tolerance;
+        result_.admissible     = problem.admissible();
         try
         {
           const OptimizerEnd end = minimise(problem,
@@ -152,8 +157,9 @@ namespace crawler
                                             parameters_.most_iterations);
           multipliers_           = end.multipliers;
           scale_                 = problem.scale();
-          keep(end.has_converged ? problem.record(end.y) : problem.best());
-          result_.has_converged = end.has_converged;
+          const bool is_gait = problem.record(end.y).problem.empty();
+          keep(end.has_converged && is_gait ? problem.record(end.y) : problem.best());
+          result_.has_converged = end.has_converged && is_gait;
           result_.message       = end.message;
           result_.iterations += end.iterations;
           result_.limits = problem.limits(end.multipliers);
@@ -178,6 +184,10 @@ namespace crawler
           result_.has_converged = false;
           result_.message = "what was found does not move the body in the wanted direction; another start is needed";
         }
+        constexpr double far = 10.;
+        if (!result_.has_converged && !result_.records.empty() && result_.records.front().violation > far)
+          result_.message += fmt::format("; the start exceeds a limit {:.2g} times, one that is nearer to it is needed",
+                                         1. + result_.records.front().violation);
         for (GaitLimit &limit : result_.limits)
         {
           if (is_cost) // the multiplier is that of D/W
@@ -191,7 +201,7 @@ namespace crawler
 
       SceneFamily &family_;
       const std::function<bool()> &stops_;
-      const OptimizeParameters wanted_;
+      OptimizeParameters wanted_;
       OptimizeParameters parameters_; ///< with limits of strain that may be tightened
       std::vector<double> x_, multipliers_;
       double scale_ = 1.; ///< of the objective, for the multipliers
@@ -210,6 +220,7 @@ namespace crawler
                  {"was_interrupted", result.was_interrupted},
                  {"message", result.message},
                  {"iterations", result.iterations},
+                 {"admissible", result.admissible},
                  {"seconds", result.seconds},
                  {"records", Json::array()}};
     for (const GaitLimit &limit : result.limits)
@@ -234,6 +245,7 @@ namespace crawler
     result.was_interrupted = json["was_interrupted"];
     result.message         = json["message"];
     result.iterations      = json["iterations"];
+    result.admissible      = json["admissible"];
     result.seconds         = json["seconds"];
     for (const Json &record : json["records"])
       result.records.push_back(record_of(record));

@@ -5,6 +5,7 @@
 #include <crawler/studies/optimize/gait_model.h>
 #include <crawler/studies/optimize/optimize_settings.h>
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -111,7 +112,12 @@ namespace crawler
     std::vector<GaitLimit>
     limits(const std::vector<double> &multipliers) const;
 
-    static constexpr double admissible = 1e-5; ///< violation of a limit, relative to it
+    /// Violation of a limit, relative to it.
+    double
+    admissible() const
+    {
+      return std::max(1e-5, parameters_.tolerance);
+    }
 
   private:
     struct NumberLimit

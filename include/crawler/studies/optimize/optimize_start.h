@@ -21,6 +21,7 @@ namespace crawler
     bool has_converged = false, was_interrupted = false;
     std::string message; ///< if it has not converged
     unsigned int iterations = 0;
+    double admissible       = 0.; ///< violation of a limit, relative to it
     double seconds          = 0.;
     std::vector<GaitRecord> records; ///< all evaluations
 
@@ -28,7 +29,7 @@ namespace crawler
     bool
     is_admissible() const
     {
-      return best.problem.empty() && best.violation <= GaitProblem::admissible;
+      return best.problem.empty() && best.violation <= admissible;
     }
   };
 
