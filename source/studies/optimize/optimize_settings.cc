@@ -125,14 +125,14 @@ namespace crawler
                  to_text(from),
                  to_text(to));
         constexpr double widest = 1e8;
-        if (start != 0. && !(to - from <= widest * std::abs(start)))
-          refuse(
-            "the range of \"{}\", from {} to {}, is more than {:g} times the start, {}; a narrower one is expected",
-            path,
-            to_text(from),
-            to_text(to),
-            widest,
-            text);
+        if (!(to - from <= widest * std::max(std::abs(start), 1.)))
+          refuse("the range of \"{}\", from {} to {}, is more than {:g} times the start, {}, or 1; a narrower one is "
+                 "expected",
+                 path,
+                 to_text(from),
+                 to_text(to),
+                 widest,
+                 text);
         if (std::ranges::find(variables, path, &OptimizeVariable::path) != variables.end())
           refuse("\"{}\" is there twice, but once is expected", path);
         for (const double end : {from, to})

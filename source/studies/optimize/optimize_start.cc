@@ -157,7 +157,7 @@ namespace crawler
                                             parameters_.most_iterations);
           multipliers_           = end.multipliers;
           scale_                 = problem.scale();
-          const bool is_gait = problem.record(end.y).problem.empty();
+          const bool is_gait     = problem.record(end.y).problem.empty();
           keep(end.has_converged && is_gait ? problem.record(end.y) : problem.best());
           result_.has_converged = end.has_converged && is_gait;
           result_.message       = end.message;
