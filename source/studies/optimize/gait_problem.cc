@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/exceptions.h>
 #include <crawler/studies/optimize/gait_problem.h>
 
 #include <algorithm>
@@ -83,8 +82,7 @@ namespace crawler
     lower_.assign(number_limits_.size(), -HUGE_VAL);
     upper_.assign(number_limits_.size(), 1.);
     const GaitValues values = model.evaluate(start, /*with_gradients=*/false);
-    if (!values.problem.empty())
-      throw InputError("the start cannot be computed: " + values.problem, "Optimize/Variables");
+    values.require_start();
     for (const BlockLimit &limit : block_limits_)
     {
       block_sizes_.push_back((values.*limit.values).values.size());

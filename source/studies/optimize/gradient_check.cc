@@ -49,8 +49,7 @@ namespace crawler
     const double noise = model.noise();
     const double step = noise > 0. ? 0.5 * std::cbrt(noise) : 1e-6, tolerance = noise > 0. ? 20. * noise / step : 1e-6;
     const GaitValues here = model.evaluate(x, /*with_gradients=*/true);
-    if (!here.problem.empty())
-      throw InputError("the start cannot be computed: " + here.problem, "Optimize/Variables");
+    here.require_start();
     std::vector<Checked> list;
     for (std::size_t k = 0; k < n_gait_numbers; ++k)
       if (wishes.numbers[k])

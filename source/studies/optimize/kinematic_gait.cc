@@ -109,15 +109,15 @@ namespace crawler
     grid_.emplace(n_space_, n_time_);
     while (refine(start))
       ;
-    choose_limited_places();
     look_for_linearity(start);
   }
 
   /// Where the strain is limited: equally spaced, so that a wave of constant shape is the same at many of them.
   void
-  KinematicGait::choose_limited_places()
+  KinematicGait::choose_limited_places(const bool many)
   {
-    constexpr unsigned int most_times = 128, most = 65536, closer = 64; // than the points of the quadrature
+    // A strain that is not linear is computed anew at all of them, for each variable.
+    const unsigned int most_times = many ? 128 : 32, most = many ? 65536 : 4096, closer = many ? 64 : 8;
     n_limited_t_ = std::min(std::bit_ceil(GaussPanels::n_points * n_time_), most_times);
     n_limited_s_ = std::min(closer * GaussPanels::n_points * n_space_, most / n_limited_t_);
   }
@@ -167,9 +167,20 @@ namespace crawler
   void
   KinematicGait::look_for_linearity(const std::vector<double> &start)
   {
-    constexpr double step = 1e-2, round_off = 1e-11;
     linear_.reset();
     jacobian_.reset();
+    choose_limited_places(/*many=*/true);
+    measure_slopes(start);
+    if (!linear_)
+      choose_limited_places(/*many=*/false);
+    else if (wishes_.strain)
+      leave_out_places();
+  }
+
+  void
+  KinematicGait::measure_slopes(const std::vector<double> &start)
+  {
+    constexpr double step = 1e-2, round_off = 1e-11;
     const auto &variables = family_.variables();
     const auto n          = static_cast<double>(start.size());
     Linear linear{start, std::make_shared<const State>(family_.parameters(start)), {}, {}};
@@ -229,8 +240,6 @@ namespace crawler
     {
       linear_.reset();
     }
-    if (linear_ && wishes_.strain)
-      leave_out_places();
   }
 
   KinematicGait::Samples
@@ -393,9 +402,10 @@ namespace crawler
     n_space_ *= in_space ? 2 : 1;
     n_time_ *= in_time ? 2 : 1;
     grid_.emplace(n_space_, n_time_);
-    choose_limited_places();
     if (linear_)
       look_for_linearity(x);
+    else
+      choose_limited_places(/*many=*/false);
     return true;
   }
 } // namespace crawler

@@ -155,17 +155,16 @@ namespace crawler
             ? "no gait that keeps to all limits was found; the limits may contradict each other, or the start is "
               "far from them"
             : "the optimiser did not converge; the lines above say why");
-      log.line(fmt::format(
-        "{} evaluations from {} start{}, {:.1f} s. The best gait is in {}/optimum{}.prm, its run in "
-        "{}/best{}/.",
-        evaluations.front().values.index() == 0 ? std::get<std::vector<double>>(evaluations.front().values).size() : 0,
-        results.starts.size(),
-        results.starts.size() == 1 ? "" : "s",
-        now() - begin,
-        folder.string(),
-        results.best.size() > 1 ? "-N" : "",
-        folder.string(),
-        results.best.size() > 1 ? "-N" : ""));
+      log.line(fmt::format("{} evaluations from {} start{}, {:.1f} s. The best gait is in {}/optimum{}.prm, its run in "
+                           "{}/best{}/.",
+                           std::get<std::vector<double>>(evaluations.front().values).size(),
+                           results.starts.size(),
+                           results.starts.size() == 1 ? "" : "s",
+                           now() - begin,
+                           folder.string(),
+                           results.best.size() > 1 ? "-N" : "",
+                           folder.string(),
+                           results.best.size() > 1 ? "-N" : ""));
       return !is_whole ? ExitCode::stopped : status == "finished" ? ExitCode::finished : ExitCode::numerical_failure;
     }
   } // namespace
@@ -204,9 +203,7 @@ namespace crawler
         return check_gradient(*model, *family, GaitProblem::wishes(form.parameters.optimize), start, log)
                  ? ExitCode::finished
                  : ExitCode::self_check_failed;
-      const GaitProblem problem(*model, form.parameters.optimize, family->variables(), parts.front().work, start, []() {
-        return false;
-      }); // throws if the start has a problem
+      model->evaluate(start, /*with_gradients=*/false).require_start();
     }
     catch (const InputError &error)
     {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/exceptions.h>
+
 #include <array>
 #include <memory>
 #include <string>
@@ -35,6 +37,14 @@ namespace crawler
     std::array<double, n_gait_numbers> numbers{};
     std::array<std::vector<double>, n_gait_numbers> gradients; ///< by the variables, if they were asked for
     LimitedValues strain, stress, stress_rate;                 ///< of what is limited
+
+    /// Throws InputError if the start has a problem.
+    void
+    require_start() const
+    {
+      if (!problem.empty())
+        throw InputError("the start cannot be computed: " + problem, "Optimize/Variables");
+    }
 
     double
     number(const GaitNumber one) const

@@ -45,9 +45,11 @@ namespace crawler
     sample(const State &state) const;
 
     void
-    choose_limited_places();
+    choose_limited_places(bool many);
     void
     leave_out_places();
+    void
+    measure_slopes(const std::vector<double> &start);
     void
     look_for_linearity(const std::vector<double> &start);
     Samples
