@@ -3,6 +3,7 @@
 #include <crawler/accuracy/graded_choice.h>
 #include <crawler/accuracy/numerics_choice.h>
 #include <crawler/accuracy/stress_scales.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/run/accuracy_rule.h>
 #include <crawler/time/integrators.h>
 
@@ -640,9 +641,8 @@ namespace crawler
           choice_.wanted_error = accuracy_ * size_;
         const double seconds   = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         const std::string kind = jumps_move_ ? "jumps of the active stress that move, "
-                                 : is_graded ? fmt::format("sudden stress, {} level{} of cells smaller by {:g} each, ",
-                                                           n.grading.levels,
-                                                           n.grading.levels == 1 ? "" : "s",
+                                 : is_graded ? fmt::format("sudden stress, {} of cells smaller by {:g} each, ",
+                                                           counted(n.grading.levels, "level"),
                                                            n.grading.ratio)
                                  : n.mesh.tolerance > 0.
                                    ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)

@@ -26,4 +26,10 @@ namespace crawler
     }
     return text;
   }
+
+  std::string
+  counted(const unsigned long number, const std::string &noun)
+  {
+    return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+  }
 } // namespace crawler

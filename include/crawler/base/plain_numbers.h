@@ -9,4 +9,8 @@ namespace crawler
   /// where they are.
   std::string
   with_plain_numbers(std::string text);
+
+  /// "1 cell", "2 cells".
+  std::string
+  counted(unsigned long number, const std::string &noun);
 } // namespace crawler

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/stop_signal.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/atlas/atlas.h>
@@ -145,14 +146,13 @@ namespace crawler
     const std::vector<bool> done =
       points_done(communicator, [&]() { return begin_or_resume(folder, table, file, points, options.command_line); });
     const auto n_done = std::count(done.begin(), done.end(), true);
-    log.line(fmt::format("Atlas: {} values of {} times {} of {}, {} points on {} rank{}{}",
+    log.line(fmt::format("Atlas: {} values of {} times {} of {}, {} points on {}{}",
                          axes.first.values.size(),
                          axes.first.entry,
                          axes.second.values.size(),
                          axes.second.entry,
                          axes.n_points(),
-                         n_ranks,
-                         n_ranks == 1 ? "" : "s",
+                         counted(n_ranks, "rank"),
                          n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
 
     const bool is_whole = compute_rows(

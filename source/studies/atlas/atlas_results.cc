@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/versions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/atlas/atlas_results.h>
@@ -174,8 +175,7 @@ namespace crawler
     return fmt::format(
       "Atlas over {} and {}: {} points{}, {} finished, {} inverted, {} failed with a name, {} stopped, {} refused{}. "
       "{} points could be cross-checked; {} disagree beyond the reported error (silent wrong answers). {}{:.0f} s on "
-      "{} "
-      "rank{}.",
+      "{}.",
       axis_in_words(axes.first),
       axis_in_words(axes.second),
       summary.points,
@@ -192,8 +192,7 @@ namespace crawler
         ? ""
         : fmt::format("The largest measured error is {:.2g} of the reported one. ", summary.largest_error_ratio),
       seconds,
-      n_ranks,
-      n_ranks == 1 ? "" : "s");
+      counted(n_ranks, "rank"));
   }
 
   std::string

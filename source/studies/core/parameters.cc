@@ -105,9 +105,8 @@ namespace crawler
     declarations.text("Variables", variables, "\"Section/Entry : FROM to TO\", several of them separated by semicolons")
       .means("The numbers of the scene that vary, with their ranges. The values in this file are the start. Of a list, "
              "Section/Entry[2] is the second number, [1-5] are the first five, each a variable, and [*] are all.");
-    declarations.numbers("Work", work, "energy")
-      .means("Largest work of the active stress over the duration. Nothing: no limit. Several numbers: an optimum for "
-             "each, which gives the displacement against the work.");
+    declarations.number("Work", work, positive(), "energy")
+      .means("Largest work of the active stress over the duration. Automatic: no limit.");
     declarations.number("Positive work", positive_work, positive(), "energy")
       .means(
         "Largest positive work of the active stress, for actuators that cannot recover energy. Automatic: no limit.");

@@ -26,7 +26,7 @@ namespace crawler
     };
     want(GaitNumber::displacement, p.objective != "speed");
     want(GaitNumber::speed, p.objective == "speed");
-    want(GaitNumber::work, !p.work.empty() || p.objective == "merit" || p.objective == "cost of transport");
+    want(GaitNumber::work, p.work || p.objective == "merit" || p.objective == "cost of transport");
     want(GaitNumber::friction_time, p.objective == "merit");
     want(GaitNumber::positive_work, p.positive_work.has_value());
     want(GaitNumber::mean_square, p.mean_square_strain.has_value());
@@ -39,7 +39,6 @@ namespace crawler
   GaitProblem::GaitProblem(GaitModel &model,
                            const OptimizeParameters &parameters,
                            const std::vector<OptimizeVariable> &variables,
-                           const std::optional<double> work,
                            const std::vector<double> &start,
                            std::function<bool()> stops)
     : model_(model)
@@ -48,8 +47,8 @@ namespace crawler
     , stops_(std::move(stops))
   {
     const OptimizeParameters &p = parameters;
-    if (work)
-      number_limits_.push_back({GaitNumber::work, "Work", *work});
+    if (p.work)
+      number_limits_.push_back({GaitNumber::work, "Work", *p.work});
     if (p.positive_work)
       number_limits_.push_back({GaitNumber::positive_work, "Positive work", *p.positive_work});
     if (p.mean_square_strain)

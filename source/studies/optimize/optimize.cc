@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/row_file.h>
 #include <crawler/base/stop_signal.h>
 #include <crawler/parameters/declarations.h>
@@ -10,8 +11,8 @@
 #include <crawler/studies/core/study_folder.h>
 #include <crawler/studies/optimize/gradient_check.h>
 #include <crawler/studies/optimize/optimize.h>
+#include <crawler/studies/optimize/optimize_cases.h>
 #include <crawler/studies/optimize/optimize_results.h>
-#include <crawler/studies/optimize/scene_family.h>
 #include <crawler/studies/run/run.h>
 
 #include <fmt/format.h>
@@ -26,29 +27,25 @@ namespace crawler
   {
     namespace fs = std::filesystem;
 
-    /// A limit of work and a start.
+    /// A case and a start.
     struct Part
     {
-      std::optional<double> work;
-      unsigned long start;
+      unsigned long number_of_case, start;
 
       fs::path
       file(const fs::path &folder) const
       {
-        return folder / "starts" / fmt::format("{}{}.json", work ? fmt::format("work-{:.17g}-", *work) : "", start);
+        return folder / "starts" / fmt::format("{}-{}.json", number_of_case + 1, start);
       }
     };
 
     std::vector<Part>
-    parts_of(const OptimizeParameters &parameters)
+    parts_of(const OptimizeCases &cases)
     {
-      std::vector<std::optional<double>> limits(parameters.work.begin(), parameters.work.end());
-      if (limits.empty())
-        limits.emplace_back();
       std::vector<Part> parts;
-      for (const auto &limit : limits)
-        for (unsigned long start = 0; start < parameters.n_starts; ++start)
-          parts.push_back({limit, start});
+      for (unsigned long number = 0; number < cases.size(); ++number)
+        for (unsigned long start = 0; start < cases.parameters().optimize.n_starts; ++start)
+          parts.push_back({number, start});
       return parts;
     }
 
@@ -79,15 +76,16 @@ namespace crawler
 
     /// The optimum as a parameter file, and its run in a folder of its own. Returns the summary of the run.
     std::string
-    run_optimum(SceneFamily &family,
-                const StartResult &start,
-                const std::string &number,
-                const fs::path &folder,
-                const CommandOptions &options)
+    run_optimum(OptimizeCases &cases, const StartResult &start, const fs::path &folder, const CommandOptions &options)
     {
-      const Parameters parameters = family.parameters(start.best.x);
+      const auto family           = cases.family(start.number_of_case);
+      const Parameters parameters = family->parameters(start.best.x);
+      const std::string number    = cases.size() > 1 ? fmt::format("-{}", start.number_of_case + 1) : "";
       std::ostringstream text;
-      family.form().declarations.print_prm(text);
+      Declarations &entries = family->form().declarations;
+      entries.set("Sweep/Axes", "");
+      entries.print_prm(text);
+      entries.set("Sweep/Axes", parameters.sweep.axes);
       const fs::path file = folder / ("optimum" + number + ".prm"), place = folder / ("best" + number);
       write_file(file, text.str());
       CommandOptions one = options;
@@ -105,7 +103,7 @@ namespace crawler
 
     /// Tables, the optima with their runs, and the summary, by rank 0. Returns the exit code.
     ExitCode
-    write_results(SceneFamily &family,
+    write_results(OptimizeCases &cases,
                   const std::vector<Part> &parts,
                   const CommandOptions &options,
                   const std::string &effective,
@@ -119,12 +117,11 @@ namespace crawler
       for (const Part &part : parts)
         if (fs::exists(part.file(folder)))
           starts.push_back(unpack_start(read_whole_file(part.file(folder))));
-      const OptimizeResults results(
-        family.form().parameters.optimize, family.variables(), family.form().declarations, std::move(starts));
-      const Table evaluations = evaluation_table(results), of_starts = start_table(results);
+      const OptimizeResults results(cases, std::move(starts));
+      const Table evaluations = evaluation_table(results);
       write_file(folder / "results.csv", csv(evaluations));
       write_hdf5(folder / "results.h5", "optimize", evaluations, provenance(effective, options.command_line));
-      write_file(folder / "starts.csv", csv(of_starts));
+      write_file(folder / "starts.csv", csv(start_table(results)));
       std::vector<std::string> summaries;
       bool is_admissible = !results.best.empty(), has_converged = !results.best.empty();
       for (std::size_t i = 0; i < results.best.size(); ++i)
@@ -132,9 +129,9 @@ namespace crawler
         const StartResult &best = results.starts[results.best[i]];
         is_admissible           = is_admissible && best.is_admissible();
         has_converged           = has_converged && best.has_converged;
-        summaries.push_back(
-          run_optimum(family, best, results.best.size() > 1 ? fmt::format("-{}", i + 1) : "", folder, options));
+        summaries.push_back(run_optimum(cases, best, folder, options));
       }
+      write_file(folder / "optima.csv", csv(optimum_table(results, summaries)));
       const std::string status = !is_whole ? "stopped" : is_admissible && has_converged ? "finished" : "failed";
       const std::string why    = !is_whole        ? reason
                                  : !is_admissible ? "limits_exceeded"
@@ -155,16 +152,15 @@ namespace crawler
             ? "no gait that keeps to all limits was found; the limits may contradict each other, or the start is "
               "far from them"
             : "the optimiser did not converge; the lines above say why");
-      log.line(fmt::format("{} evaluations from {} start{}, {:.1f} s. The best gait is in {}/optimum{}.prm, its run in "
+      log.line(fmt::format("{} evaluations from {}, {:.1f} s. The best gait is in {}/optimum{}.prm, its run in "
                            "{}/best{}/.",
                            std::get<std::vector<double>>(evaluations.front().values).size(),
-                           results.starts.size(),
-                           results.starts.size() == 1 ? "" : "s",
+                           counted(results.starts.size(), "start"),
                            now() - begin,
                            folder.string(),
-                           results.best.size() > 1 ? "-N" : "",
+                           cases.size() > 1 ? "-N" : "",
                            folder.string(),
-                           results.best.size() > 1 ? "-N" : ""));
+                           cases.size() > 1 ? "-N" : ""));
       return !is_whole ? ExitCode::stopped : status == "finished" ? ExitCode::finished : ExitCode::numerical_failure;
     }
   } // namespace
@@ -176,31 +172,21 @@ namespace crawler
     const double begin = now();
     Log log(rank_of(communicator) == 0, options.quiet);
     const ParameterFile file = read_file(communicator, options.file, options.overrides);
-    Form form(file);
-    std::ostringstream text;
-    form.declarations.print_prm(text);
-    const std::string effective = text.str();
-    std::optional<SceneFamily> family;
-    std::vector<Part> parts;
+    OptimizeCases cases(communicator, file);
+    const OptimizeParameters own = cases.parameters().optimize;
     try
     {
-      form.parameters.create_scene();
-      family.emplace(form, read_variables(form));
-      parts            = parts_of(form.parameters.optimize);
-      const auto start = start_values(form.parameters.optimize, family->variables(), 0);
-      const auto model = make_gait_model(*family, start, []() { return false; });
-      log.line(fmt::format("Optimisation of the {}: {} variable{}, {} start{}{}; {}.",
-                           form.parameters.optimize.objective,
-                           family->variables().size(),
-                           family->variables().size() == 1 ? "" : "s",
-                           form.parameters.optimize.n_starts,
-                           form.parameters.optimize.n_starts == 1 ? "" : "s",
-                           form.parameters.optimize.work.size() > 1
-                             ? fmt::format(" for each of {} limits of work", form.parameters.optimize.work.size())
-                             : "",
+      const auto family = cases.family(0);
+      const auto start  = start_values(own, family->variables(), 0);
+      const auto model  = make_gait_model(*family, start, []() { return false; });
+      log.line(fmt::format("Optimisation of the {}: {}{}, {}; {}.",
+                           own.objective,
+                           counted(family->variables().size(), "variable"),
+                           cases.size() > 1 ? fmt::format(" in each of {} cases", cases.size()) : "",
+                           counted(own.n_starts, "start"),
                            model->description()));
       if (options.check_gradient)
-        return check_gradient(*model, *family, GaitProblem::wishes(form.parameters.optimize), start, log)
+        return check_gradient(*model, *family, GaitProblem::wishes(family->form().parameters.optimize), start, log)
                  ? ExitCode::finished
                  : ExitCode::self_check_failed;
       model->evaluate(start, /*with_gradients=*/false).require_start();
@@ -209,8 +195,9 @@ namespace crawler
     {
       throw file.with_place(error);
     }
-    const OptimizeParameters own = form.parameters.optimize;
-    const fs::path path          = output_folder(options.output, options.file);
+    const std::vector<Part> parts = parts_of(cases);
+    const std::string effective   = cases.effective();
+    const fs::path path           = output_folder(options.output, options.file);
     StudyFolder folder({"optimization", {"starts"}, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
     begin_or_resume(communicator, folder, file, effective);
 
@@ -228,7 +215,8 @@ namespace crawler
                                         const Part &part = parts[number];
                                         if (is_done(part, path))
                                           return true;
-                                        const StartResult result = search(*family, part.work, part.start, stops);
+                                        const StartResult result = search(
+                                          *cases.family(part.number_of_case), part.number_of_case, part.start, stops);
                                         write_file(part.file(path), pack(result));
                                         see(1, result.has_converged ? 0 : 1);
                                         return !result.was_interrupted;
@@ -236,7 +224,7 @@ namespace crawler
                                      log);
     const std::string reason = is_whole ? "" : stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
     const std::string code   = on_first_rank(communicator, [&]() {
-      const ExitCode end = write_results(*family, parts, options, effective, is_whole, reason, begin, path, log);
+      const ExitCode end = write_results(cases, parts, options, effective, is_whole, reason, begin, path, log);
       folder.leave();
       return fmt::format("{}", static_cast<int>(end));
     });

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/plain_numbers.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/optimize/optimize_results.h>
 
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace crawler
 {
@@ -25,23 +27,39 @@ namespace crawler
       return std::isfinite(value) ? Json(value) : Json();
     }
 
+    /// The number at a JSON pointer; not a number if there is none.
+    double
+    number_at(const Json &json, const char *place)
+    {
+      const Json::json_pointer pointer(place);
+      return json.contains(pointer) && json[pointer].is_number() ? json[pointer].get<double>() : NAN;
+    }
+
     /// Columns that rows of records have in common.
     class Records
     {
     public:
       explicit Records(const OptimizeResults &results)
         : results_(results)
-        , x_(results.variables.size())
+        , x_(results.paths.size())
+        , axes_(results.axes.size())
       {
       }
 
       void
       add(const StartResult &start, const GaitRecord &record)
       {
-        work_.push_back(start.work.value_or(NAN));
+        const OptimizeResults::Case &its = results_.cases[start.number_of_case];
+        case_.push_back(static_cast<double>(start.number_of_case + 1));
         start_.push_back(static_cast<double>(start.start));
+        for (std::size_t i = 0; i < axes_.size(); ++i)
+          axes_[i].push_back(its.values[i]);
         for (std::size_t i = 0; i < x_.size(); ++i)
-          x_[i].push_back(record.x[i]);
+        {
+          const auto place = std::ranges::find(its.paths, results_.paths[i]);
+          x_[i].push_back(place == its.paths.end() ? NAN
+                                                   : record.x[static_cast<std::size_t>(place - its.paths.begin())]);
+        }
         objective_.push_back(record.problem.empty() ? record.objective : NAN);
         for (std::size_t i = 0; i < n_gait_numbers; ++i)
           numbers_[i].push_back(record.problem.empty() ? record.numbers[i] : NAN);
@@ -52,10 +70,13 @@ namespace crawler
       void
       put(Table &table) const
       {
-        table.push_back({"work_limit", "energy", "limit of the work", work_});
+        table.push_back({"case", "1", "number of the case", case_});
+        for (std::size_t i = 0; i < axes_.size(); ++i)
+          if (std::ranges::find(results_.paths, results_.axes[i]) == results_.paths.end()) // else it is only a start
+            table.push_back({results_.axes[i], "", "of the case", axes_[i]});
         table.push_back({"start", "1", "number of the start", start_});
         for (std::size_t i = 0; i < x_.size(); ++i)
-          table.push_back({results_.variables[i].path, results_.units[i], "variable", x_[i]});
+          table.push_back({results_.paths[i], results_.units[i], "variable", x_[i]});
         table.push_back({"objective", results_.unit, results_.objective, objective_});
         for (std::size_t i = 0; i < n_gait_numbers; ++i)
           if (std::ranges::any_of(numbers_[i], [](const double one) { return std::isfinite(one) && one != 0.; }))
@@ -67,30 +88,39 @@ namespace crawler
     private:
       const OptimizeResults &results_;
       std::vector<std::vector<double>> x_;
-      std::vector<double> work_, start_, objective_, violation_;
+      std::vector<std::vector<std::string>> axes_;
+      std::vector<double> case_, start_, objective_, violation_;
       std::array<std::vector<double>, n_gait_numbers> numbers_;
       std::vector<std::string> problem_;
     };
   } // namespace
 
-  OptimizeResults::OptimizeResults(const OptimizeParameters &parameters,
-                                   std::vector<OptimizeVariable> its_variables,
-                                   const Declarations &declarations,
-                                   std::vector<StartResult> its_starts)
-    : variables(std::move(its_variables))
-    , objective(parameters.objective)
+  OptimizeResults::OptimizeResults(OptimizeCases &its_cases, std::vector<StartResult> its_starts)
+    : axes(its_cases.axes())
+    , objective(its_cases.parameters().optimize.objective)
     , unit(objective == "displacement" ? "length"
            : objective == "speed"      ? "length/time"
            : objective == "merit"      ? "1"
                                        : "force")
     , starts(std::move(its_starts))
   {
-    for (const OptimizeVariable &variable : variables)
-      units.push_back(declarations.info(variable.path).unit);
-    const double sign = parameters.direction == "forward" ? 1. : -1.;
-    const auto value  = [&](const std::size_t i) {
+    for (unsigned long number = 0; number < its_cases.size(); ++number)
+    {
+      const auto family    = its_cases.family(number);
+      const bool is_onward = family->form().parameters.optimize.direction == "forward";
+      cases.push_back({its_cases.values(number), {}, its_cases.in_words(number), is_onward ? 1. : -1.});
+      for (const OptimizeVariable &variable : family->variables())
+      {
+        cases.back().paths.push_back(variable.path);
+        if (std::ranges::find(paths, variable.path) != paths.end())
+          continue;
+        paths.push_back(variable.path);
+        units.push_back(family->form().declarations.info(variable.path).unit);
+      }
+    }
+    const auto value = [&](const std::size_t i) {
       const double f = starts[i].best.objective;
-      return objective == "cost of transport" ? 1. / f : sign * f;
+      return objective == "cost of transport" ? 1. / f : cases[starts[i].number_of_case].sign * f;
     };
     const auto is_better = [&](const std::size_t i, const std::size_t j) {
       if (starts[i].is_admissible() != starts[j].is_admissible())
@@ -101,7 +131,7 @@ namespace crawler
     {
       if (starts[i].best.x.empty() || !starts[i].best.problem.empty())
         continue;
-      if (best.empty() || starts[i].work != starts[best.back()].work)
+      if (best.empty() || starts[i].number_of_case != starts[best.back()].number_of_case)
         best.push_back(i);
       else if (is_better(i, best.back()))
         best.back() = i;
@@ -152,6 +182,31 @@ namespace crawler
     return table;
   }
 
+  Table
+  optimum_table(const OptimizeResults &results, const std::vector<std::string> &summaries)
+  {
+    Records records(results);
+    std::vector<double> error, efficiency;
+    std::map<std::string, std::vector<double>> multipliers;
+    for (std::size_t i = 0; i < results.best.size(); ++i)
+    {
+      const StartResult &start = results.starts[results.best[i]];
+      const Json run           = Json::parse(summaries[i]);
+      records.add(start, start.best);
+      error.push_back(number_at(run, "/displacement_error/total"));
+      efficiency.push_back(number_at(run, "/gait/efficiency"));
+      for (const GaitLimit &limit : start.limits)
+        multipliers.try_emplace(limit.name, results.best.size(), NAN).first->second[i] = limit.multiplier;
+    }
+    Table table;
+    records.put(table);
+    table.push_back({"displacement_error", "length", "bound of its error, by the run of the optimum", error});
+    table.push_back({"efficiency", "1", "part of what any gait with this work and these strains could", efficiency});
+    for (const auto &[name, values] : multipliers)
+      table.push_back({"multiplier of " + name, "", "objective for one unit more", values});
+    return table;
+  }
+
   std::string
   optimize_json(const OptimizeResults &results,
                 const std::vector<std::string> &summaries,
@@ -174,18 +229,22 @@ namespace crawler
     own["evaluations"] = evaluations;
     for (std::size_t i = 0; i < results.best.size(); ++i)
     {
-      const StartResult &start = results.starts[results.best[i]];
-      Json one                 = {{"work_limit", start.work ? Json(*start.work) : Json()},
-                                  {"start", start.start},
-                                  {"has_converged", start.has_converged},
-                                  {"message", start.message.empty() ? Json() : Json(start.message)},
-                                  {"objective", json_number(start.best.objective)},
-                                  {"violation", json_number(start.best.violation)},
-                                  {"is_admissible", start.is_admissible()},
-                                  {"variables", Json::object()},
-                                  {"limits", Json::object()}};
-      for (std::size_t k = 0; k < results.variables.size(); ++k)
-        one["variables"][results.variables[k].path] = start.best.x[k];
+      const StartResult &start         = results.starts[results.best[i]];
+      const OptimizeResults::Case &its = results.cases[start.number_of_case];
+      Json one                         = {{"number", start.number_of_case + 1},
+                                          {"case", Json::object()},
+                                          {"start", start.start},
+                                          {"has_converged", start.has_converged},
+                                          {"message", start.message.empty() ? Json() : Json(start.message)},
+                                          {"objective", json_number(start.best.objective)},
+                                          {"violation", json_number(start.best.violation)},
+                                          {"is_admissible", start.is_admissible()},
+                                          {"variables", Json::object()},
+                                          {"limits", Json::object()}};
+      for (std::size_t k = 0; k < results.axes.size(); ++k)
+        one["case"][results.axes[k]] = to_number(its.values[k]) ? Json(*to_number(its.values[k])) : Json(its.values[k]);
+      for (std::size_t k = 0; k < its.paths.size(); ++k)
+        one["variables"][its.paths[k]] = start.best.x[k];
       for (const GaitLimit &limit : start.limits)
         one["limits"][limit.name] = {{"value", limit.value}, {"multiplier", json_number(limit.multiplier)}};
       if (i < summaries.size())
@@ -208,25 +267,26 @@ namespace crawler
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < results.best.size(); ++i)
     {
-      const StartResult &start = results.starts[results.best[i]];
+      const StartResult &start         = results.starts[results.best[i]];
+      const OptimizeResults::Case &its = results.cases[start.number_of_case];
       lines.push_back(
         fmt::format("Best {}{}: {:.8g}{}{}",
                     results.objective,
-                    start.work ? fmt::format(" with work up to {:g}", *start.work) : "",
+                    its.words.empty() ? "" : fmt::format(" with {}", its.words),
                     start.best.objective,
                     start.is_admissible() ? "" : " (a limit is EXCEEDED: no gait that keeps to all limits was found)",
                     start.has_converged ? "" : fmt::format(" (the optimiser did not converge: {})", start.message)));
       if (i < summaries.size())
       {
-        const Json run = Json::parse(summaries[i]);
-        if (run.contains("gait") && run["gait"].value("efficiency", Json()).is_number())
+        const double efficiency = number_at(Json::parse(summaries[i]), "/gait/efficiency");
+        if (std::isfinite(efficiency))
           lines.push_back(fmt::format("  reaches {:.0f} % of what any gait with this work and these strains could",
-                                      100. * run["gait"]["efficiency"].get<double>()));
+                                      100. * efficiency));
       }
-      for (std::size_t k = 0; k < std::min(results.variables.size(), most_variables); ++k)
-        lines.push_back(fmt::format("  {} = {:.8g}", results.variables[k].path, start.best.x[k]));
-      if (results.variables.size() > most_variables)
-        lines.push_back(fmt::format("  and {} more variables", results.variables.size() - most_variables));
+      for (std::size_t k = 0; k < std::min(its.paths.size(), most_variables); ++k)
+        lines.push_back(fmt::format("  {} = {:.8g}", its.paths[k], start.best.x[k]));
+      if (its.paths.size() > most_variables)
+        lines.push_back(fmt::format("  and {} more variables", its.paths.size() - most_variables));
       for (const GaitLimit &limit : start.limits)
         if (limit.multiplier != 0.)
           lines.push_back(fmt::format(

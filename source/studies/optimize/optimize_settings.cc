@@ -79,8 +79,8 @@ namespace crawler
     void
     require_limit(const OptimizeParameters &p, const std::vector<OptimizeVariable> &variables)
     {
-      if (p.objective == "cost of transport" || p.largest_strain || p.smallest_strain || !p.work.empty() ||
-          p.positive_work || p.mean_square_strain || p.largest_stress)
+      if (p.objective == "cost of transport" || p.largest_strain || p.smallest_strain || p.work || p.positive_work ||
+          p.mean_square_strain || p.largest_stress)
         return;
       for (const OptimizeVariable &variable : variables) // ranges are limits, but not meant as such
         if (variable.path.starts_with("Active stress/Modes/Coefficients"))
@@ -100,10 +100,6 @@ namespace crawler
       throw InputError("Variables is empty, but \"Section/Entry : FROM to TO\" is expected: what may vary", own);
     const SceneNumbers numbers(form);
     std::vector<OptimizeVariable> variables;
-    for (const double limit : p.work)
-      if (!(limit > 0.) || std::ranges::count(p.work, limit) > 1)
-        throw InputError(fmt::format("\"Optimize/Work\" has {:g}, but positive numbers are expected, each once", limit),
-                         "Optimize/Work");
     std::string list = trimmed(p.variables);
     if (list.ends_with(';'))
       list.pop_back();

@@ -64,7 +64,7 @@ namespace crawler
     {
     public:
       Search(SceneFamily &family,
-             const std::optional<double> work,
+             const unsigned long number_of_case,
              const unsigned long start,
              const std::function<bool()> &stops)
         : family_(family)
@@ -73,8 +73,8 @@ namespace crawler
         , parameters_(wanted_)
         , x_(start_values(wanted_, family.variables(), start))
       {
-        result_.work  = work;
-        result_.start = start;
+        result_.number_of_case = number_of_case;
+        result_.start          = start;
       }
 
       StartResult
@@ -137,7 +137,7 @@ namespace crawler
       improve(GaitModel &model, const bool is_rough)
       {
         constexpr double roughly = 1e-3;
-        GaitProblem problem(model, parameters_, family_.variables(), result_.work, x_, stops_);
+        GaitProblem problem(model, parameters_, family_.variables(), x_, stops_);
         const auto keep = [&](const GaitRecord &best) {
           result_.best = best;
           result_.records.insert(result_.records.end(), problem.records().begin(), problem.records().end());
@@ -212,7 +212,7 @@ namespace crawler
   std::string
   pack(const StartResult &result)
   {
-    Json json = {{"work", result.work ? Json(*result.work) : Json()},
+    Json json = {{"case", result.number_of_case},
                  {"start", result.start},
                  {"best", json_of(result.best)},
                  {"limits", Json::array()},
@@ -235,10 +235,9 @@ namespace crawler
   {
     const Json json = Json::parse(text);
     StartResult result;
-    if (json["work"].is_number())
-      result.work = json["work"].get<double>();
-    result.start = json["start"];
-    result.best  = record_of(json["best"]);
+    result.number_of_case = json["case"];
+    result.start          = json["start"];
+    result.best           = record_of(json["best"]);
     for (const Json &limit : json["limits"])
       result.limits.push_back({limit[0], number_of(limit[1]), number_of(limit[2])});
     result.has_converged   = json["has_converged"];
@@ -269,10 +268,10 @@ namespace crawler
 
   StartResult
   search(SceneFamily &family,
-         const std::optional<double> work,
+         const unsigned long number_of_case,
          const unsigned long start,
          const std::function<bool()> &stops)
   {
-    return Search(family, work, start, stops).make();
+    return Search(family, number_of_case, start, stops).make();
   }
 } // namespace crawler

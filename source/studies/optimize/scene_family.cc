@@ -47,6 +47,12 @@ namespace crawler
   {
   }
 
+  SceneFamily::~SceneFamily()
+  {
+    for (const OptimizeVariable &variable : variables_)
+      form_.declarations.set(variable.path, to_text(variable.start));
+  }
+
   SceneFamily::Stencil
   SceneFamily::stencil(const std::vector<double> &x, const std::size_t i, const double relative_step) const
   {

@@ -2,6 +2,7 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/stop_signal.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/compute.h>
@@ -122,9 +123,8 @@ namespace crawler
       std::vector<std::string> words;
       for (const auto &[status, count] : counts.statuses)
         words.push_back(fmt::format("{} {}", count, status));
-      log.line(fmt::format("{} point{}: {}. {:.1f} s, {:.4g} points/s.",
-                           counts.n_points,
-                           counts.n_points == 1 ? "" : "s",
+      log.line(fmt::format("{}: {}. {:.1f} s, {:.4g} points/s.",
+                           counted(counts.n_points, "point"),
                            fmt::join(words, ", "),
                            end.seconds,
                            static_cast<double>(n_computed(counts, end)) / end.seconds));
@@ -168,10 +168,9 @@ namespace crawler
       return list;
     });
     const auto n_done            = static_cast<unsigned long>(std::count(done.begin(), done.end(), true));
-    log.line(fmt::format("Sweep: {}, on {} rank{}{}",
+    log.line(fmt::format("Sweep: {}, on {}{}",
                          in_words(design, own.design),
-                         n_ranks,
-                         n_ranks == 1 ? "" : "s",
+                         counted(n_ranks, "rank"),
                          n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
 
     const std::function<bool()> interrupted = [&]() {
@@ -226,14 +225,8 @@ namespace crawler
     std::vector<std::string> axes;
     for (const SweepAxis &axis : design.axes())
       axes.push_back(axis.entry +
-                     (design_name == "grid"
-                        ? fmt::format(" ({} value{})", axis.values.size(), axis.values.size() == 1 ? "" : "s")
-                        : ""));
-    return fmt::format("{} point{}, {} over {}",
-                       design.n_points(),
-                       design.n_points() == 1 ? "" : "s",
-                       design_name,
-                       fmt::join(axes, ", "));
+                     (design_name == "grid" ? fmt::format(" ({})", counted(axis.values.size(), "value")) : ""));
+    return fmt::format("{}, {} over {}", counted(design.n_points(), "point"), design_name, fmt::join(axes, ", "));
   }
 
   bool

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/sweep/sweep_design.h>
@@ -161,11 +162,10 @@ namespace crawler
           continue;
         }
         if (cells->size() != n_columns)
-          refuse("row {} of \"{}\" has {} value{}, but {}, as many as names in the first row, {} expected",
+          refuse("row {} of \"{}\" has {}, but {}, as many as names in the first row, {} expected",
                  row,
                  file,
-                 cells->size(),
-                 cells->size() == 1 ? "" : "s",
+                 counted(cells->size(), "value"),
                  n_columns,
                  n_columns == 1 ? "is" : "are");
         if ((*cells)[column].empty())

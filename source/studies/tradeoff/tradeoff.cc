@@ -2,6 +2,7 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/row_file.h>
 #include <crawler/base/stop_signal.h>
 #include <crawler/base/work_queue.h>
@@ -266,10 +267,8 @@ namespace crawler
     if (options.resume)
       log.line(fmt::format("Resumed with {} settings that are done.", earlier.rows.size()));
 
-    log.line(fmt::format("Tradeoff of {} on {} rank{}: making the reference ...",
-                         input.file.name(),
-                         size_of(communicator),
-                         size_of(communicator) == 1 ? "" : "s"));
+    log.line(fmt::format(
+      "Tradeoff of {} on {}: making the reference ...", input.file.name(), counted(size_of(communicator), "rank")));
     for (const std::string &note : input.notes)
       log.line(note);
     if (earlier.reference.empty())

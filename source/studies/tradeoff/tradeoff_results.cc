@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/versions.h>
 #include <crawler/studies/tradeoff/tradeoff_results.h>
 
@@ -293,23 +294,21 @@ namespace crawler
     const auto below_bar = std::count_if(results.errors.begin(), results.errors.end(), [&](const double error) {
       return error < results.reference.relative_bar();
     });
-    return fmt::format(
-      "Tradeoff: {} settings tried of {}{}; {} finished, {} of them below the bar, {} on the Pareto "
-      "fronts; gaps: {}. The same short run took {} to {}, over ranks and time. {:.0f} s on {} rank{}.",
-      results.rows.size(),
-      course.n_settings,
-      course.status == "finished" && results.rows.size() < course.n_settings
-        ? " (the others cannot be better than those on their mesh)"
-        : "",
-      statuses["finished"],
-      below_bar,
-      on_front,
-      reasons.empty() ? "none" : fmt::format("{}", fmt::join(reasons, ", ")),
-      duration(shortest),
-      duration(longest),
-      course.seconds,
-      course.n_ranks,
-      course.n_ranks == 1 ? "" : "s");
+    return fmt::format("Tradeoff: {} settings tried of {}{}; {} finished, {} of them below the bar, {} on the Pareto "
+                       "fronts; gaps: {}. The same short run took {} to {}, over ranks and time. {:.0f} s on {}.",
+                       results.rows.size(),
+                       course.n_settings,
+                       course.status == "finished" && results.rows.size() < course.n_settings
+                         ? " (the others cannot be better than those on their mesh)"
+                         : "",
+                       statuses["finished"],
+                       below_bar,
+                       on_front,
+                       reasons.empty() ? "none" : fmt::format("{}", fmt::join(reasons, ", ")),
+                       duration(shortest),
+                       duration(longest),
+                       course.seconds,
+                       counted(course.n_ranks, "rank"));
   }
 
   std::string

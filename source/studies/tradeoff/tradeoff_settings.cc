@@ -2,6 +2,7 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/mesh/reference_element.h>
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
@@ -191,7 +192,7 @@ namespace crawler
     if (s.degree > 0)
       parts.push_back(fmt::format("degree {}", s.degree));
     if (s.cells > 0)
-      parts.push_back(fmt::format("{} cell{}", s.cells, s.cells == 1 ? "" : "s"));
+      parts.push_back(counted(s.cells, "cell"));
     if (s.mesh == "adaptive")
       parts.push_back(std::isnan(s.mesh_tolerance) ? std::string("adaptive mesh")
                                                    : fmt::format("adaptive mesh of tolerance {:g}", s.mesh_tolerance));

@@ -62,11 +62,10 @@ namespace crawler
   /// Section "Optimize": the gait that `crawler optimize` looks for (optimize_settings.h reads the variables).
   struct OptimizeParameters
   {
-    std::string objective    = "displacement";
-    std::string direction    = "forward";
-    std::string variables    = "";
-    std::vector<double> work = {}; ///< one limit, or several [energy]
-    std::optional<double> positive_work, smallest_strain, largest_strain, mean_square_strain, largest_stress,
+    std::string objective = "displacement";
+    std::string direction = "forward";
+    std::string variables = "";
+    std::optional<double> work, positive_work, smallest_strain, largest_strain, mean_square_strain, largest_stress,
       largest_stress_rate;
     unsigned int n_starts = 1, seed = 1;
     double spread                = 0.2; ///< of the starts, in ranges of the variables

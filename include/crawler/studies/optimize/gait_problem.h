@@ -39,12 +39,10 @@ namespace crawler
   class GaitProblem
   {
   public:
-    /// @p work: the limit, if there is one. Throws InputError if the start has a problem; GaitModel::Interrupted,
-    /// as soon as @p stops says so.
+    /// Throws InputError if the start has a problem; GaitModel::Interrupted, as soon as @p stops says so.
     GaitProblem(GaitModel &model,
                 const OptimizeParameters &parameters,
                 const std::vector<OptimizeVariable> &variables,
-                std::optional<double> work,
                 const std::vector<double> &start,
                 std::function<bool()> stops);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/base/table.h>
+#include <crawler/studies/optimize/optimize_cases.h>
 #include <crawler/studies/optimize/optimize_start.h>
 
 #include <filesystem>
@@ -10,20 +11,26 @@
 
 namespace crawler
 {
-  /// What `crawler optimize` has found: for each limit of work the best of the starts.
+  /// What `crawler optimize` has found: for each case the best of the starts.
   struct OptimizeResults
   {
-    std::vector<OptimizeVariable> variables;
-    std::vector<std::string> units; ///< of the variables
-    std::string objective, unit;    ///< and its unit
+    /// What there is of a case.
+    struct Case
+    {
+      std::vector<std::string> values; ///< of the axes
+      std::vector<std::string> paths;  ///< of the variables
+      std::string words;               ///< empty if there is only one
+      double sign;                     ///< of the wanted direction
+    };
+    std::vector<std::string> axes;
+    std::vector<Case> cases;
+    std::vector<std::string> paths, units; ///< of the variables of any case
+    std::string objective, unit;           ///< and its unit
     std::vector<StartResult> starts;
-    std::vector<std::size_t> best; ///< of starts, one for each limit of work
+    std::vector<std::size_t> best; ///< of starts, one for each case that has a gait
 
-    /// @p starts in the order of the limits of work. The best ones are chosen here.
-    OptimizeResults(const OptimizeParameters &parameters,
-                    std::vector<OptimizeVariable> variables,
-                    const Declarations &declarations,
-                    std::vector<StartResult> starts);
+    /// @p starts in the order of the cases. The best ones are chosen here.
+    OptimizeResults(OptimizeCases &cases, std::vector<StartResult> starts);
   };
 
   /// A row for each evaluation of all starts.
@@ -33,6 +40,11 @@ namespace crawler
   /// A row for each start: the best that it has found.
   Table
   start_table(const OptimizeResults &results);
+
+  /// A row for each optimum: what the program finds for it, by the @p summaries of their runs, and what its limits
+  /// cost.
+  Table
+  optimum_table(const OptimizeResults &results, const std::vector<std::string> &summaries);
 
   /// The summary: that of the run of the last optimum, @p summaries of the runs of all, and what the optimiser says.
   std::string

@@ -11,12 +11,11 @@
 
 namespace crawler
 {
-  /// What one start of the optimiser, with one limit of work, has found.
+  /// What one start of the optimiser has found.
   struct StartResult
   {
-    std::optional<double> work; ///< the limit [energy]
-    unsigned long start = 0;
-    GaitRecord best     = {};
+    unsigned long number_of_case = 0, start = 0;
+    GaitRecord best = {};
     std::vector<GaitLimit> limits;
     bool has_converged = false, was_interrupted = false;
     std::string message; ///< if it has not converged
@@ -49,7 +48,7 @@ namespace crawler
    */
   StartResult
   search(class SceneFamily &family,
-         std::optional<double> work,
+         unsigned long number_of_case,
          unsigned long start,
          const std::function<bool()> &stops);
 } // namespace crawler

@@ -14,6 +14,9 @@ namespace crawler
   public:
     /// @p form must outlive it.
     SceneFamily(Form &form, std::vector<OptimizeVariable> variables);
+    SceneFamily(const SceneFamily &) = delete;
+    /// Leaves the form as it was.
+    ~SceneFamily();
 
     const std::vector<OptimizeVariable> &
     variables() const
