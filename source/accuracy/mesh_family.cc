@@ -306,8 +306,7 @@ namespace crawler
           result.gait->displacement = better(result.gait->displacement, coarse.gait->displacement);
           energy_balance(result.gait->energy_balance, coarse.gait->energy_balance);
         }
-        if (result.gait_efficiency)
-          result.gait_efficiency = gait_efficiency(scene_, result);
+        set_efficiencies(scene_, result);
       }
 
       bool

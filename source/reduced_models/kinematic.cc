@@ -97,19 +97,16 @@ namespace crawler
     , places_(panels_, points)
     , e_(inside_.size())
     , e_t_(inside_.size())
-    , w_(inside_.size())
-    , g_(panels_.points().size())
-    , B_(g_.size())
-    , B_t_(g_.size())
-    , gv_(g_.size())
-    , m_(g_.size())
+    , motion_(panels_.points().size())
+    , B_(panels_.points().size())
+    , m_(panels_.points().size())
   {
   }
 
   const KinematicBody::Integrals &
   KinematicBody::evaluate(const double t)
   {
-    const std::size_t n = g_.size();
+    const std::size_t n = m_.size();
     const auto &weights = panels_.weights();
     time_               = t;
     strain_->strain(t, e_);
@@ -123,45 +120,30 @@ namespace crawler
       integrals_.sums.velocity = integrals_.sums.dissipation = integrals_.sums.stress_power = unknown;
       return integrals_;
     }
-    panels_.running_integral({e_t_.data(), n}, B_t_);
+    motion_.find(panels_, {e_.data(), n}, {e_t_.data(), n}, *scene_.friction);
+    panels_.running_integral(motion_.gv, m_);
+    double end_B_t = 0.;
     for (std::size_t i = 0; i < n; ++i)
-      w_[i] = 1. + e_[i];
-    scene_.friction->values({w_.data(), n}, g_);
-    double B_t_mean = 0., end_B_t = 0.;
-    g_mean_ = 0.;
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      g_mean_ += weights[i] * g_[i];
-      B_t_mean += weights[i] * B_t_[i];
       end_B_t += weights[i] * e_t_[i];
-    }
-    double covariance = 0.;
-    for (std::size_t i = 0; i < n; ++i)
-      covariance += weights[i] * (g_[i] - g_mean_) * (B_t_[i] - B_t_mean);
-    const double velocity = -covariance / g_mean_;
-    drift_                = velocity - B_t_mean; // v = B_t + drift
-    for (std::size_t i = 0; i < n; ++i)
-      gv_[i] = equation::friction_force(g_[i], B_t_[i] + drift_);
-    panels_.running_integral(gv_, m_);
     const double k = scene_.body.elastic_modulus;
     for (std::size_t i = 0; i < n; ++i)
     {
       const double m = equation::active_stress(m_[i], e_[i], k);
       add_densities<double>(weights[i],
-                            {equation::elastic_energy(e_[i], k), equation::stress_power(m, e_t_[i]), gv_[i]},
-                            B_t_[i] + drift_,
+                            {equation::elastic_energy(e_[i], k), equation::stress_power(m, e_t_[i]), motion_.gv[i]},
+                            motion_.v[i],
                             integrals_.sums);
     }
-    integrals_.sums.velocity = velocity; // without the round-off of the sum
+    integrals_.sums.velocity = motion_.velocity; // without the round-off of the sum
     // m = -k e at the ends, where no force acts.
-    integrals_.end_power = -k * (e_[n + 1] * (end_B_t + drift_) - e_[n] * drift_);
+    integrals_.end_power = -k * (e_[n + 1] * (end_B_t + motion_.drift) - e_[n] * motion_.drift);
     return integrals_;
   }
 
   ReducedFields
   KinematicBody::fields(const double displacement)
   {
-    const std::size_t n = g_.size(), n_points = points_.size();
+    const std::size_t n = m_.size(), n_points = points_.size();
     ReducedFields fields;
     fields.strain.resize(n_points);
     fields.displacement.resize(n_points);
@@ -170,13 +152,13 @@ namespace crawler
     strain_at_points_->strain(time_, fields.strain);
     places_.running_integral({e_.data(), n}, fields.displacement);
     places_.running_integral({e_t_.data(), n}, fields.velocity);
-    places_.running_integral(gv_, fields.active_stress);
+    places_.running_integral(motion_.gv, fields.active_stress);
     panels_.running_integral({e_.data(), n}, B_);
     const double B_mean = panels_.integral(B_);
     for (std::size_t i = 0; i < n_points; ++i)
     {
       fields.displacement[i] += displacement - B_mean;
-      fields.velocity[i] += drift_;
+      fields.velocity[i] += motion_.drift;
       fields.active_stress[i] =
         equation::active_stress(fields.active_stress[i], fields.strain[i], scene_.body.elastic_modulus);
     }

@@ -10,20 +10,15 @@ namespace crawler
   struct StrainFunctional::State
   {
     explicit State(const std::size_t n)
-      : w(n)
-      , g(n)
-      , w_dg(n)
-      , v(n)
-      , B_t(n)
-      , gv(n)
+      : motion(n)
       , m(n)
       , by_B(n)
       , by_rate(n)
     {
     }
 
-    std::vector<double> w, g, w_dg, v, B_t, gv, m, by_B, by_rate;
-    double g_mean = 0., velocity = 0.;
+    GivenMotion motion;
+    std::vector<double> m, by_B, by_rate;
     bool is_possible = true;
   };
 
@@ -65,26 +60,8 @@ namespace crawler
     state.is_possible = std::all_of(e, e + points_.size(), [](const double one) { return 1. + one > 0.; });
     if (!state.is_possible)
       return;
-    const auto &weights = space_.weights();
-    space_.running_integral({e_t, n_}, state.B_t);
-    for (std::size_t i = 0; i < n_; ++i)
-      state.w[i] = 1. + e[i];
-    friction.values_and_log_derivatives(state.w, state.g, state.w_dg);
-    double g = 0., gB = 0., B = 0.;
-    for (std::size_t i = 0; i < n_; ++i)
-    {
-      g += weights[i] * state.g[i];
-      gB += weights[i] * state.g[i] * state.B_t[i];
-      B += weights[i] * state.B_t[i];
-    }
-    state.g_mean   = g;
-    state.velocity = B - gB / g;
-    for (std::size_t i = 0; i < n_; ++i)
-    {
-      state.v[i]  = state.B_t[i] - gB / g;
-      state.gv[i] = state.g[i] * state.v[i];
-    }
-    space_.running_integral(state.gv, state.m);
+    state.motion.find(space_, {e, n_}, {e_t, n_}, friction, /*with_slopes=*/true);
+    space_.running_integral(state.motion.gv, state.m);
     for (std::size_t i = 0; i < n_; ++i)
       state.m[i] -= k * e[i];
   }
@@ -104,11 +81,11 @@ namespace crawler
       double dissipation_rate = 0., positive_power = 0., square = 0.;
       for (std::size_t i = 0; i < n_; ++i)
       {
-        dissipation_rate += weights[i] * state.gv[i] * state.v[i];
+        dissipation_rate += weights[i] * state.motion.gv[i] * state.motion.v[i];
         positive_power += weights[i] * std::max(-state.m[i] * e_t[i], 0.);
         square += weights[i] * e[i] * e[i];
       }
-      values[displacement] += time_weights_[time] * state.velocity;
+      values[displacement] += time_weights_[time] * state.motion.velocity;
       values[dissipation] += time_weights_[time] * dissipation_rate;
       values[positive_work] += time_weights_[time] * positive_power;
       values[mean_square] += time_weights_[time] * square;
@@ -149,18 +126,18 @@ namespace crawler
         continue;
       }
       evaluate(time, samples, friction, k, state);
-      const auto dg = [&](const std::size_t i) { return state.w_dg[i] / state.w[i]; };
+      const auto dg = [&](const std::size_t i) { return state.motion.w_dg[i] / state.motion.w[i]; };
       if (number == displacement)
         for (std::size_t i = 0; i < n_; ++i)
         {
-          by_e[i]       = -weight * w[i] * dg(i) * state.v[i] / state.g_mean;
-          state.by_B[i] = weight * w[i] * (1. - state.g[i] / state.g_mean);
+          by_e[i]       = -weight * w[i] * dg(i) * state.motion.v[i] / state.motion.g_mean;
+          state.by_B[i] = weight * w[i] * (1. - state.motion.g[i] / state.motion.g_mean);
         }
       else if (number == dissipation || number == stress_work)
         for (std::size_t i = 0; i < n_; ++i)
         {
-          by_e[i]       = weight * w[i] * dg(i) * state.v[i] * state.v[i];
-          state.by_B[i] = 2. * weight * w[i] * state.gv[i];
+          by_e[i]       = weight * w[i] * dg(i) * state.motion.v[i] * state.motion.v[i];
+          state.by_B[i] = 2. * weight * w[i] * state.motion.gv[i];
         }
       else
       {
@@ -170,12 +147,12 @@ namespace crawler
         space_.running_integral_transposed(by_m, by_force);
         double by_drift = 0.;
         for (std::size_t i = 0; i < n_; ++i)
-          by_drift += by_force[i] * state.g[i];
+          by_drift += by_force[i] * state.motion.g[i];
         for (std::size_t i = 0; i < n_; ++i)
         {
-          const double of_force = by_force[i] - by_drift * w[i] / state.g_mean;
-          by_e[i]               = of_force * dg(i) * state.v[i] - k * by_m[i];
-          state.by_B[i]         = of_force * state.g[i];
+          const double of_force = by_force[i] - by_drift * w[i] / state.motion.g_mean;
+          by_e[i]               = of_force * dg(i) * state.motion.v[i] - k * by_m[i];
+          state.by_B[i]         = of_force * state.motion.g[i];
         }
       }
       space_.running_integral_transposed(state.by_B, state.by_rate);

@@ -20,24 +20,59 @@ namespace crawler
     return starts_from_rest(balance) ? balance.stress_work : balance.dissipation;
   }
 
+  namespace
+  {
+    /// A displacement over the largest one with this energy in this time.
+    std::optional<double>
+    part_of_bound(const Scene &scene,
+                  const SimulationResult &result,
+                  const double displacement,
+                  const double energy,
+                  const double duration)
+    {
+      constexpr double smallest_range = 1e-8; // what is below it is round-off of the stretches
+      const double from = result.min_stretch.value, to = result.max_stretch.value;
+      if (scene.profiles.friction || !scene.ground.is_plain() || !(from > 0.))
+        return std::nullopt;
+      // The power law is monotone; others may have their extremes anywhere.
+      const std::size_t n = scene.has_power_law() ? 2 : 1025;
+      std::vector<double> w(n), g(n);
+      for (std::size_t i = 0; i < n; ++i)
+        w[i] = from + (to - from) * static_cast<double>(i) / static_cast<double>(n - 1);
+      scene.friction->values(w, g);
+      const auto [least, most] = std::minmax_element(g.begin(), g.end());
+      const double largest = 1. / std::sqrt(*least), F = largest - 1. / std::sqrt(*most);
+      const double bound = F * std::sqrt(energy * duration / scene.body.length);
+      return F > smallest_range * largest && bound > 0. && std::isfinite(bound)
+               ? std::optional(std::abs(displacement) / bound)
+               : std::nullopt;
+    }
+  } // namespace
+
   std::optional<double>
   gait_efficiency(const Scene &scene, const SimulationResult &result)
   {
-    constexpr double smallest_range = 1e-8; // what is below it is round-off of the stretches
-    const double from = result.min_stretch.value, to = result.max_stretch.value;
-    if (!result.energy_balance || scene.profiles.friction || !scene.ground.is_plain() || !(from > 0.))
+    if (!result.energy_balance)
       return std::nullopt;
-    // The power law is monotone; others may have their extremes anywhere.
-    const std::size_t n = scene.has_power_law() ? 2 : 1025;
-    std::vector<double> w(n), g(n);
-    for (std::size_t i = 0; i < n; ++i)
-      w[i] = from + (to - from) * static_cast<double>(i) / static_cast<double>(n - 1);
-    scene.friction->values(w, g);
-    const auto [least, most] = std::minmax_element(g.begin(), g.end());
-    const double largest = 1. / std::sqrt(*least), F = largest - 1. / std::sqrt(*most);
-    const double bound = F * std::sqrt(energy_of_bound(*result.energy_balance) * scene.end_time / scene.body.length);
-    return F > smallest_range * largest && bound > 0. && std::isfinite(bound)
-             ? std::optional(std::abs(result.displacement) / bound)
-             : std::nullopt;
+    return part_of_bound(scene, result, result.displacement, energy_of_bound(*result.energy_balance), scene.end_time);
+  }
+
+  std::optional<double>
+  stride_efficiency(const Scene &scene, const SimulationResult &result)
+  {
+    if (!result.gait || !result.gait->energy_balance)
+      return std::nullopt;
+    const Gait &gait = *result.gait;
+    return part_of_bound(scene, result, gait.displacement, gait.energy_balance->dissipation, gait.period);
+  }
+
+  void
+  set_efficiencies(const Scene &scene, SimulationResult &result)
+  {
+    if (result.time.status != Status::finished)
+      return;
+    result.gait_efficiency = gait_efficiency(scene, result);
+    if (result.gait)
+      result.gait->efficiency = stride_efficiency(scene, result);
   }
 } // namespace crawler

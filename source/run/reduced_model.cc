@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/reduced_models/perturbation.h>
+#include <crawler/run/gait_efficiency.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/result_table.h>
 #include <crawler/run/user_units.h>
@@ -21,6 +22,15 @@ namespace crawler
     stretch_of(const StrainExtreme &e)
     {
       return {1. + e.strain, e.s, e.t};
+    }
+
+    /// Of quadrature alone: the motion of the kinematic level is one that a body can have. That of a series is not.
+    void
+    set_error_of_efficiency(const std::string &key, const std::optional<double> &efficiency, SimulationResult &result)
+    {
+      if (efficiency && result.model == Model::kinematic && result.displacement != 0.)
+        set_error_bound(
+          result, key, 2. * (result.error->space + result.error->time) / std::abs(result.displacement) * *efficiency);
     }
   } // namespace
 
@@ -122,12 +132,7 @@ namespace crawler
     if (!energy_balance)
       result.energy_balance.reset();
     result = in_user_units(std::move(result), scene_, reduced_scene_.units());
-    // Of quadrature alone: the motion of the kinematic level is one that a body can have. That of a series is not.
-    if (result.gait_efficiency && model_ == Model::kinematic && result.displacement != 0.)
-      set_error_bound(result,
-                      "gait.efficiency",
-                      2. * (result.error->space + result.error->time) / std::abs(result.displacement) *
-                        *result.gait_efficiency);
+    set_error_of_efficiency("gait.efficiency", result.gait_efficiency, result);
     if (result.inversion)
     {
       const double s      = result.inversion->s;
@@ -210,7 +215,11 @@ namespace crawler
       return true;
     });
     if (const auto gait = meter.gait())
-      result.gait = gait->in_units(reduced_scene_.units());
+    {
+      result.gait             = gait->in_units(reduced_scene_.units());
+      result.gait->efficiency = stride_efficiency(scene_, result);
+      set_error_of_efficiency("gait.stride_efficiency", result.gait->efficiency, result);
+    }
   }
 
   std::string

@@ -190,6 +190,12 @@ namespace crawler
                "part of the largest displacement that any gait can reach",
                CRAWLER_VALUE(known(r.gait_efficiency)),
                Scale::itself,
+               true),
+        number("gait.stride_efficiency",
+               one,
+               "the same of the last stride",
+               CRAWLER_PART(gait, known(part.efficiency)),
+               Scale::itself,
                true)};
       const std::string value = ".value";
       int n_errors            = 0;

@@ -46,19 +46,31 @@ namespace crawler
     std::string
     complaint_about_efficiency(const SimulationResult &result)
     {
-      const auto error = error_bound(result, "gait.efficiency");
-      if (!result.gait_efficiency || !error)
-        return "";
-      const EnergyBalance &balance = *result.energy_balance;
-      const double efficiency      = *result.gait_efficiency,
-                   lacking = 0.5 * balance.residual() * balance.exchanged_work / energy_of_bound(balance) * efficiency;
-      if (!(efficiency > 1. + *error + lacking))
-        return "";
-      return fmt::format(
-        "the gait efficiency is {:.6g} +- {:.2g}, but no gait has more than 1; a smaller Accuracy or a "
-        "finer mesh is needed",
-        efficiency,
-        *error + lacking);
+      const auto complaint = [&result](const std::string &words,
+                                       const std::string &key,
+                                       const std::optional<double> &efficiency,
+                                       const double energy) -> std::string {
+        const auto error = error_bound(result, key);
+        if (!efficiency || !error)
+          return "";
+        const EnergyBalance &balance = *result.energy_balance;
+        const double lacking         = 0.5 * balance.residual() * balance.exchanged_work / energy * *efficiency;
+        if (!(*efficiency > 1. + *error + lacking))
+          return "";
+        return fmt::format("the gait efficiency {}is {:.6g} +- {:.2g}, but no gait has more than 1; a smaller Accuracy "
+                           "or a finer mesh is needed",
+                           words,
+                           *efficiency,
+                           *error + lacking);
+      };
+      const std::string whole =
+        complaint("", "gait.efficiency", result.gait_efficiency, energy_of_bound(*result.energy_balance));
+      if (!whole.empty() || !result.gait || !result.gait->energy_balance)
+        return whole;
+      return complaint("of the last stride ",
+                       "gait.stride_efficiency",
+                       result.gait->efficiency,
+                       result.gait->energy_balance->dissipation);
     }
   } // namespace
 

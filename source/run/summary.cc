@@ -210,10 +210,12 @@ namespace crawler
     add_gait_lines(result, lines);
     if (result.gait_efficiency)
       lines.push_back(
-        fmt::format("  efficiency        reaches {:.3g} % of what any gait with this {} and these strains "
-                    "could",
+        fmt::format("  efficiency        reaches {:.3g} % of what any gait with this {} and these strains could{}",
                     100. * *result.gait_efficiency,
-                    starts_from_rest(*result.energy_balance) ? "work" : "dissipation"));
+                    starts_from_rest(*result.energy_balance) ? "work" : "dissipation",
+                    result.gait && result.gait->efficiency && result.gait->n_strides > 1.
+                      ? fmt::format("; the last stride {:.3g} % with its dissipation", 100. * *result.gait->efficiency)
+                      : ""));
     add_sensitivity_lines(result, lines);
     return lines;
   }

@@ -35,8 +35,7 @@ namespace crawler
     }
     if (result.gait)
       result.gait = result.gait->in_units(units);
-    if (result.time.status == Status::finished && result.energy_balance)
-      result.gait_efficiency = gait_efficiency(scene, result);
+    set_efficiencies(scene, result);
     return result;
   }
 } // namespace crawler

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/gauss_panels.h>
 #include <crawler/equation/cell_kernels.h>
 #include <crawler/equation/energy_balance.h>
 #include <crawler/reduced_models/reduced_fields.h>
+#include <crawler/scene/given_motion.h>
 #include <crawler/scene/scene.h>
 
 #include <functional>
@@ -59,8 +59,10 @@ namespace crawler
     std::vector<double> inside_; ///< the Gauss points, then both ends
     const std::unique_ptr<StrainAtPoints> strain_, strain_at_points_;
     const GaussPanels::Places places_;
-    double time_ = 0., g_mean_ = 0., drift_ = 0.;
-    std::vector<double> e_, e_t_, w_, g_, B_, B_t_, gv_, m_;
+    double time_ = 0.;
+    std::vector<double> e_, e_t_;
+    GivenMotion motion_;
+    std::vector<double> B_, m_;
     Integrals integrals_;
   };
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/gauss_panels.h>
-#include <crawler/scene/friction_law.h>
+#include <crawler/scene/given_motion.h>
 #include <crawler/scene/strain_history.h>
 
 #include <array>

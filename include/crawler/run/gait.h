@@ -30,6 +30,8 @@ namespace crawler
     in_units(const Units &units) const;
 
     double length = 1.; ///< of the body [length]
+    std::optional<double> efficiency =
+      {}; ///< part of what any gait with this dissipation could (gait_efficiency.h) [1]
 
     double
     speed() const

@@ -18,6 +18,15 @@ namespace crawler
   std::optional<double>
   gait_efficiency(const Scene &scene, const SimulationResult &result);
 
+  /// The same of the last stride alone, with its dissipation: a gait that repeats gives back the elastic energy that
+  /// its start took. Nothing if there is no stride.
+  std::optional<double>
+  stride_efficiency(const Scene &scene, const SimulationResult &result);
+
+  /// Sets both in the result of a run that finished.
+  void
+  set_efficiencies(const Scene &scene, SimulationResult &result);
+
   /// The energy that the bound needs [energy]: the work of the active stress if the body starts unstretched, else the
   /// dissipation, which that work is not sure to exceed.
   double

@@ -5,7 +5,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/active_stress/prescribed_strain.h>
-#include <crawler/scene/friction_law.h>
+#include <crawler/scene/given_motion.h>
 
 #include <fmt/format.h>
 
@@ -72,24 +72,14 @@ namespace crawler
       const std::size_t n = panels->points().size();
       const PowerFriction friction(1., body.friction_exponent());
       const GaussPanels::Places places(*panels, points);
-      std::vector<double> e(n), e_t(n), g(n), B_t(n), elastic(points.size());
+      GivenMotion motion(n);
+      std::vector<double> e(n), e_t(n), elastic(points.size());
       return stress_at_points([=, inside = history.at(panels->points()), at_points = history.at(points)](
                                 const double t, const std::span<double> m) mutable {
         inside->strain(t, e);
         inside->rate(t, e_t);
-        panels->running_integral(e_t, B_t);
-        for (double &w : e)
-          w += 1.;
-        friction.values(e, g);
-        double g_sum = 0., gB_sum = 0.;
-        for (std::size_t i = 0; i < n; ++i)
-        {
-          g_sum += panels->weights()[i] * g[i];
-          gB_sum += panels->weights()[i] * g[i] * B_t[i];
-        }
-        for (std::size_t i = 0; i < n; ++i)
-          g[i] *= B_t[i] - gB_sum / g_sum;
-        places.running_integral(g, m);
+        motion.find(*panels, e, e_t, friction);
+        places.running_integral(motion.gv, m);
         at_points->strain(t, elastic);
         for (std::size_t i = 0; i < m.size(); ++i)
           m[i] = body.friction_coefficient * m[i] - body.elastic_modulus * elastic[i];

@@ -96,10 +96,13 @@ namespace crawler
   OptimizeParameters::add_parameters(Declarations &declarations)
   {
     declarations.enter("Optimize");
-    declarations.choice("Objective", objective, {"displacement", "speed", "cost of transport", "merit"})
+    declarations
+      .choice("Objective", objective, {"displacement", "speed", "cost of transport", "merit", "periodic merit"})
       .means("What is made as good as possible: the displacement; the speed of the last stride (of the whole duration "
-             "at the kinematic level); the work of the active stress per displacement; or the merit D/sqrt(W T/(gamma "
-             "L)), which does not depend on how fast the gait is.");
+             "at the kinematic level); the work of the active stress per displacement; the merit D/sqrt(W T/(gamma "
+             "L)), which does not depend on how fast the gait is; or the same with the dissipation instead of the work "
+             "W, for gaits that repeat, whatever their period: the elastic energy that their start takes does not "
+             "count.");
     declarations.choice("Direction", direction, {"forward", "backward"})
       .means("Where the body should go: forward is towards growing s.");
     declarations.text("Variables", variables, "\"Section/Entry : FROM to TO\", several of them separated by semicolons")
@@ -110,6 +113,8 @@ namespace crawler
     declarations.number("Positive work", positive_work, positive(), "energy")
       .means(
         "Largest positive work of the active stress, for actuators that cannot recover energy. Automatic: no limit.");
+    declarations.number("Dissipation", dissipation, positive(), "energy")
+      .means("Largest work against the friction, which is all that a gait that repeats needs. Automatic: no limit.");
     declarations.number("Smallest strain", smallest_strain, between(-1., 0.), "1")
       .means("The strain w - 1 must be at least this. Automatic: no limit.");
     declarations.number("Largest strain", largest_strain, positive(), "1")

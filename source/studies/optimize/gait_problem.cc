@@ -27,7 +27,8 @@ namespace crawler
     want(GaitNumber::displacement, p.objective != "speed");
     want(GaitNumber::speed, p.objective == "speed");
     want(GaitNumber::work, p.work || p.objective == "merit" || p.objective == "cost of transport");
-    want(GaitNumber::friction_time, p.objective == "merit");
+    want(GaitNumber::friction_time, p.objective.ends_with("merit"));
+    want(GaitNumber::dissipation, p.dissipation || p.objective == "periodic merit");
     want(GaitNumber::positive_work, p.positive_work.has_value());
     want(GaitNumber::mean_square, p.mean_square_strain.has_value());
     wishes.strain      = p.smallest_strain || p.largest_strain;
@@ -51,6 +52,8 @@ namespace crawler
       number_limits_.push_back({GaitNumber::work, "Work", *p.work});
     if (p.positive_work)
       number_limits_.push_back({GaitNumber::positive_work, "Positive work", *p.positive_work});
+    if (p.dissipation)
+      number_limits_.push_back({GaitNumber::dissipation, "Dissipation", *p.dissipation});
     if (p.mean_square_strain)
       number_limits_.push_back({GaitNumber::mean_square, "Mean-square strain", *p.mean_square_strain});
     if (p.smallest_strain || p.largest_strain)
@@ -128,12 +131,13 @@ namespace crawler
     const double sign = sign_of_direction(parameters_);
     // f = sign D^1 W^power T^power
     const GaitNumber first  = parameters_.objective == "speed" ? GaitNumber::speed : GaitNumber::displacement;
-    const double power_of_W = parameters_.objective == "merit"               ? -0.5
+    const bool is_merit     = parameters_.objective.ends_with("merit");
+    const GaitNumber energy = parameters_.objective == "periodic merit" ? GaitNumber::dissipation : GaitNumber::work;
+    const double power_of_W = is_merit                                       ? -0.5
                               : parameters_.objective == "cost of transport" ? -1.
                                                                              : 0.,
-                 power_of_T = parameters_.objective == "merit" ? -0.5 : 0.;
-    const double D = values.number(first), W = values.number(GaitNumber::work),
-                 T = values.number(GaitNumber::friction_time);
+                 power_of_T = is_merit ? -0.5 : 0.;
+    const double D = values.number(first), W = values.number(energy), T = values.number(GaitNumber::friction_time);
     if (power_of_W != 0. && !(W > 0.))
       return NAN;
     const double by_D =
@@ -145,7 +149,7 @@ namespace crawler
       {
         (*gradient)[i] = by_D * values.gradient(first)[i];
         if (power_of_W != 0.)
-          (*gradient)[i] += by_D * D * power_of_W / W * values.gradient(GaitNumber::work)[i];
+          (*gradient)[i] += by_D * D * power_of_W / W * values.gradient(energy)[i];
         if (power_of_T != 0.)
           (*gradient)[i] += by_D * D * power_of_T / T * values.gradient(GaitNumber::friction_time)[i];
       }

@@ -12,7 +12,7 @@ namespace crawler
   namespace
   {
     constexpr std::array<const char *, n_gait_numbers> names = {
-      {"displacement", "work", "positive work", "mean-square strain", "speed", "T/(gamma L)"}};
+      {"displacement", "work", "positive work", "mean-square strain", "speed", "T/(gamma L)", "dissipation"}};
 
     /// A number that is checked: its value, and its derivative by a variable.
     struct Checked

@@ -263,7 +263,8 @@ namespace crawler
              energy * values[StrainFunctional::positive_work],
              values[StrainFunctional::mean_square],
              D / scene.end_time,
-             scene.end_time / (scene.body.friction_coefficient * scene.body.length)}};
+             scene.end_time / (scene.body.friction_coefficient * scene.body.length),
+             energy * values[StrainFunctional::dissipation]}};
   }
 
   GaitValues
@@ -353,6 +354,8 @@ namespace crawler
       put(StrainFunctional::stress_work, GaitNumber::work, units.energy());
     if (wishes_.has(GaitNumber::positive_work))
       put(StrainFunctional::positive_work, GaitNumber::positive_work, units.energy());
+    if (wishes_.has(GaitNumber::dissipation))
+      put(StrainFunctional::dissipation, GaitNumber::dissipation, units.energy());
     if (wishes_.has(GaitNumber::mean_square))
       put(StrainFunctional::mean_square, GaitNumber::mean_square, 1.);
     if (!wishes_.strain)

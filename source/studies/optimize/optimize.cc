@@ -27,6 +27,8 @@ namespace crawler
   {
     namespace fs = std::filesystem;
 
+    constexpr double accuracy_of_check = 1e-7; ///< of simulations, for --check-gradient
+
     /// A case and a start.
     struct Part
     {
@@ -177,8 +179,10 @@ namespace crawler
     try
     {
       const auto family = cases.family(0);
-      const auto start  = start_values(own, family->variables(), 0);
-      const auto model  = make_gait_model(*family, start, []() { return false; });
+      if (options.check_gradient) // differences of rough simulations say little
+        family->form().declarations.set("Accuracy", to_text(std::min(cases.parameters().accuracy, accuracy_of_check)));
+      const auto start = start_values(own, family->variables(), 0);
+      const auto model = make_gait_model(*family, start, []() { return false; });
       log.line(fmt::format("Optimisation of the {}: {}{}, {}; {}.",
                            own.objective,
                            counted(family->variables().size(), "variable"),

@@ -16,10 +16,15 @@ namespace crawler
   {
     using Json = nlohmann::ordered_json;
 
-    constexpr std::array<const char *, n_gait_numbers> names = {
-      {"displacement", "stress_power", "positive_power", "mean_square_strain", "speed", "friction_time"}};
+    constexpr std::array<const char *, n_gait_numbers> names            = {{"displacement",
+                                                                            "stress_power",
+                                                                            "positive_power",
+                                                                            "mean_square_strain",
+                                                                            "speed",
+                                                                            "friction_time",
+                                                                            "dissipation"}};
     constexpr std::array<const char *, n_gait_numbers> units_of_numbers = {
-      {"length", "energy", "energy", "1", "length/time", "time^2/(force length)"}};
+      {"length", "energy", "energy", "1", "length/time", "time^2/(force length)", "energy"}};
 
     Json
     json_number(const double value)
@@ -98,10 +103,10 @@ namespace crawler
   OptimizeResults::OptimizeResults(OptimizeCases &its_cases, std::vector<StartResult> its_starts)
     : axes(its_cases.axes())
     , objective(its_cases.parameters().optimize.objective)
-    , unit(objective == "displacement" ? "length"
-           : objective == "speed"      ? "length/time"
-           : objective == "merit"      ? "1"
-                                       : "force")
+    , unit(objective == "displacement"    ? "length"
+           : objective == "speed"         ? "length/time"
+           : objective.ends_with("merit") ? "1"
+                                          : "force")
     , starts(std::move(its_starts))
   {
     for (unsigned long number = 0; number < its_cases.size(); ++number)
@@ -186,7 +191,7 @@ namespace crawler
   optimum_table(const OptimizeResults &results, const std::vector<std::string> &summaries)
   {
     Records records(results);
-    std::vector<double> error, efficiency;
+    std::vector<double> error, efficiency, of_stride;
     std::map<std::string, std::vector<double>> multipliers;
     for (std::size_t i = 0; i < results.best.size(); ++i)
     {
@@ -195,6 +200,7 @@ namespace crawler
       records.add(start, start.best);
       error.push_back(number_at(run, "/displacement_error/total"));
       efficiency.push_back(number_at(run, "/gait/efficiency"));
+      of_stride.push_back(number_at(run, "/gait/stride_efficiency"));
       for (const GaitLimit &limit : start.limits)
         multipliers.try_emplace(limit.name, results.best.size(), NAN).first->second[i] = limit.multiplier;
     }
@@ -202,6 +208,7 @@ namespace crawler
     records.put(table);
     table.push_back({"displacement_error", "length", "bound of its error, by the run of the optimum", error});
     table.push_back({"efficiency", "1", "part of what any gait with this work and these strains could", efficiency});
+    table.push_back({"stride_efficiency", "1", "the same of the last stride, with its dissipation", of_stride});
     for (const auto &[name, values] : multipliers)
       table.push_back({"multiplier of " + name, "", "objective for one unit more", values});
     return table;
@@ -252,7 +259,8 @@ namespace crawler
         const Json run = Json::parse(summaries[i]);
         for (const char *key : {"displacement", "displacement_error", "stress_power"})
           one[key] = run.value(key, Json());
-        one["efficiency"] = run.contains("gait") ? run["gait"].value("efficiency", Json()) : Json();
+        one["efficiency"]        = json_number(number_at(run, "/gait/efficiency"));
+        one["stride_efficiency"] = json_number(number_at(run, "/gait/stride_efficiency"));
       }
       own["optima"].push_back(one);
     }
@@ -278,10 +286,14 @@ namespace crawler
                     start.has_converged ? "" : fmt::format(" (the optimiser did not converge: {})", start.message)));
       if (i < summaries.size())
       {
-        const double efficiency = number_at(Json::parse(summaries[i]), "/gait/efficiency");
+        const bool is_stride = results.objective == "periodic merit";
+        const double efficiency =
+          number_at(Json::parse(summaries[i]), is_stride ? "/gait/stride_efficiency" : "/gait/efficiency");
         if (std::isfinite(efficiency))
-          lines.push_back(fmt::format("  reaches {:.0f} % of what any gait with this work and these strains could",
-                                      100. * efficiency));
+          lines.push_back(fmt::format("  reaches {:.0f} % of what any gait with this {} and these strains could{}",
+                                      100. * efficiency,
+                                      is_stride ? "dissipation" : "work",
+                                      is_stride ? ", in the last stride" : ""));
       }
       for (std::size_t k = 0; k < std::min(its.paths.size(), most_variables); ++k)
         lines.push_back(fmt::format("  {} = {:.8g}", its.paths[k], start.best.x[k]));

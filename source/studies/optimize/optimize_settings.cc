@@ -80,13 +80,13 @@ namespace crawler
     require_limit(const OptimizeParameters &p, const std::vector<OptimizeVariable> &variables)
     {
       if (p.objective == "cost of transport" || p.largest_strain || p.smallest_strain || p.work || p.positive_work ||
-          p.mean_square_strain || p.largest_stress)
+          p.dissipation || p.mean_square_strain || p.largest_stress)
         return;
       for (const OptimizeVariable &variable : variables) // ranges are limits, but not meant as such
         if (variable.path.starts_with("Active stress/Modes/Coefficients"))
           throw InputError(
             "there is no limit on strain, stress or work: the " + p.objective +
-              " has no maximum (doc/theory.md, \"Gait efficiency\"); at least one of Work, Positive work, "
+              " has no maximum (doc/theory.md, \"Gait efficiency\"); at least one of Work, Positive work, Dissipation, "
               "Largest strain and Smallest strain, Mean-square strain, Largest stress is expected",
             own);
     }

@@ -17,7 +17,8 @@ namespace crawler
                                                                                  Quantity::positive_work,
                                                                                  std::nullopt,
                                                                                  Quantity::speed,
-                                                                                 std::nullopt}};
+                                                                                 std::nullopt,
+                                                                                 Quantity::dissipation}};
 
     std::string
     problem_of(const Task &task)
@@ -91,6 +92,7 @@ namespace crawler
     {
       list[static_cast<std::size_t>(GaitNumber::work)]          = result.energy_balance->stress_work;
       list[static_cast<std::size_t>(GaitNumber::positive_work)] = result.energy_balance->positive_work;
+      list[static_cast<std::size_t>(GaitNumber::dissipation)]   = result.energy_balance->dissipation;
     }
     if (result.gait)
       list[static_cast<std::size_t>(GaitNumber::speed)] = result.gait->speed();

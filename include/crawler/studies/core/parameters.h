@@ -65,8 +65,8 @@ namespace crawler
     std::string objective = "displacement";
     std::string direction = "forward";
     std::string variables = "";
-    std::optional<double> work, positive_work, smallest_strain, largest_strain, mean_square_strain, largest_stress,
-      largest_stress_rate;
+    std::optional<double> work, positive_work, dissipation, smallest_strain, largest_strain, mean_square_strain,
+      largest_stress, largest_stress_rate;
     unsigned int n_starts = 1, seed = 1;
     double spread                = 0.2; ///< of the starts, in ranges of the variables
     double tolerance             = 1e-6;

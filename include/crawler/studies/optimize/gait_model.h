@@ -19,9 +19,10 @@ namespace crawler
     positive_work, ///< the same
     mean_square,   ///< of the strain
     speed,
-    friction_time ///< T/(gamma L): the merit is D/sqrt(W T/(gamma L))
+    friction_time, ///< T/(gamma L): the merit is D/sqrt(W T/(gamma L))
+    dissipation
   };
-  inline constexpr std::size_t n_gait_numbers = 6;
+  inline constexpr std::size_t n_gait_numbers = 7;
 
   /// Numbers that are limited at many places, and their derivatives by the variables: [place][variable].
   struct LimitedValues

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/scene/given_motion.h>
+
+namespace crawler
+{
+  GivenMotion::GivenMotion(const std::size_t n)
+    : w(n)
+    , g(n)
+    , w_dg(n)
+    , B_t(n)
+    , v(n)
+    , gv(n)
+  {
+  }
+
+  void
+  GivenMotion::find(const GaussPanels &panels,
+                    const std::span<const double> strain,
+                    const std::span<const double> rate,
+                    const FrictionLaw &friction,
+                    const bool with_slopes)
+  {
+    const auto &weights = panels.weights();
+    panels.running_integral(rate, B_t);
+    for (std::size_t i = 0; i < w.size(); ++i)
+      w[i] = 1. + strain[i];
+    if (with_slopes)
+      friction.values_and_log_derivatives(w, g, w_dg);
+    else
+      friction.values(w, g);
+    double length = 0., g_sum = 0., B_t_sum = 0.;
+    for (std::size_t i = 0; i < w.size(); ++i)
+    {
+      length += weights[i];
+      g_sum += weights[i] * g[i];
+      B_t_sum += weights[i] * B_t[i];
+    }
+    g_mean                = g_sum / length;
+    const double B_t_mean = B_t_sum / length;
+    double covariance     = 0.; // the mean of v without the difference of large numbers
+    for (std::size_t i = 0; i < w.size(); ++i)
+      covariance += weights[i] * (g[i] - g_mean) * (B_t[i] - B_t_mean);
+    velocity = -covariance / g_sum;
+    drift    = velocity - B_t_mean;
+    for (std::size_t i = 0; i < w.size(); ++i)
+    {
+      v[i]  = B_t[i] + drift;
+      gv[i] = g[i] * v[i];
+    }
+  }
+} // namespace crawler
