@@ -7,6 +7,7 @@
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
+#include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/sweep/sweep.h>
 
@@ -19,7 +20,7 @@ namespace crawler
   {
     Log log(rank_of(communicator) == 0, /*quiet=*/false);
     ParameterFile file = read_file(communicator, options.file, options.overrides);
-    if (check_sweep(communicator, file, log))
+    if (check_optimize(communicator, file, log) || check_sweep(communicator, file, log))
       return ExitCode::finished;
     const Input input       = read_input(std::move(file));
     const ModelChoice model = choose_model(input);

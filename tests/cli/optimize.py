@@ -93,11 +93,37 @@ with tempfile.TemporaryDirectory() as place:
     expect(summary(place / "robot")["displacement"] > 0.0669, f"robot: {summary(place / 'robot')['displacement']}")
 
     # Several limits of work and starts, on one rank and on two, killed and resumed: the same table.
-    budgets = ["Optimize/Work=0.001, 0.003", "Optimize/Objective=displacement", "Optimize/Starts=3"]
+    budgets = ["Sweep/Axes=Optimize/Work : 0.001, 0.003", "Optimize/Objective=displacement", "Optimize/Starts=3"]
     run("optimize_harmonics", place / "one", *budgets)
     optima = summary(place / "one")["optimize"]["optima"]
-    expect([o["work_limit"] for o in optima] == [0.001, 0.003], f"budgets: {optima}")
-    expect(all(o["stress_power"] <= o["work_limit"] * (1 + 1e-5) for o in optima), f"budgets: {optima}")
+    limits = [o["case"]["Optimize/Work"] for o in optima]
+    expect(limits == [0.001, 0.003], f"budgets: {optima}")
+    expect(all(o["stress_power"] <= limit * (1 + 1e-5) for o, limit in zip(optima, limits)), f"budgets: {optima}")
+    expect([o["number"] for o in optima] == [1, 2] and (place / "one" / "best-2" / "summary.json").exists(), "cases")
+    with open(place / "one" / "optima.csv", encoding="utf-8") as file:
+        table = list(csv.DictReader(file))
+    expect([float(row["displacement"]) for row in table] == [o["objective"] for o in optima], f"optima.csv: {table}")
+    single = run("optimize_harmonics", place / "single", *budgets[1:], "Optimize/Work=0.003")
+    expect(single.returncode == 0 and summary(place / "single")["optimize"]["optima"][0]["objective"]
+           == optima[1]["objective"], "a case has another optimum than the same alone")
+
+    # Cases that differ in words, numbers and lists, with starts and variables of their own: the best of each is better
+    # with more segments, and for a = 1 it is the mirror image of a wave.
+    cases = run("optimize_robot", place / "cases", "Sweep/Design=zip", "Optimize/Variables=Active stress/Segments/Phase lag"
+                " : 0.02 to 0.45", "Sweep/Axes=Active stress/Segments/Number of segments : 4, 8, 8; Active stress/Segments/"
+                "Phase lag : 0.25, 0.125, 0.125; Body/Anchoring exponent : 2, 2, 0; Optimize/Direction : forward, forward,"
+                " backward", "Optimize/Tolerance=1e-3")
+    expect(cases.returncode == 0, f"cases: {cases.stderr}")
+    found = [o["objective"] for o in summary(place / "cases")["optimize"]["optima"]]
+    expect(0.05 < found[0] < found[1] < 0.07 and -0.08 < found[2] < -0.07, f"cases: {found}")
+    text = (place / "cases" / "optimum-3.prm").read_text()
+    expect("set Direction" in text and "8, 8" not in text, "an optimum has the axes of the study")
+
+    # Of a gait that repeats the elastic energy of its start does not count.
+    done = run("optimize_segments", place / "periodic", "Sweep/Axes=")
+    best = summary(place / "periodic")
+    expect(done.returncode == 0 and best["optimize"]["optima"][0]["objective"] > 0.1265, f"periodic: {done.stderr}")
+    expect(0.83 < best["gait"]["stride_efficiency"] < 0.87 and best["gait"]["efficiency"] < 0.2, f"{best['gait']}")
     expect(run("optimize_harmonics", place / "both", *budgets, ranks=2).returncode == 0, "two ranks")
     without_times = [[{k: v for k, v in row.items() if k != "seconds"} for row in rows(place / folder)]
                      for folder in ("one", "both")]
@@ -132,10 +158,22 @@ with tempfile.TemporaryDirectory() as place:
                 "Optimize/Work=0.1", "Optimize/Objective=displacement")
     expect(still.returncode == 3 and "does not move" in still.stdout, f"start at rest: {still.stdout}{still.stderr}")
 
+    # The check says what the starts give.
+    for settings, words in [([], "keeps to all limits"), (["Sweep/Axes=Optimize/Largest strain : 0.3, 0.1"],
+                                                          "with Largest strain = 0.1: merit 0.145"),
+                            (["Optimize/Largest strain=0.1"], "exceeds a limit by")]:
+        command = [CRAWLER, "check", str(PRM / "optimize_harmonics.prm")]
+        for setting in settings:
+            command += ["--set", setting]
+        check = subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True, timeout=60)
+        expect(check.returncode == 0 and words in check.stdout and "is in order" in check.stdout,
+               f"check {settings}: {check.stdout}{check.stderr}")
+
     # Gradients.
     for study, settings in [("optimize_harmonics", []), ("optimize_harmonics", ["Optimize/Work=0.01",
                             "Optimize/Mean-square strain=0.01", "Optimize/Largest stress=1"]),
-                            ("optimize_theorem", []), ("optimize_robot", ["Accuracy=1e-6"])]:
+                            ("optimize_theorem", []), ("optimize_robot", []), ("optimize_uneven", ["Sweep/Axes="]),
+                            ("optimize_segments", [])]:
         done = run(study, place / "nothing", *settings, options=["--check-gradient"])
         expect(done.returncode == 0, f"gradient of {study}: {done.stdout}{done.stderr}")
     expect(not (place / "nothing").exists(), "--check-gradient writes files")
@@ -151,8 +189,11 @@ with tempfile.TemporaryDirectory() as place:
                             (["Optimize/Variables=Body/Length"], "FROM to TO"),
                             (["Optimize/Variables=" + MODES + "Coefficients[0] : -1 to 1"], "from 1 to"),
                             (["Optimize/Variables=Body/Length : 1e-9 to 1e300"], "narrower"),
-                            (["Optimize/Work=0"], "positive numbers"),
-                            (["Optimize/Work=0.1, -1"], "positive numbers"),
+                            (["Optimize/Work=0"], "positive number"),
+                            (["Optimize/Work=0.1, 0.2"], "positive number"),
+                            (["Sweep/Axes=Optimize/Objective : merit, speed"], "the same for all cases"),
+                            (["Sweep/Axes=Body/Lenght : 1, 2"], "nearest name is \"Body/Length\""),
+                            (["Sweep/Axes=Active stress/Modes/Coefficients[2] : 0.2, 3"], "expected in its range"),
                             (no_limit, "has no maximum"),
                             (["Model=perturbation"], "perturbation")]:
         bad = run("optimize_harmonics", place / "bad", *settings)

@@ -76,6 +76,17 @@ namespace crawler
       });
     }
 
+    std::string
+    in_words(const OptimizeCases &cases, const SceneFamily &family, const GaitModel &model)
+    {
+      return fmt::format("Optimisation of the {}: {}{}, {}; {}.",
+                         cases.parameters().optimize.objective,
+                         counted(family.variables().size(), "variable"),
+                         cases.size() > 1 ? fmt::format(" in each of {} cases", cases.size()) : "",
+                         counted(cases.parameters().optimize.n_starts, "start"),
+                         model.description());
+    }
+
     /// The optimum as a parameter file, and its run in a folder of its own. Returns the summary of the run.
     std::string
     run_optimum(OptimizeCases &cases, const StartResult &start, const fs::path &folder, const CommandOptions &options)
@@ -183,12 +194,7 @@ namespace crawler
         family->form().declarations.set("Accuracy", to_text(std::min(cases.parameters().accuracy, accuracy_of_check)));
       const auto start = start_values(own, family->variables(), 0);
       const auto model = make_gait_model(*family, start, []() { return false; });
-      log.line(fmt::format("Optimisation of the {}: {}{}, {}; {}.",
-                           own.objective,
-                           counted(family->variables().size(), "variable"),
-                           cases.size() > 1 ? fmt::format(" in each of {} cases", cases.size()) : "",
-                           counted(own.n_starts, "start"),
-                           model->description()));
+      log.line(in_words(cases, *family, *model));
       if (options.check_gradient)
         return check_gradient(*model, *family, GaitProblem::wishes(family->form().parameters.optimize), start, log)
                  ? ExitCode::finished
@@ -233,5 +239,42 @@ namespace crawler
       return fmt::format("{}", static_cast<int>(end));
     });
     return static_cast<ExitCode>(std::stoi(code));
+  }
+
+  bool
+  check_optimize(MPI_Comm communicator, const ParameterFile &file, Log &log)
+  {
+    const Assignment *const variables = file.assignment_of("Optimize/Variables");
+    if (variables == nullptr || variables->value.empty())
+      return false;
+    OptimizeCases cases(communicator, file);
+    const OptimizeParameters &own = cases.parameters().optimize;
+    try
+    {
+      for (unsigned long number = 0; number < cases.size(); ++number)
+      {
+        const auto family = cases.family(number);
+        const auto start  = start_values(own, family->variables(), 0);
+        const auto model  = make_gait_model(*family, start, []() { return false; });
+        if (number == 0)
+          log.line(in_words(cases, *family, *model));
+        GaitProblem problem(
+          *model, family->form().parameters.optimize, family->variables(), start, []() { return false; });
+        const GaitRecord record = problem.record(problem.to_y(start));
+        log.line(fmt::format("  The start{}: {} {:.6g}, which {}.",
+                             cases.size() > 1 ? " with " + cases.in_words(number) : "",
+                             own.objective,
+                             record.objective,
+                             record.violation <= problem.admissible()
+                               ? "keeps to all limits"
+                               : fmt::format("exceeds a limit by {:.3g} %", 100. * record.violation)));
+      }
+    }
+    catch (const InputError &error)
+    {
+      throw file.with_place(error);
+    }
+    log.line(file.name() + " is in order: all variables and cases are admissible. Nothing was written.");
+    return true;
   }
 } // namespace crawler

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <crawler/base/exceptions.h>
+#include <crawler/parameters/parameter_file.h>
 #include <crawler/studies/core/command_options.h>
+#include <crawler/studies/core/log.h>
 
 #include <mpi.h>
 
@@ -20,4 +22,9 @@ namespace crawler
    */
   ExitCode
   optimize(MPI_Comm communicator, const CommandOptions &options);
+
+  /// For `crawler check`: computes the start of each case and says what it gives. Returns false if the file varies
+  /// nothing. Throws InputError.
+  bool
+  check_optimize(MPI_Comm communicator, const ParameterFile &file, Log &log);
 } // namespace crawler
