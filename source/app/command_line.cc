@@ -37,7 +37,7 @@ namespace crawler
     report_error(MPI_Comm communicator, const ExitCode code, const std::string &message, const bool on_all_ranks)
     {
       if (!on_all_ranks || rank_of(communicator) == 0)
-        std::cerr << "crawler: " << with_plain_numbers(message) << std::endl;
+        std::cerr << "crawler: " << without_controls(with_short_quotes(with_plain_numbers(message))) << std::endl;
       // A rank that fails alone must not leave the others waiting.
       if (!on_all_ranks && size_of(communicator) > 1)
         MPI_Abort(communicator, static_cast<int>(code));

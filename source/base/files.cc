@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -13,18 +14,36 @@
 
 namespace crawler
 {
+  std::filesystem::path
+  temporary_file(const std::filesystem::path &path)
+  {
+    const std::filesystem::path temporary = path.string() + ".part";
+    std::error_code error;
+    std::filesystem::remove(temporary, error);
+    if (error)
+      throw FileError("cannot write \"" + temporary.string() + "\": " + error.message());
+    return temporary;
+  }
+
   void
   write_file(const std::filesystem::path &path, const std::string &content)
   {
-    const std::filesystem::path temporary = path.string() + ".part";
+    const std::filesystem::path temporary = temporary_file(path);
+    std::FILE *const file                 = std::fopen(temporary.c_str(), "wbx"); // a new one, not through a link
+    bool is_good = file != nullptr && std::fwrite(content.data(), 1, content.size(), file) == content.size();
+    int reason   = errno;
+    if (file != nullptr && std::fclose(file) != 0 && is_good)
     {
-      std::ofstream out(temporary, std::ios::binary);
-      out << content;
-      out.close();
-      if (!out)
-        throw FileError("cannot write \"" + path.string() + "\": " + std::strerror(errno));
+      is_good = false;
+      reason  = errno;
     }
     std::error_code error;
+    if (!is_good)
+    {
+      if (file != nullptr)
+        std::filesystem::remove(temporary, error);
+      throw FileError("cannot write \"" + path.string() + "\": " + std::strerror(reason));
+    }
     std::filesystem::rename(temporary, path, error);
     if (error)
       throw FileError("cannot write \"" + path.string() + "\": " + error.message());

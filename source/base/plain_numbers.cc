@@ -6,6 +6,18 @@
 
 namespace crawler
 {
+  namespace
+  {
+    /// The last end of a character of UTF-8 at or before a place.
+    std::size_t
+    end_of_character(const std::string &text, std::size_t place)
+    {
+      while (place > 0 && place < text.size() && (static_cast<unsigned char>(text[place]) & 0xc0) == 0x80)
+        --place;
+      return place;
+    }
+  } // namespace
+
   std::string
   with_plain_numbers(std::string text)
   {
@@ -31,5 +43,45 @@ namespace crawler
   counted(const unsigned long number, const std::string &noun)
   {
     return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+  }
+
+  std::string
+  without_controls(const std::string &text)
+  {
+    constexpr char digits[] = "0123456789abcdef";
+    std::string result;
+    for (const char c : text)
+    {
+      const auto byte = static_cast<unsigned char>(c);
+      if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f)
+        result += {'\\', 'x', digits[byte / 16], digits[byte % 16]};
+      else
+        result += c;
+    }
+    return result;
+  }
+
+  std::string
+  with_short_quotes(const std::string &text, const std::size_t most)
+  {
+    constexpr std::size_t shown = 60; // at each end
+    std::string result;
+    for (std::size_t begin = 0; begin < text.size();)
+    {
+      const std::size_t open  = text.find('"', begin);
+      const std::size_t close = open == std::string::npos ? open : text.find('"', open + 1);
+      if (close == std::string::npos)
+        return result + text.substr(begin);
+      const std::string quoted = text.substr(open + 1, close - open - 1);
+      result += text.substr(begin, open + 1 - begin);
+      if (quoted.size() <= most)
+        result += quoted;
+      else // at ends of characters of UTF-8
+        result += quoted.substr(0, end_of_character(quoted, shown)) + " ... (" + std::to_string(quoted.size()) +
+                  " characters) ... " + quoted.substr(end_of_character(quoted, quoted.size() - shown));
+      result += '"';
+      begin = close + 1;
+    }
+    return result;
   }
 } // namespace crawler

@@ -16,6 +16,9 @@ namespace crawler
 {
   namespace
   {
+    constexpr std::size_t deepest_section = 100;
+    constexpr unsigned int most_included  = 1000;
+
     std::string
     read_whole(const std::string &file_name)
     {
@@ -125,6 +128,8 @@ namespace crawler
       {
         if (rest.empty())
           throw InputError(fmt::format("{}: \"subsection\" without a name", place));
+        if (open.size() == deepest_section)
+          throw InputError(fmt::format("{}: sections stand in each other more than {} deep", place, deepest_section));
         sections_.push_back({path(rest), place});
         open.emplace_back(rest, first);
       }
@@ -144,7 +149,7 @@ namespace crawler
         if (const Assignment *const other = assignment_of(assignment.path))
           throw InputError(fmt::format(
             "{}: \"{}\" is set a second time (first in {}); once is expected", place, assignment.path, other->place));
-        assignments_.push_back(assignment);
+        add(assignment);
       }
       else if (keyword == "include")
       {
@@ -171,6 +176,9 @@ namespace crawler
   {
     if (depth == 10)
       throw InputError(fmt::format("{}: files include each other more than 10 deep", place));
+    if (++n_included_ > most_included)
+      throw InputError(fmt::format(
+        "{}: this is the included file number {}, but at most {} are expected", place, n_included_, most_included));
     if (file_name.empty())
       throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
     const auto file = (folder / file_name).string();
@@ -193,11 +201,18 @@ namespace crawler
     if (equals == std::string::npos || trimmed(assignment.substr(0, equals)).empty())
       throw InputError(fmt::format("--set \"{}\": \"Section/Entry=value\" is expected", assignment));
     overrides_.push_back(assignment);
-    assignments_.push_back({normal_path(assignment.substr(0, equals)),
-                            trimmed(assignment.substr(equals + 1)),
-                            fmt::format("--set \"{}\"", assignment),
-                            true,
-                            ""});
+    add({normal_path(assignment.substr(0, equals)),
+         trimmed(assignment.substr(equals + 1)),
+         fmt::format("--set \"{}\"", assignment),
+         true,
+         ""});
+  }
+
+  void
+  ParameterFile::add(const Assignment &assignment)
+  {
+    latest_[assignment.path] = assignments_.size();
+    assignments_.push_back(assignment);
   }
 
   void
@@ -245,10 +260,8 @@ namespace crawler
   const Assignment *
   ParameterFile::assignment_of(const std::string &path) const
   {
-    const auto found = std::find_if(assignments_.rbegin(), assignments_.rend(), [&](const Assignment &assignment) {
-      return assignment.path == path;
-    });
-    return found == assignments_.rend() ? nullptr : &*found;
+    const auto found = latest_.find(path);
+    return found == latest_.end() ? nullptr : &assignments_[found->second];
   }
 
   InputError

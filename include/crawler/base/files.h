@@ -7,6 +7,11 @@
 
 namespace crawler
 {
+  /// The name under which a file is written until it is complete, beside it. What stands there is removed; if that is a
+  /// link, what it points to is not touched. Throws FileError.
+  std::filesystem::path
+  temporary_file(const std::filesystem::path &path);
+
   /// Writes a whole file: first beside it under another name, then renamed, so that a file under its own name is always
   /// complete. Throws FileError.
   void

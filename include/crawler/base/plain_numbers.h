@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace crawler
@@ -9,6 +10,15 @@ namespace crawler
   /// where they are.
   std::string
   with_plain_numbers(std::string text);
+
+  /// The text with every control character but line ends and tabs in words (\\x1b), so that texts of others (names of
+  /// files, formulas) cannot steer a terminal.
+  std::string
+  without_controls(const std::string &text);
+
+  /// The text with every part between double quotes that is longer than @p most bytes cut in its middle.
+  std::string
+  with_short_quotes(const std::string &text, std::size_t most = 300);
 
   /// "1 cell", "2 cells".
   std::string

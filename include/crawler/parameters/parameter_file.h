@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace crawler
@@ -89,6 +90,9 @@ namespace crawler
             const std::string &place,
             unsigned int depth);
 
+    void
+    add(const Assignment &assignment);
+
     std::string name_;
     std::string text_;
     std::vector<std::string> overrides_;
@@ -98,6 +102,8 @@ namespace crawler
       std::string path, place;
     };
     std::vector<Assignment> assignments_;
+    std::unordered_map<std::string, std::size_t> latest_; ///< assignment of each path
+    unsigned int n_included_ = 0;
     std::vector<Section> sections_;
   };
 } // namespace crawler

@@ -18,7 +18,7 @@ namespace crawler
   {
     if (!active_)
       return;
-    const std::string text = with_plain_numbers(raw);
+    const std::string text = without_controls(with_plain_numbers(raw));
     if (!quiet_)
       std::cout << text << std::endl;
     keep(text);
@@ -29,7 +29,7 @@ namespace crawler
   {
     if (!active_)
       return;
-    const std::string text = with_plain_numbers(raw);
+    const std::string text = without_controls(with_plain_numbers(raw));
     std::cerr << "crawler: " << text << std::endl;
     keep(text);
   }

@@ -69,6 +69,20 @@ namespace crawler
                             path_.string()));
   }
 
+  void
+  StudyFolder::leaving_if_refused(const std::function<void()> &work)
+  {
+    try
+    {
+      work();
+    }
+    catch (...)
+    {
+      leave();
+      throw;
+    }
+  }
+
   bool
   StudyFolder::begin(const std::string &original, const std::string &effective)
   {
@@ -86,7 +100,7 @@ namespace crawler
     if (error)
       throw FileError("cannot make the output folder \"" + path_.string() + "\": " + error.message());
     lock();
-    require_own(); // the one that had the lock may have changed it
+    leaving_if_refused(require_own); // the one that had the lock may have changed it
     if (options_.resume && state() == State::computed)
       return true;
     prepare(path_);
@@ -97,18 +111,19 @@ namespace crawler
   }
 
   void
-  StudyFolder::resume(const std::vector<std::string> &changes)
+  StudyFolder::resume(const std::function<std::vector<std::string>()> &find_changes)
   {
-    if (!changes.empty())
-    {
-      leave();
+    leaving_if_refused([&]() {
+      const std::vector<std::string> changes = find_changes();
+      if (changes.empty())
+        return;
       throw InputError(fmt::format("the {} in \"{}\" was made with other parameters: {}; it can be resumed with the "
                                    "same ones only (but for {})",
                                    kind_.name,
                                    path_.string(),
                                    fmt::join(changes, ", "),
                                    fmt::join(kind_.free_entries, " and ")));
-    }
+    });
     log_.open(path_ / "log.txt", /*append=*/true);
   }
 
@@ -117,5 +132,6 @@ namespace crawler
   {
     if (lock_)
       lock_->remove();
+    lock_.reset();
   }
 } // namespace crawler

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/base/row_file.h>
 #include <crawler/studies/core/table_csv.h>
 
@@ -85,7 +86,11 @@ namespace crawler
                   const std::function<void(const Table &part)> &see)
   {
     constexpr unsigned long together = 1024; // rows, about a megabyte
-    const fs::path temporary         = path.string() + ".part";
+    fs::path temporary               = path.string() + ".part";
+    on_first_rank(communicator, [&]() {
+      temporary = temporary_file(path);
+      return "";
+    });
     const RowReader table(communicator, table_path, group);
     const unsigned long n_ranks = size_of(communicator), rank = rank_of(communicator);
     bool is_good;

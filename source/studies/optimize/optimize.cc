@@ -65,8 +65,10 @@ namespace crawler
       on_first_rank(communicator, [&]() -> std::string {
         const fs::path starts = folder.path() / "starts";
         if (folder.begin(file.text(), effective))
-          folder.resume(
-            differences(read_whole_file(folder.path() / "parameters.prm"), effective, folder.kind().free_entries));
+          folder.resume([&]() {
+            return differences(
+              read_whole_file(folder.path() / "parameters.prm"), effective, folder.kind().free_entries);
+          });
         else
         {
           fs::remove_all(starts);

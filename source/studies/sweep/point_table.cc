@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace crawler
 {
@@ -139,17 +140,20 @@ namespace crawler
       RowFile::create(path, table.group, table.columns, n, attributes, known_columns(table.columns, points.design()));
       return std::vector<bool>(n, false);
     }
-    std::map<std::string, std::string> attributes;
-    for (const auto &[name, text] : inputs.attributes())
-      attributes.emplace(name, read_attribute(path, table.group, name));
-    auto changes = differences(SweepInputs::from_attributes(attributes), inputs, folder.kind().free_entries);
-    const RowReader rows(MPI_COMM_SELF, path, table.group);
-    if (changes.empty() && rows.n_rows() != n)
-      changes.push_back(fmt::format("the number of points was {} and is {}", rows.n_rows(), n));
-    if (changes.empty())
-      if (const std::string changed = changed_value(rows, table.columns, points.design()); !changed.empty())
-        changes.push_back(changed);
-    folder.resume(changes);
+    std::optional<RowReader> rows;
+    folder.resume([&]() {
+      std::map<std::string, std::string> attributes;
+      for (const auto &[name, text] : inputs.attributes())
+        attributes.emplace(name, read_attribute(path, table.group, name));
+      auto changes = differences(SweepInputs::from_attributes(attributes), inputs, folder.kind().free_entries);
+      rows.emplace(MPI_COMM_SELF, path, table.group);
+      if (changes.empty() && rows->n_rows() != n)
+        changes.push_back(fmt::format("the number of points was {} and is {}", rows->n_rows(), n));
+      if (changes.empty())
+        if (const std::string changed = changed_value(*rows, table.columns, points.design()); !changed.empty())
+          changes.push_back(changed);
+      return changes;
+    });
     for (const auto &[name, version] : provenance(points.effective(), ""))
       if (name.starts_with("version of "))
         if (const std::string was = read_attribute(path, table.group, name); was != version)
@@ -159,7 +163,7 @@ namespace crawler
                                         was,
                                         folder.kind().name,
                                         version));
-    return rows_that_are_there(rows, table);
+    return rows_that_are_there(*rows, table);
   }
 
   std::vector<bool>

@@ -204,8 +204,10 @@ namespace crawler
           fs::create_directories(rows);
           return "";
         }
-        folder.resume(
-          differences(read_whole_file(folder.path() / "parameters.prm"), input.effective, folder.kind().free_entries));
+        folder.resume([&]() {
+          return differences(
+            read_whole_file(folder.path() / "parameters.prm"), input.effective, folder.kind().free_entries);
+        });
         if (!fs::exists(rows))
           return "done";
         earlier.rows = recover_rows(folder.path());

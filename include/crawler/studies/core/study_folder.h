@@ -6,6 +6,7 @@
 #include <crawler/studies/core/log.h>
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,9 +36,10 @@ namespace crawler
     bool
     begin(const std::string &original, const std::string &effective);
 
-    /// Goes on with the study that is there. Throws InputError if it was made with other inputs: @p changes, in words.
+    /// Goes on with the study that is there. Throws InputError if it was made with other inputs: what @p changes finds,
+    /// in words. Whatever is thrown, by @p changes too, the folder is left as it was.
     void
-    resume(const std::vector<std::string> &changes);
+    resume(const std::function<std::vector<std::string>()> &changes);
 
     /// Nothing is written any more.
     void
@@ -72,6 +74,9 @@ namespace crawler
 
     void
     lock();
+
+    void
+    leaving_if_refused(const std::function<void()> &work);
 
     const StudyKind kind_;
     const std::filesystem::path path_;
