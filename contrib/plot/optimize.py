@@ -1,8 +1,8 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws an optimisation of crawler: how the gaits became better, the best gait, and what a limit of work costs.
 
-    contrib/plot/optimize.py OUTPUT_FOLDER [--optimum N] [--output picture.png]
+    contrib/plot/optimize.py OUTPUT_FOLDER [--optimum N] [--last-stride | --from TIME --to TIME] [--output PICTURE]
 
 The picture is optimize.png in the folder, unless --output names another one. Its panels:
 - the objective of all evaluations, as dots, grey beyond a limit, and the best so far of each start as a line. With
@@ -12,44 +12,23 @@ The picture is optimize.png in the folder, unless --output names another one. It
 - with several limits of work the displacement of the best gaits against their work, and the bound that no gait with the
   same work and extreme strains exceeds (doc/theory.md, "Gait efficiency").
 
-Reads results.csv, summary.json, parameters.prm and best/kymograph.vts (best-N/kymograph.vts) of the folder; needs
-matplotlib (Debian: python3-matplotlib). Colours are safe for colour-blind readers.
+Reads results.csv, summary.json, parameters.prm and best/kymograph.vts (best-N/kymograph.vts) of the folder; needs numpy
+and matplotlib.
 """
-import argparse
 import collections
-import csv
-import json
 import math
-import pathlib
-import re
-import sys
 
-from kymograph import Problem, read_kymograph
+from plotting import (COLOURS, NAMES, Kymograph, Parameters, Problem, draw_field, existing, need, number, parser, read_rows,
+                      read_summary, run_script, save)
 
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+need("numpy", "matplotlib")
+import matplotlib.pyplot as plt
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
 UNITS = {"displacement": "length", "speed": "length/time", "cost of transport": "force", "merit": "1"}
+OBJECTIVES = {"displacement": "displacement $D$", "speed": "speed $U$"}  # with their symbols
 ADMISSIBLE = 1e-5  # violation of a limit, relative to it
 MOST_NAMES = 7     # in a legend
-
-
-def number(value):
-    """What is not known is not a number."""
-    return float(value) if value not in ("", None) else math.nan
-
-
-def existing(path, what):
-    """A file that must exist."""
-    if not path.is_file():
-        raise Problem(f"{path} does not exist; {what} is expected")
-    return path
-
-
-def read_summary(path):
-    """As a dictionary."""
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise Problem(f"{path} is not a summary of crawler ({error})") from None
 
 
 class Optimisation:
@@ -58,16 +37,14 @@ class Optimisation:
     def __init__(self, folder):
         expected = "the output folder of crawler optimize"
         self.folder = folder
-        with open(existing(folder / "results.csv", expected), newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        summary = read_summary(existing(folder / "summary.json", expected))
-        text = existing(folder / "parameters.prm", expected).read_text(encoding="utf-8")
+        rows = read_rows(existing(folder / "results.csv", expected))
+        summary = read_summary(folder, expected)
+        parameters = Parameters(existing(folder / "parameters.prm", expected))
         if "optimize" not in summary or (rows and "violation" not in rows[0]):
             raise Problem(f"{folder} has no optimisation; {expected} is expected")
         self.optima = summary["optimize"]["optima"]
         self.objective = summary["optimize"]["objective"]
-        direction = re.search(r"^subsection Optimize\n(?:.*\n)*?\s+set Direction\s*=\s*(\w+)", text, re.MULTILINE)
-        self.sign = -1 if direction and direction[1] == "backward" else 1
+        self.sign = -1 if parameters.values.get("Optimize/Direction") == "backward" else 1
         # Of (limit of work, start): (evaluation, objective), and the number of evaluations.
         self.starts, self.excessive, self.lengths = (collections.defaultdict(kind) for kind in (list, list, int))
         for row in rows:
@@ -90,12 +67,12 @@ class Optimisation:
         """Those of the work, in their order."""
         return [one["work_limit"] for one in self.optima]
 
-    def gait(self, optimum):
-        """Kymograph of an optimum: s/L, t/T, strain, active stress."""
-        name = f"best-{optimum}" if len(self.optima) > 1 else "best"
-        path = existing(self.folder / name / "kymograph.vts", "a run with Output/Kymograph = true and snapshots")
-        s, t, stretch, stress = read_kymograph(path, ("stretch", "active_stress"))
-        return s, t, [[value - 1 for value in row] for row in stretch], stress
+    def gait(self, options):
+        """Kymograph of the chosen optimum."""
+        name = f"best-{options.optimum}" if len(self.optima) > 1 else "best"
+        gait = Kymograph(self.folder / name, "stretch", "active_stress")
+        gait.keep(options.begin, options.end, options.last_stride)
+        return gait
 
 
 def draw_progress(axes, optimisation):
@@ -135,7 +112,8 @@ def draw_progress(axes, optimisation):
     axes.set(xscale="log", xlim=(0.9, 1.3 * max(10, *optimisation.lengths.values())),
              ylim=(low - margin, high + margin))
     axes.set(title="evaluations (grey: beyond a limit), best so far", xlabel="number of the evaluation in its start",
-             ylabel=f"{optimisation.objective} [{UNITS.get(optimisation.objective, '1')}]")
+             ylabel=f"{OBJECTIVES.get(optimisation.objective, optimisation.objective)} "
+                    f"[{UNITS.get(optimisation.objective, '1')}]")
     axes.grid(color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
     if names:
@@ -146,21 +124,14 @@ def draw_progress(axes, optimisation):
 
 def draw_gait(figure, panels, gait, title):
     """Strain and active stress."""
-    from matplotlib.ticker import MaxNLocator
-
-    s, t, *fields = gait
-    for axes, field, name in zip(panels, fields, ("strain [1]", "active stress [force]")):
-        largest = max(max(map(abs, row)) for row in field) or 1
-        mesh = axes.pcolormesh(s, t, field, cmap="PuOr_r", shading="gouraud", vmin=-largest, vmax=largest,
-                               rasterized=True)
-        axes.set(title=f"{name.split(' [')[0]} {title}", xlabel="$s/L$", ylabel="$t/T$")
-        figure.colorbar(mesh, ax=axes, location="bottom", aspect=30, label=name, ticks=MaxNLocator(5))
+    for axes, name in zip(panels, ("strain", "active_stress")):
+        mesh = draw_field(axes, gait, name)
+        axes.set_title(f"{axes.get_title()} {title}")
+        figure.colorbar(mesh, ax=axes, location="bottom", aspect=30, label=NAMES[name], ticks=MaxNLocator(5))
 
 
 def draw_tradeoff(axes, optima, shown):
     """Displacement against work, and the bound."""
-    from matplotlib.ticker import LogLocator, NullFormatter
-
     known = [(i, one) for i, one in enumerate(optima) if one.get("displacement") and (one.get("stress_power") or 0) > 0]
     if not known:
         raise Problem("no best gait has a displacement and a positive work, so there is no trade-off to draw; "
@@ -177,7 +148,7 @@ def draw_tradeoff(axes, optima, shown):
                   color=COLOURS[i % len(COLOURS)], markersize=12, linestyle="none",
                   markeredgecolor="black" if one["is_admissible"] else None, markeredgewidth=0.6,
                   label="shown on the left" if i == shown - 1 else None if one["is_admissible"] else "exceeds a limit")
-    axes.set(title="best gaits", xlabel="work [force length]", ylabel="distance [length]", xscale="log", yscale="log")
+    axes.set(title="best gaits", xlabel=NAMES["work"], ylabel="distance $|D|$ [length]", xscale="log", yscale="log")
     for direction in axes.xaxis, axes.yaxis:
         low, high = direction.get_view_interval()
         direction.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 1000 * low else (1,)))
@@ -188,60 +159,37 @@ def draw_tradeoff(axes, optima, shown):
     axes.legend(frameon=False, fontsize=8)
 
 
-def draw(folder, picture, optimum):
-    """Reads the files and writes the picture."""
-    try:
-        import matplotlib
-    except ImportError:
-        raise Problem("matplotlib is missing; install it (Debian: apt install python3-matplotlib)") from None
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    optimisation = Optimisation(folder)
+def draw(options):
+    """Reads the files and makes the figure."""
+    optimisation = Optimisation(options.folder)
     n_optima = len(optimisation.optima)
-    shown = n_optima if optimum is None else optimum
-    if not 1 <= shown <= n_optima:
-        raise Problem(f"found --optimum {shown}, but a number from 1 to {n_optima} is expected")
-    gait = optimisation.gait(shown)
+    options.optimum = n_optima if options.optimum is None else options.optimum
+    if not 1 <= options.optimum <= n_optima:
+        raise Problem(f"found --optimum {options.optimum}, but a number from 1 to {n_optima} is expected")
+    gait = optimisation.gait(options)
     several = n_optima > 1
-
-    plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "xtick.labelsize": 9,
-                         "ytick.labelsize": 9, "axes.linewidth": 0.7})
-    figure, panels = plt.subplots(1, 4 if several else 3, figsize=(13.5 if several else 10.5, 4), layout="constrained",
+    figure, panels = plt.subplots(1, 4 if several else 3, figsize=(14.2 if several else 11.2, 4.2), layout="constrained",
                                   width_ratios=(1.45, 1, 1, 1.25) if several else (1.45, 1, 1))
     draw_progress(panels[0], optimisation)
-    limit = optimisation.limits()[shown - 1]
+    limit = optimisation.limits()[options.optimum - 1]
     draw_gait(figure, panels[1:3], gait, f"(work {limit:.3g})" if several else "of the best")
     if several:
-        draw_tradeoff(panels[3], optimisation.optima, shown)
-    try:
-        figure.savefig(picture, dpi=100)
-        if picture.suffix == ".png":  # 256 colours: less than half the size
-            from PIL import Image  # comes with matplotlib
-            Image.open(picture).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=1,
-                                                         dither=Image.Dither.NONE).save(picture, optimize=True)
-    except (OSError, ValueError) as error:
-        raise Problem(f"cannot write {picture}: {error}") from None
+        draw_tradeoff(panels[3], optimisation.optima, options.optimum)
+    return figure
 
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=pathlib.Path, help="output folder of crawler optimize")
-    parser.add_argument("--optimum", type=int, metavar="N",
-                        help="with several limits of work: the one whose gait is drawn, from 1 (default: the last)")
-    parser.add_argument("--output", type=pathlib.Path,
-                        help="the picture (.png, .pdf, .svg); optimize.png in the folder if it is not given")
-    options = parser.parse_args()
-    picture = options.output or options.folder / "optimize.png"
+    own = parser(__doc__, "optimize.png", time=True)
+    own.add_argument("--optimum", type=int, metavar="N",
+                     help="with several limits of work: the one whose gait is drawn, from 1 (default: the last)")
+    options = own.parse_args()
     try:
-        if not options.folder.is_dir():
-            raise Problem(f"{options.folder} is not a folder; the output folder of crawler optimize is expected")
-        draw(options.folder, picture, options.optimum)
-    except (Problem, OSError, ValueError, KeyError) as problem:
-        sys.exit(f"optimize.py: {problem}")
-    print(f"wrote {picture}")
+        figure = draw(options)
+    except KeyError as missing:
+        raise Problem(f"{options.folder} has no {missing}; the output folder of crawler optimize is expected") from None
+    save(figure, options.output or options.folder / "optimize.png", dpi=100, few_colours=True)
 
 
 if __name__ == "__main__":
-    main()
+    run_script(main)
