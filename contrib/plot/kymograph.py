@@ -58,7 +58,7 @@ def main():
     own.add_argument("--stress", action="store_true", help="draws the active stress as well")
     options = own.parse_args()
     save(draw(options), options.output or options.folder / "kymograph.png", dpi=120 if options.stress else 160,
-         few_colours=True)
+         few_colours=not options.stress)
 
 
 if __name__ == "__main__":
