@@ -52,7 +52,7 @@ def movie(run, path):
     """An animated GIF of the first strides of a run."""
     last = int(np.argmin(np.abs(run.t - STRIDES)))
     film = Film(run, last)
-    frames = [film.frame(row) for row in np.linspace(0, last, STRIDES * FRAMES_EACH + 1).round().astype(int)]
+    frames = [film.frame(int(np.argmin(np.abs(run.t - time)))) for time in np.linspace(0, STRIDES, STRIDES * FRAMES_EACH + 1)]
     plt.close(film.figure)
     colours = frames[len(frames) // 2].quantize(64, Image.Quantize.MAXCOVERAGE, kmeans=1)  # the same for all: no flicker
     small = [one.quantize(palette=colours, dither=Image.Dither.NONE) for one in frames]

@@ -57,8 +57,7 @@ def main():
     own = parser(__doc__, "kymograph.png", time=True)
     own.add_argument("--stress", action="store_true", help="draws the active stress as well")
     options = own.parse_args()
-    save(draw(options), options.output or options.folder / "kymograph.png", dpi=120 if options.stress else 160,
-         few_colours=not options.stress)
+    save(draw(options), options.output or options.folder / "kymograph.png", dpi=120, few_colours=True)
 
 
 if __name__ == "__main__":

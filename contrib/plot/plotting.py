@@ -2,8 +2,8 @@
 """What the scripts of this folder share: which Python modules they need, the files of crawler, times, names of axes,
 colours, and how pictures are written. It is no script of its own.
 
-A script that fails says why in one sentence and ends with 2 (bad input), 6 (a file that cannot be written) or 69 (this
-Python lacks a module: crawler plot then tries another Python).
+A script that fails says why in one sentence and ends with 2 (bad input), 6 (a file that cannot be written) or 69 (no
+Python has the modules that it needs).
 """
 import argparse
 import array
@@ -17,7 +17,8 @@ import re
 import sys
 from xml.etree import ElementTree
 
-DEBIAN = {"h5py": "python3-h5py", "matplotlib": "python3-matplotlib", "numpy": "python3-numpy"}
+DEBIANS_PYTHON, LACKING = "/usr/bin/python3", "CRAWLER_LACKING_PYTHON"  # the latter: what another Python lacks
+PACKAGES = {"h5py": "python3-h5py", "matplotlib": "python3-matplotlib", "numpy": "python3-numpy"}
 
 # Those of Okabe and Ito, safe for colour-blind readers, with a line and a marker each for grey print.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -55,7 +56,8 @@ def script():
 
 
 def need(*modules):
-    """Ends the script, and says which Python lacks what, unless all modules are there. Pictures need no screen."""
+    """Sees to it that all modules are there: if this Python lacks one, Debian's Python goes on with the script. If that
+    lacks one too, or is not there, the script ends and says which Python lacks what. Pictures need no screen."""
     missing = []
     for name in modules:
         try:
@@ -63,9 +65,12 @@ def need(*modules):
         except ImportError:
             missing.append(name)
     if missing:
-        packages = " ".join(DEBIAN[name] for name in missing)
-        print(f"{script()}: {sys.executable} has no {' and no '.join(missing)} (Debian's /usr/bin/python3 gets "
-              f"{'it' if len(missing) == 1 else 'them'} by: apt install {packages})", file=sys.stderr)
+        lacks = f"{os.environ.get(LACKING, '')}{sys.executable} has no {' and no '.join(missing)}"
+        if LACKING not in os.environ and sys.prefix != "/usr" and os.access(DEBIANS_PYTHON, os.X_OK):
+            os.environ[LACKING] = lacks + "; "
+            os.execv(DEBIANS_PYTHON, [DEBIANS_PYTHON, *sys.argv])
+        packages = " ".join(PACKAGES[name] for name in missing)
+        print(f"{script()}: {lacks} (on Debian: apt install {packages})", file=sys.stderr)
         sys.exit(os.EX_UNAVAILABLE)
     if "matplotlib" in modules:
         import matplotlib
@@ -106,7 +111,7 @@ def run_script(main):
         sys.exit(problem.code)
     except OSError as error:
         print(f"{script()}: {error.filename}: {error.strerror}", file=sys.stderr)
-        sys.exit(Problem.code)
+        sys.exit(Unwritable.code)
 
 
 def existing(path, what):
@@ -232,8 +237,8 @@ class Kymograph:
                           f"{self.t[0]:g} to {self.t[-1]:g}, is expected")
         some = (self.t >= begin - slack) & (self.t <= end + slack)
         if some.sum() < 3:
-            raise Problem(f"between {begin:g} and {end:g} the run has {some.sum()} snapshots, but 3 or more are expected "
-                          "(Output/Number of snapshots)")
+            raise Problem(f"between {begin:g} and {end:g} {self.folder / 'kymograph.vts'} has {some.sum()} times, but 3 or "
+                          "more are expected (Output/Number of snapshots)")
         self.t, self.fields = self.t[some], {name: field[some] for name, field in self.fields.items()}
         return begin, end
 

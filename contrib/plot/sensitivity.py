@@ -76,7 +76,7 @@ def draw(options):
 def main():
     """Command line."""
     options = parser(__doc__, "sensitivity.png", time=True).parse_args()
-    save(draw(options), options.output or options.folder / "sensitivity.png", dpi=100)
+    save(draw(options), options.output or options.folder / "sensitivity.png", dpi=100, few_colours=True)
 
 
 if __name__ == "__main__":

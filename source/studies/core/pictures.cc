@@ -26,20 +26,15 @@ namespace crawler
   PictureEnd
   call_plot_script(const std::string &name, const std::vector<std::string> &arguments, const bool shown)
   {
-    PictureEnd lacking = {EX_UNAVAILABLE, ""};
+    // If this Python lacks a module, the script itself goes on with Debian's (contrib/plot/plotting.py).
     for (const std::string python : {"python3", "/usr/bin/python3"})
     {
       std::vector<std::string> command = {python, plot_script(name)};
       command.insert(command.end(), arguments.begin(), arguments.end());
-      const ProgramEnd end = run_program(command, shown);
-      if (end.started && end.status != EX_UNAVAILABLE)
+      if (const ProgramEnd end = run_program(command, shown); end.started)
         return {end.status, trimmed(end.errors)};
-      const std::string reason =
-        end.started ? trimmed(end.errors) : python + " is not there (Debian: apt install python3)";
-      if (lacking.problem.find(reason) == std::string::npos)
-        lacking.problem += (lacking.problem.empty() ? "" : "; ") + reason;
     }
-    return lacking;
+    return {EX_UNAVAILABLE, "python3 is not there (Debian: apt install python3-h5py python3-matplotlib)"};
   }
 
   void

@@ -16,8 +16,8 @@ namespace crawler
     std::string problem; ///< what is wrong, in one line
   };
 
-  /// Calls the script of this name in contrib/plot, also of an installed program, with the python3 of the PATH; if that
-  /// lacks a module, with Debian's. What the script prints is shown if @p shown.
+  /// Calls the script of this name in contrib/plot, also of an installed program, with the python3 of the PATH or, if
+  /// there is none, Debian's. What the script prints is shown if @p shown.
   PictureEnd
   call_plot_script(const std::string &name, const std::vector<std::string> &arguments, bool shown);
 
