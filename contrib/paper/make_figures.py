@@ -19,7 +19,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "contrib" / "plot"))
-from plotting import Parser, Problem, need, run_script  # noqa: E402
+from plotting import Parser, Problem, Unwritable, need, run_script  # noqa: E402
 
 need("numpy", "matplotlib")
 import figures  # noqa: E402
@@ -51,7 +51,7 @@ class Results:
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise Problem(f"cannot make the folder {folder}: {error.strerror}") from None
+            raise Unwritable(f"cannot make the folder {folder}: {error.strerror}") from None
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             list(pool.map(self.run, RUNS))
 

@@ -36,8 +36,7 @@ SYMBOLS = {"Body/Length": "L", "Body/Elastic modulus": "k", "Body/Friction coeff
            "Active stress/Optimal wave/Perturbation parameter": r"\chi", "Active stress/Optimal wave/Wave speed": "c",
            "Active stress/Optimal wave/Energy": "H", "displacement": "D", "stress_power": "W", "dissipation": "Q",
            "gait.displacement": r"\Delta", "gait.period": "P", "gait.frequency": r"\nu", "gait.speed": "U",
-           "gait.wave.speed": "c", "min_stretch.value": "w", "max_stretch.value": "w", "inversion.t": "t",
-           "inversion.s": "s"}
+           "gait.wave.speed": "c", "min_stretch.value": "w", "max_stretch.value": "w"}
 
 
 class Problem(Exception):

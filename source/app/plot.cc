@@ -32,7 +32,7 @@ namespace crawler
       static const std::vector<Kind> list = {
         {"atlas", "an atlas", {"atlas.csv", "atlas.h5"}},
         {"tradeoff", "a tradeoff", {"tradeoff.csv", "tradeoff.h5"}},
-        {"optimize", "an optimisation", {"best", "best-1", "optimum.prm", "optimum-1.prm"}},
+        {"optimize", "an optimisation", {"starts.csv"}},
         {"sweep", "a sweep", {"results.h5"}},
         {"calibration", "a calibration", {"calibration.csv"}},
         {"kymograph", "a run", {"kymograph.vts", "statistics.csv", "solution.pvd", "summary.json"}},
