@@ -104,7 +104,7 @@ def fig_2b(results, numbers, out):
                         displacement_at(results.folder / name, 1), 1e-8, SOLVER)
         wave = results.summary(name)["gait"]["wave"]
         numbers.require("Fig. 2b", f"speed of the wave of strain along s, a = {a:+d} ({word})", a, wave["speed"], 0.02,
-                        "c, towards +s", 2)
+                        "-c, within 2 %", 2)
         if wave["direction"] != word:
             numbers.wrong.append(f"Fig. 2b: the wave is {wave['direction']}, but {word} is expected")
         run = Kymograph(results.folder / name, "stretch", "displacement")

@@ -11,7 +11,7 @@ import pathlib
 import subprocess
 import tempfile
 
-from plotting import Kymograph, Parser, Problem, draw_body, need, read_summary, run_script, save
+from plotting import Kymograph, Parser, Problem, draw_body, need, read_summary, root_folder, run_script, save
 
 need("numpy", "matplotlib")
 import matplotlib.pyplot as plt
@@ -41,8 +41,7 @@ def draw_panel(figure, axes, name, folder):
 
 def main():
     """Command line."""
-    here = pathlib.Path(__file__).resolve()
-    root = next((folder for folder in here.parents if (folder / "prm" / "examples").is_dir()), here.parents[2])
+    root = root_folder()
     pictures = root / "doc" / "images"
     parser = Parser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path, help="the program crawler")

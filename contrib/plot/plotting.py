@@ -49,6 +49,12 @@ class Unwritable(Problem):
     code = 6
 
 
+def root_folder():
+    """That with the folder prm: of the source code or of an installed program."""
+    here = pathlib.Path(__file__).resolve()
+    return next((folder for folder in here.parents if (folder / "prm").is_dir()), here.parents[2])
+
+
 def script():
     """The name of the script that runs."""
     return pathlib.Path(sys.argv[0]).name

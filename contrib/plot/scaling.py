@@ -13,7 +13,7 @@ matplotlib.
 import pathlib
 import sys
 
-from plotting import COLOURS, Problem, need, parser, read_rows, run_script, save, script
+from plotting import COLOURS, Problem, need, parser, read_rows, root_folder, run_script, save, script
 
 need("numpy", "matplotlib")
 import matplotlib.pyplot as plt
@@ -28,7 +28,7 @@ LOOKS = {"mass": (COLOURS[0], "o", r"$k \propto M$"), "material": (COLOURS[1], "
          "frequency": (COLOURS[0], "o", "same $k$"), "similar": (COLOURS[1], "x", r"$k \propto \nu$")}
 
 
-TABLE = pathlib.Path(__file__).resolve().parents[2] / "prm" / "studies" / "scaling.csv"
+TABLE = root_folder() / "prm" / "studies" / "scaling.csv"
 
 
 def draw_measured(panel):
