@@ -1,41 +1,38 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws an atlas of crawler: the outcome of every point, and how the measured error compares with the reported one.
 
-    contrib/plot/atlas.py OUTPUT_FOLDER
+    contrib/plot/atlas.py OUTPUT_FOLDER [--output PICTURE]
 
-Reads atlas.csv and parameters.prm of the folder and writes atlas.png and atlas.svg there; needs numpy and matplotlib
-(Debian: python3-matplotlib). Colours are those of Okabe and Ito, safe for colour-blind readers.
+Reads atlas.csv and parameters.prm of the folder and writes atlas.png and atlas.svg there (or PICTURE); needs numpy and
+matplotlib.
 """
-import argparse
 import csv
 import math
-import pathlib
-import re
-import sys
 
-CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
-SYMBOLS = {CHI: r"$\chi$", P: "$p$", "Body/Elastic modulus": "$k$", "Body/Friction coefficient": r"$\gamma$",
-           "Body/Length": "$L$", "Active stress/Optimal wave/Wave speed": "$c$", "Time/End time": "$T$"}
+from plotting import INK, SIZES, Parameters, Problem, existing, label, need, number, parser, run_script, save
+
+need("numpy", "matplotlib")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import ListedColormap, LogNorm
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+WAVE = "Active stress/Optimal wave/"
+CHI, P = WAVE + "Perturbation parameter", "Body/Anchoring exponent"
 WRONG = "silent wrong answer"
 COLOURS = {"finished": "#A6D0EC", "inverted inside": "#E69F00", "inverted at end": "#8C510A", "refused": "#D9D9D9",
            "not computed": "#FFFFFF", WRONG: "#D40000"}
 FAILURES = ("#CC79A7", "#7F7F7F", "#009E73", "#0072B2", "#F0E442", "#B3A2D4", "#333333")  # the most frequent first
-INK = "0.15"
-
-
-class Problem(Exception):
-    """What to tell the user."""
 
 
 class Atlas:
     """The columns of atlas.csv as grids: row i is the i-th value of the second axis, column j that of the first."""
 
     def __init__(self, folder):
-        import numpy as np
-        path = folder / "atlas.csv"
-        if not path.is_file():
-            raise Problem(f"{path} does not exist; the output folder of crawler atlas is expected")
+        path = existing(folder / "atlas.csv", "the output folder of crawler atlas")
         with open(path, newline="", encoding="utf-8") as file:
             reader = csv.DictReader(file)
             self.rows = list(reader)
@@ -53,17 +50,16 @@ class Atlas:
             self.error[i, j] = measured
             self.ratio[i, j] = measured / promised if promised > 0 else math.nan
         text = folder / "parameters.prm"
-        self.parameters = text.read_text(encoding="utf-8") if text.is_file() else ""
+        self.parameters = Parameters(text) if text.is_file() else None
 
     def entry(self, name):
-        """The value of an entry of parameters.prm whose name occurs once."""
-        match = re.search(rf"^\s*set {name}\s*=\s*([^#\n]*?)\s*(?:#.*)?$", self.parameters, re.MULTILINE)
-        return match[1] if match else ""
+        """The value of an entry of the optimal wave, body or time; empty if it is not known."""
+        return self.parameters.values.get(name, "") if self.parameters else ""
 
-
-def number(text):
-    """What is not known is not a number."""
-    return float(text) if text else math.nan
+    def label(self, axis):
+        """The name of the first or second axis."""
+        entry = self.entries[axis]
+        return label(entry, self.parameters.units.get(entry, "") if self.parameters else "")
 
 
 def is_logarithmic(values):
@@ -84,21 +80,15 @@ def edges(values):
     return [2 * values[0] - middle[0], *middle, 2 * values[-1] - middle[-1]]
 
 
-def label(entry):
-    """The name of an axis: the entry's last word, and its letter."""
-    symbol = SYMBOLS.get(entry)
-    return entry.split("/")[-1].lower() + (f" {symbol}" if symbol else "")
-
-
 def end_inversion(atlas):
     """The chi from which on an end inverts, 1 + (chi a_1/c) sin(2 pi c t/L) <= 0 at some t <= T; None if not known."""
     try:
-        c, length, duration, a_1 = (float(atlas.entry(name))
-                                    for name in ("Wave speed", "Length", "End time", "Sine coefficients"))
+        c, length, duration, a_1 = (float(atlas.entry(name)) for name in (
+            WAVE + "Wave speed", "Body/Length", "Time/End time", WAVE + "Sine coefficients"))
     except ValueError:
         return None
-    if (atlas.entry("Generator") != "optimal wave" or atlas.entry("Choose wave by") != "wave speed"
-            or atlas.entry("Cosine coefficients") != "0"):
+    if (atlas.entry("Active stress/Generator") != "optimal wave" or atlas.entry(WAVE + "Choose wave by") != "wave speed"
+            or atlas.entry(WAVE + "Cosine coefficients") != "0"):
         return None
     steps = [a_1 / c * math.sin(2 * math.pi * c * duration / length * i / 1000) for i in range(1001)]
     return -1 / min(steps) if min(steps) < 0 else None
@@ -106,9 +96,6 @@ def end_inversion(atlas):
 
 def draw_theory(axes, atlas):
     """What is known without a run, if the axes are chi and p; returns the handles of the legend."""
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     handles = []
     if atlas.entries != [CHI, P]:
         return handles
@@ -145,10 +132,6 @@ def mark_wrong(axes, atlas):
 
 def draw_outcomes(axes, legend, atlas):
     """Left panel: named colours, and their legend in axes of its own."""
-    import numpy as np
-    from matplotlib.colors import ListedColormap
-    from matplotlib.patches import Patch
-
     present = {str(name) for name in atlas.outcome.flat}
     names = [name for name in COLOURS if name in present]
     failures = sorted(present - set(COLOURS), key=lambda name: -(atlas.outcome == name).sum())
@@ -171,10 +154,6 @@ def draw_outcomes(axes, legend, atlas):
 
 def draw_errors(figure, axes, atlas):
     """Right panel: the measured error over the reported one, or the measured error if none was reported."""
-    import numpy as np
-    from matplotlib import colormaps
-    from matplotlib.colors import LogNorm
-
     relative = bool(np.isfinite(atlas.ratio).any())
     values = atlas.ratio if relative else atlas.error
     known = values[np.isfinite(values) & (values > 0)]
@@ -183,37 +162,27 @@ def draw_errors(figure, axes, atlas):
         return
     lowest = 1e-3 if relative else max(known.min(), 1e-16)
     norm = LogNorm(lowest, 1 if relative else max(known.max(), 10 * lowest), clip=False)
-    colours = colormaps["cividis"].with_extremes(over=COLOURS[WRONG], bad="0.93")
+    colours = colormaps[SIZES].with_extremes(over=COLOURS[WRONG], bad="0.93")
     shown = np.where(np.isfinite(values), np.maximum(values, lowest), np.nan)
     mesh = axes.pcolormesh(edges(atlas.x), edges(atlas.y), shown, cmap=colours, norm=norm,
                            **grid_lines(atlas))
     axes.set_facecolor("0.93")  # where nothing is known
     mark_wrong(axes, atlas)
     bar = figure.colorbar(mesh, ax=axes, extend="both" if relative else "neither", pad=0.03)
-    bar.set_label("measured error / reported error" if relative else "measured error [length]")
+    bar.set_label("measured error / reported error [1]" if relative else "measured error [length]")
     axes.set_title("error of the displacement")
 
 
 def draw(folder):
-    """Reads the files and writes the pictures."""
-    try:
-        import matplotlib
-    except ImportError:
-        raise Problem("matplotlib is missing; install it (Debian: apt install python3-matplotlib)") from None
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
+    """Reads the files and makes the figure."""
     atlas = Atlas(folder)
-    plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "xtick.labelsize": 9,
-                         "ytick.labelsize": 9, "axes.linewidth": 0.7, "hatch.linewidth": 0.5,
-                         "svg.hashsalt": "crawler"})
     figure = plt.figure(figsize=(7.5, 4.5), layout="constrained")
     left, right, legend = figure.subplot_mosaic("oe;ll", width_ratios=(1, 1.15), height_ratios=(1, 0.18)).values()
     draw_outcomes(left, legend, atlas)
     draw_errors(figure, right, atlas)
-    left.set_ylabel(label(atlas.entries[1]))
+    left.set_ylabel(atlas.label(1))
     for axes in left, right:
-        axes.set_xlabel(label(atlas.entries[0]))
+        axes.set_xlabel(atlas.label(0))
         axes.set(xlim=(edges(atlas.x)[0], edges(atlas.x)[-1]), ylim=(edges(atlas.y)[0], edges(atlas.y)[-1]))
         for name, values in ("x", atlas.x), ("y", atlas.y):
             if is_logarithmic(values):
@@ -223,24 +192,18 @@ def draw(folder):
                     axes.tick_params(axis=name, which="minor", length=0)
             else:
                 axes.locator_params(axis=name, steps=(1, 2, 5, 10), nbins=6)
-    try:
-        figure.savefig(folder / "atlas.png", dpi=200)
-        figure.savefig(folder / "atlas.svg", metadata={"Date": None})
-    except OSError as error:
-        raise Problem(f"cannot write the pictures: {error}") from None
+    return figure
 
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=pathlib.Path, help="output folder of crawler atlas")
-    options = parser.parse_args()
+    options = parser(__doc__, "atlas.png, atlas.svg").parse_args()
+    pictures = [options.output] if options.output else [options.folder / name for name in ("atlas.png", "atlas.svg")]
     try:
-        draw(options.folder)
-    except (Problem, OSError, ValueError) as problem:
-        sys.exit(f"atlas.py: {problem}")
-    print(f"wrote {options.folder / 'atlas.png'} and {options.folder / 'atlas.svg'}")
+        save(draw(options.folder), *pictures, dpi=200)
+    except (KeyError, ValueError) as error:
+        raise Problem(f"{options.folder / 'atlas.csv'} is not a table of crawler atlas ({error})") from None
 
 
 if __name__ == "__main__":
-    main()
+    run_script(main)

@@ -1,31 +1,23 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws the study of error bounds: the error that runs reported over their true error.
 
-    contrib/plot/calibration.py TABLE.csv [--output calibration.png]
+    contrib/plot/calibration.py TABLE.csv [--output PICTURE]
 
-Reads the table of build/tests/calibration; needs numpy and matplotlib (Debian: python3-matplotlib). Colours are those of
-Okabe and Ito, safe for colour-blind readers; each accuracy has a marker of its own.
+TABLE.csv is the table of build/tests/calibration, or a folder with calibration.csv. The picture is calibration.png
+beside it, unless --output names another one. Each accuracy has a colour and a marker of its own. Needs numpy and
+matplotlib.
 """
-import argparse
-import csv
-import pathlib
-import sys
+from plotting import COLOURS, DOTS, INK, Problem, existing, need, parser, read_rows, run_script, save
 
-STYLES = (("#0072B2", "o"), ("#D55E00", "^"), ("#009E73", "s"), ("#CC79A7", "D"), ("#E69F00", "v"))
-INK = "0.15"
-
-
-class Problem(Exception):
-    """What to tell the user."""
+need("numpy", "matplotlib")
+import matplotlib.pyplot as plt
+import numpy as np
 
 
 def read(path):
     """The runs with a reported error and a reference that is good enough to judge it."""
-    if not path.is_file():
-        raise Problem(f"{path} does not exist; the table of build/tests/calibration is expected")
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_rows(existing(path, "the table of build/tests/calibration"))
     if not rows or "reported_error" not in rows[0]:
         raise Problem(f"{path} is not a table of build/tests/calibration")
     judged = []
@@ -38,22 +30,13 @@ def read(path):
     return len(rows), judged
 
 
-def draw(table, output):
+def draw(table):
     """Left: reported over true error, both relative to the displacement. Right: how the ratio is distributed."""
-    try:
-        import matplotlib
-        import numpy as np
-    except ImportError:
-        raise Problem("matplotlib is missing; install it (Debian: apt install python3-matplotlib)") from None
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
     n_runs, judged = read(table)
     accuracies = sorted({row[0] for row in judged}, reverse=True)
-    plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.linewidth": 0.7, "svg.hashsalt": "crawler"})
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.5, 4.4), layout="constrained", width_ratios=(1.15, 1))
     for i, accuracy in enumerate(accuracies):
-        colour, marker = STYLES[i % len(STYLES)]
+        colour, marker = COLOURS[i % len(COLOURS)], DOTS[i % len(DOTS)]
         rows = np.array([row[1:] for row in judged if row[0] == accuracy])
         size = rows[:, 2] / accuracy
         true, reported = np.maximum(rows[:, 0] / size, 1e-16), rows[:, 1] / size
@@ -70,30 +53,24 @@ def draw(table, output):
     left.plot(line, line, color=INK, linewidth=0.9, label="reported = true")
     left.plot(line, 10 * line, color=INK, linewidth=0.7, linestyle=(0, (4, 3)), label="reported = 10 true")
     left.set(xscale="log", yscale="log", xlim=(low, 1e-2), ylim=(1e-10, 1e-2),
-             xlabel="true error / displacement", ylabel="reported error / displacement",
+             xlabel="true error / displacement $D$ [1]", ylabel="reported error / displacement $D$ [1]",
              title=f"{len(judged)} of {n_runs} runs (the reference can judge them)")
     below = dict(fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.17), borderaxespad=0)
     left.legend(ncols=2, columnspacing=1, **below)
     right.axvline(1, color=INK, linewidth=0.9)
     right.axvline(10, color=INK, linewidth=0.7, linestyle=(0, (4, 3)))
-    right.set(xscale="log", xlim=(0.3, 1e3), ylim=(0, 1), xlabel="reported error / true error",
-              ylabel="part of the runs below", title="how sharp the reported error is")
+    right.set(xscale="log", xlim=(0.3, 1e3), ylim=(0, 1), xlabel="reported error / true error [1]",
+              ylabel="part of the runs below [1]", title="how sharp the reported error is")
     right.legend(**below)
-    figure.savefig(output, dpi=200)
+    return figure
 
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("table", type=pathlib.Path, help="table of build/tests/calibration")
-    parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("calibration.png"), help="the picture")
-    options = parser.parse_args()
-    try:
-        draw(options.table, options.output)
-    except (Problem, OSError, ValueError) as problem:
-        sys.exit(f"calibration.py: {problem}")
-    print(f"wrote {options.output}")
+    options = parser(__doc__, "calibration.png").parse_args()
+    table = options.folder / "calibration.csv" if options.folder.is_dir() else options.folder
+    save(draw(table), options.output or table.parent / "calibration.png", dpi=200)
 
 
 if __name__ == "__main__":
-    main()
+    run_script(main)

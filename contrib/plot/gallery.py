@@ -1,21 +1,20 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs all parameter files of a folder and draws them on one sheet: the body on the ground, coloured by its stretch.
 
     contrib/plot/gallery.py PATH_TO_CRAWLER [--examples prm/examples] [--output doc/images/gallery.png]
 
 Of an installed program (share/crawler/plot/gallery.py) the examples beside it, to gallery.png in the current folder.
-Needs matplotlib (Debian: python3-matplotlib). Each panel has its own colours, from the smallest stretch (dark) to the
-largest (bright), which stand in its title with the displacement.
+Needs numpy and matplotlib. Each panel has colours, units and a scale of its own; its title has the displacement D.
 """
-import argparse
-import json
 import pathlib
 import subprocess
-import sys
 import tempfile
 
-from kymograph import Problem, read_kymograph, read_number
+from plotting import Kymograph, Parser, Problem, draw_body, need, read_summary, root_folder, run_script, save
+
+need("numpy", "matplotlib")
+import matplotlib.pyplot as plt
 
 COLUMNS = 4
 
@@ -30,63 +29,41 @@ def run(program, parameters, folder):
     return output
 
 
-def draw_body(axes, name, folder):
+def draw_panel(figure, axes, name, folder):
     """The body on the ground over time, with five of its points."""
-    parameters = (folder / "parameters.prm").read_text(encoding="utf-8")
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    length, duration = read_number(parameters, "Length"), read_number(parameters, "End time")
-    s, t, stretch, displacement = read_kymograph(folder / "kymograph.vts", ("stretch", "displacement"))
-    position = [[length * x + u for x, u in zip(s, row)] for row in displacement]
-    times = [duration * y for y in t]
-    axes.pcolormesh(position, [[time] * len(s) for time in times], stretch, cmap="cividis", shading="gouraud",
-                    rasterized=True)
-    for quarter in range(5):
-        i = quarter * (len(s) - 1) // 4
-        axes.plot([row[i] for row in position], times, color="black", linewidth=0.9 if quarter in (0, 4) else 0.4)
-    low, high = min(map(min, stretch)), max(map(max, stretch))
-    axes.set_title(f"{name}\nD = {summary['displacement']:.3g}, stretch {low:.2g} to {high:.2g}", fontsize=8)
+    mesh = draw_body(axes, Kymograph(folder, "stretch", "displacement"), parts=4)
+    displacement = read_summary(folder, "the output folder of a run")["displacement"]
+    axes.set_title(f"{name}\n$D$ = {displacement:.3g}", fontsize=8)
+    axes.set(xlabel="", ylabel="")
     axes.tick_params(labelsize=7)
-    axes.set_ylim(0, duration)
+    figure.colorbar(mesh, ax=axes, aspect=25, pad=0.02).ax.tick_params(labelsize=6)
 
 
 def main():
     """Command line."""
-    here = pathlib.Path(__file__).resolve()
-    root = next((folder for folder in here.parents if (folder / "prm" / "examples").is_dir()), here.parents[2])
+    root = root_folder()
     pictures = root / "doc" / "images"
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = Parser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path, help="the program crawler")
     parser.add_argument("--examples", type=pathlib.Path, default=root / "prm" / "examples")
     parser.add_argument("--output", type=pathlib.Path, default=(pictures if pictures.is_dir() else pathlib.Path()) / "gallery.png")
     options = parser.parse_args()
-    try:
-        import matplotlib
-    except ImportError:
-        raise Problem("matplotlib is missing; install it (Debian: apt install python3-matplotlib)") from None
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
     files = sorted(options.examples.glob("*.prm"))
     if not files:
         raise Problem(f"{options.examples} has no parameter files")
     rows = -(-len(files) // COLUMNS)
-    figure, panels = plt.subplots(rows, COLUMNS, figsize=(2.6 * COLUMNS, 2.4 * rows), layout="constrained", squeeze=False)
+    figure, panels = plt.subplots(rows, COLUMNS, figsize=(2.75 * COLUMNS, 2.4 * rows), layout="constrained", squeeze=False)
     with tempfile.TemporaryDirectory() as name:
         for panel, parameters in zip(panels.flat, files):
-            draw_body(panel, parameters.stem.replace("_", " "), run(options.program.resolve(), parameters, pathlib.Path(name)))
+            output = run(options.program.resolve(), parameters, pathlib.Path(name))
+            draw_panel(figure, panel, parameters.stem.replace("_", " "), output)
             print(parameters.stem, flush=True)
     for panel in panels.flat[len(files):]:
         panel.axis("off")
-    figure.supxlabel("position on the ground", fontsize=9)
-    figure.supylabel("time", fontsize=9)
-    figure.savefig(options.output, dpi=130)
-    from PIL import Image  # comes with matplotlib; 256 colours: less than half the size
-    Image.open(options.output).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(options.output, optimize=True)
-    print(f"wrote {options.output}")
+    figure.supxlabel(r"position $\zeta$ on the ground [length]; colours: stretch $w$ [1]", fontsize=9)
+    figure.supylabel("time $t$ [time]", fontsize=9)
+    save(figure, options.output, dpi=110, few_colours=True)
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (Problem, OSError) as problem:
-        sys.exit(f"gallery.py: {problem}")
+    run_script(main)

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws the table of crawler sweep: a heat map over two axes, lines over one, points for random designs.
 
@@ -12,40 +12,31 @@ points with this value of an axis. COLUMN is any column of numbers (displacement
 --scale is that of the values; auto: logarithmic if they are positive and differ by more than a factor of 1000. Axes whose
 values have equal ratios are logarithmic. --fit: the power law through the points of each line, in its label; lines that
 change sign are drawn without. Values of points that did not finish are not drawn, but which and why. Needs numpy,
-h5py and matplotlib (Debian: python3-h5py, python3-matplotlib). Colours are safe for colour-blind readers.
+h5py and matplotlib.
 """
-import argparse
 import difflib
 import os
 import pathlib
 import re
-import sys
 import textwrap
 
-os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a sweep under way may be looked at
-try:
-    import h5py
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    import numpy as np
-    from matplotlib import colors, patches, ticker
-    from matplotlib.path import Path
-except ImportError as missing:
-    sys.exit(f"sweep.py: {missing}; on Debian: apt install python3-h5py python3-matplotlib")
+from plotting import COLOURS, DOTS, LINES, SIGNED, SIZES, Problem, need, parser, run_script, save
+from plotting import label as axis_label
 
-LINES = (("#0072B2", "o", "-"), ("#D55E00", "s", "--"), ("#009E73", "^", "-."), ("#CC79A7", "D", ":"),
-         ("#E69F00", "v", "-"), ("#56B4E9", "P", "--"), ("#000000", "X", "-."))
+os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a sweep under way may be looked at
+need("numpy", "h5py", "matplotlib")
+import h5py
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib import colors, patches, ticker
+from matplotlib.path import Path
+
 # What became of points without a value: grey, hatch, marker in line plots.
 MARKS = (("0.88", "////", "x"), ("0.72", "....", "+"), ("0.80", "\\\\\\\\", "1"), ("0.60", "xxxx", "2"),
          ("0.94", "++", "3"), ("0.50", "oo", "4"))
 STATUS_COLOURS = {"finished": "#FFFFFF", "inverted": "#E69F00", "failed": "#D55E00", "stopped": "#CC79A7",
                   "not": "0.75"}
 MOST_LINES, MOST_PANELS = 60, 4  # lines in a picture; small pictures in a row or column
-
-
-class Problem(Exception):
-    """What to tell the user."""
 
 
 class Sweep:
@@ -128,7 +119,7 @@ class Sweep:
         self.chosen = self.chosen[mine]
 
     def label(self, name, unit=True):
-        """The last words of a name, more if an axis has the same ones, and its unit."""
+        """The last words of a name, more if an axis has the same ones; with its symbol and unit."""
         parts = name.split("/")
         short = "/".join(parts[-1:])
         for n in range(1, len(parts) + 1):
@@ -136,8 +127,7 @@ class Sweep:
             if sum(("/" + axis).endswith("/" + short) for axis in self.axes) < 2:
                 break
         short = short.replace("_", " ").replace(".", ", ")
-        of = self.units[name] if unit else ""
-        return f"{short} [{of}]" if of not in ("", "1") else short
+        return axis_label(name, self.units[name], short) if unit else short
 
 
 class Marks:
@@ -215,6 +205,7 @@ class Axis:
 
     def __init__(self, sweep, name):
         self.name, self.label, self.is_number = name, sweep.label(name), sweep.is_number(name)
+        self.short = sweep.label(name, False)
         column = sweep.column(name)
         self.values, first, self.index = np.unique(column, return_index=True, return_inverse=True)
         if not self.is_number:  # words in the order of the file
@@ -262,13 +253,13 @@ def norm_of(values, scale):
     if low < 0 < high:
         most = max(-low, high)
         near = max(np.quantile(np.abs(values[values != 0]), 0.1), 1e-12 * most)
-        return "PuOr", colors.SymLogNorm(near, vmin=-most, vmax=most) if log else colors.CenteredNorm(halfrange=most)
+        return SIGNED, colors.SymLogNorm(near, vmin=-most, vmax=most) if log else colors.CenteredNorm(halfrange=most)
     if log and low > 0 and high > low:
-        return "cividis", colors.LogNorm(low, high)
+        return SIZES, colors.LogNorm(low, high)
     if log and high < 0 and high > low:
-        return "cividis", colors.SymLogNorm(-high, vmin=low, vmax=high)
+        return SIZES, colors.SymLogNorm(-high, vmin=low, vmax=high)
     margin = 0 if high > low else 0.01 * abs(high) or 1.
-    return "cividis", colors.Normalize(low - margin, high + margin)
+    return SIZES, colors.Normalize(low - margin, high + margin)
 
 
 def hatch_cells(axes, x_edges, y_edges, mask, face, hatch):
@@ -299,7 +290,7 @@ def heat_map(axes, x, y, mine, values, marks, look):
     mesh = None
     if look is not None:
         mesh = axes.pcolormesh(x_edges, y_edges, grid, cmap=look[0], norm=look[1], rasterized=True)
-        if isinstance(look[1], (colors.CenteredNorm, colors.SymLogNorm)) and min(shape) > 2 and look[0] == "PuOr":
+        if isinstance(look[1], (colors.CenteredNorm, colors.SymLogNorm)) and min(shape) > 2 and look[0] == SIGNED:
             if np.nanmin(grid) < 0 < np.nanmax(grid):
                 axes.contour(x.at, y.at, grid, [0.], colors="black", linewidths=1)
     for i in range(len(marks.names)):
@@ -343,14 +334,14 @@ def lines(axes, x, mine, values, errors, marks, other, look, options, panel):
         some = np.flatnonzero(mine & (other.index == key) if other else mine)
         some = some[np.argsort(x.at[x.index[some]], kind="stable")]
         at, y = x.at[x.index[some]], np.where(marks.drawn[some], values[some], np.nan)
-        colour, marker, style = LINES[number % len(LINES)]
+        colour, marker, style = (some_of[number % len(COLOURS)] for some_of in (COLOURS, DOTS, LINES))
         if not x.is_number:
             style = ""
         if look is not None:
             colour, marker = plt.get_cmap(look[0])(look[1](other.values[key])), "" if style else "o"
             style = style and "-"
         known = np.isfinite(y)
-        text = f"{other.label.split(' [')[0]} = {other.texts()[key]}" if other and (look is None or options.fit) else ""
+        text = f"{other.short} = {other.texts()[key]}" if other and (look is None or options.fit) else ""
         if options.fit:
             law = power_law(at[known], y[known])
             laws.append((", ".join(([f"{other.name} = {other.texts()[key]}"] if other else []) + panel), law,
@@ -489,7 +480,7 @@ def draw(sweep, options):
     look = None if by_status else norm_of(drawn, options.scale)
     line_look, errors = None, None
     if as_lines:
-        if y and len(y.values) > len(LINES):
+        if y and len(y.values) > len(COLOURS):
             if len(y.values) > MOST_LINES or not y.is_number:
                 if not y.is_number:
                     raise Problem(f'{len(y.values)} lines are too many to tell apart; choose by --where "{y.name}=VALUE"')
@@ -528,7 +519,7 @@ def draw(sweep, options):
             elif column == 0:
                 axes.set_ylabel(sweep.label(options.value))
             if rest:
-                titles = [f"{axis.label.split(' [')[0]} = {axis.texts()[which]}" for axis, which in zip(rest, (i, j))]
+                titles = [f"{axis.short} = {axis.texts()[which]}" for axis, which in zip(rest, (i, j))]
                 axes.set_title("\n".join(textwrap.fill(title, 34) for title in titles), fontsize=8)
     if options.fit:
         tell_laws(laws, x, options.value)
@@ -537,7 +528,7 @@ def draw(sweep, options):
             scale_lines(axes, drawn, [least for _, law, least in laws if law])
     if mesh is not None:
         bar = figure.colorbar(mesh, ax=panels, label=sweep.label(options.value))
-        if look[0] == "PuOr" and not options.dots:
+        if look[0] == SIGNED and not options.dots:
             bar.ax.axhline(0., color="black", linewidth=1)  # as the line in the map
     elif line_look:
         figure.colorbar(plt.cm.ScalarMappable(line_look[1], line_look[0]), ax=panels, label=y.label)
@@ -570,32 +561,21 @@ def draw(sweep, options):
 
 def main():
     """Reads the arguments, draws and writes."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--x", metavar="AXIS")
-    parser.add_argument("--y", metavar="AXIS")
-    parser.add_argument("--lines", action="store_true")
-    parser.add_argument("--value", metavar="COLUMN", default="displacement")
-    parser.add_argument("--where", metavar="AXIS=VALUE", action="append", default=[])
-    parser.add_argument("--scale", choices=("auto", "linear", "log"), default="auto")
-    parser.add_argument("--fit", action="store_true")
-    parser.add_argument("--output", type=pathlib.Path, metavar="PICTURE")
-    options = parser.parse_args()
+    own = parser(__doc__, "results.png, results.svg")
+    own.add_argument("--x", metavar="AXIS")
+    own.add_argument("--y", metavar="AXIS")
+    own.add_argument("--lines", action="store_true")
+    own.add_argument("--value", metavar="COLUMN", default="displacement")
+    own.add_argument("--where", metavar="AXIS=VALUE", action="append", default=[])
+    own.add_argument("--scale", choices=("auto", "linear", "log"), default="auto")
+    own.add_argument("--fit", action="store_true")
+    options = own.parse_args()
     sweep = Sweep(options.folder)
     for condition in options.where:
         sweep.where(condition)
     figure = draw(sweep, options)
-    pictures = [options.folder / name for name in ("results.png", "results.svg")]
-    for picture in [options.output] if options.output else pictures:
-        try:
-            figure.savefig(picture, dpi=160)
-        except (OSError, ValueError) as error:
-            raise Problem(f'cannot write "{picture}": {getattr(error, "strerror", None) or error}') from error
-        print(f"wrote {picture}")
+    save(figure, *([options.output] if options.output else [options.folder / name for name in ("results.png", "results.svg")]))
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except Problem as problem:
-        sys.exit(f"sweep.py: {problem}")
+    run_script(main)

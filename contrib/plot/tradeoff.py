@@ -1,20 +1,23 @@
-#!/usr/bin/python3
+#!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws a tradeoff of crawler: the error of every setting over its processor time, and the Pareto fronts.
 
-    contrib/plot/tradeoff.py OUTPUT_FOLDER
+    contrib/plot/tradeoff.py OUTPUT_FOLDER [--output PICTURE]
 
-Reads tradeoff.csv and summary.json of the folder and writes tradeoff.png and tradeoff.svg there; needs numpy and
-matplotlib (Debian: python3-matplotlib). Colours are those of Okabe and Ito, safe for colour-blind readers; integrators
-differ by their markers.
+Reads tradeoff.csv and summary.json of the folder and writes tradeoff.png and tradeoff.svg there (or PICTURE); needs
+numpy and matplotlib. Colours are formulation, mesh and engine; integrators differ by their markers.
 """
-import argparse
 import collections
-import csv
 import json
 import math
-import pathlib
-import sys
+
+from plotting import INK, Problem, existing, need, number, parser, read_rows, run_script, save
+
+need("numpy", "matplotlib")
+import matplotlib.pyplot as plt
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import LogLocator, NullLocator
 
 # What computes: colour. Names are (formulation, mesh, engine) of the table.
 WAYS = {("position", "uniform", "fused"): ("position, fused engine", "#0072B2"),
@@ -26,27 +29,14 @@ WAYS = {("position", "uniform", "fused"): ("position, fused engine", "#0072B2"),
 RUNGS = {"perturbation": ("perturbation, closed form", "#000000", "*"),
          "kinematic": ("kinematic, quadrature", "#7F7F7F", "X")}
 MARKERS = ("o", "s", "^", "D", "v", "P", "<", ">")  # one for each integrator
-INK = "0.15"
-
-
-class Problem(Exception):
-    """What to tell the user."""
-
-
-def number(text):
-    """What is not known is not a number."""
-    return float(text) if text else math.nan
 
 
 class Tradeoff:
     """The rows of tradeoff.csv, and the summary."""
 
     def __init__(self, folder):
-        path = folder / "tradeoff.csv"
-        if not path.is_file():
-            raise Problem(f"{path} does not exist; the output folder of crawler tradeoff is expected")
-        with open(path, newline="", encoding="utf-8") as file:
-            self.rows = list(csv.DictReader(file))
+        path = existing(folder / "tradeoff.csv", "the output folder of crawler tradeoff")
+        self.rows = read_rows(path)
         summary = folder / "summary.json"
         self.summary = json.loads(summary.read_text(encoding="utf-8")) if summary.is_file() else {}
         self.finished = [row for row in self.rows if row["status"] == "finished"]
@@ -85,8 +75,6 @@ def way_of(row):
 def draw_ways(axes, tradeoff):
     """All settings as dots, and for each integrator of each way the best of them with a marker; returns the handles for
     the ways and for the integrators."""
-    from matplotlib.lines import Line2D
-
     groups = collections.defaultdict(list)
     for row in tradeoff.finished:
         groups[way_of(row), row["integrator"]].append((number(row["seconds"]), number(row["shown error"])))
@@ -108,8 +96,6 @@ def draw_ways(axes, tradeoff):
 
 def draw_fronts(axes, tradeoff):
     """Steps: what a budget of time buys. Returns the handles of the legend."""
-    from matplotlib.lines import Line2D
-
     handles = []
     for batch, style, name in ((False, "-", "Pareto front of single runs"), (True, (0, (4, 2)), "... of batches")):
         points = tradeoff.front(batch)
@@ -121,8 +107,6 @@ def draw_fronts(axes, tradeoff):
 
 def draw_bar(axes, tradeoff):
     """The errors that cannot be told from 0."""
-    from matplotlib.patches import Patch
-
     bar = tradeoff.summary.get("reference", {}).get("relative_bar")
     if not bar:
         return []
@@ -133,22 +117,12 @@ def draw_bar(axes, tradeoff):
 
 
 def draw(folder):
-    """Reads the files and writes the pictures."""
-    try:
-        import matplotlib
-    except ImportError:
-        raise Problem("matplotlib is missing; install it (Debian: apt install python3-matplotlib)") from None
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    from matplotlib.ticker import LogLocator, NullLocator
-
+    """Reads the files and makes the figure."""
     tradeoff = Tradeoff(folder)
-    plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "xtick.labelsize": 9,
-                         "ytick.labelsize": 9, "axes.linewidth": 0.7, "hatch.linewidth": 0.5,
-                         "svg.hashsalt": "crawler"})
     figure = plt.figure(figsize=(7.5, 5.8), layout="constrained")
     axes, legend = figure.subplot_mosaic("p;l", height_ratios=(1, 0.21)).values()
-    axes.set(xscale="log", yscale="log", xlabel="processor time of a run [s]", ylabel="relative error of the displacement")
+    axes.set(xscale="log", yscale="log", xlabel="processor time of a run [s]",
+             ylabel="relative error of the displacement $D$ [1]")
     ways, integrators = draw_ways(axes, tradeoff)
     handles = ways + draw_fronts(axes, tradeoff) + integrators + draw_bar(axes, tradeoff)
     axes.yaxis.set_major_locator(LogLocator(numticks=20))
@@ -163,24 +137,15 @@ def draw(folder):
     axes.set_title(note)
     legend.axis("off")
     legend.legend(handles=handles, loc="center", ncols=3, fontsize=8, frameon=False, borderpad=0, borderaxespad=0)
-    try:
-        figure.savefig(folder / "tradeoff.png", dpi=200)
-        figure.savefig(folder / "tradeoff.svg", metadata={"Date": None}, dpi=200)
-    except OSError as error:
-        raise Problem(f"cannot write the pictures: {error}") from None
+    return figure
 
 
 def main():
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=pathlib.Path, help="output folder of crawler tradeoff")
-    options = parser.parse_args()
-    try:
-        draw(options.folder)
-    except (Problem, OSError, ValueError) as problem:
-        sys.exit(f"tradeoff.py: {problem}")
-    print(f"wrote {options.folder / 'tradeoff.png'} and {options.folder / 'tradeoff.svg'}")
+    options = parser(__doc__, "tradeoff.png, tradeoff.svg").parse_args()
+    pictures = [options.output] if options.output else [options.folder / name for name in ("tradeoff.png", "tradeoff.svg")]
+    save(draw(options.folder), *pictures, dpi=200)
 
 
 if __name__ == "__main__":
-    main()
+    run_script(main)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/app/check.h>
 #include <crawler/app/command_line.h>
+#include <crawler/app/plot.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/base/petsc_object.h>
@@ -210,6 +211,37 @@ namespace crawler
       }
     }
 
+    /// crawler plot: what it does not know is for the script.
+    struct PlotCommand
+    {
+      CLI::App *command = nullptr;
+      std::string path, kind;
+      bool help = false;
+
+      explicit PlotCommand(CLI::App &app)
+        : command(app.add_subcommand("plot", "Draws the output folder of a run or study into it"))
+      {
+        command->set_help_flag();
+        command->add_option("DIR", path, "Output folder of a run or study, or the table of a calibration");
+        command->add_option("--kind", kind, fmt::format("{} (default: what fits)", fmt::join(plot_kinds(), ", ")));
+        command->add_flag("-h,--help", help, "Help; behind DIR that of the script, which takes all other options");
+        command->allow_extras();
+      }
+
+      ExitCode
+      operator()(MPI_Comm communicator) const
+      {
+        std::vector<std::string> options = command->remaining();
+        if (help && !path.empty())
+          options.emplace_back("--help");
+        if (!help || !path.empty())
+          return plot(communicator, path, kind, options);
+        if (rank_of(communicator) == 0)
+          std::cout << command->help();
+        return ExitCode::finished;
+      }
+    };
+
     int
     dispatch(MPI_Comm communicator,
              const std::vector<std::string> &arguments,
@@ -233,6 +265,8 @@ namespace crawler
       CLI::App *parameter_command = app.add_subcommand("parameters", "Prints every entry of the parameter file");
       parameter_command->add_option("--format", format, "prm, json or markdown");
 
+      PlotCommand plot_command(app);
+
       require_command(app, arguments);
       if (!petsc_options.empty() && !petsc_options[0].starts_with("-"))
         throw InputError("behind \"--\" stands \"" + petsc_options[0] +
@@ -252,7 +286,8 @@ namespace crawler
         throw InputError(in_words(error, app, arguments) + " (crawler --help tells the commands and options)");
       }
       const CLI::App *const chosen = app.get_subcommands().front();
-      if (chosen != parameter_command && chosen->count("--output") > 0 && options.output.empty())
+      if (chosen != parameter_command && chosen != plot_command.command && chosen->count("--output") > 0 &&
+          options.output.empty())
         throw InputError("behind \"--output\" stands \"\", but the name of a folder is expected");
       const auto command = std::find_if(
         std::begin(commands), std::end(commands), [&](const Command &c) { return c.name == chosen->get_name(); });
@@ -261,6 +296,8 @@ namespace crawler
         throw InputError(fmt::format("behind \"--\" stands \"{}\", but the command \"{}\" has no use for PETSc options",
                                      petsc_options[0],
                                      chosen->get_name()));
+      if (chosen == plot_command.command)
+        return static_cast<int>(plot_command(communicator));
       if (command == std::end(commands))
         return first ? print_parameters(format) : 0;
       if (!petsc_options.empty()) // they are for PETSc's objects, unless the user wants something else

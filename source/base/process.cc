@@ -6,12 +6,32 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 
 namespace crawler
 {
-  bool
-  run_silently(const std::vector<std::string> &command)
+  namespace
+  {
+    /// What comes out of a pipe until its other end is closed.
+    std::string
+    all_of(const int pipe)
+    {
+      std::string text;
+      std::array<char, 4096> part;
+      while (true)
+      {
+        const ssize_t n = read(pipe, part.data(), part.size());
+        if (n > 0)
+          text.append(part.data(), n);
+        else if (n == 0 || errno != EINTR)
+          return text;
+      }
+    }
+  } // namespace
+
+  ProgramEnd
+  run_program(const std::vector<std::string> &command, const bool shown)
   {
     std::vector<std::string> words = command;
     std::vector<char *> pointers;
@@ -19,19 +39,30 @@ namespace crawler
       pointers.push_back(word.data());
     pointers.push_back(nullptr);
 
+    ProgramEnd end;
+    std::array<int, 2> pipe_of_errors;
+    if (pipe2(pipe_of_errors.data(), O_CLOEXEC) != 0)
+      return end;
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-      posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
-    pid_t id         = 0;
-    const int failed = posix_spawnp(&id, pointers[0], &actions, nullptr, pointers.data(), environ);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    if (!shown)
+      posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, pipe_of_errors[1], STDERR_FILENO);
+    pid_t id    = 0;
+    end.started = posix_spawnp(&id, pointers[0], &actions, nullptr, pointers.data(), environ) == 0;
     posix_spawn_file_actions_destroy(&actions);
-    if (failed != 0)
-      return false;
+    close(pipe_of_errors[1]);
+    end.errors = all_of(pipe_of_errors[0]);
+    close(pipe_of_errors[0]);
+    if (!end.started)
+      return end;
     int status = 0;
     while (waitpid(id, &status, 0) < 0)
       if (errno != EINTR)
-        return false;
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+        return end;
+    if (WIFEXITED(status))
+      end.status = WEXITSTATUS(status);
+    return end;
   }
 } // namespace crawler

@@ -154,7 +154,7 @@ def main():
         _, summary = crawler(folder, WAVE)
         expect(summary["sensitivities"] is None, "sensitivities that nobody wants")
         plot = subprocess.run([sys.executable, PLOT, folder], capture_output=True, text=True, check=False)
-        expect(plot.returncode == 1 and "Output/Sensitivities" in plot.stderr, f"sensitivity.py on no run: {plot.stderr}")
+        expect(plot.returncode == 2 and "Output/Sensitivities" in plot.stderr, f"sensitivity.py on no run: {plot.stderr}")
 
         phase = "Active stress/Segments/Phase lag"
         _, summary = crawler(folder, ROBOT, "Time/End time=1.3", "Output/Sensitivities=" + phase)

@@ -92,6 +92,7 @@ namespace crawler
                              "tradeoff.png",
                              "tradeoff.svg",
                              "recommendations.prm",
+                             "scaling.png",
                              "starts.csv",
                              "optimum.prm",
                              "optimize.png",

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/base/process.h>
 #include <crawler/base/versions.h>
 #include <crawler/base/work_queue.h>
 #include <crawler/parameters/declarations.h>
@@ -132,31 +131,6 @@ namespace crawler
       if (old_values.count(entry) == 0)
         compare(entry);
     return list;
-  }
-
-  std::string
-  plot_script(const std::string &name)
-  {
-    // Beside an installed program, else in the folder of the source code.
-    std::error_code ignored;
-    const auto program   = std::filesystem::read_symlink("/proc/self/exe", ignored);
-    const auto installed = program.parent_path().parent_path() / CRAWLER_INSTALLED_PLOTS / name;
-    return std::filesystem::exists(installed, ignored) ? installed.string()
-                                                       : CRAWLER_SOURCE_DIR "/contrib/plot/" + name;
-  }
-
-  void
-  draw(const std::string &script, const std::filesystem::path &folder, Log &log)
-  {
-    const std::string path    = plot_script(script);
-    const std::string debians = "/usr/bin/python3";
-    for (const std::string &python : {debians, std::string("python3")})
-      if (run_silently({python, path, folder.string()}))
-        return;
-    log.line(fmt::format("There is no picture (it needs Python with numpy and matplotlib); draw it with: "
-                         "python3 {} {}",
-                         path,
-                         folder.string()));
   }
 
   bool

@@ -7,6 +7,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/pictures.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/core/study_folder.h>
 #include <crawler/studies/optimize/gradient_check.h>

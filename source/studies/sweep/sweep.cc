@@ -131,9 +131,8 @@ namespace crawler
       if (end.status != "finished")
         log.warn(
           fmt::format("stopped by {}; --resume goes on", end.reason == "signal" ? "a signal" : "Sweep/Time limit"));
-      log.line(fmt::format("Results are in {0}/results.h5 and {0}/results.csv; draw them with: {1} {0}",
-                           folder.string(),
-                           plot_script("sweep.py")));
+      log.line(fmt::format("Results are in {0}/results.h5 and {0}/results.csv; draw them with: crawler plot {0}",
+                           folder.string()));
     }
   } // namespace
 

@@ -10,6 +10,7 @@
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/pictures.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/core/study_folder.h>
 #include <crawler/studies/tradeoff/tradeoff.h>

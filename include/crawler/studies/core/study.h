@@ -61,14 +61,6 @@ namespace crawler
   std::vector<std::string>
   differences(const std::string &before, const std::string &after, const std::vector<std::string> &others);
 
-  /// The path of a script in contrib/plot, also of an installed program.
-  std::string
-  plot_script(const std::string &name);
-
-  /// Draws the picture of @p folder with the script of this name in contrib/plot, or says how to.
-  void
-  draw(const std::string &script, const std::filesystem::path &folder, Log &log);
-
   /// The parts of a study, which the ranks take one after the other.
   struct SharedWork
   {

@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the scripts of this folder share: which Python modules they need, the files of crawler, times, names of axes,
+colours, and how pictures are written. It is no script of its own.
+
+A script that fails says why in one sentence and ends with 2 (bad input), 6 (a file that cannot be written) or 69 (no
+Python has the modules that it needs).
+"""
+import argparse
+import array
+import base64
+import csv
+import importlib
+import json
+import os
+import pathlib
+import re
+import sys
+from xml.etree import ElementTree
+
+DEBIANS_PYTHON, LACKING = "/usr/bin/python3", "CRAWLER_LACKING_PYTHON"  # the latter: what another Python lacks
+PACKAGES = {"h5py": "python3-h5py", "matplotlib": "python3-matplotlib", "numpy": "python3-numpy"}
+
+# Those of Okabe and Ito, safe for colour-blind readers, with a line and a marker each for grey print.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+LINES = ("-", "--", "-.", ":", "-", "--", "-.")
+DOTS = ("o", "s", "^", "D", "v", "P", "X")
+INK = "0.15"                                # dark grey
+SIZES, SIGNED = "cividis", "PuOr_r"         # colour maps: of positive numbers, of numbers of both signs
+
+# Name and symbol (doc/theory.md, "Nomenclature") and unit of what pictures show.
+NAMES = {"s": "material coordinate $s$ [length]", "t": "time $t$ [time]", "position": r"position $\zeta$ [length]",
+         "displacement": "displacement $D$ [length]", "stretch": "stretch $w$ [1]", "strain": "strain $w-1$ [1]",
+         "active_stress": "active stress $m$ [force]", "work": "work $W$ [force length]"}
+SYMBOLS = {"Body/Length": "L", "Body/Elastic modulus": "k", "Body/Friction coefficient": r"\gamma",
+           "Body/Anchoring exponent": "p", "Time/End time": "T",
+           "Active stress/Optimal wave/Perturbation parameter": r"\chi", "Active stress/Optimal wave/Wave speed": "c",
+           "Active stress/Optimal wave/Energy": "H", "displacement": "D", "stress_power": "W", "dissipation": "Q",
+           "gait.displacement": r"\Delta", "gait.period": "P", "gait.frequency": r"\nu", "gait.speed": "U",
+           "gait.wave.speed": "c", "min_stretch.value": "w", "max_stretch.value": "w"}
+
+
+class Problem(Exception):
+    """What to tell the user about the input."""
+    code = 2
+
+
+class Unwritable(Problem):
+    """A picture that cannot be written."""
+    code = 6
+
+
+def root_folder():
+    """That with the folder prm: of the source code or of an installed program."""
+    here = pathlib.Path(__file__).resolve()
+    return next((folder for folder in here.parents if (folder / "prm").is_dir()), here.parents[2])
+
+
+def script():
+    """The name of the script that runs."""
+    return pathlib.Path(sys.argv[0]).name
+
+
+def need(*modules):
+    """Sees to it that all modules are there: if this Python lacks one, Debian's Python goes on with the script. If that
+    lacks one too, or is not there, the script ends and says which Python lacks what. Pictures need no screen."""
+    missing = []
+    for name in modules:
+        try:
+            importlib.import_module(name)
+        except ImportError:
+            missing.append(name)
+    if missing:
+        lacks = f"{os.environ.get(LACKING, '')}{sys.executable} has no {' and no '.join(missing)}"
+        if LACKING not in os.environ and sys.prefix != "/usr" and os.access(DEBIANS_PYTHON, os.X_OK):
+            os.environ[LACKING] = lacks + "; "
+            os.execv(DEBIANS_PYTHON, [DEBIANS_PYTHON, *sys.argv])
+        packages = " ".join(PACKAGES[name] for name in missing)
+        print(f"{script()}: {lacks} (on Debian: apt install {packages})", file=sys.stderr)
+        sys.exit(os.EX_UNAVAILABLE)
+    if "matplotlib" in modules:
+        import matplotlib
+        matplotlib.use("Agg")
+        import matplotlib.pyplot as plt
+        plt.rcParams.update({"font.size": 10, "axes.titlesize": 10, "axes.labelsize": 10, "xtick.labelsize": 9,
+                             "ytick.labelsize": 9, "axes.linewidth": 0.7, "hatch.linewidth": 0.5,
+                             "svg.hashsalt": "crawler"})
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong with the command line in one sentence."""
+
+    def error(self, message):
+        self.exit(Problem.code, f"{script()}: {message} (--help tells the arguments)\n")
+
+
+def parser(doc, output="", time=False):
+    """A command line that begins with a folder. @p output describes the picture; @p time: options for a part of the run."""
+    own = Parser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    own.add_argument("folder", type=pathlib.Path, metavar="OUTPUT_FOLDER")
+    if output:
+        own.add_argument("--output", type=pathlib.Path, metavar="PICTURE",
+                         help=f"the picture, .png, .svg or .pdf (default: {output} in the folder)")
+    if time:
+        own.add_argument("--from", dest="begin", type=float, metavar="TIME", help="draws from this time on")
+        own.add_argument("--to", dest="end", type=float, metavar="TIME", help="draws up to this time")
+        own.add_argument("--last-stride", action="store_true", help="draws the last stride only")
+    return own
+
+
+def run_script(main):
+    """Calls main() and says in one sentence what went wrong."""
+    try:
+        main()
+    except Problem as problem:
+        print(f"{script()}: {problem}", file=sys.stderr)
+        sys.exit(problem.code)
+    except OSError as error:
+        print(f"{script()}: {error.filename}: {error.strerror}", file=sys.stderr)
+        sys.exit(Unwritable.code)
+
+
+def existing(path, what):
+    """The path of a file, which must exist. @p what is expected where it does not."""
+    if not path.parent.is_dir():
+        raise Problem(f"{path.parent} is not a folder; {what} is expected")
+    if not path.is_file():
+        raise Problem(f"{path} does not exist; {what} is expected")
+    return path
+
+
+def number(text):
+    """What is not known is not a number."""
+    return float(text) if text not in ("", None) else float("nan")
+
+
+def read_rows(path):
+    """The rows of a CSV file, as dictionaries."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+    except (OSError, ValueError, csv.Error) as error:
+        raise Problem(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from None
+
+
+def read_summary(folder, what):
+    """summary.json of a folder, as a dictionary."""
+    path = existing(folder / "summary.json", what)
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise Problem(f"{path} is not a summary of crawler ({error})") from None
+
+
+class Parameters:
+    """The entries of a file parameters.prm, by their full names as "Body/Length"."""
+
+    def __init__(self, path):
+        self.path, self.values, self.units = path, {}, {}
+        sections, comment = [], ""
+        text = path.read_text(encoding="utf-8").replace("\\\n", " ")
+        for line in map(str.strip, text.splitlines()):
+            if line.startswith("#"):
+                comment += line[1:]
+                continue
+            match = re.match(r"set\s+([^=]*?)\s*=\s*(.*?)\s*(?:#.*)?$", line)
+            if match:
+                name = "/".join([*sections, match[1]])
+                self.values[name] = match[2]
+                unit = re.search(r"Unit: ([^.]*)\.\s*$", comment)
+                self.units[name] = unit[1] if unit else ""
+            elif line.startswith("subsection "):
+                sections.append(line.removeprefix("subsection ").strip())
+            elif line == "end" and sections:
+                sections.pop()
+            comment = ""
+
+    def number(self, name):
+        """The value of an entry."""
+        try:
+            return float(self.values[name])
+        except (KeyError, ValueError):
+            raise Problem(f"{self.path} has no number {name}") from None
+
+
+def label(entry, unit, short=None):
+    """The name of an axis: the last words of an entry or result, its symbol and its unit."""
+    words = short or entry.split("/")[-1].replace("_", " ").replace(".", ", ")
+    symbol = f" ${SYMBOLS[entry]}$" if entry in SYMBOLS else ""
+    return words + symbol + (f" [{unit}]" if unit else "")
+
+
+def values_of(element):
+    """Those of a DataArray in base 64, behind the number of their bytes."""
+    return array.array("d", base64.b64decode(element.text)[8:])
+
+
+class Kymograph:
+    """Fields over body and time of a run: s [length], t [time], and under their names arrays with a row for each t."""
+
+    def __init__(self, folder, *names):
+        import numpy as np
+        what = "the output folder of a run with Output/Kymograph = true and snapshots"
+        path = existing(folder / "kymograph.vts", what)
+        self.folder, parameters = folder, Parameters(existing(folder / "parameters.prm", what))
+        self.length, self.duration = (parameters.number(name) for name in ("Body/Length", "Time/End time"))
+        try:
+            piece = ElementTree.parse(path).getroot().find("StructuredGrid/Piece")
+            extent = [int(word) for word in piece.get("Extent").split()]
+            shape = (extent[3] - extent[2] + 1, extent[1] - extent[0] + 1)
+            points = np.reshape(values_of(piece.find("Points/DataArray")), (*shape, 3))
+            self.fields = {name: np.reshape(values_of(piece.find(f"PointData/DataArray[@Name='{name}']")), shape)
+                           for name in names}
+        except (ElementTree.ParseError, AttributeError, ValueError) as error:
+            raise Problem(f"{path} is not a kymograph of crawler ({error})") from None
+        self.s, self.t = self.length * points[0, :, 0], self.duration * points[:, 0, 1]
+
+    def __getitem__(self, name):
+        """A field. The position is that of the points on the ground, the strain the stretch minus 1."""
+        if name == "position":
+            return self.s + self.fields["displacement"]
+        return self.fields["stretch"] - 1 if name == "strain" else self.fields[name]
+
+    def last_stride(self):
+        """Begin and end of it."""
+        period = (read_summary(self.folder, "the output folder of a finished run").get("gait") or {}).get("period")
+        if not period:
+            raise Problem(f"{self.folder} has no stride (gait/period in summary.json is null); --from and --to choose a "
+                          "part of its time")
+        return max(self.t[-1] - period, 0.0), self.t[-1]
+
+    def keep(self, begin, end, last_stride=False):
+        """Keeps the times of the command line; returns begin and end. None is the begin or end of the run."""
+        if last_stride and (begin is not None or end is not None):
+            raise Problem("--last-stride is there besides --from or --to, but one of the two ways is expected")
+        if last_stride:
+            begin, end = self.last_stride()
+        begin = self.t[0] if begin is None else begin
+        end = self.t[-1] if end is None else end
+        slack = 1e-9 * self.duration
+        if not self.t[0] - slack <= begin < end <= self.t[-1] + slack:
+            raise Problem(f"found the times from {begin:g} to {end:g}, but a part of the run, which lasts from "
+                          f"{self.t[0]:g} to {self.t[-1]:g}, is expected")
+        some = (self.t >= begin - slack) & (self.t <= end + slack)
+        if some.sum() < 3:
+            raise Problem(f"between {begin:g} and {end:g} {self.folder / 'kymograph.vts'} has {some.sum()} times, but 3 or "
+                          "more are expected (Output/Number of snapshots)")
+        self.t, self.fields = self.t[some], {name: field[some] for name, field in self.fields.items()}
+        return begin, end
+
+
+def colour_limits(field, name):
+    """Colour map and limits of a field of this name; those of both signs are symmetric."""
+    if name in ("stretch", "position"):
+        low, high = float(field.min()), float(field.max())
+        margin = 0 if high > low else 0.01 * abs(high) or 1.0
+        return dict(cmap=SIZES, vmin=low - margin, vmax=high + margin)
+    largest = float(abs(field).max()) or 1.0
+    return dict(cmap=SIGNED, vmin=-largest, vmax=largest)
+
+
+def draw_field(axes, kymograph, name):
+    """A field over s and t, with its axes named; returns what a colour bar needs."""
+    field = kymograph[name]
+    mesh = axes.pcolormesh(kymograph.s, kymograph.t, field, shading="gouraud", rasterized=True,
+                           **colour_limits(field, name))
+    axes.set(title=NAMES[name].split(" $")[0], xlabel=NAMES["s"], ylabel=NAMES["t"])
+    return mesh
+
+
+def draw_body(axes, kymograph, name="stretch", parts=8):
+    """The body on the ground over time, coloured by a field, and some of its points; returns what a colour bar needs."""
+    import numpy as np
+    field, position = kymograph[name], kymograph["position"]
+    times = np.broadcast_to(kymograph.t[:, None], position.shape)
+    mesh = axes.pcolormesh(position, times, field, shading="gouraud", rasterized=True, **colour_limits(field, name))
+    for part in range(parts + 1):  # paths of material points, the ends thicker
+        i, at_end = part * (len(kymograph.s) - 1) // parts, part in (0, parts)
+        axes.plot(position[:, i], kymograph.t, color="black", linewidth=1.0 if at_end else 0.5,
+                  alpha=1.0 if at_end else 0.5)
+    margin = 0.03 * (position.max() - position.min())
+    axes.set(xlabel=NAMES["position"], ylabel=NAMES["t"], ylim=(kymograph.t[0], kymograph.t[-1]),
+             xlim=(position.min() - margin, position.max() + margin))
+    return mesh
+
+
+def save(figure, *pictures, dpi=160, few_colours=False):
+    """Writes a figure under each of the names and says so. With few colours a .png is less than half as large."""
+    for picture in map(pathlib.Path, pictures):
+        known = figure.canvas.get_supported_filetypes()
+        if picture.suffix[1:].lower() not in known:
+            raise Problem(f'found the picture "{picture}", but a name that ends in .png, .svg or .pdf is expected')
+        try:
+            figure.savefig(picture, dpi=dpi, metadata={"Date": None} if picture.suffix == ".svg" else None)
+            if few_colours and picture.suffix == ".png":
+                from PIL import Image  # comes with matplotlib
+                Image.open(picture).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=1,
+                                                             dither=Image.Dither.NONE).save(picture, optimize=True)
+        except OSError as error:
+            raise Unwritable(f'cannot write "{picture}": {error.strerror or error}') from None
+        print(f"wrote {picture}")

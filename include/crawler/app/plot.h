@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/exceptions.h>
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// The kinds of pictures, each with the script contrib/plot/KIND.py: "kymograph", "sweep", ...
+  std::vector<std::string>
+  plot_kinds();
+
+  /// crawler plot: draws the output folder @p path of a run or study, or the table of a calibration, with the script of
+  /// @p kind; if this is empty, with the one that fits the files. @p options are passed on to the script. Throws
+  /// InputError and FileError with what the script says.
+  ExitCode
+  plot(MPI_Comm communicator,
+       const std::string &path,
+       const std::string &kind,
+       const std::vector<std::string> &options);
+} // namespace crawler

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/app/plot.h>
+#include <crawler/base/communication.h>
+#include <crawler/base/nearest_name.h>
+#include <crawler/studies/core/pictures.h>
+
+#include <fmt/format.h>
+#include <sysexits.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <iostream>
+
+namespace crawler
+{
+  namespace
+  {
+    namespace fs = std::filesystem;
+
+    /// A kind of picture, and the files by which an output folder is known: one of them is there.
+    struct Kind
+    {
+      const char *name, *of;
+      std::vector<std::string> files;
+    };
+
+    /// The first that fits is drawn; those without files only if their name is given.
+    const std::vector<Kind> &
+    kinds()
+    {
+      static const std::vector<Kind> list = {
+        {"atlas", "an atlas", {"atlas.csv", "atlas.h5"}},
+        {"tradeoff", "a tradeoff", {"tradeoff.csv", "tradeoff.h5"}},
+        {"optimize", "an optimisation", {"starts.csv"}},
+        {"sweep", "a sweep", {"results.h5"}},
+        {"calibration", "a calibration", {"calibration.csv"}},
+        {"kymograph", "a run", {"kymograph.vts", "statistics.csv", "solution.pvd", "summary.json"}},
+        {"sensitivity", "a run with Output/Sensitivities", {}},
+        {"scaling", "the sweep of prm/studies/scaling.prm", {}}};
+      return list;
+    }
+
+    std::string
+    kind_of(const fs::path &path)
+    {
+      std::error_code ignored;
+      if (path.extension() == ".csv" && fs::is_regular_file(path, ignored))
+        return "calibration";
+      if (!fs::is_directory(path, ignored))
+        throw InputError(fmt::format(
+          "\"{}\" is not a folder; the output folder of a run or study is expected (or the table of a calibration)",
+          path.string()));
+      std::vector<std::string> names;
+      for (const Kind &kind : kinds())
+      {
+        if (std::any_of(kind.files.begin(), kind.files.end(), [&](const std::string &file) {
+              return fs::exists(path / file, ignored);
+            }))
+          return kind.name;
+        if (!kind.files.empty())
+          names.push_back(fmt::format("{} ({})", kind.of, kind.files.front()));
+      }
+      throw InputError(fmt::format("\"{}\" has nothing to draw; the output folder of one of these is expected: {}",
+                                   path.string(),
+                                   fmt::join(names, ", ")));
+    }
+  } // namespace
+
+  std::vector<std::string>
+  plot_kinds()
+  {
+    std::vector<std::string> names;
+    for (const Kind &kind : kinds())
+      names.emplace_back(kind.name);
+    return names;
+  }
+
+  ExitCode
+  plot(MPI_Comm communicator, const std::string &path, const std::string &kind, const std::vector<std::string> &options)
+  {
+    if (rank_of(communicator) != 0)
+      return ExitCode::finished;
+    const std::vector<std::string> known = plot_kinds();
+    if (path.empty())
+      throw InputError("the folder is missing; \"crawler plot DIR\" is expected");
+    if (!kind.empty() && std::find(known.begin(), known.end(), kind) == known.end())
+      throw InputError(fmt::format("\"--kind\" is \"{}\", but {} is expected", kind, quoted_list(known)));
+    const std::string chosen           = kind.empty() ? kind_of(path) : kind;
+    std::vector<std::string> arguments = {path};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    std::cout.flush(); // the script writes to the same stream
+    const PictureEnd end = call_plot_script(chosen + ".py", arguments, /*shown=*/true);
+    if (end.status == static_cast<int>(ExitCode::file_error))
+      throw FileError(end.problem, /*on_all_ranks=*/true);
+    if (end.status != 0)
+      throw InputError(end.status == EX_UNAVAILABLE ? "there is no picture: " + end.problem : end.problem);
+    std::error_code ignored;
+    if (kind.empty() && fs::exists(fs::path(path) / "sensitivity_body.csv", ignored))
+      std::cout << fmt::format("Also there: crawler plot {} --kind sensitivity", path) << std::endl;
+    return ExitCode::finished;
+  }
+} // namespace crawler

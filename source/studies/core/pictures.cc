@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/process.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/pictures.h>
+
+#include <fmt/format.h>
+#include <sysexits.h>
+
+namespace crawler
+{
+  namespace
+  {
+    /// The path of a script in contrib/plot.
+    std::string
+    plot_script(const std::string &name)
+    {
+      // Beside an installed program, else in the folder of the source code.
+      std::error_code ignored;
+      const auto program   = std::filesystem::read_symlink("/proc/self/exe", ignored);
+      const auto installed = program.parent_path().parent_path() / CRAWLER_INSTALLED_PLOTS / name;
+      return std::filesystem::exists(installed, ignored) ? installed.string()
+                                                         : CRAWLER_SOURCE_DIR "/contrib/plot/" + name;
+    }
+  } // namespace
+
+  PictureEnd
+  call_plot_script(const std::string &name, const std::vector<std::string> &arguments, const bool shown)
+  {
+    // If this Python lacks a module, the script itself goes on with Debian's (contrib/plot/plotting.py).
+    for (const std::string python : {"python3", "/usr/bin/python3"})
+    {
+      std::vector<std::string> command = {python, plot_script(name)};
+      command.insert(command.end(), arguments.begin(), arguments.end());
+      if (const ProgramEnd end = run_program(command, shown); end.started)
+        return {end.status, trimmed(end.errors)};
+    }
+    return {EX_UNAVAILABLE, "python3 is not there (Debian: apt install python3-h5py python3-matplotlib)"};
+  }
+
+  void
+  draw(const std::string &script, const std::filesystem::path &folder, Log &log)
+  {
+    const PictureEnd end = call_plot_script(script, {folder.string()}, /*shown=*/false);
+    if (end.status != 0)
+      log.line(
+        fmt::format("There is no picture: {}. Draw it later with: crawler plot {}", end.problem, folder.string()));
+  }
+} // namespace crawler

@@ -1,0 +1,104 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""contrib/paper/make_figures.py: all numbers of the paper's figures are right and stand in doc/paper.md, the pictures
+show something and are those of the page, a number that is off ends with 7.
+
+    python3 paper.py PATH_TO_CRAWLER
+"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from PIL import Image
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCRIPT = ROOT / "contrib" / "paper" / "make_figures.py"
+PAGE, KEPT = ROOT / "doc" / "paper.md", ROOT / "doc" / "images" / "paper"
+PICTURES = ("fig_1a.png", "fig_2a.png", "fig_2b.png", "fig_3.png", "fig_s1.png", "movie.gif")
+WRONG = """
+import pathlib, sys
+sys.path.insert(0, sys.argv[1])
+sys.argv = ["make_figures.py", *sys.argv[2:]]
+import make_figures
+make_figures.RUNS = {}
+make_figures.figures.ALL = [lambda results, numbers, out: numbers.require("Fig. 0", "a number", 1, VALUE, 1e-3, "nowhere")]
+make_figures.run_script(make_figures.main)
+"""
+failures = []
+
+
+def check(condition, what):
+    """Prints what was checked and keeps failures."""
+    if not condition:
+        failures.append(what)
+    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
+
+
+def call(*arguments):
+    """Runs Python."""
+    return subprocess.run([sys.executable, *map(str, arguments)], capture_output=True, text=True, timeout=600, check=False)
+
+
+def test_pictures(out):
+    """Sizes, contents, and that the kept ones look like the new ones."""
+    page = PAGE.read_text(encoding="utf-8")
+    for name in PICTURES:
+        new, kept = Image.open(out / name), Image.open(KEPT / name)
+        limit = 400_000 if name.endswith(".gif") else 80_000
+        check((KEPT / name).stat().st_size < limit, f"{name}: {(KEPT / name).stat().st_size} bytes, at most {limit}")
+        grey = np.asarray(new.convert("L"), dtype=float)
+        check(min(grey.shape) >= 250 and grey.std() > 20, f"{name} is not blank: {grey.shape}, {grey.std():.0f}")
+        check(np.ptp(np.asarray(new.convert("RGB")).astype(int), axis=2).max() > 100, f"{name} has colours")
+        check(f"images/paper/{name}" in page and kept.size == new.size, f"{name} is on the page, as large as the new one")
+        if kept.size == new.size and not name.endswith(".gif"):
+            off = np.abs(np.asarray(kept.convert("L"), dtype=float) - grey).mean()
+            check(off < 4, f"{name} is the one on the page: mean difference of grey {off:.2f} of 255")
+    film = Image.open(out / "movie.gif")
+    frames = []
+    for number in range(film.n_frames):
+        film.seek(number)
+        frames.append(np.asarray(film.convert("L"), dtype=float))
+    changes = [np.abs(a - b).max() for a, b in zip(frames, frames[1:])]
+    check(len(frames) > 80 and min(changes) > 50, f"the film moves: {len(frames)} frames, least change {min(changes):.0f}")
+    places = []
+    for number in (10, 90):  # the same phase, four strides apart
+        film.seek(number)
+        ground = np.asarray(film.convert("RGB")).astype(int)[: film.size[1] // 2, : -110]  # without the colour bar
+        places.append(np.nonzero(np.ptp(ground, axis=2) > 60)[1].mean())
+    check(places[1] > places[0] + 40, f"the coloured body goes to the right, by {places[1] - places[0]:.0f} pixels")
+
+
+def test_numbers(out, printed):
+    """All rows are in doc/paper.md."""
+    page = PAGE.read_text(encoding="utf-8")
+    rows = [line for line in (out / "numbers.md").read_text(encoding="utf-8").splitlines() if line.startswith("|")]
+    missing = [row for row in rows if row not in page]
+    check(len(rows) > 30 and not missing, f"{len(rows)} rows of the tables are in doc/paper.md; missing: {missing}")
+    for number in ("1.801968", "0.09007253", "0.08137766", "0.1559398"):
+        check(number in printed, f"{number} is printed")
+
+
+def main():
+    """Makes the figures."""
+    program = pathlib.Path(sys.argv[1]).resolve()
+    with tempfile.TemporaryDirectory() as name:
+        out = pathlib.Path(name) / "paper"
+        end = call(SCRIPT, program, out)
+        check(end.returncode == 0, f"all numbers are right: {end.returncode} {end.stderr.strip()}")
+        if end.returncode == 0:
+            test_pictures(out)
+            test_numbers(out, end.stdout)
+        for value, code in ((1.0005, 0), (1.002, 7), (float("nan"), 7)):
+            end = call("-c", WRONG.replace("VALUE", f'float("{value}")'), SCRIPT.parent, program, out)
+            check(end.returncode == code, f"{value}, where 1 +- 1e-3 is expected: {end.returncode} {end.stderr.strip()[-200:]}")
+        for arguments, word in (((name,), "contrib/setup.sh"), ((program, program / "x"), "cannot make the folder"), ((), "BUILD")):
+            end = call(SCRIPT, *arguments)
+            check(end.returncode in (2, 6) and end.stderr.count("\n") == 1 and word in end.stderr,
+                  f"bad input: {end.returncode} {end.stderr.strip()[-200:]}")
+    sys.exit("\n".join(failures) or 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/process.h>
+
+#include <gtest/gtest.h>
+
+using namespace crawler;
+
+TEST(Process, ItsStatusAndErrorsComeBack)
+{
+  const ProgramEnd end = run_program({"sh", "-c", "echo hidden; echo \"$1\" >&2; exit 3", "sh", "$(two) words"}, false);
+  EXPECT_TRUE(end.started);
+  EXPECT_EQ(end.status, 3);
+  EXPECT_EQ(end.errors, "$(two) words\n"); // no shell has read the argument
+}
+
+TEST(Process, ManyErrorsDoNotBlockIt)
+{
+  const ProgramEnd end = run_program({"sh", "-c", "head -c 1000000 /dev/zero >&2"}, false);
+  EXPECT_EQ(end.status, 0);
+  EXPECT_EQ(end.errors.size(), 1000000u); // far more than a pipe holds
+}
+
+TEST(Process, ASignalOrAMissingProgramIsNoStatus)
+{
+  EXPECT_EQ(run_program({"sh", "-c", "kill -9 $$"}, false).status, -1);
+  EXPECT_FALSE(run_program({"no-such-program-here"}, false).started);
+}
