@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/table.h>
+#include <crawler/output/kymograph_reader.h>
+
+#include <nlohmann/json.hpp>
+
+namespace crawler
+{
+  /// Tables and fields as a page has them: numbers as base 64 of their bytes, little-endian.
+  using Json = nlohmann::ordered_json;
+
+  /**
+   * {name, unit, meaning} and its values: {values, codes, bytes}, where the codes of this many bytes are indices into the
+   * different values (null: not known), or {floats} in single precision, where that is shorter; {doubles} if it
+   * must be exact, as the former is.
+   */
+  Json
+  packed(const Column &column, bool is_exact = false);
+
+  /// {places, times, fields: {NAME: {low, high, codes}}}: codes from 0 to 65534 for low to high, 65535 where a value is
+  /// not known. No more than @p most_rows times.
+  Json
+  packed(const Kymograph &kymograph, std::size_t most_rows);
+} // namespace crawler
