@@ -85,6 +85,7 @@ class BodyPicture {
     this.follows = high - low > 2.6 * L;
     this.span = this.follows ? 1.9 * L : (high - low) * 1.08;
     this.middle = (low + high) / 2;
+    this.least = range(fields.fields.stretch)[0];
     this.centres = fields.centres(clock.pace);
     this.reach = Math.max(...range(fields.fields.friction_force ?? []).map(Math.abs));
     if (run.ground) this.ground = {x: new Column(run.ground.places).numbers(), c: new Column(run.ground.factor).numbers()};
@@ -98,7 +99,7 @@ class BodyPicture {
     const px = x => (x - centre) * scale + width / 2;
     this.drawGround(c, px, ground, width, centre);
     const x = f.along('position', t), w = f.along('stretch', t), value = f.along(this.field, t);
-    const thick = w.map(stretch => Math.min(104, Math.min(34, 0.075 * f.length * scale) / Math.max(stretch, 1e-3)));
+    const base = Math.min(34, 0.075 * f.length * scale, Math.max(12, 100 * this.least)), thick = w.map(stretch => Math.min(104, base / Math.max(stretch, 1e-3)));
     for (let i = 0; i + 1 < x.length; ++i) {
       c.fillStyle = this.colours.css((value[i] + value[i + 1]) / 2);
       c.beginPath();
@@ -265,7 +266,7 @@ function showBody(parent, run, clock, fields) {
   const two = el('div', {class: 'two'}), left = figure('Kymograph.', 'Click to go to a time.');
   parent.append(two);
   two.append(left);
-  const map = new KymographPicture(left, fields, clock), bar = new ColourBar(left);
+  const map = new KymographPicture(left, fields, clock), bar = new ColourBar(left, 58);
   left.append(el('div', {class: 'controls'}, chooser('Over', [['s', 'the body'], ['x', 'the ground']], 's', over => { map.over = over; map.chart.draw(); })));
   charts.unshift({box: top, draw: () => restyle()}); // colours first, then pictures
   clock.listeners.push(t => {

@@ -1,5 +1,7 @@
 // A table of many points: a map, lines or dots over columns that can be chosen, and the details of one point.
 
+const GOOD = ['finished', 'agree']; // green
+
 class Explorer {
   /** @p table: the packed one; axes: names of what was varied; first: {x, y, colour}; decorate(chart, explorer) draws more. */
   constructor(parent, table, {axes, first, decorate, details, status}) {
@@ -27,7 +29,7 @@ class Explorer {
       hover: (x, y) => { this.hovered = this.find(x, y); this.chart.move(); return this.hovered === null ? null : this.words(this.hovered); },
       left: () => { this.hovered = null; this.chart.move(); },
       press: (x, y) => { const row = this.find(x, y); if (row !== null) this.select(row); }});
-    this.bar = new ColourBar(this.box);
+    this.bar = new ColourBar(this.box, 72);
     this.box.append(this.legendBox);
     charts.unshift({box: this.box, draw: () => this.restyle()});
     this.update();
@@ -48,7 +50,10 @@ class Explorer {
     this.order = [...list].sort((a, b) => x[a] - x[b] || y[a] - y[b]);
     this.place = new Map(this.order.map((row, i) => [row, i]));
     const what = this.cells ? 'a map' : this.lines ? 'lines' : 'dots';
-    this.caption.replaceChildren(el('b', {}, `${plural(list.length, 'point')}, ${what}.`), ' Point at one for its numbers, click for its details; arrow keys go from one to the next.');
+    this.caption.replaceChildren(el('b', {}, `${plural(list.length, {tradeoff: 'setting', optimisation: 'gait'}[page.kind] ?? 'point')}, ${what}.`), ' Point at one for its numbers, click for its details; arrow keys go from one to the next.');
+    const status = this.columns.get(this.statusName);
+    this.isOpen = this.axes.length && status && this.colour !== this.statusName ? row => status.value(row) !== 'finished' : () => false;
+    if (list.some(this.isOpen)) this.caption.append(' Crossed out: did not finish.');
     this.restyle();
     this.chart.draw();
   }
@@ -88,7 +93,9 @@ class Explorer {
     this.bar.chart.box.hidden = !column || column.isText;
     if (!column) { this.css = () => series(0); return; }
     if (column.isText) {
-      const colour = i => isFinite(i) ? ({finished: ink('c3'), agree: ink('c3')})[column.texts[i]] ?? series(i + 1) : ink('unknown'), counts = column.texts.map(() => 0);
+      const others = column.texts.filter(text => !GOOD.includes(text)), hues = ['c2', 'c1', 'c4', 'c5', 'c6', 'c7'];
+      const colour = i => !isFinite(i) ? ink('unknown') : GOOD.includes(column.texts[i]) ? ink('c3') : ink(hues[others.indexOf(column.texts[i]) % hues.length]);
+      const counts = column.texts.map(() => 0);
       for (const row of this.list) if (isFinite(column.number(row))) ++counts[column.number(row)];
       this.css = row => colour(column.number(row));
       legend(this.legendBox, column.texts.map((text, i) => [`${text} (${counts[i]})`, colour(i)]).filter((_, i) => counts[i] > 0));
@@ -120,7 +127,6 @@ class Explorer {
   }
   paint(chart) {
     const c = chart.context;
-    this.pixels = null;
     if (this.cells) {
       const {xs, ys, rows} = this.cells, px = this.edges(xs, chart.x), py = this.edges(ys, chart.y);
       for (let j = 0; j < ys.length; ++j)
@@ -130,6 +136,7 @@ class Explorer {
           c.fillStyle = this.css(row);
           c.fillRect(px[i], py[j + 1], px[i + 1] - px[i] + 0.6, py[j] - py[j + 1] + 0.6);
         }
+      for (const row of this.list.filter(this.isOpen)) this.cross(chart, chart.x(this.column('x').number(row)), chart.y(this.column('y').number(row)));
     } else {
       const x = this.column('x').numbers(), y = this.column('y').numbers(), size = this.list.length > 5000 ? 2 : this.list.length > 300 ? 5 : 7;
       for (const rows of this.lines ?? []) {
@@ -142,8 +149,15 @@ class Explorer {
         const px = chart.x(x[row]), py = chart.y(y[row]);
         if (size < 5) c.fillRect(px - size / 2, py - size / 2, size, size);
         else { c.beginPath(); c.arc(px, py, size / 2, 0, 7); c.fill(); }
+        if (this.isOpen(row)) this.cross(chart, px, py);
       }
     }
+  }
+  cross({context: c}, x, y) {
+    const r = this.list.length > 3000 ? 1.5 : 4;
+    c.strokeStyle = ink('ink');
+    c.lineWidth = 1;
+    c.beginPath(); c.moveTo(x - r, y - r); c.lineTo(x + r, y + r); c.moveTo(x - r, y + r); c.lineTo(x + r, y - r); c.stroke();
   }
   errorBars(chart, rows, x, y) {
     const bounds = this.columns.get(boundKey(this.y));

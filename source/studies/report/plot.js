@@ -6,9 +6,9 @@ function ticks(low, high, count, log) {
   if (log) {
     const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9);
     if (last > first) {
-      const step = Math.ceil((last - first + 1) / count);
-      for (let e = first; e <= last; e += step) list.push(10 ** e);
-      return list;
+      const step = Math.ceil((last - first + 1) / count), factors = last - first < 3 && count > 4 ? [1, 2, 5] : [1];
+      for (let e = first - 1; e <= last; e += step) list.push(...factors.map(m => m * 10 ** e));
+      return list.filter(x => x >= low * 0.999 && x <= high * 1.001);
     }
   }
   const raw = (high - low) / Math.max(count, 1), power = 10 ** Math.floor(Math.log10(raw));
@@ -16,7 +16,7 @@ function ticks(low, high, count, log) {
   for (let i = Math.ceil(low / step - 1e-6); i <= Math.floor(high / step + 1e-6); ++i) list.push(i * step);
   return list;
 }
-const tickText = (x, log) => log && (x >= 1e4 || x < 1e-2) && Math.abs(Math.log10(x) % 1) < 1e-9
+const tickText = (x, log) => log && (x >= 99 || x < 0.05) && Math.abs(Math.log10(x) % 1) < 1e-9
   ? '10' + superscript(Math.round(Math.log10(x))) : show(x, 5);
 
 /** A scale from numbers to pixels. */
@@ -120,7 +120,7 @@ class Chart {
       end = at + half;
     }
     c.textAlign = 'right';
-    for (const tick of all(y, Math.max(2, (bottom - m.top) / 45))) {
+    for (const tick of all(y, Math.max(2, (bottom - m.top) / 36))) {
       const p = Math.round(this.y(tick)) + 0.5;
       line(m.left - 4, p, this.axesAbove ? m.left : right, p);
       c.fillText(clipped(c, label(y, tick), m.left - 8), m.left - 8, p + 4);
@@ -168,12 +168,12 @@ function legend(parent, entries) {
 
 /** A colour bar with its name, low and high. */
 class ColourBar {
-  constructor(parent) {
-    this.chart = new Chart(parent, {height: 44, label: 'colour bar', margin: {left: 2, right: 2, top: 0, bottom: 34}, axesAbove: true,
+  constructor(parent, left) {
+    this.chart = new Chart(parent, {height: 50, label: 'colour bar', margin: {left, right: 15, top: 0, bottom: 34}, axesAbove: true,
       axes: () => ({x: {low: this.scale.low, high: this.scale.high, log: this.scale.log, title: this.title, texts: this.texts}, y: {low: 0, high: 1, texts: [], title: ''}}),
       paint: chart => {
         const from = chart.x(this.scale.low), width = (chart.x(this.scale.high) - from) / 256;
-        this.scale.list.forEach((colour, i) => { chart.context.fillStyle = `rgb(${colour.join()})`; chart.context.fillRect(from + i * width, 0, width + 1, 10); });
+        this.scale.list.forEach((colour, i) => { chart.context.fillStyle = `rgb(${colour.join()})`; chart.context.fillRect(from + i * width, 6, width + 1, 10); });
       }});
   }
   set(scale, title) {

@@ -99,7 +99,7 @@ namespace crawler
     Json
     data_of(const fs::path &folder, const Kind &kind)
     {
-      const fs::path absolute = fs::weakly_canonical(folder);
+      const fs::path absolute = fs::canonical(folder);
       Json data               = {{"kind", kind.name},
                                  {"folder", absolute.filename().string()},
                                  {"path", absolute.string()},

@@ -12,13 +12,13 @@ function tile(name, summary, key) {
   if (!known(value)) return null;
   const unit = page.entries.find(entry => entry.key === key)?.unit;
   return el('div', {class: 'tile'}, el('div', {class: 'name'}, name),
-    el('div', {class: 'number', 'data-key': key}, exactly(value, showWith(value, Math.max(bound ?? 0, Math.abs(value) * 1e-7))), ' ', el('span', {class: 'unit'}, unitText(unit))),
-    known(bound) ? el('div', {class: 'bound'}, `± ${show(bound, 2)}`) : '');
+    el('div', {class: 'number', 'data-key': key}, exactly(value, showWith(value, Math.max(bound ?? 0, Math.abs(value) * 1e-6)))),
+    el('div', {class: 'bound'}, known(bound) ? `± ${show(bound, 2)} ` : '', el('span', {class: 'unit'}, unitText(unit))));
 }
 
 function showTiles(parent, summary) {
-  parent.append(el('div', {class: 'tiles'}, ...[['Displacement', 'displacement'], ['Speed of the last stride', 'gait.speed'],
-    ['Cost of transport', 'gait.cost_of_transport.stress_power'], ['Work of the active stress', 'stress_power'],
+  parent.append(el('div', {class: 'tiles'}, ...[['Displacement', 'displacement'], ['Speed', 'gait.speed'],
+    ['Cost of transport', 'gait.cost_of_transport.stress_power'], ['Work', 'stress_power'],
     ['Smallest stretch', 'min_stretch.value'], ['Largest stretch', 'max_stretch.value']].map(([name, key]) => tile(name, summary, key))));
 }
 
@@ -28,7 +28,7 @@ function gaitInWords(summary) {
   if (!gait || !known(gait.period)) return words;
   const d = gait.displacement, to = d === 0 ? 'does not move on' : `moves ${show(Math.abs(gait.body_lengths), 4)} body lengths towards its ${d > 0 ? 'head (larger s)' : 'tail (smaller s)'}`;
   words.push(`In a stride of ${show(gait.period, 5)}${gait.period_from === 'stretch' ? ' (a period found in its motion)' : ''} the body ${to}; ` +
-    `${show(gait.strides, 4)} strides fit into the run.`);
+    `${show(gait.strides, 4)} stride${gait.strides === 1 ? ' fits' : 's fit'} into the run.`);
   const wave = gait.wave ?? {};
   const direction = {retrograde: 'The wave of stretch is retrograde: it travels against the motion, as in an earthworm.',
     prograde: 'The wave of stretch is prograde: it travels with the motion, as in a snail.', standing: 'The wave of stretch stands.'}[wave.direction];
@@ -87,9 +87,9 @@ function numbersTable(summary) {
   for (const {key, unit, meaning} of page.entries) {
     const value = at(summary, key);
     if (value === null || typeof value === 'object' || /^errors\.|^displacement_error\.total|^inversion\.error|^message/.test(key)) continue;
-    body.append(el('tr', {}, el('td', {}, nameOf(key)), el('td', {class: 'value', 'data-key': key}, ...numberWithBound(summary, key, unit)), el('td', {class: 'meaning'}, meaning)));
+    body.append(el('tr', {}, el('td', {}, nameOf(key)), el('td', {class: 'value', 'data-key': key}, ...numberWithBound(summary, key, unit)), el('td', {class: 'meaning wide-only'}, meaning)));
   }
-  return el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, el('th', {}, 'number'), el('th', {}, 'value ± bound of its error'), el('th', {}, 'meaning'))), body));
+  return el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, el('th', {}, 'number'), el('th', {}, 'value ± bound of its error'), el('th', {class: 'wide-only'}, 'meaning'))), body));
 }
 
 function showSensitivities(parent, run) {
@@ -112,12 +112,12 @@ function showSensitivities(parent, run) {
   legend(box, lines.map((name, i) => [name, `var(--c${i + 1})`]));
 }
 
-/** Everything of one run; @p level says how much: a point of a sweep has no tiles. */
+/** Everything of one run but for its table of numbers. */
 function showRun(parent, run) {
   const {summary} = run;
   if (summary) {
     showTiles(parent, summary);
-    parent.append(...gaitInWords(summary).map(words => el('p', {}, words)));
+    parent.append(el('p', {}, gaitInWords(summary).join(' ')));
   }
   let clock = null, fields = null, curves = parent;
   if (run.kymograph?.fields.stretch && run.kymograph.fields.displacement) {
@@ -128,5 +128,4 @@ function showRun(parent, run) {
   } else parent.append(el('p', {class: 'soft small'}, 'There is no moving body here: kymograph.vts is missing (snapshots and Output/Kymograph = true make it).'));
   showCurves(curves, run, clock, fields);
   showSensitivities(parent, run);
-  if (summary) parent.append(el('h2', {}, 'All numbers'), numbersTable(summary));
 }

@@ -54,8 +54,7 @@ function header() {
   const facts = [seconds ? `${show(seconds, 3)} s` : '', summary.ranks > 1 ? `${summary.ranks} processes` : '', summary.versions?.crawler ? `crawler ${summary.versions.crawler}` : '',
     page.kind === 'run' && summary.model ? `${summary.model} model` : ''];
   main.append(el('header', {}, el('div', {class: 'kind'}, page.kind), el('h1', {}, page.folder),
-    el('div', {class: 'facts soft small'}, status ? el('span', {class: `status ${status}`}, status) : '', ...facts.filter(Boolean).map(text => el('span', {}, text))),
-    own.command_line ? el('p', {class: 'small'}, el('code', {}, own.command_line)) : ''));
+    el('div', {class: 'facts soft small'}, status ? el('span', {class: `status ${status}`}, status) : '', ...facts.filter(Boolean).map(text => el('span', {}, text)))));
 }
 
 function parameters() {
@@ -69,6 +68,8 @@ function parameters() {
         el('td', {class: 'entry wide-only soft'}, one.default), el('td', {class: 'meaning wide-only'}, one.meaning)))))));
   for (const [name, text] of [['The parameter file (original.prm)', original], ['All entries as they were used (parameters.prm)', effective]])
     if (text) box.append(el('details', {}, el('summary', {}, name), el('pre', {tabindex: 0}, text)));
+  for (const run of page.kind === 'run' || page.kind === 'optimisation' ? page.runs : [])
+    if (run.summary) section(run.title ? `All numbers of ${run.title}` : 'All numbers', numbersTable(run.summary));
   const versions = Object.entries(summary.versions ?? {}).map(([name, version]) => `${name} ${version}`).join(', ');
   main.append(el('footer', {}, versions ? `Computed with ${versions}. ` : '', `Page made by crawler report ${page.program.crawler ?? ''} from ${page.path}.`));
 }
@@ -110,7 +111,7 @@ function pointDetails(panel, row, explorer) {
   if (page.kind === 'sweep') {
     const one = summaryOf(explorer, row);
     showTiles(panel, one);
-    panel.append(...gaitInWords(one).map(words => el('p', {}, words)));
+    panel.append(el('p', {}, gaitInWords(one).join(' ')));
   }
   panel.append(page.more_runs.includes(name) ? el('p', {}, 'The files of this point are in ', el('a', {href: `${name}/`}, name), '; crawler report makes a page of them.')
     : el('p', {class: 'soft small'}, 'Body and kymograph of this point were not kept. This computes them; the next crawler report shows them here:'));
@@ -172,7 +173,7 @@ function showTradeoff() {
     ` by ${reference.first?.method ?? '?'}${reference.second ? ` and ${reference.second.method}` : ' alone'}. ${summary.tried} of ${summary.settings} settings were tried.`));
   if (all.length) section('What to use', el('p', {class: 'soft'}, 'The cheapest setting that is good enough; click for its lines of the parameter file.'), el('div', {class: 'scroll'}, el('table', {},
     el('thead', {}, el('tr', {}, ...['for', 'setting', 'error', 'time of a run'].map(name => el('th', {}, name)))), el('tbody', {}, ...all.map(([one, batch]) => el('tr', {},
-      el('td', {class: 'value'}, show(one.accuracy), batch ? ' in a batch' : ''), el('td', {class: 'entry'}, one.prm ? el('details', {style: 'margin:0'}, el('summary', {}, one.setting), el('pre', {}, one.prm)) : one.setting),
+      el('td', {class: 'value'}, tickText(one.accuracy, true), batch ? ' in a batch' : ''), el('td', {class: 'entry'}, one.prm ? el('details', {style: 'margin:0'}, el('summary', {}, one.setting), el('pre', {}, one.prm)) : one.setting),
       el('td', {class: 'value'}, exactly(one.error, show(one.error, 2))), el('td', {class: 'value'}, exactly(one.seconds, inTime(one.seconds)))))))));
   const box = section('All settings');
   if (!page.table) { box.append(el('p', {}, 'There is no table of settings yet.')); return; }
