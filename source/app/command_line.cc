@@ -162,37 +162,38 @@ namespace crawler
       ExitCode (*function)(MPI_Comm, const CommandOptions &);
       bool writes, is_study; ///< --overwrite and --quiet; --resume
     };
-    constexpr Command commands[] = {{"run", "Runs the crawler of a parameter file", run, true, false},
-                                    {"check",
-                                     "Says what run would do with a parameter file; runs and writes nothing",
-                                     check,
-                                     /*writes=*/false,
-                                     /*is_study=*/false},
-                                    {"atlas",
-                                     "Maps two entries of a parameter file: runs every point in all forms and compares",
-                                     atlas,
-                                     /*writes=*/true,
-                                     /*is_study=*/true},
-                                    {"tradeoff",
-                                     "Measures cost against error of many settings on the scene of a parameter file",
-                                     tradeoff,
-                                     /*writes=*/true,
-                                     /*is_study=*/true},
-                                    {"optimize",
-                                     "Looks for the best gait of section Optimize of a parameter file",
-                                     optimize,
-                                     /*writes=*/true,
-                                     /*is_study=*/true},
-                                    {"sweep",
-                                     "Runs all points of section Sweep of a parameter file and makes a table of them",
-                                     sweep,
-                                     /*writes=*/true,
-                                     /*is_study=*/true},
-                                    {"report",
-                                     "Makes a page for browsers, report.html, of the output folder of any other command",
-                                     report,
-                                     /*writes=*/false,
-                                     /*is_study=*/false}};
+    constexpr Command commands[] = {
+      {"run", "Runs the crawler of a parameter file", run, true, false},
+      {"check",
+       "Says what run would do with a parameter file; runs and writes nothing",
+       check,
+       /*writes=*/false,
+       /*is_study=*/false},
+      {"atlas",
+       "Maps two entries of a parameter file: runs every point in all forms and compares",
+       atlas,
+       /*writes=*/true,
+       /*is_study=*/true},
+      {"tradeoff",
+       "Measures cost against error of many settings on the scene of a parameter file",
+       tradeoff,
+       /*writes=*/true,
+       /*is_study=*/true},
+      {"optimize",
+       "Looks for the best gait of section Optimize of a parameter file",
+       optimize,
+       /*writes=*/true,
+       /*is_study=*/true},
+      {"sweep",
+       "Runs all points of section Sweep of a parameter file and makes a table of them",
+       sweep,
+       /*writes=*/true,
+       /*is_study=*/true},
+      {"report",
+       "Makes a page for browsers, report.html, of the output folder of any other command",
+       report,
+       /*writes=*/false,
+       /*is_study=*/false}};
 
     void
     add_command(const Command &command, CLI::App &app, CommandOptions &options)
@@ -200,7 +201,8 @@ namespace crawler
       CLI::App *own = app.add_subcommand(command.name, command.description);
       if (command.function == report)
       {
-        own->add_option("DIR", options.file, "Output folder of a run, sweep, atlas, tradeoff or optimisation")->required();
+        own->add_option("DIR", options.file, "Output folder of a run, sweep, atlas, tradeoff or optimisation")
+          ->required();
         own->add_flag("--quiet", options.quiet, "Prints nothing but errors");
         return;
       }
@@ -274,9 +276,9 @@ namespace crawler
         throw InputError("behind \"--output\" stands \"\", but the name of a folder is expected");
       const auto command = std::find_if(
         std::begin(commands), std::end(commands), [&](const Command &c) { return c.name == chosen->get_name(); });
-      if (!petsc_options.empty() && (command == std::end(commands) || command->function == atlas ||
-                                     command->function == tradeoff || command->function == optimize ||
-                                     command->function == report))
+      if (!petsc_options.empty() &&
+          (command == std::end(commands) || command->function == atlas || command->function == tradeoff ||
+           command->function == optimize || command->function == report))
         throw InputError(fmt::format("behind \"--\" stands \"{}\", but the command \"{}\" has no use for PETSc options",
                                      petsc_options[0],
                                      chosen->get_name()));

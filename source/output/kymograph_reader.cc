@@ -67,9 +67,9 @@ namespace crawler
         }
       return kymograph;
     }
-    catch (const std::exception &error)
+    catch (const std::exception &)
     {
-      throw InputError("\"" + path.string() + "\" is damaged, it is no whole kymograph of crawler: " + error.what());
+      throw InputError("\"" + path.string() + "\" is damaged: a whole kymograph that crawler wrote is expected");
     }
   }
 } // namespace crawler

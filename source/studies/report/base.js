@@ -71,6 +71,7 @@ class Column {
   constructor(packed) {
     Object.assign(this, {name: packed.name, unit: packed.unit, meaning: packed.meaning});
     if (packed.floats !== undefined) this.floats = unpack(packed.floats, Float32Array);
+    else if (packed.count !== undefined) this.floats = Float64Array.from({length: packed.count}, (_, i) => i);
     else if (packed.doubles !== undefined) this.floats = unpack(packed.doubles, Float64Array);
     else {
       this.values = packed.values;

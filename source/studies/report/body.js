@@ -51,7 +51,7 @@ class Fields {
 /** The time that all pictures of a run show; it can run. */
 class Clock {
   constructor(end, pace) {
-    Object.assign(this, {end, pace, speed: 1, listeners: [], running: false, t: 0.4 * Math.min(end, pace * 2.5)});
+    Object.assign(this, {end, pace, speed: 1, listeners: [], running: false, t: 0.4 * Math.min(end, pace)});
   }
   set(t) {
     this.t = Math.max(0, Math.min(this.end, t));

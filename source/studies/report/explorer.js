@@ -1,11 +1,14 @@
 // A table of many points: a map, lines or dots over columns that can be chosen, and the details of one point.
 
+const NOUN = {tradeoff: 'setting', optimisation: 'gait'}[page.kind] ?? 'point';
 const GOOD = ['finished', 'agree']; // green
 
 class Explorer {
-  /** @p table: the packed one; axes: names of what was varied; first: {x, y, colour}; decorate(chart, explorer) draws more. */
-  constructor(parent, table, {axes, first, decorate, details, status}) {
-    Object.assign(this, {parent, rows: table.rows, axes, decorate, details, columns: columnsOf(table.columns), filters: {}, selected: null});
+  /** @p table: the packed one; axes: names of what was varied; first: {x, y, colour}; frame(explorer) may know better
+   *  axes, decorate(chart, explorer) draws more, details(panel, row, explorer) says what a row is; rows that fades(row, explorer)
+   *  are grey. */
+  constructor(parent, table, {axes, first, frame, fades, decorate, details, status}) {
+    Object.assign(this, {parent, rows: table.rows, axes, frame, fades, decorate, details, columns: columnsOf(table.columns), filters: {}, selected: null});
     this.statusName = status;
     this.index = this.columns.get('index');
     const numeric = [...this.columns.values()].filter(column => column.different().length > 1 || axes.includes(column.name));
@@ -50,7 +53,7 @@ class Explorer {
     this.order = [...list].sort((a, b) => x[a] - x[b] || y[a] - y[b]);
     this.place = new Map(this.order.map((row, i) => [row, i]));
     const what = this.cells ? 'a map' : this.lines ? 'lines' : 'dots';
-    this.caption.replaceChildren(el('b', {}, `${plural(list.length, {tradeoff: 'setting', optimisation: 'gait'}[page.kind] ?? 'point')}, ${what}.`), ' Point at one for its numbers, click for its details; arrow keys go from one to the next.');
+    this.caption.replaceChildren(el('b', {}, `${plural(list.length, NOUN)}, ${what}.`), ' Point at one for its numbers, click for its details; arrow keys go from one to the next.');
     const status = this.columns.get(this.statusName);
     this.isOpen = this.axes.length && status && this.colour !== this.statusName ? row => status.value(row) !== 'finished' : () => false;
     if (list.some(this.isOpen)) this.caption.append(' Crossed out: did not finish.');
@@ -87,12 +90,20 @@ class Explorer {
     if (groups.size > 200 || groups.size > this.list.length / 2) return null;
     return [...groups.values()].map(rows => rows.sort((a, b) => x[a] - x[b]));
   }
+  /** Lines and dots of a few kinds have a colour each. */
+  isFew(column) { return !this.cells && column.different().length <= 7; }
   restyle() {
     const column = this.column('colour');
     this.legendBox.replaceChildren();
-    this.bar.chart.box.hidden = !column || column.isText;
+    this.bar.chart.box.hidden = !column || column.isText || this.isFew(column);
     if (!column) { this.css = () => series(0); return; }
-    if (column.isText) {
+    if (column.isText || this.isFew(column)) {
+      if (!column.isText) {
+        const list = column.different();
+        this.css = row => isFinite(column.number(row)) ? series(list.indexOf(column.number(row))) : ink('unknown');
+        legend(this.legendBox, [[withUnit(column.title, column.unit) + ':', 'transparent'], ...list.map((value, i) => [show(value, 4), series(i)])]);
+        return;
+      }
       const others = column.texts.filter(text => !GOOD.includes(text)), hues = ['c2', 'c1', 'c4', 'c5', 'c6', 'c7'];
       const colour = i => !isFinite(i) ? ink('unknown') : GOOD.includes(column.texts[i]) ? ink('c3') : ink(hues[others.indexOf(column.texts[i]) % hues.length]);
       const counts = column.texts.map(() => 0);
@@ -111,13 +122,14 @@ class Explorer {
       const column = this.column(key), title = withUnit(column.title, column.unit);
       if (column.isText) return {low: -0.6, high: column.texts.length - 0.4, texts: column.texts, title};
       const [low, high] = range(this.list.map(row => column.number(row)));
-      const list = column.different(), even = (list[list.length - 1] - list[0]) / (list.length - 1), ratio = list[1] / list[0];
-      const geometric = list.length > 2 && list.every((value, i) => i === 0 || Math.abs(value / list[i - 1] / ratio - 1) < 1e-3) && Math.abs(list[1] - list[0] - even) > 0.01 * even;
+      const list = column.different(), n = list.length - 1, step = Math.log(list[n] / list[0]) / n;
+      const geometric = n > 1 && list.every((value, i) => i === 0 || Math.abs(Math.log(value / list[i - 1]) / step - 1) < 0.01);
       const log = low > 0 && (geometric || high / low > 1000);
       const part = this.cells ? 0.5 / (key === 'x' ? this.cells.xs : this.cells.ys).length : 0.04;
       return {...padded([low, high], log, part), title};
     };
-    return {x: axis('x'), y: axis('y')};
+    const axes = {x: axis('x'), y: axis('y')};
+    return {...axes, ...this.frame?.(this, axes)};
   }
   /** The pixels at which the cells of sorted values meet. */
   edges(values, scale) {
@@ -145,7 +157,7 @@ class Explorer {
       }
       this.decorate?.(chart, this);
       for (const row of this.list) {
-        c.fillStyle = this.css(row);
+        c.fillStyle = this.fades?.(row, this) ? ink('unknown') : this.css(row);
         const px = chart.x(x[row]), py = chart.y(y[row]);
         if (size < 5) c.fillRect(px - size / 2, py - size / 2, size, size);
         else { c.beginPath(); c.arc(px, py, size / 2, 0, 7); c.fill(); }
@@ -207,11 +219,12 @@ class Explorer {
     this.chart.say(this.words(row), this.chart.x(this.column('x').number(row)), this.chart.y(this.column('y').number(row)));
     return true;
   }
+  title(row) { return `${NOUN[0].toUpperCase()}${NOUN.slice(1)} ${this.index ? this.index.value(row) : row + 1}`; }
   /** The tip of a row. */
   words(row) {
     const names = [...new Set([...this.axes, this.x, this.y, this.colour])].filter(name => this.columns.has(name)).slice(0, 8);
     const status = this.columns.get(this.statusName)?.value(row), reason = this.columns.get('reason')?.value(row);
-    return [`${this.index ? 'No. ' + this.index.value(row) : ''}`, ...names.map(name => {
+    return [this.title(row), ...names.map(name => {
       const column = this.columns.get(name), bound = this.columns.get(boundKey(name))?.value(row);
       return `${shortName(column.title)}: ${known(bound) ? showWith(column.value(row), bound) + ` ± ${show(bound, 2)} ${unitText(column.unit)}` : column.words(row)}`;
     }), status && status !== 'finished' && !names.includes(this.statusName) ? status + (reason ? ': ' + reason : '') : ''].filter(Boolean).join('\n');
@@ -227,7 +240,7 @@ class Explorer {
         el('span', {class: 'unit'}, ' ' + unitText(column.unit))), el('td', {class: 'meaning wide-only'}, column.meaning)));
     }
     this.panel.hidden = false;
-    this.panel.replaceChildren(el('h2', {}, `${this.index ? 'No. ' + this.index.value(row) : 'Details'}`));
+    this.panel.replaceChildren(el('h2', {}, this.title(row)));
     this.details?.(this.panel, row, this);
     this.panel.append(el('details', {}, el('summary', {}, 'All numbers of this row'), el('div', {class: 'scroll'}, el('table', {}, body))));
   }

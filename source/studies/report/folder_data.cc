@@ -3,6 +3,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/base/row_file.h>
+#include <crawler/run/result_table.h>
 #include <crawler/studies/core/form.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/report/folder_data.h>
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace crawler
@@ -30,8 +32,8 @@ namespace crawler
     effective_parameters(const fs::path &folder)
     {
       const fs::path file = folder / "parameters.prm";
-      return is_there(file) ? std::optional(ParameterFile::from_text(read_whole_file(file), file.string())) :
-                              std::nullopt;
+      return is_there(file) ? std::optional(ParameterFile::from_text(read_whole_file(file), file.string()))
+                            : std::nullopt;
     }
 
     /// A positive number of parameters.prm; 1 if it is not known.
@@ -67,26 +69,68 @@ namespace crawler
     {
       constexpr std::size_t n_places = 400;
       constexpr double margin        = 0.3; // on both sides, of the length
-      const auto displacement        = std::ranges::find(kymograph.fields, "displacement", [](const auto &f) { return f.first; });
-      const Assignment *profile      = file.assignment_of("Ground/Profile");
+      const auto displacement =
+        std::ranges::find(kymograph.fields, "displacement", [](const auto &f) { return f.first; });
+      const Assignment *profile = file.assignment_of("Ground/Profile");
       if (profile == nullptr || profile->value == "1" || displacement == kymograph.fields.end())
         return nullptr;
       const auto [low, high] = std::ranges::minmax(displacement->second);
       std::vector<double> places;
       for (std::size_t i = 0; i < n_places; ++i)
-        places.push_back(std::lerp(
-          low - margin * length, high + (1. + margin) * length, static_cast<double>(i) / (n_places - 1)));
+        places.push_back(
+          std::lerp(low - margin * length, high + (1. + margin) * length, static_cast<double>(i) / (n_places - 1)));
       try
       {
         const Parameters parameters = Form(file).parameters;
-        const Ground ground = create_ground(parameters.ground, parameters.body, parameters.time.end_time);
-        std::vector<double> values = profile_at(ground.profile, places);
-        return {{"places", packed(Column{"x", "length", "", places})}, {"factor", packed(Column{"c", "1", "", values})}};
+        const Ground ground         = create_ground(parameters.ground, parameters.body, parameters.time.end_time);
+        std::vector<double> values  = profile_at(ground.profile, places);
+        return {{"places", packed(Column{"x", "length", "", places})},
+                {"factor", packed(Column{"c", "1", "", values})}};
       }
       catch (const InputError &) // a table that is elsewhere now, or entries of another version
       {
         return nullptr;
       }
+    }
+    /// Every so many rows of a column.
+    Column
+    some_rows(const RowReader &reader, const std::size_t number, const unsigned long stride)
+    {
+      constexpr unsigned long rows_at_once = 20000;
+      Column some;
+      for (unsigned long first = 0; first < reader.n_rows(); first += rows_at_once)
+      {
+        Column part    = reader.read(number, first, std::min(rows_at_once, reader.n_rows() - first));
+        const auto add = [&](auto &values) {
+          using Values = std::decay_t<decltype(values)>;
+          if (first == 0)
+            some = {part.name, part.unit, part.description, Values()};
+          for (std::size_t i = 0; i < values.size(); ++i)
+            if ((first + i) % stride == 0)
+              std::get<Values>(some.values).push_back(std::move(values[i]));
+        };
+        std::visit(add, part.values);
+      }
+      return some;
+    }
+
+    /// Which columns matter most where there is no place for all: what was varied and how it ended; the displacement
+    /// and other numbers with error bounds; the rest; the bounds of these, and messages.
+    unsigned int
+    rank_of(const Column &column)
+    {
+      if (column.description.starts_with("axis of the ") || column.description == "variable")
+        return 0;
+      const std::string &name = column.name;
+      const bool is_text      = std::holds_alternative<std::vector<std::string>>(column.values);
+      if (name == "message" || name == "explanation" || name.starts_with("errors.") ||
+          name.starts_with("sensitivities."))
+        return 4;
+      if (is_text || name == "index" || name == "displacement" || name == "displacement_error.total")
+        return 1;
+      return std::ranges::any_of(entries_with_errors(), [&](const ResultEntry *entry) { return entry->key == name; })
+               ? 2
+               : 3;
     }
   } // namespace
 
@@ -121,7 +165,8 @@ namespace crawler
       const auto &known = declarations.entries();
       const auto entry  = std::ranges::find(known, one.path, &EntryInfo::path);
       if (entry == known.end()) // of another version
-        json["entries"].push_back({{"entry", one.path}, {"value", one.value}, {"default", ""}, {"unit", ""}, {"meaning", ""}});
+        json["entries"].push_back(
+          {{"entry", one.path}, {"value", one.value}, {"default", ""}, {"unit", ""}, {"meaning", ""}});
       else if (entry->default_value != one.value)
         json["entries"].push_back({{"entry", one.path},
                                    {"value", one.value},
@@ -163,57 +208,40 @@ namespace crawler
   Json
   table_data(const fs::path &file, const std::string &group)
   {
-    constexpr unsigned long most_rows = 200000, rows_at_once = 20000;
-    constexpr std::size_t most_bytes = 7000000; // so that the page stays below 10 MB
+    constexpr unsigned long most_rows = 200000;
+    constexpr std::size_t most_bytes  = 9000000; // so that the page stays below 10 MB
     const RowReader reader(MPI_COMM_SELF, file, group);
     const unsigned long n_rows = reader.n_rows();
     // A stride that has no divisor in common with the number of rows does not take the same value of an axis each time.
     unsigned long stride = (n_rows + most_rows - 1) / most_rows;
     while (stride > 1 && std::gcd(stride, n_rows) != 1)
       ++stride;
-    Json json         = {{"all_rows", n_rows}, {"rows", 0}, {"columns", Json::array()}, {"left_out", Json::array()}};
-    std::size_t bytes = 0;
-    std::vector<Json> later; // error bounds are worth less than numbers
-    const auto add = [&](Json column) {
-      const std::size_t size = column.dump().size();
-      if (bytes + size > most_bytes)
-        json["left_out"].push_back(column["name"]);
-      else
-      {
-        bytes += size;
-        json["columns"].push_back(std::move(column));
-      }
-    };
+    Json json = {{"all_rows", n_rows}, {"rows", 0}, {"columns", Json::array()}, {"left_out", Json::array()}};
+    std::map<unsigned int, std::vector<Json>> by_rank;
     for (std::size_t number = 0; number < reader.n_columns(); ++number)
     {
-      Column all;
-      for (unsigned long first = 0; first < n_rows; first += rows_at_once)
-      {
-        Column part = reader.read(number, first, std::min(rows_at_once, n_rows - first));
-        std::visit(
-          [&](auto &values) {
-            using Values = std::decay_t<decltype(values)>;
-            if (first == 0)
-              all = {part.name, part.unit, part.description, Values()};
-            for (std::size_t i = 0; i < values.size(); ++i)
-              if ((first + i) % stride == 0)
-                std::get<Values>(all.values).push_back(std::move(values[i]));
-          },
-          part.values);
-      }
+      const Column all    = some_rows(reader, number, stride);
       json["rows"]        = std::visit([](const auto &values) { return values.size(); }, all.values);
-      Json column         = packed(all, all.description.starts_with("axis of the "));
+      Json column         = packed(all, rank_of(all) == 0);
       const auto &values  = column.contains("values") ? column["values"] : Json();
       const bool is_empty = values.size() == 1 && values[0].is_null();
       if (is_empty)
         continue;
-      if (all.name.starts_with("errors.") || all.name.starts_with("sensitivities."))
-        later.push_back(std::move(column));
-      else
-        add(std::move(column));
+      by_rank[rank_of(all)].push_back(std::move(column));
     }
-    for (Json &column : later)
-      add(std::move(column));
+    std::size_t bytes = 0;
+    for (auto &[rank, columns] : by_rank)
+      for (Json &column : columns)
+      {
+        const std::size_t size = column.dump().size();
+        if (bytes + size > most_bytes)
+          json["left_out"].push_back(column["name"]);
+        else
+        {
+          bytes += size;
+          json["columns"].push_back(std::move(column));
+        }
+      }
     return json;
   }
 } // namespace crawler

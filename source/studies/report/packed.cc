@@ -75,6 +75,15 @@ namespace crawler
         as(std::uint32_t());
       return true;
     }
+    /// 0, 1, 2, ...
+    bool
+    is_count(const std::vector<double> &numbers)
+    {
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (numbers[i] != static_cast<double>(i))
+          return false;
+      return numbers.size() > 1;
+    }
   } // namespace
 
   Json
@@ -87,7 +96,9 @@ namespace crawler
     else
     {
       const auto &numbers = std::get<std::vector<double>>(column.values);
-      if (!add_codes(numbers, numbers.size() <= small ? numbers.size() + 1 : numbers.size() / 16, json))
+      if (is_count(numbers))
+        json["count"] = numbers.size();
+      else if (!add_codes(numbers, numbers.size() <= small ? numbers.size() + 1 : numbers.size() / 16, json))
       {
         if (is_exact)
           json["doubles"] = base64(numbers);
@@ -131,7 +142,8 @@ namespace crawler
       const double scale = high > low ? (unknown - 1) / (high - low) : 0.;
       std::vector<std::uint16_t> codes;
       for (const double value : values)
-        codes.push_back(std::isfinite(value) ? static_cast<std::uint16_t>(std::lround((value - low) * scale)) : unknown);
+        codes.push_back(std::isfinite(value) ? static_cast<std::uint16_t>(std::lround((value - low) * scale))
+                                             : unknown);
       json["fields"][name] = {{"low", low}, {"high", high}, {"codes", base64(codes)}};
     }
     return json;

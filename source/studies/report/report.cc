@@ -51,10 +51,11 @@ namespace crawler
     {
       std::error_code error;
       if (!fs::is_directory(folder, error))
-        throw InputError(fmt::format("\"{}\" is {}, but the output folder of a run, sweep, atlas, tradeoff or optimisation "
-                                     "is expected",
-                                     folder.string(),
-                                     fs::exists(folder, error) ? "a file" : "not there"));
+        throw InputError(
+          fmt::format("\"{}\" is {}, but the output folder of a run, sweep, atlas, tradeoff or optimisation "
+                      "is expected",
+                      folder.string(),
+                      fs::exists(folder, error) ? "a file" : "not there"));
       for (const Kind &kind : kinds())
         if (fs::exists(folder / kind.sign, error))
           return kind;
@@ -74,9 +75,10 @@ namespace crawler
       for (const auto &one : fs::directory_iterator(has_points ? folder / "points" : folder, error))
       {
         const std::string name = one.path().filename().string(), prefix = has_points ? "" : "best";
-        const std::string rest = name.starts_with(prefix) ? name.substr(prefix.size()) : "?";
+        const std::string rest   = name.starts_with(prefix) ? name.substr(prefix.size()) : "?";
         const std::string digits = rest.starts_with("-") ? rest.substr(1) : rest;
-        if (fs::exists(one.path() / "summary.json", error) && digits.size() < 9 && (has_points ? !rest.empty() : true) &&
+        if (fs::exists(one.path() / "summary.json", error) && digits.size() < 9 &&
+            (has_points ? !rest.empty() : true) &&
             std::ranges::all_of(digits, [](const char c) { return c >= '0' && c <= '9'; }))
           found.emplace_back(digits.empty() ? 0 : std::stoul(digits), one.path());
       }
@@ -164,7 +166,8 @@ namespace crawler
         throw FileError("cannot write to the folder \"" + folder.string() + "\"");
       write_file(folder / report_name, with_data(data_of(folder, kind)));
       Log(/*is_first_rank=*/true, options.quiet)
-        .line(fmt::format("The report of this {} is {}; open it in a browser.", kind.name, (folder / report_name).string()));
+        .line(fmt::format(
+          "The report of this {} is {}; open it in a browser.", kind.name, (folder / report_name).string()));
       return "";
     });
     return ExitCode::finished;

@@ -54,9 +54,9 @@ function showCurves(parent, run, clock, fields) {
     if (!lines.length) return;
     const box = figure(title, text);
     parent.append(box);
-    const all = lines.flatMap(([column]) => range(column.numbers()));
+    const least = 1e-12 * run.length, all = lines.flatMap(([column]) => range(column.numbers())).concat(-least, least);
     const chart = new Chart(box, {height, label: title,
-      axes: () => ({x: {low: 0, high: end, title: withUnit('time t', 'time')}, y: {...padded(range([...all, 0])), title: withUnit(lines.length > 1 ? 'energy' : lines[0][1], lines[0][0].unit)}}),
+      axes: () => ({x: {low: 0, high: end, title: withUnit('time t', 'time')}, y: {...padded(range(all)), title: withUnit(lines.length > 1 ? 'energy' : lines[0][1], lines[0][0].unit)}}),
       paint: own => lines.forEach(([column], i) => own.polyline(time, column.numbers(), series(i))),
       overlay: own => {
         if (!clock || !fields) return;

@@ -34,7 +34,7 @@ function notices() {
   else if (status && status !== 'finished')
     notice(status, `${status[0].toUpperCase()}${status.slice(1)}: ${(page.kind === 'optimisation' ? summary.optimize?.reason : summary.reason) ?? 'the reason is not known'}.`,
       page.kind === 'optimisation' ? summary.optimize?.reason : summary.reason, summary.message);
-  if (page.kind === 'run' && page.summary && known(summary.displacement) && !known(at(summary, 'displacement_error.total')))
+  if (page.kind === 'run' && summary.status === 'finished' && known(summary.displacement) && !known(at(summary, 'displacement_error.total')))
     notice('unfinished', 'The error of the displacement is not known.', null, 'With "Error estimate" = true a second, finer run measures it.');
 }
 
@@ -139,7 +139,7 @@ function showPoints() {
   const words = [`${plural(table.all_rows, 'point')} over ${axes.map(shortName).join(' and ')}`, computed < table.rows ? `${computed.toLocaleString('en')} of ${table.rows.toLocaleString('en')} are computed` : '',
     table.rows < table.all_rows ? `this page has ${table.rows.toLocaleString('en')} of them, evenly chosen` : ''].filter(Boolean).join('; ') + '.';
   box.prepend(el('p', {}, words));
-  if (table.left_out.length) box.append(el('p', {class: 'soft small'}, `To keep this page small it has no columns ${table.left_out.join(', ')}; the table in the folder has them.`));
+  if (table.left_out.length) box.append(el('details', {class: 'small'}, el('summary', {}, `${plural(table.left_out.length, 'column')} left out, to keep this page small`), el('p', {class: 'soft'}, `${table.left_out.join(', ')}. The table in the folder has them.`)));
   if (isAtlas && page.summary) {
     const {checked, silent_wrong_answers: wrong, largest_error_ratio: ratio} = summary;
     box.prepend(el('p', {}, `${plural(checked ?? 0, 'point')} checked by a second answer; `, el('b', {}, wrong ? `${plural(wrong, 'silent wrong answer')}.` : 'no silent wrong answers.'), known(ratio) ? ` The largest measured error is ${show(ratio, 3)} of what was promised.` : ''));
@@ -176,7 +176,7 @@ function showTradeoff() {
       el('td', {class: 'value'}, tickText(one.accuracy, true), batch ? ' in a batch' : ''), el('td', {class: 'entry'}, one.prm ? el('details', {style: 'margin:0'}, el('summary', {}, one.setting), el('pre', {}, one.prm)) : one.setting),
       el('td', {class: 'value'}, exactly(one.error, show(one.error, 2))), el('td', {class: 'value'}, exactly(one.seconds, inTime(one.seconds)))))))));
   const box = section('All settings');
-  if (!page.table) { box.append(el('p', {}, 'There is no table of settings yet.')); return; }
+  if (!page.table) { box.append(el('p', {}, 'There is no table of settings: it is written at the end.')); return; }
   const explorer = new Explorer(box, page.table, {axes: [], status: 'status', decorate: drawFronts, first: {x: ['seconds'], y: ['shown error'], colour: ['engine', 'model']},
     details: (panel, row, own) => panel.append(el('p', {}, ['model', 'formulation', 'mesh', 'engine', 'integrator'].map(name => own.columns.get(name)?.value(row)).filter(Boolean).join(', '), '; ', own.columns.get('message')?.value(row) ?? ''))});
   box.append(el('p', {class: 'soft small'}, 'Lines: the Pareto fronts of single runs and (dashed) of batches. Shaded: errors below the uncertainty of the reference.'));
@@ -185,9 +185,8 @@ function showTradeoff() {
 
 // Optimisation ----------------------------------------------------------------------------------------------------------
 
-/** The best gait so far of each start. */
-function drawBest(chart, explorer) {
-  if (explorer.x !== 'evaluation' || explorer.y !== 'objective') return;
+/** The best gait so far of each start: {x, y, row} by start and limit of work. */
+function bestSoFar(explorer) {
   const [x, y, start, work, excess] = ['evaluation', 'objective', 'start', 'work_limit', 'violation'].map(name => explorer.columns.get(name)), starts = new Map();
   const backward = page.parameters.entries.some(one => one.entry === 'Optimize/Direction' && one.value === 'backward'), isCost = summary.optimize?.objective === 'cost of transport';
   const sign = (backward ? -1 : 1) * (isCost ? -1 : 1);
@@ -197,12 +196,21 @@ function drawBest(chart, explorer) {
     line.x.push(x.number(row));
     line.y.push(best === undefined || sign * y.number(row) > sign * best ? y.number(row) : best);
   }
-  for (const line of starts.values()) chart.polyline(line.x, line.y, explorer.colour === 'violation' ? ink('ink') : explorer.css(line.row), {steps: true});
+  return [...starts.values()];
+}
+const showsProgress = explorer => explorer.x === 'evaluation' && explorer.y === 'objective';
+function drawBest(chart, explorer) {
+  if (showsProgress(explorer)) for (const line of bestSoFar(explorer)) chart.polyline(line.x, line.y, explorer.colour === 'violation' ? ink('ink') : explorer.css(line.row), {steps: true});
+}
+/** Gaits far off the lines would hide how these rise. */
+function frameOfBest(explorer, {x, y}) {
+  const ends = showsProgress(explorer) ? bestSoFar(explorer).flatMap(line => range(line.y)) : [];
+  return ends.length ? {x, y: {...padded(range(ends), false, 0.15), title: y.title}} : {};
 }
 
 function showOptimum(box, one, folder, unit) {
   const rows = (object, value) => Object.entries(object ?? {}).map(([name, x]) => el('tr', {}, el('td', {class: 'entry'}, name), ...value(x)));
-  box.append(el('p', {}, one.work_limit === null ? '' : `With work up to ${show(one.work_limit)}: `, `best ${summary.optimize.objective} `, el('b', {'data-key': 'optimum'}, exactly(one.objective)), ` ${unitText(unit)}`,
+  box.append(el('p', {}, one.work_limit === null ? 'T' : `With work up to ${show(one.work_limit)} t`, `he best ${summary.optimize.objective} is `, el('b', {'data-key': 'optimum'}, exactly(one.objective)), ` ${unitText(unit)}`.trimEnd(),
     known(one.efficiency) ? `, ${show(100 * one.efficiency, 3)} % of what any gait with this work and these strains could` : '', '. ',
     one.is_admissible ? 'It keeps to all limits. ' : el('b', {}, `It exceeds a limit, by ${show(one.violation, 2)} of it. `), one.has_converged ? '' : el('b', {}, `The optimiser did not converge${one.message ? ': ' + one.message : ''}. `),
     'Its files are in ', el('a', {href: `${folder}/`}, `${folder}/`), ', its parameter file is ', el('a', {href: folder.replace('best', 'optimum') + '.prm'}, folder.replace('best', 'optimum') + '.prm'), '.'));
@@ -216,10 +224,10 @@ function showOptimisation() {
   const box = section('How the gait became better'), optima = summary.optimize?.optima ?? [];
   let explorer = null;
   if (page.table) {
-    explorer = new Explorer(box, page.table, {axes: [], status: 'problem', decorate: drawBest, first: {x: ['evaluation'], y: ['objective'], colour: optima.length > 1 ? ['work_limit'] : ['start', 'violation']},
+    explorer = new Explorer(box, page.table, {axes: [], status: 'problem', decorate: drawBest, frame: frameOfBest, fades: (row, own) => own.columns.get('violation')?.number(row) > 1e-5, first: {x: ['evaluation'], y: ['objective'], colour: optima.length > 1 ? ['work_limit'] : ['start', 'violation']},
       details: (panel, row, own) => panel.append(el('p', {}, own.columns.get('problem')?.value(row) ?? ''))});
-    box.append(el('p', {class: 'soft small'}, 'Dots: all gaits that were tried. Lines: the best so far that keeps to the limits.'));
-  } else box.append(el('p', {}, 'No start has ended yet.'));
+    box.append(el('p', {class: 'soft small'}, 'Dots: all gaits that were tried, grey if they exceed a limit. Lines: the best so far that keeps to the limits.'));
+  } else box.append(el('p', {}, 'There is no table of gaits: it is written when all starts have ended.'));
   if (!optima.length) return;
   const best = section('The best gait'), place = el('div');
   const pick = i => {

@@ -8,8 +8,8 @@
 
 namespace crawler
 {
-  /// What a page needs to know of the files in a folder. What is not there is null. All throw FileError if a file cannot
-  /// be read, InputError if one is damaged.
+  /// What a page needs to know of the files in a folder. What is not there is null. All throw FileError if a file
+  /// cannot be read, InputError if one is damaged.
 
   /// summary.json.
   Json
@@ -26,8 +26,8 @@ namespace crawler
   run_data(const std::filesystem::path &folder, const std::string &title, std::size_t most_rows);
 
   /**
-   * A table of a RowFile: its columns (those whose meaning begins with "axis" or is "variable" are what was varied), and
-   * which of them were left out because they would make the page too large; of very many rows some, evenly.
+   * A table of a RowFile: its columns (those whose meaning begins with "axis" or is "variable" are what was varied),
+   * and which of them were left out because they would make the page too large; of very many rows some, evenly.
    */
   Json
   table_data(const std::filesystem::path &file, const std::string &group);

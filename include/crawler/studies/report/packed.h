@@ -12,9 +12,9 @@ namespace crawler
   using Json = nlohmann::ordered_json;
 
   /**
-   * {name, unit, meaning} and its values: {values, codes, bytes}, where the codes of this many bytes are indices into the
-   * different values (null: not known), or {floats} in single precision, where that is shorter; {doubles} if it
-   * must be exact, as the former is.
+   * {name, unit, meaning} and its values: {values, codes, bytes}, where the codes of this many bytes are indices into
+   * the different values (null: not known); {count} for the numbers 0, 1, 2, ...; {floats} in single precision, where
+   * that is shorter; {doubles} instead if it must be exact, as the others are.
    */
   Json
   packed(const Column &column, bool is_exact = false);
