@@ -164,7 +164,7 @@ class BodyPicture {
     const f = this.fields.along('friction_force', this.clock.t), y = ground + 21;
     c.strokeStyle = c.fillStyle = ink('accent');
     c.lineWidth = 1.6;
-    for (let i = 0; i < px.length; i += 10) {
+    for (let i = 0, step = Math.max(1, Math.round(px.length / 20)); i < px.length; i += step) {
       const size = -f[i] / this.reach * 34, head = Math.sign(size) * Math.min(5, Math.abs(size));
       if (Math.abs(size) < 1) continue;
       c.beginPath(); c.moveTo(px[i], y); c.lineTo(px[i] + size, y); c.stroke();
@@ -233,7 +233,7 @@ class KymographPicture {
   words(x, t) {
     const at = t >= 0 && t <= this.fields.end ? this.indexer(t)(x) : -1;
     if (at < 0) return null;
-    const i = Math.round(at), value = name => show(this.fields.along(name, t)[i], 4);
+    const i = Math.round(at), value = name => show(this.fields.along(name, t)[i], 3);
     return [`s = ${show(this.fields.places[i], 4)}, t = ${show(t, 4)}`, ...Object.entries(FIELDS).filter(([name]) => this.fields.fields[name])
       .map(([name, field]) => `${field.name} ${value(name)} ${unitText(field.unit)}`)].join('\n');
   }

@@ -84,6 +84,79 @@ namespace crawler
           return false;
       return numbers.size() > 1;
     }
+    /// Least and largest finite value; the other way round if there is none.
+    std::pair<double, double>
+    range_of(const std::vector<double> &values)
+    {
+      double low = HUGE_VAL, high = -HUGE_VAL;
+      for (const double value : values)
+        if (std::isfinite(value))
+        {
+          low  = std::min(low, value);
+          high = std::max(high, value);
+        }
+      return {low, high};
+    }
+
+    /// Of the numbers below @p n every so many, and the last one.
+    std::vector<std::size_t>
+    every(const std::size_t stride, const std::size_t n)
+    {
+      std::vector<std::size_t> list;
+      for (std::size_t i = 0; i < n; i += stride)
+        list.push_back(i);
+      if (list.back() + 1 != n)
+        list.push_back(n - 1);
+      return list;
+    }
+
+    Kymograph
+    part_of(const Kymograph &whole, const std::vector<std::size_t> &rows, const std::vector<std::size_t> &places)
+    {
+      Kymograph part;
+      for (const std::size_t i : places)
+        part.places.push_back(whole.places[i]);
+      for (const std::size_t j : rows)
+        part.times.push_back(whole.times[j]);
+      for (const auto &[name, values] : whole.fields)
+      {
+        part.fields.emplace_back(name, std::vector<double>());
+        for (const std::size_t j : rows)
+          for (const std::size_t i : places)
+            part.fields.back().second.push_back(values[j * whole.places.size() + i]);
+      }
+      return part;
+    }
+
+    /// Is every other row (or place) what a line between its neighbours gives, to a colour of the 256 that a picture
+    /// has?
+    bool
+    can_be_halved(const Kymograph &kymograph, const bool in_time)
+    {
+      constexpr double tolerance = 1. / 256;
+      const std::size_t n_rows = kymograph.times.size(), n_places = kymograph.places.size();
+      const auto &axis = in_time ? kymograph.times : kymograph.places;
+      if (axis.size() % 2 == 0 || axis.size() < 64)
+        return false;
+      const std::size_t other = in_time ? n_places : n_rows, step = in_time ? n_places : 1,
+                        other_step = in_time ? 1 : n_places;
+      for (const auto &[name, values] : kymograph.fields)
+      {
+        const auto [low, high] = range_of(values);
+        for (std::size_t k = 1; k + 1 < axis.size(); k += 2)
+        {
+          const double part = (axis[k] - axis[k - 1]) / (axis[k + 1] - axis[k - 1]);
+          for (std::size_t l = 0; l < other; ++l)
+          {
+            const double *here = &values[k * step + l * other_step];
+            const double line  = here[-static_cast<std::ptrdiff_t>(step)] * (1. - part) + here[step] * part;
+            if (!(std::abs(*here - line) <= tolerance * (high - low)))
+              return false;
+          }
+        }
+      }
+      return true;
+    }
   } // namespace
 
   Json
@@ -113,30 +186,16 @@ namespace crawler
   packed(const Kymograph &kymograph, const std::size_t most_rows)
   {
     constexpr std::uint16_t unknown = std::numeric_limits<std::uint16_t>::max();
-    const std::size_t n_rows = kymograph.times.size(), n_places = kymograph.places.size();
-    const std::size_t stride = (n_rows + most_rows - 1) / most_rows;
-    std::vector<std::size_t> rows;
-    for (std::size_t j = 0; j < n_rows; j += stride)
-      rows.push_back(j);
-    if (rows.back() + 1 != n_rows)
-      rows.push_back(n_rows - 1);
-    std::vector<double> times;
-    for (const std::size_t j : rows)
-      times.push_back(kymograph.times[j]);
-    Json json = {{"places", kymograph.places}, {"times", times}, {"fields", Json::object()}};
-    for (const auto &[name, all] : kymograph.fields)
+    Kymograph small                 = kymograph;
+    for (const bool in_time : {true, false})
+      while (can_be_halved(small, in_time))
+        small = part_of(small, every(in_time ? 2 : 1, small.times.size()), every(in_time ? 1 : 2, small.places.size()));
+    const std::size_t n_rows = small.times.size();
+    small     = part_of(small, every((n_rows + most_rows - 1) / most_rows, n_rows), every(1, small.places.size()));
+    Json json = {{"places", small.places}, {"times", small.times}, {"fields", Json::object()}};
+    for (const auto &[name, values] : small.fields)
     {
-      std::vector<double> values;
-      for (const std::size_t j : rows)
-        for (std::size_t i = 0; i < n_places; ++i)
-          values.push_back(all[j * n_places + i]);
-      double low = HUGE_VAL, high = -HUGE_VAL;
-      for (const double value : values)
-        if (std::isfinite(value))
-        {
-          low  = std::min(low, value);
-          high = std::max(high, value);
-        }
+      const auto [low, high] = range_of(values);
       if (low > high)
         continue;
       const double scale = high > low ? (unknown - 1) / (high - low) : 0.;

@@ -127,11 +127,12 @@ class Chart {
     }
     c.fillStyle = ink('ink');
     c.textAlign = 'center';
-    c.fillText(clipped(c, x.title, this.width - 10), (m.left + right) / 2, this.height - 4);
+    const fits = (text, width) => c.measureText(text).width <= width ? text : clipped(c, shortName(text), width); // of a path the last word
+    c.fillText(fits(x.title, right - m.left + 12), (m.left + right) / 2, this.height - 4);
     c.save();
     c.translate(12, (m.top + bottom) / 2);
     c.rotate(-Math.PI / 2);
-    c.fillText(clipped(c, y.title, bottom - m.top + 20), 0, 0);
+    c.fillText(fits(y.title, bottom - m.top + 20), 0, 0);
     c.restore();
   }
   /** A line through points, with gaps where a number is not known. */

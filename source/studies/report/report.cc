@@ -104,7 +104,7 @@ namespace crawler
       const fs::path absolute = fs::canonical(folder);
       Json data               = {{"kind", kind.name},
                                  {"folder", absolute.filename().string()},
-                                 {"path", absolute.string()},
+                                 {"path", folder.string()},
                                  {"program", Json::object()},
                                  {"summary", summary_data(folder)},
                                  {"parameters", parameter_data(folder)},

@@ -20,7 +20,8 @@ namespace crawler
   packed(const Column &column, bool is_exact = false);
 
   /// {places, times, fields: {NAME: {low, high, codes}}}: codes from 0 to 65534 for low to high, 65535 where a value is
-  /// not known. No more than @p most_rows times.
+  /// not known. Rows and places that lines between the others give to a 256th of the range are left out; there are no
+  /// more than @p most_rows times.
   Json
   packed(const Kymograph &kymograph, std::size_t most_rows);
 } // namespace crawler
