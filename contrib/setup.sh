@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(g++ cmake ninja-build git libdeal.ii-dev libcli11-dev nlohmann-json3-dev libfmt-dev openmpi-bin)
-[ "${1:-}" = tests ] && packages+=(libgtest-dev libbenchmark-dev python3 python3-numpy python3-scipy python3-vtk9 python3-h5py python3-pandas python3-matplotlib clang-format clang-tidy doxygen texlive-binaries)
+[ "${1:-}" = tests ] && packages+=(libgtest-dev libbenchmark-dev python3 python3-numpy python3-scipy python3-vtk9 python3-h5py python3-pandas python3-matplotlib chromium clang-format clang-tidy doxygen texlive-binaries)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -78,6 +78,8 @@ class Optimisation:
         text = ", ".join(f"{name.rsplit('/', 1)[-1]} {value:.4g}" if isinstance(value, float)
                          else f"{name.rsplit('/', 1)[-1]} {value}" for name, value in own["case"].items()
                          if name not in own["variables"] and any(one["case"][name] != value for one in self.optima))
+        if len(text) > LONGEST:
+            text = f"case {case}: " + ", ".join(map(str, own["case"].values()))
         return text if len(text) <= LONGEST else text[:LONGEST - 3].rstrip(" ,") + "..."
 
     def gait(self, options):
@@ -165,7 +167,7 @@ def draw_cases(axes, optimisation, shown):
     is_line = len(set(places)) == len(places) and not name.startswith("number of the")
     bounds = sorted((x, abs(one["objective"] / one[key])) for x, _, one in known if one.get(key))
     if bounds and optimisation.objective in ("displacement", "merit"):
-        axes.plot(*zip(*bounds), "--" if is_line else "", color="0.35", linewidth=1, marker="_", markersize=9,
+        axes.plot(*zip(*bounds), "--" if is_line else "none", color="0.35", linewidth=1, marker="_", markersize=9,
                   label="no gait with its work\nand its strains\ngoes further")
     if is_line:
         axes.plot(*zip(*sorted((x, abs(one["objective"])) for x, _, one in known)), color="black", linewidth=0.9,

@@ -12,6 +12,7 @@
 #include <crawler/studies/atlas/atlas.h>
 #include <crawler/studies/core/parameters.h>
 #include <crawler/studies/optimize/optimize.h>
+#include <crawler/studies/report/report.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/sweep/sweep.h>
 #include <crawler/studies/tradeoff/tradeoff.h>
@@ -117,14 +118,20 @@ namespace crawler
         if (has_value && name != "--set" && option->count() > 1)
           return fmt::format("\"{}\" is there {} times, but once is expected", name, option->count());
       }
-      const std::size_t wanted = command->get_option_no_throw("FILE") == nullptr ? 1 : 2;
+      const bool wants_folder  = command->get_option_no_throw("DIR") != nullptr;
+      const std::size_t wanted = command->get_option_no_throw("FILE") == nullptr && !wants_folder ? 1 : 2;
       if (has_command && words.size() < wanted)
-        return fmt::format("the parameter file is missing; \"crawler {} FILE.prm\" is expected", command->get_name());
+        return fmt::format("the {} is missing; \"crawler {} {}\" is expected",
+                           wants_folder ? "folder" : "parameter file",
+                           command->get_name(),
+                           wants_folder ? "DIR" : "FILE.prm");
       if (has_command && words.size() > wanted)
         return fmt::format("found \"{}\" behind \"{}\", but {} is expected",
                            words[wanted],
                            words[wanted - 1],
-                           wanted == 1 ? "nothing" : "one parameter file");
+                           wanted == 1    ? "nothing"
+                           : wants_folder ? "one folder"
+                                          : "one parameter file");
       return error.what();
     }
 
@@ -149,44 +156,57 @@ namespace crawler
                                    near.empty() ? "" : "; the nearest is " + quoted_list(near)));
     }
 
-    /// A command that reads a parameter file.
+    /// A command that reads a parameter file, or the folder that another one has made.
     struct Command
     {
       const char *name, *description;
       ExitCode (*function)(MPI_Comm, const CommandOptions &);
       bool writes, is_study; ///< --overwrite and --quiet; --resume
     };
-    constexpr Command commands[] = {{"run", "Runs the crawler of a parameter file", run, true, false},
-                                    {"check",
-                                     "Says what run would do with a parameter file; runs and writes nothing",
-                                     check,
-                                     /*writes=*/false,
-                                     /*is_study=*/false},
-                                    {"atlas",
-                                     "Maps two entries of a parameter file: runs every point in all forms and compares",
-                                     atlas,
-                                     /*writes=*/true,
-                                     /*is_study=*/true},
-                                    {"tradeoff",
-                                     "Measures cost against error of many settings on the scene of a parameter file",
-                                     tradeoff,
-                                     /*writes=*/true,
-                                     /*is_study=*/true},
-                                    {"optimize",
-                                     "Looks for the best gait of section Optimize of a parameter file",
-                                     optimize,
-                                     /*writes=*/true,
-                                     /*is_study=*/true},
-                                    {"sweep",
-                                     "Runs all points of section Sweep of a parameter file and makes a table of them",
-                                     sweep,
-                                     /*writes=*/true,
-                                     /*is_study=*/true}};
+    constexpr Command commands[] = {
+      {"run", "Runs the crawler of a parameter file", run, true, false},
+      {"check",
+       "Says what run would do with a parameter file; runs and writes nothing",
+       check,
+       /*writes=*/false,
+       /*is_study=*/false},
+      {"atlas",
+       "Maps two entries of a parameter file: runs every point in all forms and compares",
+       atlas,
+       /*writes=*/true,
+       /*is_study=*/true},
+      {"tradeoff",
+       "Measures cost against error of many settings on the scene of a parameter file",
+       tradeoff,
+       /*writes=*/true,
+       /*is_study=*/true},
+      {"optimize",
+       "Looks for the best gait of section Optimize of a parameter file",
+       optimize,
+       /*writes=*/true,
+       /*is_study=*/true},
+      {"sweep",
+       "Runs all points of section Sweep of a parameter file and makes a table of them",
+       sweep,
+       /*writes=*/true,
+       /*is_study=*/true},
+      {"report",
+       "Makes a page for browsers, report.html, of the output folder of any other command",
+       report,
+       /*writes=*/false,
+       /*is_study=*/false}};
 
     void
     add_command(const Command &command, CLI::App &app, CommandOptions &options)
     {
       CLI::App *own = app.add_subcommand(command.name, command.description);
+      if (command.function == report)
+      {
+        own->add_option("DIR", options.file, "Output folder of a run, sweep, atlas, tradeoff or optimisation")
+          ->required();
+        own->add_flag("--quiet", options.quiet, "Prints nothing but errors");
+        return;
+      }
       own->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();
       own->add_option("--set", options.overrides, "Sets an entry: \"Section/Entry=value\" (repeatable)")
         ->allow_extra_args(false)
@@ -286,13 +306,13 @@ namespace crawler
         throw InputError(in_words(error, app, arguments) + " (crawler --help tells the commands and options)");
       }
       const CLI::App *const chosen = app.get_subcommands().front();
-      if (chosen != parameter_command && chosen != plot_command.command && chosen->count("--output") > 0 &&
-          options.output.empty())
+      if (chosen->get_option_no_throw("--output") != nullptr && chosen->count("--output") > 0 && options.output.empty())
         throw InputError("behind \"--output\" stands \"\", but the name of a folder is expected");
       const auto command = std::find_if(
         std::begin(commands), std::end(commands), [&](const Command &c) { return c.name == chosen->get_name(); });
-      if (!petsc_options.empty() && (command == std::end(commands) || command->function == atlas ||
-                                     command->function == tradeoff || command->function == optimize))
+      if (!petsc_options.empty() &&
+          (command == std::end(commands) || command->function == atlas || command->function == tradeoff ||
+           command->function == optimize || command->function == report))
         throw InputError(fmt::format("behind \"--\" stands \"{}\", but the command \"{}\" has no use for PETSc options",
                                      petsc_options[0],
                                      chosen->get_name()));

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -151,5 +152,35 @@ namespace crawler
     if (!in || !(text << in.rdbuf()))
       throw InputError("cannot read \"" + file + "\", or it is empty; " + expected + " is expected", entry);
     return csv_numbers(text.str(), names, file, entry);
+  }
+
+  Table
+  read_csv_table(const std::filesystem::path &path)
+  {
+    const std::string whole = read_whole_file(path);
+    std::string_view text   = without_byte_order_mark(whole);
+    Table table;
+    std::vector<std::vector<double>> columns;
+    for (std::string_view rest = next_part(text, '\n'); !rest.empty();)
+    {
+      const std::string_view word = without_blanks(next_part(rest, ','));
+      const auto unit             = word.rfind(" [");
+      const bool has_unit         = unit != word.npos && word.back() == ']';
+      table.push_back({std::string(word.substr(0, has_unit ? unit : word.npos)),
+                       has_unit ? std::string(word.substr(unit + 2, word.size() - unit - 3)) : "",
+                       "",
+                       {}});
+    }
+    columns.resize(table.size());
+    while (!text.empty())
+    {
+      std::string_view line = without_blanks(next_part(text, '\n'));
+      if (!line.empty())
+        for (auto &column : columns)
+          column.push_back(number_in(next_part(line, ',')).value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+    for (std::size_t i = 0; i < table.size(); ++i)
+      table[i].values = std::move(columns[i]);
+    return table;
   }
 } // namespace crawler

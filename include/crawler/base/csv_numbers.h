@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/table.h>
+
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,4 +60,9 @@ namespace crawler
                    const std::vector<std::string> &names,
                    const std::string &expected,
                    const std::string &entry);
+
+  /// The columns of a CSV file of numbers that a run has written, as statistics.csv, with names "name [unit]". What is
+  /// empty, missing or no number is not a number. Throws FileError if the file cannot be read.
+  Table
+  read_csv_table(const std::filesystem::path &path);
 } // namespace crawler

@@ -48,7 +48,7 @@ namespace crawler
                        "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
   }
 
-  const std::string study_lock_name = "study.lock";
+  const std::string study_lock_name = "study.lock", report_name = "report.html";
 
   void
   require_no_study(const fs::path &folder)
@@ -96,7 +96,8 @@ namespace crawler
                              "starts.csv",
                              "optimum.prm",
                              "optimize.png",
-                             "reference.json"})
+                             "reference.json",
+                             report_name.c_str()})
       fs::remove(folder / name, error);
     remove_fields(folder);
   }

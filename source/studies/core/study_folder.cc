@@ -28,8 +28,13 @@ namespace crawler
   StudyFolder::State
   StudyFolder::state() const
   {
-    std::set<std::string> early = {
-      study_lock_name, "original.prm", "original.prm.part", "parameters.prm", "parameters.prm.part", "log.txt"};
+    std::set<std::string> early = {study_lock_name,
+                                   report_name,
+                                   "original.prm",
+                                   "original.prm.part",
+                                   "parameters.prm",
+                                   "parameters.prm.part",
+                                   "log.txt"};
     for (const std::string &name : kind_.results)
       early.insert(name + ".part");
     std::error_code error;

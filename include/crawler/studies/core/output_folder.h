@@ -17,6 +17,9 @@ namespace crawler
   /// Locked (base/file_lock.h) as long as a study of many runs writes to the folder.
   extern const std::string study_lock_name;
 
+  /// The page that `crawler report` makes.
+  extern const std::string report_name;
+
   /// Throws InputError if a study of another process writes to the folder.
   void
   require_no_study(const std::filesystem::path &folder);

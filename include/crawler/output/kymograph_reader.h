@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace crawler
+{
+  /// What a KymographWriter has written: fields on a grid over body and time.
+  struct Kymograph
+  {
+    std::vector<double> places; ///< s/L, ascending
+    std::vector<double> times;  ///< t/T, ascending; jumps of the active stress are there twice
+    std::vector<std::pair<std::string, std::vector<double>>> fields; ///< name, and values [time][place]
+  };
+
+  /// Reads kymograph.vts. Throws FileError if it cannot be read, InputError if it is no such file or is damaged.
+  Kymograph
+  read_kymograph(const std::filesystem::path &path);
+} // namespace crawler

@@ -1,0 +1,148 @@
+'use strict';
+// What all parts of the page use: elements, numbers in words, packed numbers, colours.
+
+const page = JSON.parse(document.getElementById('data').textContent);
+
+/** An element; texts are never read as HTML. Attributes that begin with "on" are listeners. */
+function el(name, attributes = {}, ...children) {
+  const element = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes))
+    if (key.startsWith('on')) element.addEventListener(key.slice(2), value);
+    else if (value === true) element.setAttribute(key, '');
+    else if (value !== false && value !== null && value !== undefined) element.setAttribute(key, value);
+  element.append(...children.filter(child => child !== null && child !== undefined && child !== false));
+  return element;
+}
+
+const known = value => typeof value === 'number' && isFinite(value);
+const plural = (n, word) => `${n.toLocaleString('en')} ${word}${n === 1 ? '' : 's'}`;
+
+/** The value under a key with dots; null if it is not there. */
+function at(object, key) {
+  for (const word of key.split('.')) object = object?.[word];
+  return object ?? null;
+}
+
+/** "force length" as people write it; nothing for the unit 1. */
+const unitText = unit => !unit || unit === '1' ? '' : unit.replace(/ /g, '·').replace(/·per·.*/, ' per unit of the entry');
+const withUnit = (name, unit) => unitText(unit) ? `${name} [${unitText(unit)}]` : name;
+/** The key of a number as a name. */
+const nameOf = key => key.replace(/\.value$/, '').replace(/^errors\./, 'bound of ').replace(/_/g, ' ').replace(/\./g, ', ');
+/** The last words of an entry's path. */
+const shortName = path => path.split('/').pop();
+
+const superscript = n => String(n).replace(/-/, '⁻').replace(/\d/g, d => '⁰¹²³⁴⁵⁶⁷⁸⁹'[d]);
+
+/** A number with so many digits, 1.2 × 10⁻⁸ if it is very small or large. */
+function show(value, digits = 6) {
+  if (typeof value !== 'number') return value === null || value === undefined ? '–' : String(value);
+  if (!isFinite(value)) return '–';
+  if (value === 0) return '0';
+  const size = Math.abs(value);
+  if (size >= 1e-4 && size < 1e7) {
+    const text = size >= 10 ** digits ? value.toFixed(0) : value.toPrecision(digits);
+    return (text.includes('.') ? text.replace(/\.?0+$/, '') : text).replace('-', '−');
+  }
+  const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
+  return `${mantissa.replace(/\.?0+$/, '').replace('-', '−')} × 10${superscript(Number(exponent))}`;
+}
+
+/** As many digits as a bound of the error says, two of which are uncertain. */
+function showWith(value, bound) {
+  if (!known(value) || !known(bound) || bound <= 0 || value === 0) return show(value);
+  const digits = Math.floor(Math.log10(Math.abs(value))) - Math.floor(Math.log10(bound)) + 2;
+  return show(value, Math.min(15, Math.max(2, digits)));
+}
+
+/** Where the bound of a number is. */
+const boundKey = key => ({displacement: 'displacement_error.total', 'inversion.t': 'inversion.error'})[key]
+  ?? 'errors.' + key.replace(/\.value$/, '');
+
+/** A number that can be read exactly by programs, too. */
+const exactly = (value, text) => known(value) ? el('data', {value: String(value)}, text ?? show(value)) : show(value);
+
+function unpack(text, type) {
+  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
+  return new type(bytes.buffer);
+}
+
+/** A column of a table: its value in a row (a number or a text; null: not known). */
+class Column {
+  constructor(packed) {
+    Object.assign(this, {name: packed.name, unit: packed.unit, meaning: packed.meaning});
+    if (packed.floats !== undefined) this.floats = unpack(packed.floats, Float32Array);
+    else if (packed.count !== undefined) this.floats = Float64Array.from({length: packed.count}, (_, i) => i);
+    else if (packed.doubles !== undefined) this.floats = unpack(packed.doubles, Float64Array);
+    else {
+      this.values = packed.values;
+      this.codes = unpack(packed.codes, {1: Uint8Array, 2: Uint16Array, 4: Uint32Array}[packed.bytes]);
+    }
+    this.isText = this.values?.some(value => typeof value === 'string') ?? false;
+    if (this.isText) this.texts = this.values.filter(value => value !== null);
+    this.length = (this.floats ?? this.codes).length;
+    this.title = nameOf(this.name);
+  }
+  value(row) {
+    if (!this.floats) return this.values[this.codes[row]];
+    const value = this.floats[row];
+    return isFinite(value) ? value : null;
+  }
+  /** For axes and colours: texts are counted. */
+  number(row) {
+    const value = this.value(row);
+    return this.isText ? (value === null ? NaN : this.texts.indexOf(value)) : value ?? NaN;
+  }
+  numbers() {
+    return this.cache ??= Float64Array.from({length: this.length}, (_, row) => this.number(row));
+  }
+  /** The different numbers, ascending. */
+  different() {
+    return this.sorted ??= [...new Set(this.numbers())].filter(isFinite).sort((a, b) => a - b);
+  }
+  words(row) {
+    const value = this.value(row);
+    return typeof value === 'number' ? `${show(value)} ${unitText(this.unit)}`.trim() : value ?? 'not known';
+  }
+}
+
+/** Columns by their names. */
+const columnsOf = packed => new Map(packed.map(column => [column.name, new Column(column)]));
+
+// Colours -----------------------------------------------------------------------------------------------------------
+
+/** A colour of the style sheet, as the page looks at present. */
+const ink = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
+const rgb = text => [1, 3, 5].map(i => parseInt(text.slice(i, i + 2), 16));
+const series = i => ink('c' + (i % 7 + 1));
+// Cividis, which looks the same to colour-blind readers.
+const CIVIDIS = ['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838'];
+
+/** 256 colours through the given ones. */
+function palette(colours) {
+  const stops = colours.map(rgb);
+  return Array.from({length: 256}, (_, i) => {
+    const x = i / 255 * (stops.length - 1), k = Math.min(Math.floor(x), stops.length - 2);
+    return stops[k].map((from, c) => Math.round(from + (x - k) * (stops[k + 1][c] - from)));
+  });
+}
+
+/** Colours of the numbers from low to high; those that lie on both sides of a middle have two hues. */
+function colourScale(low, high, {middle = 0, log = false} = {}) {
+  const diverges = middle !== null && low < middle && high > middle;
+  if (diverges) {
+    const reach = Math.max(middle - low, high - middle);
+    [low, high] = [middle - reach, middle + reach];
+  }
+  if (!(high > low)) [low, high] = [low - (Math.abs(low) || 1) / 2, high + (Math.abs(high) || 1) / 2];
+  const of = log ? Math.log : x => x;
+  const list = palette(diverges ? [ink('low'), ink('middle'), ink('high')] : CIVIDIS), unknown = rgb(ink('unknown'));
+  const from = of(low), scale = 255 / (of(high) - from);
+  const colour = x => isFinite(x) ? list[Math.max(0, Math.min(255, Math.round((of(x) - from) * scale)))] : unknown;
+  return {low, high, log, list, colour, css: x => `rgb(${colour(x).join()})`};
+}
+
+function range(values) {
+  let low = Infinity, high = -Infinity;
+  for (const value of values) if (isFinite(value)) { low = Math.min(low, value); high = Math.max(high, value); }
+  return low > high ? [0, 1] : [low, high];
+}

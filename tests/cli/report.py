@@ -1,0 +1,352 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""crawler report: its pages have the numbers of the folders that they are made of, and work in a browser, with and
+without a pointer, wide and narrow, light and dark; texts of users stay texts; other folders are refused in a sentence.
+
+    python3 report.py PATH_TO_CRAWLER
+"""
+import base64
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from browser import Browser  # noqa: E402
+
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+NASTY = "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 1'>"
+CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
+WAVE = f"""# {NASTY}
+set Accuracy = 1e-3
+subsection Active stress
+  subsection Optimal wave
+    set Choose wave by = wave speed
+  end
+end
+"""
+FORMULAS = """
+set Accuracy = 1e-3
+subsection Active stress
+  set Generator = expression
+end
+"""
+STRAIN = """
+set Model = kinematic
+set Accuracy = 1e-4
+subsection Active stress
+  set Generator = prescribed strain
+  subsection Prescribed strain
+    set Given by = modes
+  end
+  subsection Modes
+    set Harmonics    = 1
+    set Coefficients = 0, 0.2, 0
+  end
+end
+subsection Optimize
+  set Objective       = merit
+  set Variables       = Active stress/Modes/Coefficients[*] : -1 to 1
+  set Smallest strain = -0.3
+  set Largest strain  = 0.3
+end
+"""
+FOLDERS = ("run", "sweep", "atlas", "tradeoff", "optimisation")
+failures = []
+
+
+def check(condition, what):
+    """Prints what was checked and keeps failures."""
+    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
+    if not condition:
+        failures.append(what)
+
+
+class Program:
+    """Calls crawler in a folder."""
+
+    def __init__(self, path, folder):
+        self.path, self.folder = path, folder
+
+    def __call__(self, *arguments):
+        return subprocess.run([self.path, *arguments], cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, timeout=300, check=False)
+
+    def study(self, command, scene, output, **entries):
+        """Writes a parameter file and runs it; entries with _ for blanks and __ for slashes."""
+        (self.folder / f"{command}.prm").write_text(scene, encoding="utf-8")
+        sets = [word for entry, value in entries.items()
+                for word in ("--set", f"{entry.replace('__', '/').replace('_', ' ')}={value}")]
+        result = self(command, f"{command}.prm", "--quiet", "--output", output, *sets)
+        check(result.returncode in (0, 4), f"{output} is made ({result.returncode}) {result.stderr.strip()}")
+
+
+def make_studies(program):
+    """One folder of each kind, and some special ones."""
+    program.study("run", WAVE, "run", Output__Sensitivities="all", Ground__Profile="1 + 0.5*sin(6*x)")
+    axes = f"{P} : 0, 2, 3; {CHI} : 0.1, 0.3, 0.6, 0.65"
+    program.study("sweep", WAVE, "sweep", Sweep__Axes=axes, Sweep__Keep_fields="5")
+    program.study("atlas", WAVE, "atlas", Atlas__First_axis=f"{CHI} : 0.1, 0.6", Atlas__Second_axis=f"{P} : 0, 2")
+    program.study("tradeoff", WAVE, "tradeoff", Tradeoff__Models="perturbation, nonlinear", Tradeoff__Formulations="position",
+                  Tradeoff__Meshes="uniform", Tradeoff__Engines="fused, batch", Tradeoff__Integrators="radau 5",
+                  Tradeoff__Degrees="4", Tradeoff__Tolerances="1e-2, 1e-5", Tradeoff__Repetitions="1")
+    program.study("optimize", STRAIN, "optimisation")
+    program.study("run", WAVE.replace("wave speed", "wave speed # <b>"), "<b>inverted", Body__Anchoring_exponent="0",
+                  **{CHI.replace("/", "__").replace(" ", "_"): "0.6"})
+    program.study("sweep", FORMULAS, "formulas",
+                  Sweep__Axes='Active stress/Expression/Active stress : "0.1*sin(2*pi*(s+t))*(s<2)", "0.2*sin(2*pi*(s+t))*(s<2)"')
+
+
+def page_data(folder):
+    """What the page knows."""
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    check(len(re.findall("</script", text)) == 2 and NASTY not in text, f"no text ends a script of {folder.name}")
+    check(not re.search(r"(src|href)=[\"']?(https?:)?//|@import|url\(", text), f"{folder.name} needs no network")
+    return json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1])
+
+
+def column(data, name):
+    """The values of a column of the table."""
+    packed = next(one for one in data["table"]["columns"] if one["name"] == name)
+    if "count" in packed:
+        return list(range(packed["count"]))
+    codes = base64.b64decode(packed["codes"])
+    return [packed["values"][code] for (code,) in struct.iter_unpack("<" + " BH I"[packed["bytes"]], codes)]
+
+
+def rows_of(path):
+    """The rows of a CSV file."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_content(program):
+    """The data of the pages are those of the files."""
+    for name in (*FOLDERS, "<b>inverted", "formulas"):
+        result = program("report", name)
+        check(result.returncode == 0 and f"{name}/report.html" in result.stdout, f"{name} has a report {result.stderr.strip()}")
+    folder = program.folder
+    data = {name: page_data(folder / name) for name in (*FOLDERS, "<b>inverted", "formulas")}
+    for name in FOLDERS:
+        summary = json.loads((folder / name / "summary.json").read_text(encoding="utf-8"))
+        check(data[name]["kind"] == name and data[name]["summary"] == summary, f"the summary of the {name}")
+    check(data["run"]["runs"][0]["summary"] == data["run"]["summary"] and NASTY in data["run"]["parameters"]["original"],
+          "the run and its parameter file, word for word")
+    entries = {one["entry"]: one for one in data["run"]["parameters"]["entries"]}
+    check(entries["Accuracy"]["value"] == "1e-3" and P not in entries and entries["Ground/Profile"]["default"] == "1",
+          "entries that differ from their defaults")
+    for name, file, columns in (("sweep", "results.csv", (P, CHI, "displacement", "errors.stress_power", "status", "reason")),
+                                ("atlas", "atlas.csv", (CHI, P, "outcome", "run displacement")),
+                                ("tradeoff", "tradeoff.csv", ("error", "seconds", "pareto")),
+                                ("optimisation", "results.csv", ("evaluation", "objective", "violation"))):
+        rows = rows_of(folder / name / file)
+        good = all(value == (None if row[key] == "" else float(row[key]) if isinstance(value, (int, float)) else row[key])
+                   for key in columns for value, row in zip(column(data[name], key), rows))
+        check(good and data[name]["table"]["all_rows"] == len(rows), f"the table of the {name}")
+    check([one["title"] for one in data["sweep"]["runs"]] == ["points/5"]
+          and [one["title"] for one in data["optimisation"]["runs"]] == ["best"], "runs within studies")
+
+
+def test_refused(program):
+    """One sentence and the right code for everything else."""
+    folder = program.folder
+    (folder / "empty").mkdir()
+    shutil.copytree(folder / "run", folder / "no_json")
+    (folder / "no_json/summary.json").write_text("{", encoding="utf-8")
+    shutil.copytree(folder / "run", folder / "no_picture")
+    vts = (folder / "run/kymograph.vts").read_text(encoding="utf-8")
+    (folder / "no_picture/kymograph.vts").write_text(vts[:len(vts) // 2], encoding="utf-8")
+    shutil.copytree(folder / "sweep", folder / "no_table")
+    (folder / "no_table/results.h5").write_bytes((folder / "sweep/results.h5").read_bytes()[:3000])
+    shutil.copytree(folder / "run", folder / "full")
+    (folder / "full/report.html").unlink()
+    (folder / "full/report.html/x").mkdir(parents=True)
+    for name, code, words in (("nothing", 2, "is not there"), ("run.prm", 2, "is a file"), ("empty", 2, "has no results"),
+                              ("no_json", 2, "summary.json\" is damaged"), ("no_picture", 2, "kymograph.vts\" is damaged"),
+                              ("no_table", 2, "results.h5\""), ("full", 6, "cannot write \"full/report.html\"")):
+        result = program("report", name)
+        check(result.returncode == code and words in result.stderr and result.stderr.count("\n") == 1 and not result.stdout,
+              f"{name}: {result.returncode}, {result.stderr.strip()}")
+    for arguments, words in (((), "the folder is missing"), (("run", "sweep"), "one folder is expected"),
+                             (("run", "--set", "Accuracy=1"), "unknown option \"--set\""), (("run", "--", "-ts_view"), "no use for PETSc")):
+        result = program("report", *arguments)
+        check(result.returncode == 2 and words in result.stderr, f"report {' '.join(arguments)}: {result.stderr.strip()}")
+
+
+def test_unfinished(program):
+    """A run and a sweep that were killed: what is there is shown."""
+    shutil.copytree(program.folder / "run", program.folder / "killed run")
+    shutil.copytree(program.folder / "sweep", program.folder / "killed sweep")
+    for name in ("killed run", "killed sweep"):
+        (program.folder / name / "summary.json").unlink()
+        result = program("report", name, "--quiet")
+        check(result.returncode == 0 and not result.stdout and page_data(program.folder / name)["summary"] is None, f"{name} has a report")
+
+
+def test_large(program, browser):
+    """A table of 1e5 points: below 10 MB, with what matters most, and quick enough for a pointer."""
+    folder, n = program.folder / "large", 100000
+    folder.mkdir()
+    shutil.copy(program.folder / "sweep/parameters.prm", folder)
+    random = np.random.default_rng(1)
+    with h5py.File(program.folder / "sweep/results.h5") as source, h5py.File(folder / "results.h5", "w") as file:
+        group = file.create_group("results", track_order=True)
+        for name, data in source["results"].items():
+            values = data[:][np.arange(n) % len(data)]
+            if name == "index":
+                values = np.arange(n, dtype=float)
+            elif values.dtype.kind == "f":
+                values = values * (1 + 0.1 * random.random(n))
+            copy = group.create_dataset(name, data=values)
+            for key, value in data.attrs.items():
+                copy.attrs[key] = value
+    result = program("report", "large")
+    data = page_data(folder)
+    names = {one["name"] for one in data["table"]["columns"]}
+    check(result.returncode == 0 and (folder / "report.html").stat().st_size < 1e7 and data["table"]["rows"] == n
+          and {P, CHI, "status", "reason", "displacement", "displacement_error.total"} <= names and data["table"]["left_out"],
+          f"1e5 points: {(folder / 'report.html').stat().st_size} bytes, {len(names)} columns")
+    browser.open(folder / "report.html")
+    drawing, pointing = browser.ask("""(() => { const chart = charts.find(one => one.keys), times = [performance.now()];
+      chart.draw(); times.push(performance.now()); chart.hover(300, 200); times.push(performance.now());
+      return [times[1] - times[0], times[2] - times[1]]; })()""")
+    check(drawing < 3000 and pointing < 300 and browser.ask(BLANK) == 0, f"drawn in {drawing:.0f} ms, a point found in {pointing:.1f} ms")
+
+
+ALL_KNOWN_NUMBERS = """[...document.querySelectorAll('[data-key] data')].map(one => [one.closest('[data-key]').dataset.key, Number(one.value)])"""
+# Pictures with fewer colours within their axes than a line on a grid has.
+BLANK = """charts.filter(one => one.context && one.box.isConnected && !one.box.hidden && one.width > 60).filter(one => {
+  const m = one.axes ? one.margin : {left: 0, right: 0, top: 0, bottom: 0};
+  const data = one.context.getImageData(m.left + 2, m.top + 2, one.width - m.left - m.right - 4, one.height - m.top - m.bottom - 4);
+  return new Set(new Uint32Array(data.data.buffer)).size < 6; }).length"""
+BRIGHTNESS = """(() => { const c = getComputedStyle(document.documentElement).backgroundColor.match(/\\d+/g).map(Number);
+  return (c[0] + c[1] + c[2]) / 3; })()"""
+
+
+def test_in_browser(browser, folder):
+    """Each page in all four ways."""
+    for name in (*FOLDERS, "<b>inverted", "formulas", "killed run", "killed sweep"):
+        for width, dark in ((1280, False), (1280, True), (360, False), (360, True)):
+            browser.complaints.clear()
+            browser.requests.clear()
+            browser.open(folder / name / "report.html", width, 900, dark)
+            way = f"{name}, {width} pixels, {'dark' if dark else 'light'}"
+            check(not browser.complaints, f"{way}: no complaints {browser.complaints}")
+            check(browser.ask("document.documentElement.scrollWidth") <= width, f"{way}: nothing is cut off")
+            check(browser.ask(BLANK) == 0 and browser.ask("document.querySelectorAll('.chart').length") > 0, f"{way}: no blank picture")
+            check((browser.ask(BRIGHTNESS) < 60) == dark, f"{way}: colours")
+        check(browser.ask("window.broken") is None and browser.ask("document.querySelectorAll('img, h1 b').length") == 0,
+              f"{name}: texts stay texts")
+        check(all(url.startswith("file:") for url in browser.requests), f"{name}: nothing is loaded")
+        check(browser.ask("document.querySelector('h1').textContent") == name, f"{name} is the title")
+
+
+def in_summary(summary, key):
+    """The number under a key with dots."""
+    for word in key.split("."):
+        summary = summary[word]
+    return summary
+
+
+def test_run_in_browser(browser, folder):
+    """Numbers, and time by keys and by the pointer."""
+    browser.open(folder / "run/report.html")
+    summary = json.loads((folder / "run/summary.json").read_text(encoding="utf-8"))
+    shown = browser.ask(ALL_KNOWN_NUMBERS)
+    check(len(shown) > 40 and all(in_summary(summary, key) == value for key, value in shown), f"{len(shown)} numbers are those of summary.json")
+    text = browser.ask("document.body.innerText")
+    check("retrograde" in text and "What matters" in text and f"crawler {summary['versions']['crawler']}" in text, "gait in words, sensitivities, version")
+    time = "document.querySelector('output').textContent"
+    before = browser.ask(time)
+    browser.ask("document.querySelector('input[type=range]').focus()")
+    browser.key("ArrowRight")
+    later = browser.ask(time)
+    check(later != before, f"a key moves the time from {before} to {later}")
+    browser.ask("document.querySelector('button.play').focus()")
+    browser.key(" ")
+    browser.ask("new Promise(done => setTimeout(done, 300))")
+    check(browser.ask("document.querySelector('button.play').textContent") == "Pause" and browser.ask(time) != later, "the body moves")
+    browser.key(" ")
+    check(browser.ask("document.querySelector('button.play').textContent") == "Play", "and stops")
+    x, y, width, height = browser.ask("(() => { const r = charts.find(one => one.label === 'kymograph').above.getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()")
+    browser.ask(f"window.scrollTo(0, {y})")
+    browser.mouse(x + width / 2, height / 4, click=True)
+    check("stretch" in browser.ask("charts.find(one => one.label === 'kymograph').tip.textContent"), "the kymograph has numbers")
+    browser.open(folder / "<b>inverted/report.html")
+    text = browser.ask("document.body.innerText")
+    check("inverted_inside" in text and "What to do: a property of the model" in text, "a failure comes with advice")
+
+
+def test_map_in_browser(browser, folder):
+    """Points by pointer and keys: stored ones with their kymograph, others with their command."""
+    browser.open(folder / "sweep/report.html", 1200, 1000)
+    rows = rows_of(folder / "sweep/results.csv")
+    canvas = "charts.find(one => one.keys)"
+    x, y = browser.ask(f"(() => {{ const c = {canvas}, r = c.above.getBoundingClientRect(); return [r.x + c.x(0.3), r.y + c.y(2)]; }})()")
+    browser.mouse(x, y)
+    tip = browser.ask(f"{canvas}.tip.textContent")
+    check("Point 5" in tip and f"displacement: {float(rows[5]['displacement']):.3f}"[:18] in tip, f"the tip of a point: {tip!r}")
+    browser.mouse(x, y, click=True)
+    panel = "document.querySelector('.details')"
+    check("Kymograph" in browser.ask(f"{panel}.innerText") and browser.ask(BLANK) == 0, "a stored point shows its body")
+    shown = browser.ask(ALL_KNOWN_NUMBERS)
+    stored = json.loads((folder / "sweep/points/5/summary.json").read_text(encoding="utf-8"))
+    check(shown and all(in_summary(stored, key) == value for key, value in shown), "its numbers are those of its summary.json")
+    browser.ask(f"{canvas}.above.focus()")
+    browser.key("ArrowRight")
+    text = browser.ask(f"{panel}.innerText")
+    check("Point 6" in text and f"--set '{P}=2'" in text and f"--set '{CHI}=0.6'" in text and "--output points/6" in text,
+          "a key goes to the next point, which says how to compute it")
+    numbers = dict(browser.ask(ALL_KNOWN_NUMBERS))
+    check(numbers["displacement"] == float(rows[6]["displacement"]), "and has its numbers")
+    browser.key("ArrowDown")
+    check("Point 2" in browser.ask(f"{panel}.innerText") and "inverted" in browser.ask(f"{panel}.innerText"), "a point that inverted says so")
+    browser.ask("(() => { const up = document.querySelectorAll('select')[1]; up.value = 'displacement'; up.dispatchEvent(new Event('change')); })()")
+    browser.ask(f"(() => {{ const colour = document.querySelectorAll('select')[2]; colour.value = '{P}'; colour.dispatchEvent(new Event('change')); }})()")
+    check("lines" in browser.ask("document.querySelector('figcaption').textContent"), "other columns make lines")
+    check(not browser.complaints, f"no complaints {browser.complaints}")
+
+
+def test_point_command(program, browser):
+    """The command that the page gives for a point does what it says."""
+    folder = program.folder / "sweep"
+    browser.open(folder / "report.html", 1200, 1000)
+    command = browser.ask("pointCommand({axes: ['%s', '%s'], index: new Column(page.table.columns.find(one => one.name === 'index')),"
+                          " columns: columnsOf(page.table.columns)}, 1)" % (P, CHI))
+    result = subprocess.run(["bash", "-c", command.replace("crawler run", f"'{program.path}' run")], cwd=program.folder,
+                            env=ENVIRONMENT, capture_output=True, text=True, check=False, timeout=100)
+    check(result.returncode == 0 and (folder / "points/1/summary.json").is_file(), f"{command} {result.stderr}")
+    program("report", "sweep")
+    check([one["title"] for one in page_data(folder)["runs"]] == ["points/1", "points/5"], "the next report has this point")
+
+
+def main():
+    """Everything in a folder of its own."""
+    with tempfile.TemporaryDirectory() as name:
+        program = Program(str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(name))
+        make_studies(program)
+        test_content(program)
+        test_refused(program)
+        test_unfinished(program)
+        with Browser() as browser:
+            test_in_browser(browser, program.folder)
+            test_run_in_browser(browser, program.folder)
+            test_map_in_browser(browser, program.folder)
+            test_point_command(program, browser)
+            test_large(program, browser)
+    sys.exit("\n".join(failures) or 0)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit("usage: report.py PATH_TO_CRAWLER")
+    main()
