@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 namespace crawler
 {
@@ -110,7 +111,14 @@ namespace crawler
                          "points",
                          interrupted,
                          [&](const unsigned long number, const auto &stops, const auto &see) {
-                           return own.compute(number, done, results, stops, see);
+                           return own.compute(
+                             number,
+                             done,
+                             [&](const unsigned long first, const std::span<const RowFile::Row> rows) {
+                               results.write(first, rows);
+                             },
+                             stops,
+                             see);
                          }},
                         log);
     }
@@ -140,11 +148,16 @@ namespace crawler
   ExitCode
   sweep(MPI_Comm communicator, const CommandOptions &options)
   {
+    return sweep_input(communicator, options, read_file(communicator, options.file, options.overrides));
+  }
+
+  ExitCode
+  sweep_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
+  {
     const StopSignal stop_signal; // from here on a signal ends the sweep in order
     const double start         = now();
     const unsigned int n_ranks = size_of(communicator);
     Log log(rank_of(communicator) == 0, options.quiet);
-    const ParameterFile file = read_file(communicator, options.file, options.overrides);
     SweepPoints points(communicator, file);
     const SweepDesign &design  = points.design();
     const SweepParameters &own = points.sweep();
