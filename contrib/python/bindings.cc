@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The module crawler._core: texts of parameter files go in, texts (JSON) and arrays come out; crawler/__init__.py makes
+// The module crawler._core: texts of parameter files go in, texts (JSON) and arrays come out; package/__init__.py makes
 // of them what users see. One computation at a time, without Python's lock, which is taken now and then to look for
 // signals.
 #include <crawler/base/clock.h>

@@ -14,6 +14,7 @@ import json
 import numbers
 import os
 import re
+import sys
 import warnings
 from collections.abc import Mapping
 
@@ -39,8 +40,13 @@ class RunFailed(RuntimeError):
 
 @functools.cache
 def _compiled():
-    """The compiled part. It brings 200 libraries, so it is loaded when it is needed first."""
-    from . import _core
+    """The compiled part. It brings 200 libraries, so it is loaded when it is needed first, and their functions later."""
+    flags = sys.getdlopenflags()
+    sys.setdlopenflags(os.RTLD_LAZY)
+    try:
+        from . import _core
+    finally:
+        sys.setdlopenflags(flags)
     atexit.register(_core.end)
     return _core
 
