@@ -162,9 +162,9 @@ namespace crawler
       std::string effective;
       std::vector<std::string> notes;
       const RunInMemory run = without_lock([&](const std::function<bool()> &interrupted) {
-        Input input = read_input(source.file());
-        effective   = input.effective;
-        notes       = input.notes;
+        Input input      = read_input(source.file());
+        effective        = input.effective;
+        notes            = input.notes;
         const double end = input.scene.end_time;
         for (std::size_t i = 0; times && i < times->size(); ++i)
           if (!((*times)[i] >= 0. && (*times)[i] <= end) || (i > 0 && !((*times)[i] > (*times)[i - 1])))
@@ -184,16 +184,16 @@ namespace crawler
       answer["lines"]      = summary_lines(run.result);
       if (run.kymograph)
       {
-        const Kymograph &k          = *run.kymograph;
-        const std::size_t n_t       = k.times().size(), n = Kymograph::n_points;
+        const Kymograph &k    = *run.kymograph;
+        const std::size_t n_t = k.times().size(), n = Kymograph::n_points;
         answer["times"]       = array_of(k.times(), {n_t});
         answer["field_names"] = Kymograph::field_names();
         answer["rows"]        = array_of(k.rows(), {n_t, Kymograph::field_names().size(), n});
       }
       if (run.statistics)
       {
-        const auto names            = run.statistics->column_names();
-        answer["statistics_names"]  = names;
+        const auto names           = run.statistics->column_names();
+        answer["statistics_names"] = names;
         answer["statistics"] =
           array_of(run.statistics->values(), {run.statistics->values().size() / names.size(), names.size()});
       }
@@ -244,9 +244,8 @@ namespace crawler
       });
       py::list answers;
       for (std::size_t i = 0; i < sources.size(); ++i)
-        answers.append(py::dict(py::arg("summary")    = summaries[i],
-                                py::arg("parameters") = effective[i],
-                                py::arg("notes")      = notes[i]));
+        answers.append(py::dict(
+          py::arg("summary") = summaries[i], py::arg("parameters") = effective[i], py::arg("notes") = notes[i]));
       return answers;
     }
 
@@ -260,13 +259,13 @@ namespace crawler
         Libraries::start();
         const ParameterFile file = source.file();
         SweepPoints points(MPI_COMM_SELF, file);
-        columns    = sweep_columns(points);
-        rows       = std::vector<RowFile::Row>(points.design().n_points());
+        columns                    = sweep_columns(points);
+        rows                       = std::vector<RowFile::Row>(points.design().n_points());
         const RowFile::Known known = known_columns(columns, points.design());
         const std::vector<bool> done(rows.size(), false);
         for (std::size_t i = 0; i < rows.size(); ++i)
           for (std::size_t c = 0; c < columns.size(); ++c)
-            rows[i].push_back(c < known.n_columns      ? known.value(c, i)
+            rows[i].push_back(c < known.n_columns     ? known.value(c, i)
                               : columns[c].width == 0 ? RowFile::Value(std::numeric_limits<double>::quiet_NaN())
                                                       : RowFile::Value(std::string()));
         SweepWork work(points, /*n_ranks=*/1);
@@ -298,7 +297,8 @@ namespace crawler
 
     /// `crawler run` or `crawler sweep` with its files; the exit code.
     int
-    run_command(const std::string &name, const Source &source, const std::string &output, const bool overwrite, const bool quiet)
+    run_command(
+      const std::string &name, const Source &source, const std::string &output, const bool overwrite, const bool quiet)
     {
       return without_lock([&](const std::function<bool()> &) {
         Libraries::start();
@@ -309,8 +309,8 @@ namespace crawler
         options.overwrite    = overwrite;
         options.quiet        = quiet;
         options.command_line = "python";
-        return static_cast<int>(name == "sweep" ? sweep_input(MPI_COMM_SELF, options, source.file()) :
-                                                  run_input(MPI_COMM_SELF, options, source.file()));
+        return static_cast<int>(name == "sweep" ? sweep_input(MPI_COMM_SELF, options, source.file())
+                                                : run_input(MPI_COMM_SELF, options, source.file()));
       });
     }
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The Python package as a guest in someone's process: the sentences of its errors, Ctrl-C, threads, memory that does
-not grow, nothing on the screen.
+not grow, nothing on the screen; and that it runs where it is installed.
 
-    python3 behaviour.py PATH_TO_CRAWLER FOLDER_OF_THE_PACKAGE
+    python3 behaviour.py PATH_TO_CRAWLER FOLDER_OF_THE_PACKAGE CMAKE
 """
 import contextlib
 import io
@@ -185,6 +185,16 @@ assert crawler.run({file!r}, fields=False).status == "finished"
     expect(ended.returncode == 0, f"the series: {ended.stderr}")
 
 
+def check_installed(folder):
+    subprocess.run([sys.argv[3], "--install", pathlib.Path(PACKAGE).parent, "--prefix", folder / "there", "--component",
+                    "python"], check=True, stdout=subprocess.DEVNULL)
+    (place,) = (folder / "there").glob("lib/python3.*/dist-packages")
+    script = f"import crawler; assert crawler.__file__.startswith({str(folder)!r}); print(crawler.run({str(FILE)!r}))"
+    ended = subprocess.run([sys.executable, "-c", script], env=dict(os.environ, PYTHONPATH=str(place)),
+                           capture_output=True, text=True)
+    expect(ended.stdout.startswith("<crawler.Result: finished"), f"installed: {ended}")
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         os.chdir(name)
@@ -194,6 +204,7 @@ def main():
         check_threads()
         check_silence()
         check_imports()
+        check_installed(pathlib.Path(name))
         check_memory()
         os.chdir("/")
     sys.exit("\n".join(failures) or 0)

@@ -251,8 +251,7 @@ namespace crawler
     {
       if (result.time.status == Status::finished) // by this rank alone
         write_sensitivities(
-          add_sensitivities(
-            input, *chosen, result, [&]() { return !stop_signal.arrived_anywhere(MPI_COMM_SELF); }),
+          add_sensitivities(input, *chosen, result, [&]() { return !stop_signal.arrived_anywhere(MPI_COMM_SELF); }),
           folder);
       else
         log.warn("there are no sensitivities, since the run did not end as it should");

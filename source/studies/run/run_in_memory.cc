@@ -85,8 +85,8 @@ namespace crawler
       if (!pictures.is_empty())
         prepare_for_pictures(*chosen, parameters);
       const Simulation::Options options = {.energy_balance = parameters.output.energy_balance,
-                                           .cycles = cycle_wish(parameters, input.scene, !pictures.is_empty()),
-                                           .gait   = Simulation::GaitWish::any};
+                                           .cycles         = cycle_wish(parameters, input.scene, !pictures.is_empty()),
+                                           .gait           = Simulation::GaitWish::any};
       const auto simulate               = [&](const NumericsChoice &choice) {
         begin_tables(parameters.output, input.scene, has_kymograph, run);
         std::vector<std::unique_ptr<Observer>> observers;
@@ -126,8 +126,7 @@ namespace crawler
     try
     {
       if (model.needs_mesh())
-        compute_on_mesh(
-          input, wanted ? *wanted : picture_times(output, input.scene), has_kymograph, keep_going, run);
+        compute_on_mesh(input, wanted ? *wanted : picture_times(output, input.scene), has_kymograph, keep_going, run);
       else
         compute_without_mesh(input, wanted, has_kymograph, keep_going, run);
     }

@@ -38,8 +38,7 @@ namespace crawler
                     const std::function<bool()> &keep_going)
   {
     Form form(input.file);
-    LocalSensitivity local =
-      find_sensitivities(form, input.scene, input.sensitivities, choice, result, keep_going);
+    LocalSensitivity local = find_sensitivities(form, input.scene, input.sensitivities, choice, result, keep_going);
     if (trimmed(input.parameters.output.sensitivities) == "all")
       std::erase_if(result.sensitivities, [&](const EntrySensitivity &one) {
         return one.standard_deviation == 0. &&

@@ -105,22 +105,21 @@ namespace crawler
     {
       SweepWork own(points, size_of(communicator));
       RowFile results(communicator, folder / table.file, table.group, table.written_columns());
-      return share_work(communicator,
-                        {own.n_parts(),
-                         static_cast<unsigned long>(std::count(done.begin(), done.end(), false)),
-                         "points",
-                         interrupted,
-                         [&](const unsigned long number, const auto &stops, const auto &see) {
-                           return own.compute(
-                             number,
-                             done,
-                             [&](const unsigned long first, const std::span<const RowFile::Row> rows) {
-                               results.write(first, rows);
-                             },
-                             stops,
-                             see);
-                         }},
-                        log);
+      return share_work(
+        communicator,
+        {own.n_parts(),
+         static_cast<unsigned long>(std::count(done.begin(), done.end(), false)),
+         "points",
+         interrupted,
+         [&](const unsigned long number, const auto &stops, const auto &see) {
+           return own.compute(
+             number,
+             done,
+             [&](const unsigned long first, const std::span<const RowFile::Row> rows) { results.write(first, rows); },
+             stops,
+             see);
+         }},
+        log);
     }
 
     /// What stands in the log at the end.

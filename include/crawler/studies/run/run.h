@@ -42,7 +42,8 @@ namespace crawler
     Statistics *statistics;
   };
 
-  /// When: without snapshots the table of statistics alone has its rows as often as there would be snapshots by default.
+  /// When: without snapshots the table of statistics alone has its rows as often as there would be snapshots by
+  /// default.
   PictureTimes
   times_without_mesh(const Input &input);
 
