@@ -123,10 +123,10 @@ def check_results():
            again.parameters == result.parameters, "a pickled result is another one")
     expect(repr(result).startswith("<crawler.Result: finished at t = 1, displacement 0.0"), f"{result!r}")
     expect(crawler.run(WAVE, elastic_modulus=2, fields=False).parameters[K] == 2., "a keyword has no effect")
-    run = crawler.run(WAVE, set={"Output/Sensitivities": K}, fields=False)
+    run = crawler.run(WAVE, set={"Active stress/Generator": "travelling wave", "Output/Sensitivities": K}, fields=False)
     local = run.local_sensitivities
     whole = np.sum((local.elastic_modulus[1:] + local.elastic_modulus[:-1]) / 2 * np.diff(local.s))
-    expect(abs(whole / run.sensitivities[K].value - 1) < 0.01 and
+    expect(abs(whole / run.sensitivities[K].value - 1) < 0.02 and
            local.active_stress.shape == (len(local.t), len(local.s)),
            f"the local sensitivities make {whole}, not {run.sensitivities[K].value}")
 
