@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Installs from Debian what is missing (as root or with sudo), and builds crawler in Release mode into build/.
-# Usage: contrib/setup.sh [tests]    with "tests": also what the tests need, and the tests themselves.
+# Usage: contrib/setup.sh [tests|python]    with "tests": also what the tests need, and the tests themselves;
+#                                           with "python": the Python package, in build/python (doc/python.md).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(g++ cmake ninja-build git libdeal.ii-dev libcli11-dev nlohmann-json3-dev libfmt-dev openmpi-bin)
-[ "${1:-}" = tests ] && packages+=(libgtest-dev libbenchmark-dev python3 python3-numpy python3-scipy python3-vtk9 python3-h5py python3-pandas python3-matplotlib chromium clang-format clang-tidy doxygen texlive-binaries)
+python=(python3-dev pybind11-dev python3-numpy)
+[ "${1:-}" = python ] && packages+=("${python[@]}")
+[ "${1:-}" = tests ] && packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev python3-scipy python3-vtk9 python3-h5py python3-pandas python3-matplotlib chromium clang-format clang-tidy doxygen texlive-binaries)
 
 missing=()
 for package in "${packages[@]}"; do
@@ -29,9 +32,16 @@ if [ "${1:-}" = tests ]; then
 elif [ -f build/CMakeCache.txt ] && grep -q '^CRAWLER_TESTS:BOOL=ON' build/CMakeCache.txt; then
   with_tests=ON # keep what is there
 fi
+with_python=$with_tests
 targets=(crawler)
+if [ "${1:-}" = python ]; then
+  with_python=ON
+  targets+=(crawler_python)
+elif [ -f build/CMakeCache.txt ] && grep -q '^CRAWLER_PYTHON_PACKAGE:BOOL=ON' build/CMakeCache.txt; then
+  with_python=ON
+fi
 [ "${1:-}" = tests ] && targets=(all)
-cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCRAWLER_TESTS=$with_tests >build.log 2>&1 ||
+cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCRAWLER_TESTS=$with_tests -DCRAWLER_PYTHON_PACKAGE=$with_python >build.log 2>&1 ||
   { cat build.log >&2; exit 1; }
 rm -f build.log
 echo "Building crawler (Release) in build/"

@@ -21,14 +21,16 @@ namespace crawler
   StopSignal::StopSignal()
   {
     arrived = 0;
+    sigaction(SIGINT, nullptr, &before_interrupt_);
+    sigaction(SIGTERM, nullptr, &before_termination_);
     std::signal(SIGINT, note);
     std::signal(SIGTERM, note);
   }
 
   StopSignal::~StopSignal()
   {
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
+    sigaction(SIGINT, &before_interrupt_, nullptr);
+    sigaction(SIGTERM, &before_termination_, nullptr);
   }
 
   bool

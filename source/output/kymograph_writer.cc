@@ -16,9 +16,8 @@ namespace crawler
 {
   namespace
   {
-    constexpr unsigned int n_points = KymographWriter::n_points;
-    constexpr const char *names[]   = {"stretch", "velocity", "active_stress", "friction_force", "displacement"};
-    constexpr unsigned int n_fields = std::size(names);
+    constexpr unsigned int n_points = Kymograph::n_points;
+    constexpr unsigned int n_fields = 5;
 
     /// As VTK's XML files have it: the number of bytes and the values, in base 64.
     std::string
@@ -67,8 +66,16 @@ namespace crawler
   {
   }
 
+  const std::vector<std::string> &
+  Kymograph::field_names()
+  {
+    static const std::vector<std::string> names = {
+      "stretch", "velocity", "active_stress", "friction_force", "displacement"};
+    return names;
+  }
+
   void
-  KymographWriter::observe(const Snapshot &snapshot)
+  Kymograph::observe(const Snapshot &snapshot)
   {
     if (!snapshot.pictures.is_row)
       return;
@@ -94,7 +101,7 @@ namespace crawler
   }
 
   void
-  KymographWriter::add(const double time, const Fields &fields)
+  Kymograph::add(const double time, const Fields &fields)
   {
     times_.push_back(time);
     for (const auto *field : written(fields))
@@ -104,9 +111,9 @@ namespace crawler
   void
   KymographWriter::end()
   {
-    if (rows_.empty() || times_.size() < 2)
+    if (rows().empty() || times().size() < 2)
       return;
-    const std::size_t n_times = times_.size();
+    const std::size_t n_times = times().size();
     std::string text          = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"1.0\" "
                "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<StructuredGrid WholeExtent=\"0 {0} 0 {1} 0 0\">\n"
@@ -123,13 +130,13 @@ namespace crawler
     {
       for (std::size_t j = 0; j < n_times; ++j)
       {
-        const auto row = rows_.begin() + static_cast<std::ptrdiff_t>((j * n_fields + f) * n_points);
+        const auto row = rows().begin() + static_cast<std::ptrdiff_t>((j * n_fields + f) * n_points);
         values.insert(values.end(), row, row + n_points);
       }
-      add_array(fmt::format("Name=\"{}\"", names[f]));
+      add_array(fmt::format("Name=\"{}\"", field_names()[f]));
     }
     text += "</PointData>\n<Points>\n";
-    for (const double time : times_)
+    for (const double time : times())
       for (unsigned int i = 0; i < n_points; ++i)
         values.insert(values.end(), {static_cast<double>(i) / (n_points - 1), time / end_time_, 0.});
     add_array("NumberOfComponents=\"3\"");

@@ -6,38 +6,89 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <iterator>
 
 namespace crawler
 {
   namespace
   {
-    /// Nothing for what is not known.
-    std::string
-    text(const fmt::format_string<const double &> format, const double value)
+    using Row = Statistics::Row;
+
+    struct StatisticsColumn
     {
-      return std::isnan(value) ? "" : fmt::format(format, value);
-    }
+      const char *name, *format;
+      double (*value)(const Row &);
+    };
+
+    constexpr StatisticsColumn columns[] = {
+      {"step [1]", "{}", [](const Row &r) { return 1. * r.step.number; }},
+      {"time [time]", "{:.16g}", [](const Row &r) { return r.step.time; }},
+      {"step size [time]", "{:.6g}", [](const Row &r) { return r.step.size; }},
+      {"displacement [length]", "{:.16g}", [](const Row &r) { return r.displacement; }},
+      {"min stretch [1]", "{:.9g}", [](const Row &r) { return r.stretch.min.value; }},
+      {"min stretch at [length]", "{:.9g}", [](const Row &r) { return r.stretch.min.s; }},
+      {"max stretch [1]", "{:.9g}", [](const Row &r) { return r.stretch.max.value; }},
+      {"max stretch at [length]", "{:.9g}", [](const Row &r) { return r.stretch.max.s; }},
+      {"rejected steps [1]", "{}", [](const Row &r) { return 1. * r.step.rejected; }},
+      {"newton iterations [1]", "{}", [](const Row &r) { return 1. * r.step.newton_iterations; }},
+      // With the energy balance:
+      {"velocity [length/time]", "{:.12g}", [](const Row &r) { return r.velocity; }},
+      {"stress power [force length]", "{:.12g}", [](const Row &r) { return r.energy_balance.stress_work; }},
+      {"dissipation [force length]", "{:.12g}", [](const Row &r) { return r.energy_balance.dissipation; }},
+      {"elastic energy [force length]", "{:.12g}", [](const Row &r) { return r.energy_balance.elastic_energy; }},
+      {"paper energy [force length]", "{:.12g}", [](const Row &r) { return r.energy_balance.paper_energy(); }},
+      {"positive power [force length]", "{:.12g}", [](const Row &r) { return r.energy_balance.positive_work; }},
+      {"ledger residual [1]", "{:.3g}", [](const Row &r) { return r.energy_balance.residual(); }},
+      {"net friction [force]", "{:.3g}", [](const Row &r) { return r.net_friction; }}};
+    constexpr std::size_t n_energy_columns = 8;
   } // namespace
+
+  Statistics::Statistics(const double length, const bool with_energy_balance)
+    : length_(length)
+    , n_columns_(std::size(columns) - (with_energy_balance ? 0 : n_energy_columns))
+  {
+  }
+
+  void
+  Statistics::observe(const Snapshot &snapshot)
+  {
+    if (snapshot.is_step_end || snapshot.pictures.is_snapshot)
+      write({snapshot.step,
+             snapshot.integrals.displacement / length_,
+             snapshot.stretch,
+             snapshot.integrals.velocity / length_,
+             snapshot.energy_balance,
+             snapshot.integrals.net_friction});
+  }
+
+  void
+  Statistics::write(const Row &row)
+  {
+    for (std::size_t i = 0; i < n_columns_; ++i)
+      values_.push_back(columns[i].value(row) + 0.); // no -0
+  }
+
+  std::vector<std::string>
+  Statistics::column_names() const
+  {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < n_columns_; ++i)
+      names.emplace_back(columns[i].name);
+    return names;
+  }
 
   StatisticsWriter::StatisticsWriter(const double length,
                                      const bool is_first_rank,
                                      const std::filesystem::path &folder,
                                      const bool with_energy_balance)
-    : length_(length)
+    : Statistics(length, with_energy_balance)
     , writes_(is_first_rank)
-    , with_energy_balance_(with_energy_balance)
     , path_(folder / "statistics.csv")
   {
     if (!writes_)
       return;
     out_.open(path_);
-    out_ << "step [1],time [time],step size [time],displacement [length],min stretch [1],min stretch at [length],"
-            "max stretch [1],max stretch at [length],rejected steps [1],newton iterations [1]";
-    if (with_energy_balance)
-      out_ << ",velocity [length/time],stress power [force length],dissipation [force length],"
-              "elastic energy [force length],paper energy [force length],positive power [force length],"
-              "ledger residual [1],net friction [force]";
-    out_ << '\n';
+    out_ << fmt::format("{}\n", fmt::join(column_names(), ","));
     if (!out_)
       throw FileError("cannot write \"" + path_.string() + "\"");
   }
@@ -45,14 +96,9 @@ namespace crawler
   void
   StatisticsWriter::observe(const Snapshot &snapshot)
   {
-    if (!writes_ || !(snapshot.is_step_end || snapshot.pictures.is_snapshot))
+    if (!writes_)
       return;
-    write({snapshot.step,
-           snapshot.integrals.displacement / length_,
-           snapshot.stretch,
-           snapshot.integrals.velocity / length_,
-           snapshot.energy_balance,
-           snapshot.integrals.net_friction});
+    Statistics::observe(snapshot);
     if (snapshot.pictures.is_snapshot)
       out_.flush();
   }
@@ -60,27 +106,13 @@ namespace crawler
   void
   StatisticsWriter::write(const Row &row)
   {
-    std::string line = fmt::format("{},{:.16g},{:.6g},{:.16g},{:.9g},{:.9g},{:.9g},{:.9g},{},{}",
-                                   row.step.number,
-                                   row.step.time,
-                                   row.step.size,
-                                   row.displacement,
-                                   row.stretch.min.value,
-                                   row.stretch.min.s,
-                                   row.stretch.max.value,
-                                   row.stretch.max.s,
-                                   row.step.rejected,
-                                   row.step.newton_iterations);
-    if (with_energy_balance_)
-      line += fmt::format(",{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{},{:.3g},{}",
-                          row.velocity,
-                          row.energy_balance.stress_work,
-                          row.energy_balance.dissipation,
-                          row.energy_balance.elastic_energy,
-                          row.energy_balance.paper_energy(),
-                          text("{:.12g}", row.energy_balance.positive_work),
-                          row.energy_balance.residual(),
-                          text("{:.3g}", row.net_friction));
+    std::string line;
+    for (std::size_t i = 0; i < n_columns_; ++i)
+    {
+      line += i > 0 ? "," : "";
+      if (const double value = columns[i].value(row); !std::isnan(value)) // nothing for what is not known
+        line += fmt::format(fmt::runtime(columns[i].format), value);
+    }
     out_ << with_plain_numbers(line) << '\n';
     if (!out_)
       throw FileError("cannot write \"" + path_.string() + "\" (is the disk full?)");

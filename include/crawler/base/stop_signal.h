@@ -3,10 +3,12 @@
 
 #include <mpi.h>
 
+#include <csignal>
+
 namespace crawler
 {
   /// As long as this lives, SIGINT and SIGTERM (what Slurm sends before the time limit) are noted instead of ending the
-  /// process. A second one ends it.
+  /// process. A second one ends it. What was to happen before is to happen afterwards.
   class StopSignal
   {
   public:
@@ -17,5 +19,8 @@ namespace crawler
     /// Has one arrived on any rank? (collective)
     bool
     arrived_anywhere(MPI_Comm communicator) const;
+
+  private:
+    struct sigaction before_interrupt_, before_termination_;
   };
 } // namespace crawler

@@ -5,34 +5,56 @@
 #include <crawler/output/observer.h>
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace crawler
 {
-  /// Collects the snapshots at equidistant points of the body and writes them as one structured grid over s and t
-  /// (kymograph.vts: x is s/L, y is t/T) when the run ends.
-  class KymographWriter : public Observer
+  /// Collects the fields over s and t, at equidistant points of the body.
+  class Kymograph : public Observer
   {
   public:
-    static constexpr unsigned int n_points = 201; ///< equidistant, both ends included
-
-    KymographWriter(double end_time, const std::filesystem::path &folder);
+    static constexpr unsigned int n_points = 201; ///< both ends included
 
     void
     observe(const Snapshot &snapshot) override;
-    void
-    end() override;
 
     /// Adds a time with @p fields at all points.
     void
     add(double time, const Fields &fields);
 
+    static const std::vector<std::string> &
+    field_names();
+
+    const std::vector<double> &
+    times() const
+    {
+      return times_;
+    }
+    /// [time][field][point], on rank 0.
+    const std::vector<double> &
+    rows() const
+    {
+      return rows_;
+    }
+
+  private:
+    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
+    unsigned int mesh_number_ = 0;
+    std::vector<double> times_, rows_;
+  };
+
+  /// Writes them as one structured grid (kymograph.vts: x is s/L, y is t/T) when the run ends.
+  class KymographWriter : public Kymograph
+  {
+  public:
+    KymographWriter(double end_time, const std::filesystem::path &folder);
+
+    void
+    end() override;
+
   private:
     const double end_time_;
     const std::filesystem::path folder_;
-    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
-    unsigned int mesh_number_ = 0;
-    std::vector<double> times_;
-    std::vector<double> rows_; ///< [time][field][point], on rank 0
   };
 } // namespace crawler

@@ -5,20 +5,20 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 namespace crawler
 {
-  /// Writes statistics.csv: a row for each accepted step, units in the header. Rank 0 writes.
-  class StatisticsWriter : public Observer
+  /// A table with a row for each accepted step and each snapshot, kept in memory.
+  class Statistics : public Observer
   {
   public:
-    /// Throws FileError.
-    StatisticsWriter(double length, bool is_first_rank, const std::filesystem::path &folder, bool with_energy_balance);
+    /// @p length of the body.
+    Statistics(double length, bool with_energy_balance);
 
     void
     observe(const Snapshot &snapshot) override;
-    void
-    end() override;
 
     /// A row of the table, in the user's units.
     struct Row
@@ -31,12 +31,43 @@ namespace crawler
       double net_friction;
     };
 
-    void
+    virtual void
     write(const Row &row);
+
+    /// With their units, "time [time]".
+    std::vector<std::string>
+    column_names() const;
+    /// [row][column]; what is not known is not a number.
+    const std::vector<double> &
+    values() const
+    {
+      return values_;
+    }
 
   private:
     const double length_;
-    const bool writes_, with_energy_balance_;
+    std::vector<double> values_;
+
+  protected:
+    const std::size_t n_columns_;
+  };
+
+  /// Writes them to statistics.csv instead. Rank 0 writes.
+  class StatisticsWriter : public Statistics
+  {
+  public:
+    /// Throws FileError.
+    StatisticsWriter(double length, bool is_first_rank, const std::filesystem::path &folder, bool with_energy_balance);
+
+    void
+    observe(const Snapshot &snapshot) override;
+    void
+    write(const Row &row) override;
+    void
+    end() override;
+
+  private:
+    const bool writes_;
     const std::filesystem::path path_;
     std::ofstream out_;
   };

@@ -98,11 +98,17 @@ namespace crawler
   ExitCode
   run(MPI_Comm communicator, const CommandOptions &options)
   {
+    return run_input(communicator, options, read_file(communicator, options.file, options.overrides));
+  }
+
+  ExitCode
+  run_input(MPI_Comm communicator, const CommandOptions &options, ParameterFile file)
+  {
     const StopSignal stop_signal; // from here on a signal ends the run in order
     const auto start = std::chrono::steady_clock::now();
     const bool first = rank_of(communicator) == 0;
     Log log(first, options.quiet);
-    Input input                    = read_input(communicator, options.file, options.overrides);
+    Input input                    = read_input(std::move(file));
     const Parameters &parameters   = input.parameters;
     const OutputParameters &output = parameters.output;
     const auto folder              = output_folder(options.output, options.file);
@@ -244,8 +250,9 @@ namespace crawler
     if (first && !input.sensitivities.empty())
     {
       if (result.time.status == Status::finished) // by this rank alone
-        add_sensitivities(
-          input, *chosen, folder, result, [&]() { return !stop_signal.arrived_anywhere(MPI_COMM_SELF); });
+        write_sensitivities(
+          add_sensitivities(input, *chosen, result, [&]() { return !stop_signal.arrived_anywhere(MPI_COMM_SELF); }),
+          folder);
       else
         log.warn("there are no sensitivities, since the run did not end as it should");
       if (result.time.status == Status::finished && stop_signal.arrived_anywhere(MPI_COMM_SELF) &&
@@ -310,7 +317,7 @@ namespace crawler
       return points;
     }
 
-    /// Writes the output times of a level as a run with a mesh does, at equidistant points: one cell, the whole body.
+    /// Writes the output times of a level as a run with a mesh does. Returns false if it was interrupted.
     bool
     write_pictures(const ReducedModel &level,
                    const Input &input,
@@ -318,58 +325,77 @@ namespace crawler
                    const StopSignal &signal)
     {
       const OutputParameters &output = input.parameters.output;
-      const Units &units             = level.reduced_scene().units();
-      const auto points              = equidistant(KymographWriter::n_points);
-      // Without snapshots the table alone has its rows as often as there would be snapshots by default.
-      OutputParameters wanted = output;
-      if (!output.has_snapshots())
-      {
-        wanted.n_snapshots.reset();
-        wanted.kymograph = false;
-      }
-      const PictureTimes times = picture_times(wanted, input.scene);
-      std::vector<double> natural;
-      for (std::size_t i = 0; i < times.all().size(); ++i)
-        natural.push_back(times.natural(i));
       VtuWriter pictures(folder);
       KymographWriter kymograph(input.scene.end_time, folder);
       std::optional<StatisticsWriter> statistics;
       if (output.statistics)
         statistics.emplace(input.scene.body.length, true, folder, output.energy_balance);
-      unsigned int number = 0, n_rows = 0;
-      bool stopped  = false;
-      double before = 0.;
-      level.replay(natural, points, [&](const double t, const ReducedModel::State &state) {
-        const PictureTimes::Time &picture = times.all()[number++];
-        const double time                 = picture.value;
-        const Fields fields               = physical_fields(state.fields, points, level.reduced_scene().scene(), units);
-        if (picture.kinds.is_row && output.has_snapshots())
-          kymograph.add(time, fields);
-        stopped = signal.arrived_anywhere(MPI_COMM_SELF);
-        if (!picture.kinds.is_snapshot)
-          return !stopped && t <= 1.;
-        const Step step{time, time - before, n_rows++, true, 0, 0};
-        before = time;
-        if (output.has_snapshots())
-          pictures.write(
-            time, step.number, {{0., units.length}}, static_cast<unsigned int>(points.size()), fields, MPI_COMM_SELF);
-        const auto stretch_at = [&](const StrainExtreme &e) { return StretchAt{1. + e.strain, e.s * units.length}; };
-        if (statistics)
-          statistics->write({step,
-                             state.displacement * units.length,
-                             {stretch_at(state.smallest), stretch_at(state.largest)},
-                             state.velocity * units.velocity(),
-                             state.energies.scaled(units.energy()),
-                             state.net_friction * units.force});
-        return !stopped && t <= 1.;
-      });
+      const bool whole = show_pictures(level,
+                                       times_without_mesh(input),
+                                       {output.has_snapshots() ? &pictures : nullptr,
+                                        output.has_snapshots() ? &kymograph : nullptr,
+                                        statistics ? &*statistics : nullptr},
+                                       [&]() { return !signal.arrived_anywhere(MPI_COMM_SELF); });
       if (statistics)
         statistics->end();
       if (output.has_snapshots() && output.kymograph)
         kymograph.end();
-      return !stopped;
+      return whole;
     }
   } // namespace
+
+  PictureTimes
+  times_without_mesh(const Input &input)
+  {
+    OutputParameters wanted = input.parameters.output;
+    if (!wanted.has_snapshots())
+    {
+      wanted.n_snapshots.reset();
+      wanted.kymograph = false;
+    }
+    return picture_times(wanted, input.scene);
+  }
+
+  bool
+  show_pictures(const ReducedModel &level,
+                const PictureTimes &times,
+                const PictureViewers &viewers,
+                const std::function<bool()> &keep_going)
+  {
+    const Units &units = level.reduced_scene().units();
+    const auto points  = equidistant(Kymograph::n_points);
+    std::vector<double> natural;
+    for (std::size_t i = 0; i < times.all().size(); ++i)
+      natural.push_back(times.natural(i));
+    unsigned int number = 0, n_rows = 0;
+    bool stopped  = false;
+    double before = 0.;
+    level.replay(natural, points, [&](const double t, const ReducedModel::State &state) {
+      const PictureTimes::Time &picture = times.all()[number++];
+      const double time                 = picture.value;
+      const Fields fields               = physical_fields(state.fields, points, level.reduced_scene().scene(), units);
+      if (picture.kinds.is_row && viewers.kymograph != nullptr)
+        viewers.kymograph->add(time, fields);
+      stopped = !keep_going();
+      if (!picture.kinds.is_snapshot)
+        return !stopped && t <= 1.;
+      const Step step{time, time - before, n_rows++, true, 0, 0};
+      before = time;
+      if (viewers.snapshots != nullptr)
+        viewers.snapshots->write(
+          time, step.number, {{0., units.length}}, static_cast<unsigned int>(points.size()), fields, MPI_COMM_SELF);
+      const auto stretch_at = [&](const StrainExtreme &e) { return StretchAt{1. + e.strain, e.s * units.length}; };
+      if (viewers.statistics != nullptr)
+        viewers.statistics->write({step,
+                                   state.displacement * units.length,
+                                   {stretch_at(state.smallest), stretch_at(state.largest)},
+                                   state.velocity * units.velocity(),
+                                   state.energies.scaled(units.energy()),
+                                   state.net_friction * units.force});
+      return !stopped && t <= 1.;
+    });
+    return !stopped;
+  }
 
   ExitCode
   run_reduced_model(MPI_Comm communicator,

@@ -12,38 +12,33 @@
 
 namespace crawler
 {
-  namespace
-  {
-    void
-    write_local(const LocalSensitivity &local, const std::filesystem::path &folder)
-    {
-      std::string text = "s [length],elastic modulus [1],friction [1]\n";
-      for (std::size_t i = 0; i < local.s.size(); ++i)
-        fmt::format_to(std::back_inserter(text), "{},{},{}\n", local.s[i], local.elastic_modulus[i], local.friction[i]);
-      write_file(folder / "sensitivity_body.csv", text);
-      if (local.times.empty())
-        return;
-      text = "s [length],t [time],active stress [1/(force time)]\n";
-      for (std::size_t j = 0; j < local.times.size(); ++j)
-        for (std::size_t i = 0; i < local.s.size(); ++i)
-          fmt::format_to(
-            std::back_inserter(text), "{},{},{}\n", local.s[i], local.times[j], local.stress[j * local.s.size() + i]);
-      write_file(folder / "sensitivity_stress.csv", text);
-    }
-  } // namespace
-
   void
+  write_sensitivities(const LocalSensitivity &local, const std::filesystem::path &folder)
+  {
+    if (local.s.empty())
+      return;
+    std::string text = "s [length],elastic modulus [1],friction [1]\n";
+    for (std::size_t i = 0; i < local.s.size(); ++i)
+      fmt::format_to(std::back_inserter(text), "{},{},{}\n", local.s[i], local.elastic_modulus[i], local.friction[i]);
+    write_file(folder / "sensitivity_body.csv", text);
+    if (local.times.empty())
+      return;
+    text = "s [length],t [time],active stress [1/(force time)]\n";
+    for (std::size_t j = 0; j < local.times.size(); ++j)
+      for (std::size_t i = 0; i < local.s.size(); ++i)
+        fmt::format_to(
+          std::back_inserter(text), "{},{},{}\n", local.s[i], local.times[j], local.stress[j * local.s.size() + i]);
+    write_file(folder / "sensitivity_stress.csv", text);
+  }
+
+  LocalSensitivity
   add_sensitivities(const Input &input,
                     const NumericsChoice &choice,
-                    const std::filesystem::path &folder,
                     SimulationResult &result,
                     const std::function<bool()> &keep_going)
   {
     Form form(input.file);
-    const LocalSensitivity local =
-      find_sensitivities(form, input.scene, input.sensitivities, choice, result, keep_going);
-    if (!local.s.empty())
-      write_local(local, folder);
+    LocalSensitivity local = find_sensitivities(form, input.scene, input.sensitivities, choice, result, keep_going);
     if (trimmed(input.parameters.output.sensitivities) == "all")
       std::erase_if(result.sensitivities, [&](const EntrySensitivity &one) {
         return one.standard_deviation == 0. &&
@@ -53,5 +48,6 @@ namespace crawler
       const auto size = [](const EntrySensitivity &one) { return one.value ? std::abs(*one.value * one.at) : -1.; };
       return size(a) > size(b);
     });
+    return local;
   }
 } // namespace crawler

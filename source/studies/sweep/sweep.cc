@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 namespace crawler
 {
@@ -105,15 +106,21 @@ namespace crawler
     {
       SweepWork own(points, size_of(communicator));
       RowFile results(communicator, folder / table.file, table.group, table.written_columns());
-      return share_work(communicator,
-                        {own.n_parts(),
-                         static_cast<unsigned long>(std::count(done.begin(), done.end(), false)),
-                         "points",
-                         interrupted,
-                         [&](const unsigned long number, const auto &stops, const auto &see) {
-                           return own.compute(number, done, results, stops, see);
-                         }},
-                        log);
+      return share_work(
+        communicator,
+        {own.n_parts(),
+         static_cast<unsigned long>(std::count(done.begin(), done.end(), false)),
+         "points",
+         interrupted,
+         [&](const unsigned long number, const auto &stops, const auto &see) {
+           return own.compute(
+             number,
+             done,
+             [&](const unsigned long first, const std::span<const RowFile::Row> rows) { results.write(first, rows); },
+             stops,
+             see);
+         }},
+        log);
     }
 
     /// What stands in the log at the end.
@@ -139,11 +146,16 @@ namespace crawler
   ExitCode
   sweep(MPI_Comm communicator, const CommandOptions &options)
   {
+    return sweep_input(communicator, options, read_file(communicator, options.file, options.overrides));
+  }
+
+  ExitCode
+  sweep_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
+  {
     const StopSignal stop_signal; // from here on a signal ends the sweep in order
     const double start         = now();
     const unsigned int n_ranks = size_of(communicator);
     Log log(rank_of(communicator) == 0, options.quiet);
-    const ParameterFile file = read_file(communicator, options.file, options.overrides);
     SweepPoints points(communicator, file);
     const SweepDesign &design  = points.design();
     const SweepParameters &own = points.sweep();

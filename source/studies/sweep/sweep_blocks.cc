@@ -97,10 +97,10 @@ namespace crawler
     /// The rows of these points, those in succession at once.
     template <typename Point>
     void
-    write(const std::vector<Point> &points,
-          const std::vector<SensitivityEntry> &sensitivities,
-          RowFile &file,
-          const std::function<void(unsigned long n, unsigned long failed)> &see)
+    write_rows(const std::vector<Point> &points,
+               const std::vector<SensitivityEntry> &sensitivities,
+               const SweepWork::WriteRows &write,
+               const std::function<void(unsigned long n, unsigned long failed)> &see)
     {
       std::vector<RowFile::Row> rows;
       unsigned long failed = 0;
@@ -110,7 +110,7 @@ namespace crawler
         failed += status_of(points[i].task).status != "finished";
         if (i + 1 < points.size() && points[i + 1].number == points[i].number + 1)
           continue;
-        file.write(points[i].number + 1 - rows.size(), rows);
+        write(points[i].number + 1 - rows.size(), rows);
         rows.clear();
       }
       if (!points.empty())
@@ -229,7 +229,7 @@ namespace crawler
   bool
   SweepWork::compute(const unsigned long number,
                      const std::vector<bool> &done,
-                     RowFile &file,
+                     const WriteRows &write,
                      const std::function<bool()> &interrupted,
                      const std::function<void(unsigned long n, unsigned long failed)> &see)
   {
@@ -242,7 +242,7 @@ namespace crawler
     differentiate(shared, interrupted);
     if (interrupted())
       return false;
-    write(shared, points_.sensitivities(), file, see);
+    write_rows(shared, points_.sensitivities(), write, see);
     for (const Point &point : shared)
       std::erase(missing, point.number);
 
@@ -268,7 +268,7 @@ namespace crawler
       differentiate(ready, interrupted);
       if (interrupted())
         return false;
-      write(ready, points_.sensitivities(), file, see);
+      write_rows(ready, points_.sensitivities(), write, see);
     }
     return true;
   }

@@ -22,8 +22,10 @@ namespace crawler
    */
   ExitCode
   sweep(MPI_Comm communicator, const CommandOptions &options);
+  /// The same of a parameter file that is read already.
+  ExitCode
+  sweep_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
 
-  class ParameterFile;
   class SweepDesign;
 
   /// Does the parameter file declare a sweep? Then says how large it is and how long it will take (`crawler check`).

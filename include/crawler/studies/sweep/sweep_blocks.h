@@ -5,6 +5,7 @@
 #include <crawler/studies/sweep/sweep_numerics.h>
 
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace crawler
@@ -68,13 +69,16 @@ namespace crawler
     unsigned long
     n_parts() const;
 
-    /// Computes the points of a part that have no row yet (@p done), and writes their rows. Calls @p see when rows have
-    /// been written, with their number and how many of these did not finish. Returns false if it was interrupted.
-    /// Throws FileError.
+    /// Takes the rows of points in succession, from the one with this number on.
+    using WriteRows = std::function<void(unsigned long first, std::span<const RowFile::Row> rows)>;
+
+    /// Computes the points of a part that have no row yet (@p done), and gives their rows to @p write. Calls @p see
+    /// when rows have been written, with their number and how many of these did not finish. Returns false if it was
+    /// interrupted. Throws what @p write throws.
     bool
     compute(unsigned long part,
             const std::vector<bool> &done,
-            RowFile &file,
+            const WriteRows &write,
             const std::function<bool()> &interrupted,
             const std::function<void(unsigned long n, unsigned long failed)> &see);
 

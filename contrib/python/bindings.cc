@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The module crawler._core: texts of parameter files go in, texts (JSON) and arrays come out; package/__init__.py makes
+// of them what users see. One computation at a time, without Python's lock, which is taken now and then to look for
+// signals.
+#include <crawler/base/clock.h>
+#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/base/plain_numbers.h>
+#include <crawler/output/kymograph_writer.h>
+#include <crawler/output/statistics_writer.h>
+#include <crawler/run/summary.h>
+#include <crawler/studies/core/compute.h>
+#include <crawler/studies/core/sensitivities.h>
+#include <crawler/studies/run/run.h>
+#include <crawler/studies/run/run_in_memory.h>
+#include <crawler/studies/sweep/point_table.h>
+#include <crawler/studies/sweep/sweep.h>
+#include <crawler/studies/sweep/sweep_blocks.h>
+#include <crawler/studies/sweep/sweep_rows.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/multithread_info.h>
+
+#include <fmt/format.h>
+#include <petscsys.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <sstream>
+
+namespace py = pybind11;
+
+namespace crawler
+{
+  namespace
+  {
+    /// MPI and PETSc, from the first scene that needs them to the end of Python. MPI may have been started by others.
+    class Libraries
+    {
+    public:
+      static void
+      start()
+      {
+        if (instance_ == nullptr)
+          instance_.reset(new Libraries);
+      }
+      static void
+      end()
+      {
+        instance_.reset();
+      }
+      ~Libraries()
+      {
+        if (own_mpi_ == nullptr)
+          PetscFinalize();
+      }
+
+    private:
+      Libraries()
+      {
+        int mpi_is_there = 0;
+        MPI_Initialized(&mpi_is_there);
+        static char name[] = "crawler", no_handler[] = "-no_signal_handler", yes[] = "true";
+        static char *words[] = {name, no_handler, yes, nullptr};
+        int n                = 3;
+        char **arguments     = words;
+        const QuickStart quick_start;
+        if (mpi_is_there == 0)
+          own_mpi_ = std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(n, arguments, /*max_num_threads=*/1);
+        else
+        {
+          PetscInitialize(&n, &arguments, nullptr, nullptr);
+          dealii::MultithreadInfo::set_thread_limit(1);
+        }
+      }
+      static std::unique_ptr<Libraries> instance_;
+      std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> own_mpi_;
+    };
+    std::unique_ptr<Libraries> Libraries::instance_;
+
+    /// Runs @p work without Python's lock, alone; it asks its argument whether a signal has arrived whose handler in
+    /// Python raised something, which is thrown at the end.
+    template <typename Work>
+    auto
+    without_lock(const Work &work)
+    {
+      static std::mutex one_at_a_time;
+      constexpr double pause = 0.05; // seconds
+      bool interrupted       = false;
+      double last            = now();
+      const auto look        = [&]() {
+        const py::gil_scoped_acquire lock;
+        last        = now();
+        interrupted = interrupted || PyErr_CheckSignals() != 0;
+      };
+      const std::function<bool()> asked = [&]() {
+        if (!interrupted && now() - last > pause)
+          look();
+        return interrupted;
+      };
+      auto answer = [&]() {
+        const py::gil_scoped_release unlocked;
+        const std::lock_guard alone(one_at_a_time);
+        auto result = work(asked);
+        look(); // a signal that ended the work in its own way, too
+        return result;
+      }();
+      if (interrupted)
+        throw py::error_already_set();
+      return answer;
+    }
+
+    /// A parameter file as Python gives it: read from the file @p name unless there is a text.
+    struct Source
+    {
+      std::string name;
+      std::optional<std::string> text;
+      std::vector<std::string> overrides;
+
+      ParameterFile
+      file() const
+      {
+        ParameterFile read = text ? ParameterFile::from_text(*text, name) : ParameterFile::read(name);
+        for (const std::string &one : overrides)
+          read.add_override(one);
+        return read;
+      }
+    };
+
+    /// A copy of the values with this shape.
+    py::array
+    array_of(const std::vector<double> &values, const std::vector<std::size_t> &shape)
+    {
+      return py::array_t<double>(shape, values.data());
+    }
+
+    std::string
+    summary_text(const SimulationResult &result)
+    {
+      return summary_json(result, /*n_ranks=*/1, "python");
+    }
+
+    /// Nothing is computed; the entries as they are used, and what is perhaps not meant.
+    std::pair<std::string, std::vector<std::string>>
+    check(const Source &source)
+    {
+      return without_lock([&](const std::function<bool()> &) {
+        const Input input = read_input(source.file());
+        choose_model(input);
+        return std::pair(input.effective, input.notes);
+      });
+    }
+
+    py::dict
+    run_source(const Source &source, const std::optional<std::vector<double>> &times)
+    {
+      std::string effective;
+      std::vector<std::string> notes;
+      const RunInMemory run = without_lock([&](const std::function<bool()> &interrupted) {
+        Input input      = read_input(source.file());
+        effective        = input.effective;
+        notes            = input.notes;
+        const double end = input.scene.end_time;
+        for (std::size_t i = 0; times && i < times->size(); ++i)
+          if (!((*times)[i] >= 0. && (*times)[i] <= end) || (i > 0 && !((*times)[i] > (*times)[i - 1])))
+            throw InputError(fmt::format("the times of the fields have {:g}, but increasing numbers from 0 to the end "
+                                         "time {:g} are expected",
+                                         (*times)[i],
+                                         end));
+        const ModelChoice model = choose_model(input);
+        if (model.needs_mesh())
+          Libraries::start();
+        return run_in_memory(std::move(input), model, times, interrupted);
+      });
+      py::dict answer;
+      answer["summary"]    = summary_text(run.result);
+      answer["parameters"] = effective;
+      answer["notes"]      = notes;
+      answer["lines"]      = summary_lines(run.result);
+      if (run.kymograph)
+      {
+        const Kymograph &k    = *run.kymograph;
+        const std::size_t n_t = k.times().size(), n = Kymograph::n_points;
+        answer["times"]       = array_of(k.times(), {n_t});
+        answer["field_names"] = Kymograph::field_names();
+        answer["rows"]        = array_of(k.rows(), {n_t, Kymograph::field_names().size(), n});
+      }
+      if (run.statistics)
+      {
+        const auto names           = run.statistics->column_names();
+        answer["statistics_names"] = names;
+        answer["statistics"] =
+          array_of(run.statistics->values(), {run.statistics->values().size() / names.size(), names.size()});
+      }
+      if (const LocalSensitivity &local = run.local; !local.s.empty())
+      {
+        const std::size_t n = local.s.size(), n_t = local.times.size();
+        answer["local"] = py::dict(py::arg("s")               = array_of(local.s, {n}),
+                                   py::arg("elastic_modulus") = array_of(local.elastic_modulus, {n}),
+                                   py::arg("friction")        = array_of(local.friction, {n}),
+                                   py::arg("t")               = array_of(local.times, {n_t}),
+                                   py::arg("active_stress")   = array_of(local.stress, {n_t, n_t > 0 ? n : 0}));
+      }
+      return answer;
+    }
+
+    py::list
+    run_batch_of(const std::vector<Source> &sources)
+    {
+      std::vector<std::string> effective, summaries;
+      std::vector<std::vector<std::string>> notes;
+      without_lock([&](const std::function<bool()> &interrupted) {
+        std::vector<Input> inputs;
+        std::vector<Task> tasks;
+        for (const Source &source : sources)
+        {
+          inputs.push_back(read_input(source.file()));
+          tasks.emplace_back().parameters = inputs.back().parameters;
+          tasks.back().gait               = true;
+        }
+        Libraries::start();
+        compute_all(tasks, HUGE_VAL, interrupted);
+        for (std::size_t i = 0; i < tasks.size(); ++i)
+        {
+          Task &task = tasks[i];
+          if (task.error)
+            std::rethrow_exception(task.error);
+          SimulationResult &result = task.computed.result;
+          result.model             = task.parameters.model;
+          if (Form form(inputs[i].file); !inputs[i].sensitivities.empty() && result.time.status == Status::finished)
+            find_sensitivities(form, *task.scene, inputs[i].sensitivities, task.computed.choice, result, [&]() {
+              return !interrupted();
+            });
+          summaries.push_back(summary_text(result));
+          effective.push_back(inputs[i].effective);
+          notes.push_back(inputs[i].notes);
+        }
+        return 0;
+      });
+      py::list answers;
+      for (std::size_t i = 0; i < sources.size(); ++i)
+        answers.append(py::dict(
+          py::arg("summary") = summaries[i], py::arg("parameters") = effective[i], py::arg("notes") = notes[i]));
+      return answers;
+    }
+
+    /// The columns of `crawler sweep`, on one rank, by their names.
+    py::dict
+    sweep_source(const Source &source)
+    {
+      std::vector<RowFile::Column> columns;
+      std::vector<RowFile::Row> rows;
+      without_lock([&](const std::function<bool()> &interrupted) {
+        Libraries::start();
+        const ParameterFile file = source.file();
+        SweepPoints points(MPI_COMM_SELF, file);
+        columns                    = sweep_columns(points);
+        rows                       = std::vector<RowFile::Row>(points.design().n_points());
+        const RowFile::Known known = known_columns(columns, points.design());
+        const std::vector<bool> done(rows.size(), false);
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          for (std::size_t c = 0; c < columns.size(); ++c)
+            rows[i].push_back(c < known.n_columns     ? known.value(c, i)
+                              : columns[c].width == 0 ? RowFile::Value(std::numeric_limits<double>::quiet_NaN())
+                                                      : RowFile::Value(std::string()));
+        SweepWork work(points, /*n_ranks=*/1);
+        const auto write = [&](const unsigned long first, const std::span<const RowFile::Row> some) {
+          for (std::size_t i = 0; i < some.size(); ++i)
+            std::ranges::copy(some[i], rows[first + i].begin() + static_cast<std::ptrdiff_t>(known.n_columns));
+        };
+        const double start = now(), limit = points.sweep().time_limit.value_or(HUGE_VAL);
+        const auto stops = [&]() { return now() - start > limit || interrupted(); };
+        for (unsigned long part = 0; part < work.n_parts() && !stops(); ++part)
+          work.compute(part, done, write, stops, [](unsigned long, unsigned long) {});
+        return 0;
+      });
+      py::dict table;
+      for (std::size_t c = 0; c < columns.size(); ++c)
+      {
+        py::list texts;
+        std::vector<double> numbers;
+        for (const RowFile::Row &row : rows)
+          if (columns[c].width == 0)
+            numbers.push_back(std::get<double>(row[c]) + 0.); // no -0
+          else
+            texts.append(std::get<std::string>(row[c]));
+        table[py::str(columns[c].name)] =
+          columns[c].width == 0 ? py::object(array_of(numbers, {numbers.size()})) : py::object(texts);
+      }
+      return table;
+    }
+
+    /// `crawler run` or `crawler sweep` with its files; the exit code.
+    int
+    run_command(
+      const std::string &name, const Source &source, const std::string &output, const bool overwrite, const bool quiet)
+    {
+      return without_lock([&](const std::function<bool()> &) {
+        Libraries::start();
+        CommandOptions options;
+        options.file         = source.text ? "-" : source.name;
+        options.overrides    = source.overrides;
+        options.output       = output;
+        options.overwrite    = overwrite;
+        options.quiet        = quiet;
+        options.command_line = "python";
+        return static_cast<int>(name == "sweep" ? sweep_input(MPI_COMM_SELF, options, source.file())
+                                                : run_input(MPI_COMM_SELF, options, source.file()));
+      });
+    }
+
+    std::string
+    all_entries()
+    {
+      Parameters parameters;
+      Declarations declarations;
+      parameters.add_parameters(declarations);
+      std::ostringstream text;
+      declarations.print_json(text);
+      return text.str();
+    }
+
+    void
+    raise(const char *name, const char *message)
+    {
+      PyErr_SetString(py::module_::import("crawler").attr(name).ptr(), with_plain_numbers(message).c_str());
+    }
+  } // namespace
+} // namespace crawler
+
+PYBIND11_MODULE(_core, module)
+{
+  using namespace crawler;
+  py::register_exception_translator([](const std::exception_ptr error) {
+    try
+    {
+      if (error)
+        std::rethrow_exception(error);
+    }
+    catch (const InputError &problem)
+    {
+      raise("InputError", problem.what());
+    }
+    catch (const FileError &problem)
+    {
+      raise("FileError", problem.what());
+    }
+    catch (const std::filesystem::filesystem_error &problem)
+    {
+      raise("FileError", problem.what());
+    }
+  });
+  py::class_<Source>(module, "Source")
+    .def(py::init([](std::string name, std::optional<std::string> text, std::vector<std::string> overrides) {
+      return Source{std::move(name), std::move(text), std::move(overrides)};
+    }));
+  module.def("check", check);
+  module.def("run", run_source);
+  module.def("batch", run_batch_of);
+  module.def("sweep", sweep_source);
+  module.def("command", run_command);
+  module.def("entries", all_entries);
+  module.def("end", &Libraries::end);
+  module.attr("n_points") = Kymograph::n_points;
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/adjoint/run_gradient.h>
+#include <crawler/run/simulation_result.h>
+#include <crawler/studies/core/input.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace crawler
+{
+  class Kymograph;
+  class Statistics;
+
+  /// What a run gives besides files.
+  struct RunInMemory
+  {
+    SimulationResult result;
+    LocalSensitivity local;                 ///< where and when it matters, if sensitivities are wanted
+    std::unique_ptr<Kymograph> kymograph;   ///< null if it is not wanted, or if the run broke off before
+    std::unique_ptr<Statistics> statistics; ///< the same
+  };
+
+  /**
+   * Computes what `crawler run` does on one rank, with the same bits, and keeps what that writes to files. The
+   * kymograph has rows at @p times [time], in place of those that @p input asks for. How a run ends is its status; what
+   * the user has to mend is thrown. @p interrupted is asked after every step. MPI and PETSc must have been started
+   * unless the level needs no mesh.
+   */
+  RunInMemory
+  run_in_memory(Input input,
+                const ModelChoice &model,
+                const std::optional<std::vector<double>> &times,
+                const std::function<bool()> &interrupted);
+} // namespace crawler

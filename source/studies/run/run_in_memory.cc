@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/run_as_promised.h>
+#include <crawler/accuracy/swept_error.h>
+#include <crawler/output/kymograph_writer.h>
+#include <crawler/output/statistics_writer.h>
+#include <crawler/run/reduced_model.h>
+#include <crawler/run/self_check.h>
+#include <crawler/run/simulation.h>
+#include <crawler/studies/run/run.h>
+#include <crawler/studies/run/run_in_memory.h>
+#include <crawler/studies/run/sensitivity_files.h>
+#include <crawler/time/failure.h>
+
+#include <cmath>
+#include <utility>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Lets somebody else see the states.
+    class Forward : public Observer
+    {
+    public:
+      explicit Forward(Observer &to)
+        : to_(to)
+      {
+      }
+      void
+      observe(const Snapshot &snapshot) override
+      {
+        to_.observe(snapshot);
+      }
+
+    private:
+      Observer &to_;
+    };
+
+    /// New tables for a run, or for the next try.
+    void
+    begin_tables(const OutputParameters &output, const Scene &scene, const bool has_kymograph, RunInMemory &run)
+    {
+      if (has_kymograph)
+        run.kymograph = std::make_unique<Kymograph>();
+      if (output.statistics)
+        run.statistics = std::make_unique<Statistics>(scene.body.length, output.energy_balance);
+    }
+
+    void
+    compute_without_mesh(const Input &input,
+                         const std::optional<PictureTimes> &wanted,
+                         const bool has_kymograph,
+                         const std::function<bool()> &keep_going,
+                         RunInMemory &run)
+    {
+      const OutputParameters &output = input.parameters.output;
+      ReducedModel level(input.scene, input.parameters.model);
+      run.result = level.compute(input.parameters.accuracy, output.energy_balance, keep_going);
+      level.describe_gait(run.result);
+      if (std::isfinite(run.result.net_friction)) // the series has no balance to check
+        check_identities(run.result, input.parameters);
+      if (!run.result.error || !(has_kymograph || output.statistics))
+        return;
+      begin_tables(output, input.scene, has_kymograph, run);
+      show_pictures(level,
+                    wanted ? *wanted : times_without_mesh(input),
+                    {nullptr, run.kymograph.get(), run.statistics.get()},
+                    keep_going);
+    }
+
+    void
+    compute_on_mesh(const Input &input,
+                    const PictureTimes &pictures,
+                    const bool has_kymograph,
+                    const std::function<bool()> &keep_going,
+                    RunInMemory &run)
+    {
+      const Parameters &parameters = input.parameters;
+      auto chosen                  = choose_numerics(MPI_COMM_SELF, parameters, input.scene, keep_going);
+      if (!chosen)
+      {
+        run.result.time.status = Status::stopped;
+        return;
+      }
+      if (!pictures.is_empty())
+        prepare_for_pictures(*chosen, parameters);
+      const Simulation::Options options = {.energy_balance = parameters.output.energy_balance,
+                                           .cycles         = cycle_wish(parameters, input.scene, !pictures.is_empty()),
+                                           .gait           = Simulation::GaitWish::any};
+      const auto simulate               = [&](const NumericsChoice &choice) {
+        begin_tables(parameters.output, input.scene, has_kymograph, run);
+        std::vector<std::unique_ptr<Observer>> observers;
+        if (run.kymograph)
+          observers.push_back(std::make_unique<Forward>(*run.kymograph));
+        if (run.statistics)
+          observers.push_back(std::make_unique<Forward>(*run.statistics));
+        return Simulation(MPI_COMM_SELF, input.scene, parameters.time, choice.numerics)
+          .run(pictures, options, observers, keep_going);
+      };
+      Answer answer = run_as_promised(
+        MPI_COMM_SELF, parameters, input.scene, *chosen, simulate, options, /*writes=*/true, keep_going);
+      run.result                  = std::move(answer.result);
+      run.result.estimate_seconds = answer.estimate_seconds;
+      run.result.refinements      = answer.refinements;
+      check_identities(run.result, parameters);
+      sweep_error(parameters, input.scene, answer.choice, run.result, keep_going);
+      if (!input.sensitivities.empty() && run.result.time.status == Status::finished)
+        run.local = add_sensitivities(input, answer.choice, run.result, keep_going);
+    }
+  } // namespace
+
+  RunInMemory
+  run_in_memory(Input input,
+                const ModelChoice &model,
+                const std::optional<std::vector<double>> &times,
+                const std::function<bool()> &interrupted)
+  {
+    RunInMemory run;
+    input.parameters.model         = model.model;
+    const OutputParameters &output = input.parameters.output;
+    const auto keep_going          = [&]() { return !interrupted(); };
+    const bool has_kymograph       = times || (output.has_snapshots() && output.kymograph);
+    std::optional<PictureTimes> wanted;
+    if (times)
+      wanted.emplace(std::vector<double>(), *times, input.scene.end_time);
+    try
+    {
+      if (model.needs_mesh())
+        compute_on_mesh(input, wanted ? *wanted : picture_times(output, input.scene), has_kymograph, keep_going, run);
+      else
+        compute_without_mesh(input, wanted, has_kymograph, keep_going, run);
+    }
+    catch (...)
+    {
+      run.result.time = failure_of(std::current_exception());
+    }
+    run.result.model = model.model;
+    return run;
+  }
+} // namespace crawler

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""contrib/octave/tutorial.m reads the files of a run and of a sweep and prints the numbers that are in them. Without
+Octave it does not run (77, which ctest reports).
+
+    python3 octave_tutorial.py PATH_TO_CRAWLER
+"""
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+SCRIPT = ROOT / "contrib/octave/tutorial.m"
+failures = []
+
+
+def expect(condition, what):
+    """Notes what is wrong."""
+    if not condition:
+        failures.append(what)
+
+
+def main():
+    octave = shutil.which("octave-cli")
+    if octave is None:
+        print("not run: there is no Octave (Debian: apt install octave)")
+        sys.exit(77)
+    with tempfile.TemporaryDirectory() as name:
+        os.chdir(name)
+        os.symlink(ROOT / "prm", "prm")
+        # The commands that its first lines show, as they stand.
+        for line in re.findall(r"^%   (crawler .*)", SCRIPT.read_text(encoding="utf-8"), re.M):
+            subprocess.run(line.replace("crawler", f"'{PROGRAM}'", 1) + " --quiet", shell=True, check=True,
+                           env=ENVIRONMENT)
+        ended = subprocess.run([octave, "--no-init-file", "--eval", f"draw = false; source('{SCRIPT}')"],
+                               capture_output=True, text=True)
+        summary = json.loads(pathlib.Path("output-fig_s1/summary.json").read_text())
+        with open("output-sweep/results.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        os.chdir("/")
+    screen = ended.stdout
+    expect(ended.returncode == 0, f"Octave: {ended.stdout} {ended.stderr}")
+    wanted = [f"finished: displacement {summary['displacement']:.10g} +- ",
+              f"at t = 1 with displacement {summary['displacement']:.10g}",
+              "stretch, velocity, active_stress, friction_force, displacement", "201 points at 129 times"]
+    wanted += [f"k = {float(row['Body/Elastic modulus']):g}: displacement {float(row['displacement']):.8g} +- "
+               for row in rows]
+    for words in wanted:
+        expect(words in screen, f'"{words}" is not in\n{screen}')
+    smallest = re.search(r"smallest stretch ([\d.]+)", screen)
+    expect(len(rows) == 3 and smallest and abs(float(smallest[1]) / summary["min_stretch"]["value"] - 1) < 1e-3,
+           f"the smallest stretch is {summary['min_stretch']}, read {smallest and smallest[1]}")
+    sys.exit("\n".join(failures) or 0)
+
+
+if __name__ == "__main__":
+    main()
