@@ -16,7 +16,7 @@ namespace crawler
   public:
     static constexpr unsigned int n_points = 201; ///< equidistant, both ends included
 
-    KymographWriter(double end_time, const std::filesystem::path &folder);
+    KymographWriter(double length, double end_time, const std::filesystem::path &folder);
 
     void
     observe(const Snapshot &snapshot) override;
@@ -28,11 +28,11 @@ namespace crawler
     add(double time, const Fields &fields);
 
   private:
-    const double end_time_;
+    const double length_, end_time_;
     const std::filesystem::path folder_;
     std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
     unsigned int mesh_number_ = 0;
     std::vector<double> times_;
-    std::vector<double> rows_; ///< [time][field][point], on rank 0
+    Fields rows_; ///< [time][point], on rank 0
   };
 } // namespace crawler

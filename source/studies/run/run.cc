@@ -8,8 +8,8 @@
 #include <crawler/base/stop_signal.h>
 #include <crawler/equation/crawler_equation.h>
 #include <crawler/output/kymograph_writer.h>
+#include <crawler/output/snapshot_writer.h>
 #include <crawler/output/statistics_writer.h>
-#include <crawler/output/vtu_writer.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
@@ -180,17 +180,19 @@ namespace crawler
       log.line("PETSc options, stronger than these settings: " + options.petsc_options);
 
     const bool writes           = shared || first;
+    const double length         = input.scene.body.length;
+    const PictureTimes pictures = picture_times(output, input.scene);
     const auto create_observers = [&]() {
       std::vector<std::unique_ptr<Observer>> observers;
       if (writes && output.has_snapshots())
       {
-        observers.push_back(std::make_unique<VtuWriter>(folder));
+        observers.push_back(
+          std::make_unique<SnapshotWriter>(output.snapshot_format, folder, length, pictures.n_snapshots() + 1));
         if (output.kymograph)
-          observers.push_back(std::make_unique<KymographWriter>(input.scene.end_time, folder));
+          observers.push_back(std::make_unique<KymographWriter>(length, input.scene.end_time, folder));
       }
       if (writes && output.statistics)
-        observers.push_back(
-          std::make_unique<StatisticsWriter>(input.scene.body.length, first, folder, output.energy_balance));
+        observers.push_back(std::make_unique<StatisticsWriter>(length, first, folder, output.energy_balance));
       if (writes && !options.quiet)
         observers.push_back(std::make_unique<Progress>(log, input.scene));
       return observers;
@@ -201,7 +203,6 @@ namespace crawler
     const Simulation::Options run_options = {.energy_balance = output.energy_balance,
                                              .cycles = cycle_wish(parameters, input.scene, output.has_snapshots()),
                                              .gait   = Simulation::GaitWish::any};
-    const PictureTimes pictures           = picture_times(output, input.scene);
     const auto simulate                   = [&](const NumericsChoice &choice) {
       if (choice.is_family)
         build(choice.numerics);
@@ -265,7 +266,8 @@ namespace crawler
       return "";
     });
     // The first rank speaks for all: a signal may have stopped some only.
-    int code = static_cast<int>(report_end(log, result, folder, output.has_snapshots()));
+    int code = static_cast<int>(
+      report_end(log, result, folder, output.has_snapshots() ? animation_file(output.snapshot_format) : ""));
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
     return static_cast<ExitCode>(code);
   }
@@ -331,8 +333,13 @@ namespace crawler
       std::vector<double> natural;
       for (std::size_t i = 0; i < times.all().size(); ++i)
         natural.push_back(times.natural(i));
-      VtuWriter pictures(folder);
-      KymographWriter kymograph(input.scene.end_time, folder);
+      std::optional<SnapshotWriter> snapshots;
+      if (output.has_snapshots())
+        snapshots.emplace(output.snapshot_format, folder, units.length, times.n_snapshots() + 1);
+      KymographWriter kymograph(units.length, input.scene.end_time, folder);
+      std::vector<double> places; // [length]
+      for (const double point : points)
+        places.push_back(point * units.length);
       std::optional<StatisticsWriter> statistics;
       if (output.statistics)
         statistics.emplace(input.scene.body.length, true, folder, output.energy_balance);
@@ -350,9 +357,8 @@ namespace crawler
           return !stopped && t <= 1.;
         const Step step{time, time - before, n_rows++, true, 0, 0};
         before = time;
-        if (output.has_snapshots())
-          pictures.write(
-            time, step.number, {{0., units.length}}, static_cast<unsigned int>(points.size()), fields, MPI_COMM_SELF);
+        if (snapshots)
+          snapshots->write({time, step.number, static_cast<unsigned int>(points.size()), places, fields});
         const auto stretch_at = [&](const StrainExtreme &e) { return StretchAt{1. + e.strain, e.s * units.length}; };
         if (statistics)
           statistics->write({step,
@@ -365,6 +371,8 @@ namespace crawler
       });
       if (statistics)
         statistics->end();
+      if (snapshots)
+        snapshots->end();
       if (output.has_snapshots() && output.kymograph)
         kymograph.end();
       return !stopped;
@@ -424,7 +432,8 @@ namespace crawler
         result.time.message = "stopped by a signal";
       }
       write_file(folder / "summary.json", summary_json(result, size_of(communicator), options.command_line));
-      code = static_cast<int>(report_end(log, result, folder, output.has_snapshots() && result.error));
+      code = static_cast<int>(report_end(
+        log, result, folder, output.has_snapshots() && result.error ? animation_file(output.snapshot_format) : ""));
       return "";
     });
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);

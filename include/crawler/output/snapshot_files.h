@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/output/output_parameters.h>
+#include <crawler/output/scenery.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace crawler
+{
+  /// Files of a format for all snapshots of a run, a complete animation after each of them.
+  class SnapshotFiles
+  {
+  public:
+    virtual ~SnapshotFiles() = default;
+
+    /// Adds a frame; @p scenery_changed is what Scenery::include() said of it. Throws FileError.
+    virtual void
+    add(const Frame &frame, const Scenery &scenery, bool scenery_changed) = 0;
+
+    /// After the last frame, with the final scenery. Throws FileError.
+    virtual void
+    end(const Scenery &scenery) = 0;
+  };
+
+  /// Files in @p folder, for a body of the rest length @p length [length]. @p n_frames are expected.
+  std::unique_ptr<SnapshotFiles>
+  snapshot_files(SnapshotFormat format, const std::filesystem::path &folder, double length, std::size_t n_frames);
+
+  /// The file that one opens in ParaView.
+  std::string
+  animation_file(SnapshotFormat format);
+} // namespace crawler
