@@ -54,27 +54,14 @@ def open_run(folder):
               "expected")
 
 
-def blocks_of(data):
-    """The parts of a frame (body, grip, ground, scale) by their names."""
-    found = {}
-
-    def visit(block):
-        for i in range(block.GetNumberOfBlocks()):
-            child = block.GetBlock(i)
-            if child is None:
-                continue
-            if child.IsA("vtkMultiBlockDataSet"):
-                visit(child)
-            elif block.HasMetaData(i):
-                found[block.GetMetaData(i).Get(child_name())] = child
-    visit(data)
-    return found
-
-
-def child_name():
-    """VTK's key of the names of blocks."""
-    from paraview.vtk.vtkCommonDataModel import vtkCompositeDataSet
-    return vtkCompositeDataSet.NAME()
+def parts_of(data):
+    """Body, grip, ground and scale of a frame: its data sets in the order in which the files have them."""
+    found, parts = [], data.NewIterator()
+    parts.InitTraversal()
+    while not parts.IsDoneWithTraversal():
+        found.append(parts.GetCurrentDataObject())
+        parts.GoToNextItem()
+    return dict(zip(("body", "grip", "ground", "scale"), found))
 
 
 def main():
@@ -86,7 +73,7 @@ def main():
         look.fail(f"{options.run} has no frames from {options.first:g} to {options.last:g}")
     if options.time is not None:
         times = [min(times, key=lambda time: abs(time - options.time))]
-    first = blocks_of(servermanager.Fetch(source))
+    first = parts_of(servermanager.Fetch(source))
     view = look.new_view(options.size)
     display = simple.Show(source, view)
     display.Representation = "Surface"
@@ -103,7 +90,7 @@ def main():
     def show(time):
         view.ViewTime = time
         simple.UpdatePipeline(time, source)
-        body = blocks_of(servermanager.Fetch(source))["body"].GetBounds()
+        body = parts_of(servermanager.Fetch(source))["body"].GetBounds()
         clock.Text = f"t = {time:.4g}"
         middle = (ground[0] + ground[1]) / 2 if options.whole else (body[0] + body[1]) / 2
         width = ground[1] - ground[0] if options.whole else 1.6 * length

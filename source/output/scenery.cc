@@ -11,9 +11,9 @@ namespace crawler
   {
     // Fractions of the length of the body.
     constexpr double rest_thickness = 0.1, largest_thickness = 1.;
-    constexpr double margin = 0.15, strip = 0.012, tick_end = 0.03, tick_width = 0.006, finest_tick = 0.1;
-    constexpr double arrow_y = -0.075, arrow_width = 0.02, arrow_length = 0.125;
-    constexpr double scale_top = -0.17, scale_bottom = -0.19, scale_length = 0.5;
+    constexpr double margin = 0.15, strip = 0.015, tick_end = 0.035, tick_width = 0.008, finest_tick = 0.1;
+    constexpr double arrow_y = -0.07, arrow_width = 0.035, arrow_length = 0.15;
+    constexpr double scale_top = -0.13, scale_bottom = -0.16, scale_length = 0.5;
 
     constexpr double infinity           = std::numeric_limits<double>::infinity();
     constexpr Scenery::Range no_numbers = {infinity, -infinity};
@@ -60,10 +60,20 @@ namespace crawler
     Corners points(6 * n, 0.);
     for (std::size_t i = 0; i < n; ++i)
     {
-      points[3 * i] = points[3 * (n + i)] = frame.fields.position[i];
-      points[3 * (n + i) + 1]             = thickness(frame.fields.stretch[i], length);
+      points[6 * i] = points[6 * i + 3] = frame.fields.position[i];
+      points[6 * i + 4]                 = thickness(frame.fields.stretch[i], length);
     }
     return points;
+  }
+
+  std::vector<double>
+  on_both_edges(const std::vector<double> &values)
+  {
+    std::vector<double> twice;
+    twice.reserve(2 * values.size());
+    for (const double value : values)
+      twice.insert(twice.end(), 2, value);
+    return twice;
   }
 
   std::vector<Grip>

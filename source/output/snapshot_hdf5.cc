@@ -39,8 +39,10 @@ namespace crawler
         {"time", {"time", "of each frame; NaN: it was not written", true, {}}},
         {"step", {"1", "number of the time step", true, {}, true}},
         {"n_points", {"1", "points of each frame; what follows them is NaN", true, {}, true}},
-        {"body/points", {"length", "x, y and z, first at the ground, then at the upper edge", true, {2, n_points, 3}}},
-        {"body/s", {"length", "place at rest", true, {2, n_points}}},
+        {"body/points", {"length", "x, y and z at the ground and at the upper edge", true, {n_points, 2, 3}}},
+        {"body/s", {"length", "place at rest", true, {n_points, 2}}},
+        {"line/cells", {"1", "the points in their order", false, {1, n_points}, true}},
+        {"line/s", {"length", "place at rest", true, {n_points}}},
         {"line/points", {"length", "s on the x axis", true, {n_points, 3}}},
         {"grip/points", {"length", "corners of triangles: forces of the ground on the body", true, {arrows, 3}}},
         {"grip/friction_force", {"force/length", "of each corner", true, {arrows}}},
@@ -51,7 +53,8 @@ namespace crawler
         {"scale/cells", {"1", "its corners", false, {1, 4}, true}}};
       for (const FieldName &field : field_names)
       {
-        layouts[std::string("body/") + field.name]  = {field.unit, "at the points of each frame", true, {2, n_points}};
+        layouts[std::string("body/") + field.name]  = {field.unit, "at the points of the body", true, {n_points, 2}};
+        layouts[std::string("line/") + field.name]  = {field.unit, "at the points of the line", true, {n_points}};
         layouts[std::string("scale/") + field.name] = {field.unit, "smallest and largest of the run", false, {4}};
       }
       return layouts;
@@ -161,5 +164,16 @@ namespace crawler
         hdf5::checked(H5Dread(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data()), path_, "read");
       });
     return values;
+  }
+
+  std::size_t
+  SnapshotHdf5::place(const std::string &name, const std::size_t row) const
+  {
+    const hid_t dataset = *datasets_.at(name);
+    const Hdf5Handle space(H5Dget_space(dataset), H5Sclose), type(H5Dget_type(dataset), H5Tclose);
+    Shape size(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
+    H5Sget_simple_extent_dims(space, size.data(), nullptr);
+    size[0] = row;
+    return H5Dget_offset(dataset) + product(size) * H5Tget_size(type);
   }
 } // namespace crawler

@@ -58,15 +58,6 @@ namespace crawler
       return indices;
     }
 
-    std::vector<double>
-    twice(std::vector<double> values)
-    {
-      const std::size_t n = values.size();
-      values.resize(2 * n);
-      std::copy_n(values.begin(), n, values.begin() + static_cast<std::ptrdiff_t>(n));
-      return values;
-    }
-
     /// Vectors along x.
     std::vector<double>
     along_x(const std::vector<double> &values, const double factor)
@@ -92,12 +83,12 @@ namespace crawler
       Indices cells;
       for (std::int32_t i = 0; i + 1 < n; ++i)
         if ((i + 1) % per_cell != 0)
-          cells.insert(cells.end(), {i, i + 1, n + i + 1, n + i});
+          cells.insert(cells.end(), {2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1});
       std::string fields = " Scalars=\"stretch\" Vectors=\"ground_force\">\n";
       for (const FieldName &field : field_names)
-        fields += vtk_array(field.name, twice(frame.fields.*field.values), 1, field.unit);
-      fields += vtk_array("s", twice(frame.s), 1, "length");
-      fields += vtk_array("ground_force", along_x(twice(frame.fields.friction_force), -1.), 3, "force/length");
+        fields += vtk_array(field.name, on_both_edges(frame.fields.*field.values), 1, field.unit);
+      fields += vtk_array("s", on_both_edges(frame.s), 1, "length");
+      fields += vtk_array("ground_force", along_x(on_both_edges(frame.fields.friction_force), -1.), 3, "force/length");
       return vtu_file(CellType::quadrilateral, field_data_of(frame), fields, ribbon(frame, length), cells);
     }
 

@@ -15,16 +15,6 @@ namespace crawler
   {
     const std::string body = "body/", line = "line/", grip = "grip/", ground = "ground/", scale = "scale/";
 
-    /// Each point at the ground and above it.
-    std::vector<double>
-    twice(std::vector<double> values)
-    {
-      const std::size_t n = values.size();
-      values.resize(2 * n);
-      std::copy_n(values.begin(), n, values.begin() + static_cast<std::ptrdiff_t>(n));
-      return values;
-    }
-
     std::vector<double>
     numbers_to(const std::size_t n)
     {
@@ -40,44 +30,35 @@ namespace crawler
       return fmt::format("{}", fmt::join(numbers, " "));
     }
 
-    /// Describes datasets, or their part for the frame of a row: all its points, or those at the ground.
+    /// Describes datasets, or their part for the frame of a row. That part is named by its place in the file, as binary
+    /// numbers: of ParaView's three readers one alone knows parts of HDF5 datasets.
     class DataItems
     {
     public:
-      DataItems(const std::size_t row, const std::size_t n, const std::size_t n_frames, const std::size_t most_points)
-        : row_(row)
+      DataItems(const SnapshotHdf5 &file, const std::size_t row, const std::size_t n)
+        : file_(file)
+        , row_(row)
         , n_(n)
-        , n_frames_(n_frames)
-        , most_points_(most_points)
       {
       }
 
       std::string
-      item(const std::string &name, const bool at_ground_only = false) const
+      item(const std::string &name) const
       {
         const SnapshotHdf5::Layout &layout = SnapshotHdf5::layouts().at(name);
-        const auto all                     = SnapshotHdf5::shape(layout, n_frames_, most_points_);
-        auto part                          = SnapshotHdf5::shape(layout, 1, n_);
-        if (at_ground_only)
-          part[1] = 1;
-        const std::string values =
-          fmt::format("<DataItem Format=\"HDF\" {} Dimensions=\"{}\">solution.h5:/{}</DataItem>\n",
-                      layout.is_whole ? "NumberType=\"Int\" Precision=\"4\"" : "NumberType=\"Float\" Precision=\"8\"",
-                      words(all),
-                      name);
-        if (!layout.has_rows)
-          return values;
-        SnapshotHdf5::Shape start(part.size(), 0);
-        start[0] = row_;
-        return fmt::format("<DataItem ItemType=\"HyperSlab\" Type=\"HyperSlab\" Dimensions=\"{}\">\n"
-                           "<DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"3 {}\">{} {} {}</DataItem>\n{}"
-                           "</DataItem>\n",
-                           words({part.begin() + 1, part.end()}),
-                           part.size(),
-                           words(start),
-                           words(SnapshotHdf5::Shape(part.size(), 1)),
-                           words(part),
-                           values);
+        auto shape                         = SnapshotHdf5::shape(layout, 1, n_);
+        const char *type =
+          layout.is_whole ? "NumberType=\"Int\" Precision=\"4\"" : "NumberType=\"Float\" Precision=\"8\"";
+        if (!layout.has_rows && name != line + "cells")
+          return fmt::format(
+            "<DataItem Format=\"HDF\" {} Dimensions=\"{}\">solution.h5:/{}</DataItem>\n", type, words(shape), name);
+        if (layout.has_rows)
+          shape.erase(shape.begin());
+        return fmt::format(
+          "<DataItem Format=\"Binary\" Endian=\"Little\" Seek=\"{}\" {} Dimensions=\"{}\">solution.h5</DataItem>\n",
+          file_.place(name, layout.has_rows ? row_ : 0),
+          type,
+          words(shape));
       }
 
       std::string
@@ -87,10 +68,10 @@ namespace crawler
       }
 
       std::string
-      field(const std::string &dataset, const std::string &name, const bool at_ground_only = false) const
+      field(const std::string &dataset, const std::string &name) const
       {
         return fmt::format(
-          "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">\n{}</Attribute>\n", name, item(dataset, at_ground_only));
+          "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">\n{}</Attribute>\n", name, item(dataset));
       }
 
       /// A grid of cells that the dataset "cells" of the group lists.
@@ -109,7 +90,8 @@ namespace crawler
       }
 
     private:
-      const std::size_t row_, n_, n_frames_, most_points_;
+      const SnapshotHdf5 &file_;
+      const std::size_t row_, n_;
     };
 
     std::vector<std::string>
@@ -151,9 +133,13 @@ namespace crawler
       file_->write(name, values, row, 1, n);
     };
     write(body + "points", ribbon(frame, length_));
-    write(body + "s", twice(frame.s));
+    write(body + "s", on_both_edges(frame.s));
+    write(line + "s", frame.s);
     for (const FieldName &field : field_names)
-      write(body + field.name, twice(frame.fields.*field.values));
+    {
+      write(body + field.name, on_both_edges(frame.fields.*field.values));
+      write(line + field.name, frame.fields.*field.values);
+    }
     std::vector<double> line_points(3 * n, 0.), forces;
     for (std::size_t i = 0; i < n; ++i)
       line_points[3 * i] = frame.s[i];
@@ -208,6 +194,7 @@ namespace crawler
             larger.write(name, file_->read(name, row, n_rows, common), row, n_rows, common);
           }
       const std::size_t strips = Scenery::most_ground;
+      larger.write(line + "cells", numbers_to(n), 0, 1, n);
       larger.write(grip + "cells", numbers_to(3 * n_grips));
       larger.write(ground + "cells", numbers_to(4 * strips));
       larger.write(scale + "cells", numbers_to(4));
@@ -242,10 +229,10 @@ namespace crawler
   XdmfFiles::body_grid(const std::size_t row) const
   {
     const auto [time, n] = frames_[row];
-    const DataItems items(row, n, most_frames_, most_points_);
+    const DataItems items(*file_, row, n);
     std::string text = fmt::format("<Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
                                    "<Time Value=\"{}\"/>\n<Grid Name=\"body\">\n<Topology TopologyType=\"2DSMesh\" "
-                                   "Dimensions=\"2 {}\"/>\n",
+                                   "Dimensions=\"{} 2\"/>\n",
                                    time,
                                    n) +
                        items.points(body);
@@ -260,14 +247,14 @@ namespace crawler
   XdmfFiles::line_grid(const std::size_t row) const
   {
     const auto [time, n] = frames_[row];
-    const DataItems items(row, n, most_frames_, most_points_);
-    std::string text = fmt::format("<Grid Name=\"line\">\n<Time Value=\"{}\"/>\n<Topology TopologyType=\"2DSMesh\" "
-                                   "Dimensions=\"1 {}\"/>\n",
+    const DataItems items(*file_, row, n);
+    std::string text = fmt::format("<Grid Name=\"line\">\n<Time Value=\"{}\"/>\n<Topology TopologyType=\"Polyline\" "
+                                   "NumberOfElements=\"1\" NodesPerElement=\"{}\">\n",
                                    time,
                                    n) +
-                       items.points(line);
+                       items.item(line + "cells") + "</Topology>\n" + items.points(line);
     for (const std::string &name : all_fields())
-      text += items.field(body + name, name, /*at_ground_only=*/true);
+      text += items.field(line + name, name);
     return text + "</Grid>\n";
   }
 

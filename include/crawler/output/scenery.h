@@ -28,11 +28,15 @@ namespace crawler
   thickness(double stretch, double length);
 
   /**
-   * The drawn body of a rest length @p length [length]: it lies on the ground, y = 0, at its present place. First come
-   * the points of the frame at the ground, then the same at the upper edge.
+   * The drawn body of a rest length @p length [length]: it lies on the ground, y = 0, at its present place. For each
+   * point of the frame there is one at the ground and one at the upper edge.
    */
   Corners
   ribbon(const Frame &frame, double length);
+
+  /// Values at the points of the frame for those of the ribbon.
+  std::vector<double>
+  on_both_edges(const std::vector<double> &values);
 
   /// A place on the body where the force of the ground is drawn as an arrow.
   struct Grip
@@ -69,7 +73,7 @@ namespace crawler
     double
     tick_distance() const;
 
-    /// Triangles, an arrow for each place: forces of the ground on the body, the longest so far is L/8 long.
+    /// Triangles, an arrow for each place: forces of the ground on the body, the longest so far is 0.15 L long.
     Corners
     arrows(const std::vector<Grip> &grips) const;
 

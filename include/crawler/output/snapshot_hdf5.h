@@ -57,6 +57,10 @@ namespace crawler
     std::vector<double>
     read(const std::string &name, std::size_t row, std::size_t n_rows, std::size_t n) const;
 
+    /// Where the numbers of a row begin in the file, in bytes.
+    std::size_t
+    place(const std::string &name, std::size_t row) const;
+
   private:
     /// Calls @p work with the dataset, the spaces of memory and file, and the number of values.
     template <typename Work>
