@@ -55,6 +55,7 @@ def look_at(view, x, y, height):
 def colour(display, view, field, limits):
     """Colours by a field, with a bar that names it and its unit; grey is what does not deform."""
     simple.ColorBy(display, ("POINTS", field))
+    display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the bar, without light
     table = simple.GetColorTransferFunction(field)
     low, high = limits
     if not high > low:
@@ -66,7 +67,7 @@ def colour(display, view, field, limits):
     bar = simple.GetScalarBar(table, view)
     bar.Title, bar.ComponentTitle = f"{field.replace('_', ' ')} [{UNITS[field]}]", ""
     bar.TitleColor = bar.LabelColor = TEXT
-    bar.Orientation, bar.WindowLocation = "Horizontal", "Lower Right Corner"
+    bar.Orientation, bar.WindowLocation = "Horizontal", "Upper Right Corner"
     bar.ScalarBarLength, bar.ScalarBarThickness = 0.3, 12
     bar.TitleFontSize, bar.LabelFontSize = 14, 12
     bar.Visibility = 1

@@ -84,8 +84,10 @@ def main():
     clock = look.label(view, "", "Upper Left Corner")
 
     ground = first["ground"].GetBounds()
-    names = first["body"].GetPointData().GetArray("s")
-    length = names.GetRange()[1]
+    length = first["body"].GetPointData().GetArray("s").GetRange()[1]
+    stretches = first["scale"].GetPointData().GetArray("stretch").GetRange()
+    # From below the arrows, without the scale, to above the thickest body and the words in the corners.
+    bottom, top = -0.12 * length, length * min(0.1 / max(stretches[0], 0.1), 1.0) * 1.15
 
     def show(time):
         view.ViewTime = time
@@ -94,8 +96,8 @@ def main():
         clock.Text = f"t = {time:.4g}"
         middle = (ground[0] + ground[1]) / 2 if options.whole else (body[0] + body[1]) / 2
         width = ground[1] - ground[0] if options.whole else 1.6 * length
-        height = max(width * options.size[1] / options.size[0], 0.5 * length)
-        look.look_at(view, middle, -0.02 * length, height)
+        height = max(width * options.size[1] / options.size[0], top - bottom)
+        look.look_at(view, middle, bottom + height / 2, height)
 
     show(times[0])
     if options.state:

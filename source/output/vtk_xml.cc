@@ -46,7 +46,11 @@ namespace crawler
           const std::string &unit)
     {
       std::string text = fmt::format(
-        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">\n", type, name, n_components);
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" NumberOfTuples=\"{}\" format=\"binary\">\n",
+        type,
+        name,
+        n_components,
+        values.size() / n_components);
       text += encoded(values);
       if (!unit.empty())
         text += "\n<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">" + unit + "</InformationKey>";
