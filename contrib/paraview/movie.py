@@ -91,7 +91,7 @@ def main():
 
     def show(time):
         view.ViewTime = time
-        simple.UpdatePipeline(time, source)
+        source.UpdatePipeline(time)
         body = parts_of(servermanager.Fetch(source))["body"].GetBounds()
         clock.Text = f"t = {time:.4g}"
         middle = (ground[0] + ground[1]) / 2 if options.whole else (body[0] + body[1]) / 2

@@ -54,11 +54,12 @@ namespace crawler
             "<DataItem Format=\"HDF\" {} Dimensions=\"{}\">solution.h5:/{}</DataItem>\n", type, words(shape), name);
         if (layout.has_rows)
           shape.erase(shape.begin());
-        return fmt::format(
-          "<DataItem Format=\"Binary\" Endian=\"Little\" Seek=\"{}\" {} Dimensions=\"{}\">solution.h5</DataItem>\n",
-          file_.place(name, layout.has_rows ? row_ : 0),
-          type,
-          words(shape));
+        return fmt::format("<DataItem Format=\"Binary\" Endian=\"Little\" Seek=\"{}\" {} Dimensions=\"{}\"><!-- {} "
+                           "-->solution.h5</DataItem>\n",
+                           file_.place(name, layout.has_rows ? row_ : 0),
+                           type,
+                           words(shape),
+                           row_); // ParaView's XDMF Reader takes points for those that it has if the texts begin alike
       }
 
       std::string

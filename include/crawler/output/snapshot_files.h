@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/output/output_parameters.h>
 #include <crawler/output/scenery.h>
-
-#include <filesystem>
-#include <memory>
 
 namespace crawler
 {
@@ -23,12 +19,4 @@ namespace crawler
     virtual void
     end(const Scenery &scenery) = 0;
   };
-
-  /// Files in @p folder, for a body of the rest length @p length [length]. @p n_frames are expected.
-  std::unique_ptr<SnapshotFiles>
-  snapshot_files(SnapshotFormat format, const std::filesystem::path &folder, double length, std::size_t n_frames);
-
-  /// The file that one opens in ParaView.
-  std::string
-  animation_file(SnapshotFormat format);
 } // namespace crawler

@@ -2,10 +2,19 @@
 #pragma once
 
 #include <crawler/output/observer.h>
+#include <crawler/output/output_parameters.h>
 #include <crawler/output/snapshot_files.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
 
 namespace crawler
 {
+  /// The file of a format that one opens in ParaView.
+  std::string
+  animation_file(SnapshotFormat format);
+
   /**
    * Writes the snapshots of a run, or frames that it is given. The fields are sampled at q + 1 equidistant points of
    * each cell of degree q; the stretch is not averaged between cells. Rank 0 writes.
