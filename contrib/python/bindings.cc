@@ -185,10 +185,13 @@ namespace crawler
       if (run.kymograph)
       {
         const Kymograph &k    = *run.kymograph;
-        const std::size_t n_t = k.times().size(), n = Kymograph::n_points;
+        const std::size_t n_t = k.times().size();
         answer["times"]       = array_of(k.times(), {n_t});
-        answer["field_names"] = Kymograph::field_names();
-        answer["rows"]        = array_of(k.rows(), {n_t, Kymograph::field_names().size(), n});
+        py::dict fields;
+        for (const FieldName &field : field_names)
+          if (field.in_kymograph)
+            fields[field.name] = array_of(k.rows().*field.values, {n_t, Kymograph::n_points});
+        answer["fields"] = fields;
       }
       if (run.statistics)
       {

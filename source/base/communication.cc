@@ -59,6 +59,26 @@ namespace crawler
     return texts;
   }
 
+  std::vector<double>
+  gather(const std::vector<double> &numbers, MPI_Comm communicator)
+  {
+    if (size_of(communicator) == 1)
+      return numbers;
+    const bool first = rank_of(communicator) == 0;
+    const int own    = static_cast<int>(numbers.size());
+    std::vector<int> counts(first ? size_of(communicator) : 0), starts;
+    MPI_Gather(&own, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, communicator);
+    int total = 0;
+    for (const int one : counts)
+    {
+      starts.push_back(total);
+      total += one;
+    }
+    std::vector<double> all(static_cast<std::size_t>(total));
+    MPI_Gatherv(numbers.data(), own, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, 0, communicator);
+    return all;
+  }
+
   std::string
   on_first_rank(MPI_Comm communicator, const std::function<std::string()> &action)
   {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
-#include <crawler/base/hdf5_handle.h>
+#include <crawler/base/hdf5_writing.h>
 #include <crawler/base/row_file.h>
 
 #include <fmt/format.h>
@@ -15,16 +15,6 @@ namespace crawler
 {
   namespace
   {
-    template <typename Result>
-    Result
-    checked(const Result result, const std::filesystem::path &path, const char *what)
-    {
-      const bool writes = what == std::string("write") || what == std::string("create");
-      if (result < 0)
-        throw FileError(fmt::format("cannot {} \"{}\"{}", what, path.string(), writes ? " (is the disk full?)" : ""));
-      return result;
-    }
-
     /// What is read of a file must be there.
     template <typename Result>
     Result
@@ -64,35 +54,10 @@ namespace crawler
       return name;
     }
 
-    /// UTF-8, but labelled ASCII: Octave cannot read a group with texts that are labelled UTF-8, and to texts that are
-    /// in fact ASCII, all but names of files, it makes no difference.
-    hid_t
-    text_type(const std::size_t width)
-    {
-      const hid_t type = H5Tcopy(H5T_C_S1);
-      H5Tset_size(type, width);
-      H5Tset_strpad(type, H5T_STR_NULLPAD);
-      H5Tset_cset(type, H5T_CSET_ASCII);
-      return type;
-    }
-
     hid_t
     type_of(const RowFile::Column &column)
     {
-      return column.width == 0 ? H5Tcopy(H5T_IEEE_F64LE) : text_type(column.width);
-    }
-
-    void
-    write_attribute(const hid_t object,
-                    const std::string &name,
-                    const std::string &text,
-                    const std::filesystem::path &path)
-    {
-      const Hdf5Handle type(text_type(std::max<std::size_t>(text.size(), 1)), H5Tclose),
-        space(H5Screate(H5S_SCALAR), H5Sclose);
-      const Hdf5Handle attribute(H5Acreate(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-      const std::string value = text.empty() ? std::string(1, '\0') : text;
-      checked(attribute < 0 ? -1 : H5Awrite(attribute, type, value.data()), path, "write");
+      return column.width == 0 ? H5Tcopy(H5T_IEEE_F64LE) : hdf5::text_type(column.width);
     }
 
     std::string
@@ -126,7 +91,7 @@ namespace crawler
     {
       const hsize_t start = first, count = n;
       const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose), space(H5Dget_space(dataset), H5Sclose),
-        type(width == 0 ? H5Tcopy(H5T_NATIVE_DOUBLE) : text_type(width), H5Tclose);
+        type(width == 0 ? H5Tcopy(H5T_NATIVE_DOUBLE) : hdf5::text_type(width), H5Tclose);
       H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
       std::vector<char> data(n * (width == 0 ? sizeof(double) : width), '\0');
       for (unsigned long i = 0; i < n; ++i)
@@ -141,7 +106,7 @@ namespace crawler
             text.begin(), whole_characters(text, width), data.begin() + static_cast<std::ptrdiff_t>(i * width));
         }
       }
-      checked(H5Dwrite(dataset, type, memory, space, transfer, data.data()), path, "write");
+      hdf5::checked(H5Dwrite(dataset, type, memory, space, transfer, data.data()), path, "write");
     }
 
     std::size_t
@@ -182,31 +147,24 @@ namespace crawler
                   const Known &known)
   {
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
-    // HDF5 cannot close a file that it could not write (it crashes at the end of the process), so first see if it can.
     double bytes = 4e3 * static_cast<double>(columns.size());
     for (const Column &column : columns)
       bytes += static_cast<double>(n_rows) * (column.width == 0 ? sizeof(double) : column.width);
     for (const auto &[name, text] : attributes)
       bytes += static_cast<double>(text.size());
-    std::error_code no_space;
-    const auto left = std::filesystem::space(std::filesystem::absolute(path).parent_path(), no_space).available;
-    if (!no_space && static_cast<double>(left) < bytes)
-      throw FileError(fmt::format("\"{}\" needs {:.3g} MB, but only {:.3g} MB are left: the disk is full",
-                                  path.string(),
-                                  bytes / 1e6,
-                                  static_cast<double>(left) / 1e6));
+    hdf5::require_space(path, bytes);
     const std::filesystem::path temporary = path.string() + ".part";
     {
       const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
       H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18); // attributes may be larger than 64 KB
-      const Hdf5Handle file(checked(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), path, "create"),
-                            H5Fclose);
+      const Hdf5Handle file(
+        hdf5::checked(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), path, "create"), H5Fclose);
       const Hdf5Handle order(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
       H5Pset_link_creation_order(order, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
       const Hdf5Handle group(H5Gcreate(file, group_name.c_str(), H5P_DEFAULT, order, H5P_DEFAULT), H5Gclose);
-      checked(static_cast<hid_t>(group), path, "write");
+      hdf5::checked(static_cast<hid_t>(group), path, "write");
       for (const auto &[name, text] : attributes)
-        write_attribute(group, name, text, path);
+        hdf5::write_attribute(group, name, text, path);
       const hsize_t size = n_rows;
       const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
       for (std::size_t number = 0; number < columns.size(); ++number)
@@ -220,13 +178,14 @@ namespace crawler
         if (column.width == 0)
           H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &nan);
         const Hdf5Handle dataset(
-          checked(H5Dcreate(group, dataset_name(column.name).c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-                  path,
-                  "write"),
+          hdf5::checked(
+            H5Dcreate(group, dataset_name(column.name).c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+            path,
+            "write"),
           H5Dclose);
-        write_attribute(dataset, "name", column.name, path);
-        write_attribute(dataset, "unit", column.unit, path);
-        write_attribute(dataset, "description", column.description, path);
+        hdf5::write_attribute(dataset, "name", column.name, path);
+        hdf5::write_attribute(dataset, "unit", column.unit, path);
+        hdf5::write_attribute(dataset, "description", column.description, path);
         constexpr unsigned long together = 1 << 16;
         for (unsigned long first = 0; is_known && first < n_rows; first += together)
           write_values(
@@ -238,7 +197,7 @@ namespace crawler
             H5P_DEFAULT,
             path);
       }
-      checked(H5Fflush(file, H5F_SCOPE_GLOBAL), path, "write");
+      hdf5::checked(H5Fflush(file, H5F_SCOPE_GLOBAL), path, "write");
     }
     std::error_code error;
     std::filesystem::rename(temporary, path, error);
@@ -290,8 +249,8 @@ namespace crawler
   {
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
-    handles_.reset(new Handles{{checked(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), path, "open"), H5Fclose},
+    hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
+    handles_.reset(new Handles{{hdf5::checked(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), path, "open"), H5Fclose},
                                {H5Pcreate(H5P_DATASET_XFER), H5Pclose},
                                {}});
     H5Pset_dxpl_mpio(handles_->transfer, H5FD_MPIO_INDEPENDENT);
@@ -299,7 +258,7 @@ namespace crawler
     {
       const std::string name = "/" + group + "/" + dataset_name(column.name);
       handles_->datasets.push_back(std::make_unique<Hdf5Handle>(
-        checked(H5Dopen(handles_->file, name.c_str(), H5P_DEFAULT), path, "open"), H5Dclose));
+        hdf5::checked(H5Dopen(handles_->file, name.c_str(), H5P_DEFAULT), path, "open"), H5Dclose));
     }
   }
 
@@ -333,7 +292,7 @@ namespace crawler
   {
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
+    hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
     handles_.reset(new Handles{{opened(path, access), H5Fclose}});
     const hid_t group =
       found(H5Gopen(handles_->file, group_name.c_str(), H5P_DEFAULT), path, "has no group \"" + group_name + "\"");
@@ -386,7 +345,7 @@ namespace crawler
     const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose), space(H5Dget_space(dataset), H5Sclose);
     H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
     const auto fill = [&](const hid_t memory_type, void *data) {
-      checked(H5Dread(dataset, memory_type, memory, space, H5P_DEFAULT, data), path_, "read");
+      hdf5::checked(H5Dread(dataset, memory_type, memory, space, H5P_DEFAULT, data), path_, "read");
     };
     if (H5Tget_class(type) == H5T_STRING)
     {

@@ -12,6 +12,9 @@ namespace crawler
       .means("Number of snapshots for ParaView at equal time intervals until the end time, besides the initial state. "
              "0: none, and no kymograph. Automatic: 64 for each stride, at least 64 and at most 640; 256 if the "
              "stride is not known.");
+    declarations.choice("Snapshot format", snapshot_format)
+      .means("Files of the snapshots. vtu: solution.pvd and files for each snapshot in solution/. xdmf: solution.xdmf "
+             "and solution.h5 with all snapshots, for long runs and for reading by Python, MATLAB or Octave.");
     declarations.flag("Kymograph", kymograph)
       .means("Whether to write the fields over s and t as one file, besides snapshots. It has times of its own: 64 for "
              "each stride and at least 128, of the last 20 strides if there are more, and each jump of the active "

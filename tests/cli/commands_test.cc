@@ -53,7 +53,7 @@ namespace
     return tree;
   }
 
-  /// The times that solution.pvd lists; every file that it lists must be well-formed VTK.
+  /// The times that solution.pvd lists for the body; every file that it lists must be well-formed VTK.
   std::vector<double>
   output_times_of(const fs::path &folder)
   {
@@ -62,7 +62,8 @@ namespace
     for (const auto &[name, node] : tree.get_child("VTKFile.Collection"))
       if (name == "DataSet")
       {
-        times.push_back(node.get<double>("<xmlattr>.timestep"));
+        if (node.get<std::string>("<xmlattr>.name") == "body")
+          times.push_back(node.get<double>("<xmlattr>.timestep"));
         const auto file = node.get<std::string>("<xmlattr>.file");
         EXPECT_EQ(xml(folder / file).get<std::string>("VTKFile.<xmlattr>.type"), "UnstructuredGrid") << file;
       }
@@ -77,7 +78,7 @@ namespace
     for (std::size_t i = 0; i < times.size(); ++i)
       EXPECT_NEAR(times[i], wanted[i], 1e-11) << i;
     const std::size_t files = std::distance(fs::directory_iterator(folder / "solution"), fs::directory_iterator());
-    EXPECT_EQ(files, wanted.size()); // and nothing half-written
+    EXPECT_EQ(files, 3 * wanted.size() + 2); // body, grip and line; ground and scale; and nothing half-written
   }
 
   /// Rows of statistics.csv; every row is complete and every number finite.
@@ -424,6 +425,12 @@ TEST_F(Commands, OverwriteReplacesOwnFilesOnly)
   EXPECT_EQ(output_times_of(results), (std::vector<double>{0., 1.}));
   EXPECT_FALSE(fs::exists(results / "solution" / "000002.vtu"));
   EXPECT_FALSE(fs::exists(results / "statistics.csv"));
+  ASSERT_EQ(run({"--quiet", "--overwrite", "--set", "Output/Snapshot format=xdmf"}).exit_code, 0);
+  for (const char *name : {"solution.pvd", "line.pvd", "solution/000000.vtu"})
+    EXPECT_FALSE(fs::exists(results / name)) << name;
+  ASSERT_EQ(run({"--quiet", "--overwrite"}).exit_code, 0);
+  for (const char *name : {"solution.xdmf", "line.xdmf", "solution.h5"})
+    EXPECT_FALSE(fs::exists(results / name)) << name;
 }
 
 TEST_F(Commands, WithoutLedgerTheWorksAreUnknown)

@@ -91,8 +91,7 @@ def run(scene, *, set=None, fields=True, output=None, overwrite=False, check=Fal
     answer = _compiled().run(source, times)
     result = _result(answer)
     if "times" in answer:
-        result.fields = fields_of(answer["times"], result.parameters["Body/Length"],
-                                  dict(zip(answer["field_names"], np.moveaxis(answer["rows"], 1, 0))))
+        result.fields = fields_of(answer["times"], result.parameters["Body/Length"], answer["fields"])
     if "statistics" in answer:
         result.statistics = table_of({re.sub(r" \[.*", "", name): column for name, column in
                                       zip(answer["statistics_names"], answer["statistics"].T)})

@@ -23,6 +23,10 @@ namespace crawler
   std::vector<std::string>
   gather(const std::string &text, MPI_Comm communicator);
 
+  /// The numbers of all ranks, one after another in their order, on rank 0; nothing on the others (collective).
+  std::vector<double>
+  gather(const std::vector<double> &numbers, MPI_Comm communicator);
+
   /**
    * Runs @p action on rank 0 only and returns its text on all ranks. An InputError or FileError that it throws is
    * thrown on all ranks, so that the failure of one cannot hang the others.

@@ -12,6 +12,23 @@ namespace crawler
     std::vector<double> position, displacement, stretch, velocity, active_stress, elastic_stress, friction_force;
   };
 
+  /// What files call a field, and its unit.
+  struct FieldName
+  {
+    const char *name, *unit;
+    std::vector<double> Fields::*values;
+    bool in_kymograph;
+  };
+  constexpr FieldName field_names[] = {
+    {"stretch", "1", &Fields::stretch, true},
+    {"position", "length", &Fields::position, false},
+    {"displacement", "length", &Fields::displacement, true},
+    {"velocity", "length/time", &Fields::velocity, true},
+    {"active_stress", "force", &Fields::active_stress, true},
+    {"elastic_stress", "force", &Fields::elastic_stress, false},
+    {"friction_force", "force/length", &Fields::friction_force, true},
+  };
+
   /// Evaluates the fields at points inside this rank's cells.
   class FieldSampler
   {

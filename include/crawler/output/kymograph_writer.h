@@ -5,7 +5,6 @@
 #include <crawler/output/observer.h>
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 namespace crawler
@@ -23,16 +22,13 @@ namespace crawler
     void
     add(double time, const Fields &fields);
 
-    static const std::vector<std::string> &
-    field_names();
-
     const std::vector<double> &
     times() const
     {
       return times_;
     }
-    /// [time][field][point], on rank 0.
-    const std::vector<double> &
+    /// [time][point] of those fields of field_names that are in_kymograph, on rank 0.
+    const Fields &
     rows() const
     {
       return rows_;
@@ -41,20 +37,22 @@ namespace crawler
   private:
     std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
     unsigned int mesh_number_ = 0;
-    std::vector<double> times_, rows_;
+    std::vector<double> times_;
+    Fields rows_;
   };
 
   /// Writes them as one structured grid (kymograph.vts: x is s/L, y is t/T) when the run ends.
   class KymographWriter : public Kymograph
   {
   public:
-    KymographWriter(double end_time, const std::filesystem::path &folder);
+    /// @p length L [length].
+    KymographWriter(double length, double end_time, const std::filesystem::path &folder);
 
     void
     end() override;
 
   private:
-    const double end_time_;
+    const double length_, end_time_;
     const std::filesystem::path folder_;
   };
 } // namespace crawler

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/words.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,13 +11,26 @@ namespace crawler
 {
   class Declarations;
 
+  /// Files of the snapshots: one for each (VTK), or one for all (XDMF and HDF5).
+  enum class SnapshotFormat
+  {
+    vtu,
+    xdmf
+  };
+  template <>
+  struct Words<SnapshotFormat>
+  {
+    static constexpr const char *list[] = {"vtu", "xdmf"};
+  };
+
   /// Section "Output": what is computed and written besides the displacement.
   struct OutputParameters
   {
     std::optional<unsigned int> n_snapshots;
-    bool kymograph      = true;
-    bool statistics     = true;
-    bool energy_balance = true;
+    SnapshotFormat snapshot_format = SnapshotFormat::vtu;
+    bool kymograph                 = true;
+    bool statistics                = true;
+    bool energy_balance            = true;
     std::optional<double> energy_balance_tolerance;
     std::vector<double> active_stress_table; ///< numbers of samples over s and t; empty: no table
     std::string sensitivities = "";          ///< entries, or "all" (studies/core/sensitivity_entries.h)

@@ -106,7 +106,14 @@ namespace crawler
   remove_fields(const fs::path &folder)
   {
     std::error_code error;
-    for (const char *name : {"statistics.csv", "solution.pvd", "kymograph.vts"})
+    for (const char *name : {"statistics.csv",
+                             "solution.pvd",
+                             "line.pvd",
+                             "solution.xdmf",
+                             "line.xdmf",
+                             "solution.h5",
+                             "solution.h5.part",
+                             "kymograph.vts"})
       fs::remove(folder / name, error);
     if (fs::is_directory(folder / "solution", error))
       for (const auto &file : fs::directory_iterator(folder / "solution"))

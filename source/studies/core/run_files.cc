@@ -40,12 +40,13 @@ namespace crawler
   begin_files(Log &log, const Input &input, const std::filesystem::path &folder)
   {
     prepare(folder);
-    if (input.parameters.output.has_snapshots())
+    const OutputParameters &output = input.parameters.output;
+    if (output.has_snapshots() && output.snapshot_format == SnapshotFormat::vtu)
       std::filesystem::create_directories(folder / "solution");
     write_file(folder / "original.prm", input.file.text());
     write_file(folder / "parameters.prm", input.effective);
     log.open(folder / "log.txt");
-    const std::vector<double> &size = input.parameters.output.active_stress_table;
+    const std::vector<double> &size = output.active_stress_table;
     if (size.empty())
       return;
     const std::string problem = write_active_stress_table(folder / "active_stress.csv",
@@ -59,7 +60,10 @@ namespace crawler
   }
 
   ExitCode
-  report_end(Log &log, const SimulationResult &result, const std::filesystem::path &folder, const bool has_pictures)
+  report_end(Log &log,
+             const SimulationResult &result,
+             const std::filesystem::path &folder,
+             const std::string &animation)
   {
     const TimeOutcome &outcome = result.time;
     for (const std::string &line : summary_lines(result))
@@ -68,7 +72,7 @@ namespace crawler
       log.warn(outcome.reason + ": " + outcome.message);
     log.line(fmt::format("Results are in {}/{}.",
                          folder.string(),
-                         has_pictures ? fmt::format("; open {} in ParaView", (folder / "solution.pvd").string()) : ""));
+                         animation.empty() ? "" : fmt::format("; open {} in ParaView", (folder / animation).string())));
     if (outcome.status == Status::finished)
       return ExitCode::finished;
     if (outcome.status == Status::inverted)

@@ -8,8 +8,8 @@
 #include <crawler/base/stop_signal.h>
 #include <crawler/equation/crawler_equation.h>
 #include <crawler/output/kymograph_writer.h>
+#include <crawler/output/snapshot_writer.h>
 #include <crawler/output/statistics_writer.h>
-#include <crawler/output/vtu_writer.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
@@ -186,17 +186,19 @@ namespace crawler
       log.line("PETSc options, stronger than these settings: " + options.petsc_options);
 
     const bool writes           = shared || first;
+    const double length         = input.scene.body.length;
+    const PictureTimes pictures = picture_times(output, input.scene);
     const auto create_observers = [&]() {
       std::vector<std::unique_ptr<Observer>> observers;
       if (writes && output.has_snapshots())
       {
-        observers.push_back(std::make_unique<VtuWriter>(folder));
+        observers.push_back(
+          std::make_unique<SnapshotWriter>(output.snapshot_format, folder, length, pictures.n_snapshots() + 1));
         if (output.kymograph)
-          observers.push_back(std::make_unique<KymographWriter>(input.scene.end_time, folder));
+          observers.push_back(std::make_unique<KymographWriter>(length, input.scene.end_time, folder));
       }
       if (writes && output.statistics)
-        observers.push_back(
-          std::make_unique<StatisticsWriter>(input.scene.body.length, first, folder, output.energy_balance));
+        observers.push_back(std::make_unique<StatisticsWriter>(length, first, folder, output.energy_balance));
       if (writes && !options.quiet)
         observers.push_back(std::make_unique<Progress>(log, input.scene));
       return observers;
@@ -207,7 +209,6 @@ namespace crawler
     const Simulation::Options run_options = {.energy_balance = output.energy_balance,
                                              .cycles = cycle_wish(parameters, input.scene, output.has_snapshots()),
                                              .gait   = Simulation::GaitWish::any};
-    const PictureTimes pictures           = picture_times(output, input.scene);
     const auto simulate                   = [&](const NumericsChoice &choice) {
       if (choice.is_family)
         build(choice.numerics);
@@ -272,7 +273,8 @@ namespace crawler
       return "";
     });
     // The first rank speaks for all: a signal may have stopped some only.
-    int code = static_cast<int>(report_end(log, result, folder, output.has_snapshots()));
+    int code = static_cast<int>(
+      report_end(log, result, folder, output.has_snapshots() ? animation_file(output.snapshot_format) : ""));
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
     return static_cast<ExitCode>(code);
   }
@@ -325,19 +327,25 @@ namespace crawler
                    const StopSignal &signal)
     {
       const OutputParameters &output = input.parameters.output;
-      VtuWriter pictures(folder);
-      KymographWriter kymograph(input.scene.end_time, folder);
+      const double length            = input.scene.body.length;
+      const PictureTimes times       = times_without_mesh(input);
+      std::optional<SnapshotWriter> snapshots;
+      if (output.has_snapshots())
+        snapshots.emplace(output.snapshot_format, folder, length, times.n_snapshots() + 1);
+      KymographWriter kymograph(length, input.scene.end_time, folder);
       std::optional<StatisticsWriter> statistics;
       if (output.statistics)
-        statistics.emplace(input.scene.body.length, true, folder, output.energy_balance);
+        statistics.emplace(length, true, folder, output.energy_balance);
       const bool whole = show_pictures(level,
-                                       times_without_mesh(input),
-                                       {output.has_snapshots() ? &pictures : nullptr,
+                                       times,
+                                       {snapshots ? &*snapshots : nullptr,
                                         output.has_snapshots() ? &kymograph : nullptr,
                                         statistics ? &*statistics : nullptr},
                                        [&]() { return !signal.arrived_anywhere(MPI_COMM_SELF); });
       if (statistics)
         statistics->end();
+      if (snapshots)
+        snapshots->end();
       if (output.has_snapshots() && output.kymograph)
         kymograph.end();
       return whole;
@@ -367,6 +375,9 @@ namespace crawler
     std::vector<double> natural;
     for (std::size_t i = 0; i < times.all().size(); ++i)
       natural.push_back(times.natural(i));
+    std::vector<double> places; // [length]
+    for (const double point : points)
+      places.push_back(point * units.length);
     unsigned int number = 0, n_rows = 0;
     bool stopped  = false;
     double before = 0.;
@@ -382,8 +393,7 @@ namespace crawler
       const Step step{time, time - before, n_rows++, true, 0, 0};
       before = time;
       if (viewers.snapshots != nullptr)
-        viewers.snapshots->write(
-          time, step.number, {{0., units.length}}, static_cast<unsigned int>(points.size()), fields, MPI_COMM_SELF);
+        viewers.snapshots->write({time, step.number, static_cast<unsigned int>(points.size()), places, fields});
       const auto stretch_at = [&](const StrainExtreme &e) { return StretchAt{1. + e.strain, e.s * units.length}; };
       if (viewers.statistics != nullptr)
         viewers.statistics->write({step,
@@ -450,7 +460,8 @@ namespace crawler
         result.time.message = "stopped by a signal";
       }
       write_file(folder / "summary.json", summary_json(result, size_of(communicator), options.command_line));
-      code = static_cast<int>(report_end(log, result, folder, output.has_snapshots() && result.error));
+      code = static_cast<int>(report_end(
+        log, result, folder, output.has_snapshots() && result.error ? animation_file(output.snapshot_format) : ""));
       return "";
     });
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);

@@ -20,7 +20,11 @@ namespace crawler
   void
   begin_files(Log &log, const Input &input, const std::filesystem::path &folder);
 
-  /// Says how a run ended, and where its results are. What it returns to the shell.
+  /// Says how a run ended, where its results are, and that @p animation among them opens in ParaView (empty: there is
+  /// none). What it returns to the shell.
   ExitCode
-  report_end(Log &log, const SimulationResult &result, const std::filesystem::path &folder, bool has_pictures);
+  report_end(Log &log,
+             const SimulationResult &result,
+             const std::filesystem::path &folder,
+             const std::string &animation);
 } // namespace crawler

@@ -30,14 +30,14 @@ namespace crawler
   class Kymograph;
   class Log;
   class ReducedModel;
+  class SnapshotWriter;
   class Statistics;
   class StopSignal;
-  class VtuWriter;
 
   /// Who sees the states of a level that needs no mesh; null: nobody.
   struct PictureViewers
   {
-    VtuWriter *snapshots;
+    SnapshotWriter *snapshots;
     Kymograph *kymograph;
     Statistics *statistics;
   };

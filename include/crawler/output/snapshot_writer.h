@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/output/observer.h>
+#include <crawler/output/output_parameters.h>
+#include <crawler/output/snapshot_files.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace crawler
+{
+  /// The file of a format that one opens in ParaView.
+  std::string
+  animation_file(SnapshotFormat format);
+
+  /**
+   * Writes the snapshots of a run, or frames that it is given. The fields are sampled at q + 1 equidistant points of
+   * each cell of degree q; the stretch is not averaged between cells. Rank 0 writes.
+   */
+  class SnapshotWriter : public Observer
+  {
+  public:
+    /// @p length L [length]; @p n_frames are expected.
+    SnapshotWriter(SnapshotFormat format, const std::filesystem::path &folder, double length, std::size_t n_frames);
+
+    void
+    observe(const Snapshot &snapshot) override;
+    void
+    end() override;
+
+    /// Writes a frame (this rank alone). Throws FileError.
+    void
+    write(const Frame &frame);
+
+  private:
+    std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
+    unsigned int mesh_number_ = 0;
+    MPI_Comm communicator_    = MPI_COMM_SELF; ///< of the ranks that share the cells
+    Scenery scenery_;
+    std::unique_ptr<SnapshotFiles> files_;
+  };
+} // namespace crawler

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/growing_text.h>
+#include <crawler/output/snapshot_files.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  class SnapshotHdf5;
+
+  /**
+   * All frames in solution.h5, described by solution.xdmf (body, grip, ground and scale) and line.xdmf (the body as a
+   * line with s on the x axis). The datasets have a row for each frame and as many columns as the largest mesh has
+   * points; what a frame does not need is NaN, and n_points says how many it has. For more frames or points than there
+   * is room for a larger file takes its place.
+   */
+  class XdmfFiles : public SnapshotFiles
+  {
+  public:
+    XdmfFiles(const std::filesystem::path &folder, double length, std::size_t n_frames);
+    ~XdmfFiles() override;
+
+    void
+    add(const Frame &frame, const Scenery &scenery, bool scenery_changed) override;
+    void
+    end(const Scenery &scenery) override;
+
+  private:
+    struct FrameSize
+    {
+      double time;
+      std::size_t n_points;
+    };
+
+    /// Makes a file of this size with all frames so far.
+    void
+    resize(std::size_t n_frames, std::size_t n_points);
+    void
+    write_scenery(const Scenery &scenery) const;
+
+    /// The frame @p row as a grid of XDMF.
+    std::string
+    body_grid(std::size_t row) const;
+    std::string
+    line_grid(std::size_t row) const;
+    void
+    rewrite_descriptions();
+
+    const std::filesystem::path path_; ///< of the HDF5 file
+    const double length_;
+    std::size_t most_frames_, most_points_ = 0;
+    std::unique_ptr<SnapshotHdf5> file_;
+    std::vector<FrameSize> frames_;
+    GrowingText body_, line_; ///< the descriptions
+  };
+} // namespace crawler

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+#include <crawler/base/growing_text.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace crawler
+{
+  GrowingText::GrowingText(const std::filesystem::path &path, const std::string &begin, const std::string &end)
+    : path_(path)
+    , begin_(begin)
+    , end_(end)
+  {
+  }
+
+  void
+  GrowingText::add(const std::string &text)
+  {
+    if (!out_.is_open())
+      return restart(text);
+    // One small write() takes the place of the end. To replace the file each time is quadratic, and ext4 waits for the
+    // disk whenever a file replaces another one.
+    out_.seekp(last_lines_);
+    out_ << text + end_ << std::flush;
+    if (!out_)
+      throw FileError("cannot write \"" + path_.string() + "\": " + std::strerror(errno));
+    last_lines_ += static_cast<std::streamoff>(text.size());
+  }
+
+  void
+  GrowingText::restart(const std::string &text)
+  {
+    out_.close();
+    write_file(path_, begin_ + text + end_);
+    out_.open(path_, std::ios::binary | std::ios::in | std::ios::out); // "in" keeps what is there
+    last_lines_ = static_cast<std::streamoff>(begin_.size() + text.size());
+  }
+} // namespace crawler

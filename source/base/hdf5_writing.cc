@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/hdf5_writing.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace crawler::hdf5
+{
+  hid_t
+  checked(const hid_t result, const std::filesystem::path &path, const std::string &what)
+  {
+    const bool writes = what == "write" || what == "create";
+    if (result < 0)
+      throw FileError(fmt::format("cannot {} \"{}\"{}", what, path.string(), writes ? " (is the disk full?)" : ""));
+    return result;
+  }
+
+  void
+  require_space(const std::filesystem::path &path, const double bytes)
+  {
+    std::error_code no_space;
+    const auto left = std::filesystem::space(std::filesystem::absolute(path).parent_path(), no_space).available;
+    if (!no_space && static_cast<double>(left) < bytes)
+      throw FileError(fmt::format("\"{}\" needs {:.3g} MB, but only {:.3g} MB are left: the disk is full",
+                                  path.string(),
+                                  bytes / 1e6,
+                                  static_cast<double>(left) / 1e6));
+  }
+
+  hid_t
+  text_type(const std::size_t width)
+  {
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, width);
+    H5Tset_strpad(type, H5T_STR_NULLPAD);
+    H5Tset_cset(type, H5T_CSET_ASCII);
+    return type;
+  }
+
+  void
+  write_attribute(const hid_t object,
+                  const std::string &name,
+                  const std::string &text,
+                  const std::filesystem::path &path)
+  {
+    const Hdf5Handle type(text_type(std::max<std::size_t>(text.size(), 1)), H5Tclose),
+      space(H5Screate(H5S_SCALAR), H5Sclose);
+    const Hdf5Handle attribute(H5Acreate(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    const std::string value = text.empty() ? std::string(1, '\0') : text;
+    checked(attribute < 0 ? -1 : H5Awrite(attribute, type, value.data()), path, "write");
+  }
+} // namespace crawler::hdf5

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
+#include <crawler/output/snapshot_writer.h>
+#include <crawler/output/vtu_files.h>
+#include <crawler/output/xdmf_files.h>
+
+namespace crawler
+{
+  namespace
+  {
+    std::vector<FieldSampler::Point>
+    line_points(const Discretization &discretization)
+    {
+      const unsigned int q = discretization.element().degree;
+      std::vector<FieldSampler::Point> points;
+      for (unsigned int c = 0; c < discretization.n_local_cells(); ++c)
+        for (unsigned int i = 0; i <= q; ++i)
+          points.push_back({c, static_cast<double>(i) / q});
+      return points;
+    }
+
+    std::unique_ptr<SnapshotFiles>
+    new_files(const SnapshotFormat format,
+              const std::filesystem::path &folder,
+              const double length,
+              const std::size_t n_frames)
+    {
+      if (format == SnapshotFormat::xdmf)
+        return std::make_unique<XdmfFiles>(folder, length, n_frames);
+      return std::make_unique<VtuFiles>(folder, length);
+    }
+  } // namespace
+
+  std::string
+  animation_file(const SnapshotFormat format)
+  {
+    return format == SnapshotFormat::xdmf ? "solution.xdmf" : "solution.pvd";
+  }
+
+  SnapshotWriter::SnapshotWriter(const SnapshotFormat format,
+                                 const std::filesystem::path &folder,
+                                 const double length,
+                                 const std::size_t n_frames)
+    : scenery_(length)
+    , files_(new_files(format, folder, length, n_frames))
+  {
+  }
+
+  void
+  SnapshotWriter::observe(const Snapshot &snapshot)
+  {
+    if (!snapshot.pictures.is_snapshot)
+      return;
+    const Discretization &d = snapshot.assembler.discretization();
+    communicator_           = d.communicator();
+    if (!sampler_ || mesh_number_ != snapshot.mesh_number)
+      sampler_ = std::make_unique<FieldSampler>(snapshot.assembler, snapshot.units, line_points(d));
+    mesh_number_      = snapshot.mesh_number;
+    const Fields &own = sampler_->sample(snapshot.computed_time, snapshot.y, snapshot.v);
+    Frame frame{
+      snapshot.step.time, snapshot.step.number, d.element().n, gather(sampler_->coordinates(), communicator_), {}};
+    for (const FieldName &field : field_names)
+      frame.fields.*field.values = gather(own.*field.values, communicator_);
+    on_first_rank(communicator_, [&]() {
+      write(frame);
+      return "";
+    });
+  }
+
+  void
+  SnapshotWriter::end()
+  {
+    on_first_rank(communicator_, [&]() {
+      scenery_.finish();
+      files_->end(scenery_);
+      return "";
+    });
+  }
+
+  void
+  SnapshotWriter::write(const Frame &frame)
+  {
+    const bool changed = scenery_.include(frame);
+    files_->add(frame, scenery_, changed);
+  }
+} // namespace crawler

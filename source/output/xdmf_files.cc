@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/output/snapshot_hdf5.h>
+#include <crawler/output/xdmf_files.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace crawler
+{
+  namespace
+  {
+    const std::string body = "body/", line = "line/", grip = "grip/", ground = "ground/", scale = "scale/";
+
+    std::vector<double>
+    numbers_to(const std::size_t n)
+    {
+      std::vector<double> numbers(n);
+      std::iota(numbers.begin(), numbers.end(), 0.);
+      return numbers;
+    }
+
+    /// A text of numbers for XDMF.
+    std::string
+    words(const SnapshotHdf5::Shape &numbers)
+    {
+      return fmt::format("{}", fmt::join(numbers, " "));
+    }
+
+    /// Describes datasets, or their part for the frame of a row. That part is named by its place in the file, as binary
+    /// numbers: of ParaView's three readers one alone knows parts of HDF5 datasets.
+    class DataItems
+    {
+    public:
+      DataItems(const SnapshotHdf5 &file, const std::size_t row, const std::size_t n)
+        : file_(file)
+        , row_(row)
+        , n_(n)
+      {
+      }
+
+      std::string
+      item(const std::string &name) const
+      {
+        const SnapshotHdf5::Layout &layout = SnapshotHdf5::layouts().at(name);
+        auto shape                         = SnapshotHdf5::shape(layout, 1, n_);
+        const char *type =
+          layout.is_whole ? "NumberType=\"Int\" Precision=\"4\"" : "NumberType=\"Float\" Precision=\"8\"";
+        if (!layout.has_rows && name != line + "cells")
+          return fmt::format(
+            "<DataItem Format=\"HDF\" {} Dimensions=\"{}\">solution.h5:/{}</DataItem>\n", type, words(shape), name);
+        if (layout.has_rows)
+          shape.erase(shape.begin());
+        return fmt::format("<DataItem Format=\"Binary\" Endian=\"Little\" Seek=\"{}\" {} Dimensions=\"{}\"><!-- {} "
+                           "-->solution.h5</DataItem>\n",
+                           file_.place(name, layout.has_rows ? row_ : 0),
+                           type,
+                           words(shape),
+                           row_); // ParaView's XDMF Reader takes points for those that it has if the texts begin alike
+      }
+
+      std::string
+      points(const std::string &group) const
+      {
+        return "<Geometry GeometryType=\"XYZ\">\n" + item(group + "points") + "</Geometry>\n";
+      }
+
+      std::string
+      field(const std::string &dataset, const std::string &name) const
+      {
+        return fmt::format(
+          "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">\n{}</Attribute>\n", name, item(dataset));
+      }
+
+      /// A grid of cells that the dataset "cells" of the group lists.
+      std::string
+      cells(const std::string &group, const char *type, const std::vector<std::string> &fields) const
+      {
+        const auto shape = SnapshotHdf5::layouts().at(group + "cells").shape;
+        std::string text = fmt::format("<Grid Name=\"{}\">\n<Topology TopologyType=\"{}\" NumberOfElements=\"{}\">\n",
+                                       group.substr(0, group.size() - 1),
+                                       type,
+                                       shape[0]) +
+                           item(group + "cells") + "</Topology>\n" + points(group);
+        for (const std::string &name : fields)
+          text += field(group + name, name);
+        return text + "</Grid>\n";
+      }
+
+    private:
+      const SnapshotHdf5 &file_;
+      const std::size_t row_, n_;
+    };
+
+    std::vector<std::string>
+    all_fields()
+    {
+      std::vector<std::string> names;
+      for (const FieldName &field : field_names)
+        names.emplace_back(field.name);
+      return names;
+    }
+
+    constexpr const char *description_begin =
+                           "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n<Domain>\n"
+                           "<Grid Name=\"crawler\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
+                         *description_end = "</Grid>\n</Domain>\n</Xdmf>\n";
+  } // namespace
+
+  XdmfFiles::XdmfFiles(const std::filesystem::path &folder, const double length, const std::size_t n_frames)
+    : path_(folder / "solution.h5")
+    , length_(length)
+    , most_frames_(n_frames)
+    , body_(folder / "solution.xdmf", description_begin, description_end)
+    , line_(folder / "line.xdmf", description_begin, description_end)
+  {
+  }
+
+  XdmfFiles::~XdmfFiles() = default;
+
+  void
+  XdmfFiles::add(const Frame &frame, const Scenery &scenery, const bool scenery_changed)
+  {
+    const std::size_t row = frames_.size(), n = frame.s.size();
+    const bool grows = !file_ || row == most_frames_ || n > most_points_;
+    if (grows)
+      resize(row == most_frames_ ? 2 * row : most_frames_, !file_ ? n : n > most_points_ ? n + n / 2 : most_points_);
+    if (scenery_changed || grows)
+      write_scenery(scenery);
+    const auto write = [&](const std::string &name, const std::vector<double> &values) {
+      file_->write(name, values, row, 1, n);
+    };
+    write(body + "points", ribbon(frame, length_));
+    write(body + "s", on_both_edges(frame.s));
+    write(line + "s", frame.s);
+    for (const FieldName &field : field_names)
+    {
+      write(body + field.name, on_both_edges(frame.fields.*field.values));
+      write(line + field.name, frame.fields.*field.values);
+    }
+    std::vector<double> line_points(3 * n, 0.), forces;
+    for (std::size_t i = 0; i < n; ++i)
+      line_points[3 * i] = frame.s[i];
+    write(line + "points", line_points);
+    const std::vector<Grip> all = grips(frame, length_);
+    for (const Grip &one : all)
+      forces.insert(forces.end(), 3, one.friction_force);
+    write(grip + "points", scenery.arrows(all));
+    write(grip + "friction_force", forces);
+    write("step", {static_cast<double>(frame.step)});
+    write("n_points", {static_cast<double>(n)});
+    write("time", {frame.time}); // last: whoever finds it finds the rest
+    frames_.push_back({frame.time, n});
+    if (grows)
+      rewrite_descriptions();
+    else
+    {
+      body_.add(body_grid(row));
+      line_.add(line_grid(row));
+    }
+  }
+
+  void
+  XdmfFiles::end(const Scenery &scenery)
+  {
+    if (frames_.empty())
+      return;
+    std::size_t largest = 0;
+    for (const FrameSize &frame : frames_)
+      largest = std::max(largest, frame.n_points);
+    if (frames_.size() != most_frames_ || largest != most_points_)
+      resize(frames_.size(), largest);
+    write_scenery(scenery);
+    rewrite_descriptions();
+    file_.reset();
+  }
+
+  void
+  XdmfFiles::resize(const std::size_t n_frames, const std::size_t n)
+  {
+    const std::filesystem::path part = path_.string() + ".part";
+    SnapshotHdf5::create(part, n_frames, n);
+    const std::size_t common = std::min(n, most_points_);
+    {
+      const SnapshotHdf5 larger(part);
+      constexpr std::size_t together = 64;
+      for (std::size_t row = 0; row < frames_.size(); row += together)
+        for (const auto &[name, layout] : SnapshotHdf5::layouts())
+          if (layout.has_rows)
+          {
+            const std::size_t n_rows = std::min(together, frames_.size() - row);
+            larger.write(name, file_->read(name, row, n_rows, common), row, n_rows, common);
+          }
+      const std::size_t strips = Scenery::most_ground;
+      larger.write(line + "cells", numbers_to(n), 0, 1, n);
+      larger.write(grip + "cells", numbers_to(3 * n_grips));
+      larger.write(ground + "cells", numbers_to(4 * strips));
+      larger.write(scale + "cells", numbers_to(4));
+    }
+    file_.reset();
+    std::error_code error;
+    std::filesystem::rename(part, path_, error);
+    if (error)
+      throw FileError("cannot write \"" + path_.string() + "\": " + error.message());
+    file_        = std::make_unique<SnapshotHdf5>(path_);
+    most_frames_ = n_frames;
+    most_points_ = n;
+  }
+
+  void
+  XdmfFiles::write_scenery(const Scenery &scenery) const
+  {
+    Corners corners = scenery.ground();
+    const Corners last(corners.end() - 3, corners.end());
+    while (corners.size() < 12 * Scenery::most_ground) // the rest is of no size
+      corners.insert(corners.end(), last.begin(), last.end());
+    file_->write(ground + "points", corners);
+    file_->write(scale + "points", scenery.scale());
+    for (std::size_t f = 0; f < scenery.ranges().size(); ++f)
+    {
+      const auto [smallest, largest] = scenery.ranges()[f];
+      file_->write(scale + field_names[f].name, {smallest, largest, largest, smallest});
+    }
+  }
+
+  std::string
+  XdmfFiles::body_grid(const std::size_t row) const
+  {
+    const auto [time, n] = frames_[row];
+    const DataItems items(*file_, row, n);
+    std::string text = fmt::format("<Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
+                                   "<Time Value=\"{}\"/>\n<Grid Name=\"body\">\n<Topology TopologyType=\"2DSMesh\" "
+                                   "Dimensions=\"{} 2\"/>\n",
+                                   time,
+                                   n) +
+                       items.points(body);
+    for (const std::string &name : all_fields())
+      text += items.field(body + name, name);
+    text += items.field(body + "s", "s") + "</Grid>\n";
+    return text + items.cells(grip, "Triangle", {"friction_force"}) + items.cells(ground, "Quadrilateral", {}) +
+           items.cells(scale, "Quadrilateral", all_fields()) + "</Grid>\n";
+  }
+
+  std::string
+  XdmfFiles::line_grid(const std::size_t row) const
+  {
+    const auto [time, n] = frames_[row];
+    const DataItems items(*file_, row, n);
+    std::string text = fmt::format("<Grid Name=\"line\">\n<Time Value=\"{}\"/>\n<Topology TopologyType=\"Polyline\" "
+                                   "NumberOfElements=\"1\" NodesPerElement=\"{}\">\n",
+                                   time,
+                                   n) +
+                       items.item(line + "cells") + "</Topology>\n" + items.points(line);
+    for (const std::string &name : all_fields())
+      text += items.field(line + name, name);
+    return text + "</Grid>\n";
+  }
+
+  void
+  XdmfFiles::rewrite_descriptions()
+  {
+    std::string body_text, line_text;
+    for (std::size_t row = 0; row < frames_.size(); ++row)
+    {
+      body_text += body_grid(row);
+      line_text += line_grid(row);
+    }
+    body_.restart(body_text);
+    line_.restart(line_text);
+  }
+} // namespace crawler

@@ -1,0 +1,82 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The scripts in contrib/paraview draw a run of either format, in ParaView itself: the body is where the files have it
+and has the colours of its stretch, and a film has a picture for each frame.
+
+    python3 paraview_films.py PATH_TO_CRAWLER PATH_TO_PVBATCH      needs ParaView, ffmpeg, python3-matplotlib, Xvfb
+"""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from matplotlib.image import imread
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "paraview"
+SCENE = "subsection Output\n set Number of snapshots = 4\nend\n"
+failures = []
+
+
+def check(condition, what):
+    """Notes a failure and goes on."""
+    if not condition:
+        failures.append(what)
+
+
+def draw(folder, screen, script, *arguments):
+    """Calls a script; gives its exit code and what it says."""
+    done = subprocess.run([sys.argv[2], str(SCRIPTS / script), *arguments], cwd=folder, text=True, capture_output=True,
+                          env=dict(os.environ, HOME=str(folder), DISPLAY=screen), timeout=240, check=False)
+    return done.returncode, done.stderr
+
+
+def coloured(picture):
+    """Which pixels of a picture have a colour (the ground is grey, the rest white)."""
+    pixels = picture[..., :3]
+    return pixels.max(axis=2) - pixels.min(axis=2) > 0.15
+
+
+def main():
+    """Draws one run in both formats, on a screen of its own, whose number the X server chooses."""
+    with tempfile.TemporaryDirectory() as name, subprocess.Popen(
+            ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x1024x24"], stdout=subprocess.PIPE, text=True) as server:
+        try:
+            check_all(pathlib.Path(name), ":" + server.stdout.readline().strip())
+        finally:
+            server.terminate()
+
+
+def check_all(folder, screen):
+    """Notes all that is wrong."""
+    (folder / "scene.prm").write_text(SCENE)
+    for style in ("vtu", "xdmf"):
+        subprocess.run([sys.argv[1], "run", "scene.prm", "--quiet", "--output", style, "--set",
+                        f"Output/Snapshot format={style}"], cwd=folder, check=True)
+        code, text = draw(folder, screen, "movie.py", style, "--time", "0.25", "--output", f"{style}.png", "--size",
+                          "800x240")
+        if code != 0:
+            failures.append(f"{style}: movie.py makes no picture: {code} {text}")
+            return
+    picture = imread(folder / "vtu.png")
+    body = coloured(picture)[60:]  # below the words
+    columns = np.flatnonzero(body.sum(axis=0) > 10)
+    check(body.sum() > 2000 and abs(columns.mean() - 400) < 40, "the camera follows the coloured body")
+    # ParaView cuts quadrilaterals of a structured and of an unstructured grid into other triangles.
+    different = np.abs(picture - imread(folder / "xdmf.png")).max(axis=2) > 0.05
+    check(different.mean() < 1e-3, f"both formats give the same picture: {different.sum()} pixels differ")
+    code, text = draw(folder, screen, "movie.py", "vtu", "--output", "film.gif", "--size", "320x120", "--state",
+                      "view.pvsm")
+    check(code == 0 and (folder / "view.pvsm").is_file(), f"movie.py makes a film and a state: {text}")
+    count = subprocess.run(["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames",
+                            "-of", "csv=p=0", "film.gif"], cwd=folder, capture_output=True, text=True, check=False)
+    check(count.stdout.strip() == "5", f"the film has 5 frames, not {count.stdout}")
+    code, text = draw(folder, screen, "kymograph.py", "vtu")
+    check(code == 0 and coloured(imread(folder / "vtu" / "kymograph.png")).mean() > 0.2, f"a kymograph: {text}")
+    code, text = draw(folder, screen, "movie.py", "nothing")
+    check(code == 2 and "nothing has neither solution.pvd nor solution.xdmf" in text, f"no run: {code} {text}")
+
+
+main()
+sys.exit("\n".join(failures) or 0)
