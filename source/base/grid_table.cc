@@ -154,9 +154,16 @@ namespace crawler
         wrong(fmt::format("has a dataset {} with {} dimensions", name, rank));
       result.extents.resize(wanted);
       H5Sget_simple_extent_dims(space, result.extents.data(), nullptr);
-      std::size_t n = 1;
+      constexpr std::size_t most = 1ul << 30;
+      std::size_t n              = 1;
       for (const hsize_t extent : result.extents)
+      {
+        if (extent > 0 && n > most / extent)
+          wrong(fmt::format("has a dataset {} of more than {} values", name, most));
         n *= extent;
+      }
+      if (n > 0 && H5Dget_storage_size(dataset) == 0)
+        wrong("has a dataset " + name + " without values");
       result.values.resize(n);
       if (n > 0 && H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.values.data()) < 0)
         wrong("has a dataset " + name + " that cannot be read");

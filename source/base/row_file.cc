@@ -3,6 +3,7 @@
 #include <crawler/base/hdf5_writing.h>
 #include <crawler/base/row_file.h>
 
+#include <boost/crc.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,12 +61,16 @@ namespace crawler
       return column.width == 0 ? H5Tcopy(H5T_IEEE_F64LE) : hdf5::text_type(column.width);
     }
 
+    /// Only texts of one piece, as write_attribute() makes them: others would not fit into what they are read into.
     std::string
     read_attribute_of(const hid_t object, const std::string &name, const std::filesystem::path &path)
     {
       const Hdf5Handle attribute(
         found(H5Aopen(object, name.c_str(), H5P_DEFAULT), path, "has no attribute \"" + name + "\""), H5Aclose);
-      const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
+      const Hdf5Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
+      const bool is_text =
+        H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && H5Sget_simple_extent_npoints(space) == 1;
+      found(is_text ? 0 : -1, path, "has an attribute \"" + name + "\" that is no text");
       std::string text(H5Tget_size(type), '\0');
       found(H5Aread(attribute, type, text.data()), path, "has an attribute \"" + name + "\" that cannot be read");
       return text.substr(0, text.find('\0'));
@@ -109,14 +114,49 @@ namespace crawler
       hdf5::checked(H5Dwrite(dataset, type, memory, space, transfer, data.data()), path, "write");
     }
 
+    /// Of a column, which must be whole: numbers or texts of a fixed width, in one dimension and with a place for each.
     std::size_t
-    length_of(const hid_t dataset)
+    length_of(const hid_t dataset, const hid_t type, const std::string &name, const std::filesystem::path &path)
     {
       const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+      const bool is_column = (H5Tget_class(type) == H5T_FLOAT && H5Tget_size(type) == sizeof(double)) ||
+                             (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0);
+      if (!is_column || H5Sget_simple_extent_ndims(space) != 1)
+        found(-1, path, fmt::format("has a dataset \"{}\" that is no column of a table", name));
       hsize_t n = 0;
       H5Sget_simple_extent_dims(space, &n, nullptr);
+      if (H5Dget_storage_size(dataset) / H5Tget_size(type) < n)
+        found(-1, path, fmt::format("has a dataset \"{}\" without a place for all its values", name));
       return n;
     }
+
+    const char *const checksums = "/checksums"; ///< of the rows, beside the group
+
+    /// Of the values of a row, in the order of the columns that are written: CRC-32, as they are stored.
+    class RowChecksum
+    {
+    public:
+      void
+      add(const RowFile::Value &value, const unsigned int width)
+      {
+        if (const auto *number = std::get_if<double>(&value))
+          crc_.process_bytes(number, sizeof(double));
+        else
+        {
+          const std::string &text = std::get<std::string>(value);
+          crc_.process_bytes(text.data(), whole_characters(text, width));
+        }
+      }
+
+      double
+      value() const
+      {
+        return crc_.checksum();
+      }
+
+    private:
+      boost::crc_32_type crc_;
+    };
   } // namespace
 
   std::size_t
@@ -197,6 +237,17 @@ namespace crawler
             H5P_DEFAULT,
             path);
       }
+      if (known.n_columns < columns.size())
+      {
+        const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+        H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
+        const Hdf5Handle dataset(
+          hdf5::checked(
+            H5Dcreate(file, checksums, H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT), path, "write"),
+          H5Dclose);
+        hdf5::write_attribute(
+          dataset, "description", "CRC-32 of what was written into each row, by which damage is found", path);
+      }
       hdf5::checked(H5Fflush(file, H5F_SCOPE_GLOBAL), path, "write");
     }
     std::error_code error;
@@ -238,6 +289,7 @@ namespace crawler
   {
     Hdf5Handle file, transfer;
     std::vector<std::unique_ptr<Hdf5Handle>> datasets;
+    std::unique_ptr<Hdf5Handle> checksums;
   };
 
   RowFile::RowFile(MPI_Comm communicator,
@@ -252,7 +304,8 @@ namespace crawler
     hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
     handles_.reset(new Handles{{hdf5::checked(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), path, "open"), H5Fclose},
                                {H5Pcreate(H5P_DATASET_XFER), H5Pclose},
-                               {}});
+                               {},
+                               nullptr});
     H5Pset_dxpl_mpio(handles_->transfer, H5FD_MPIO_INDEPENDENT);
     for (const Column &column : columns_)
     {
@@ -260,6 +313,8 @@ namespace crawler
       handles_->datasets.push_back(std::make_unique<Hdf5Handle>(
         hdf5::checked(H5Dopen(handles_->file, name.c_str(), H5P_DEFAULT), path, "open"), H5Dclose));
     }
+    handles_->checksums = std::make_unique<Hdf5Handle>(
+      hdf5::checked(H5Dopen(handles_->file, checksums, H5P_DEFAULT), path, "open"), H5Dclose);
   }
 
   RowFile::~RowFile() = default;
@@ -269,15 +324,22 @@ namespace crawler
   {
     if (rows.empty())
       return;
+    const auto write = [&](const hid_t dataset, const unsigned int width, const auto &value) {
+      write_values(dataset, width, first, rows.size(), value, handles_->transfer, path_);
+    };
     for (std::size_t i = 0; i < columns_.size(); ++i)
-      write_values(
-        *handles_->datasets[i],
-        columns_[i].width,
-        first,
-        rows.size(),
-        [&](const unsigned long row) -> const Value & { return rows[row][i]; },
-        handles_->transfer,
-        path_);
+    {
+      if (i + 1 == columns_.size())
+        write(*handles_->checksums, 0, [&](const unsigned long row) -> Value {
+          RowChecksum checksum;
+          for (std::size_t k = 0; k < columns_.size(); ++k)
+            checksum.add(rows[row][k], columns_[k].width);
+          return checksum.value();
+        });
+      write(*handles_->datasets[i], columns_[i].width, [&](const unsigned long row) -> const Value & {
+        return rows[row][i];
+      });
+    }
   }
 
   struct RowReader::Handles
@@ -285,6 +347,7 @@ namespace crawler
     Hdf5Handle file;
     std::unique_ptr<Hdf5Handle> group                 = nullptr;
     std::vector<std::unique_ptr<Hdf5Handle>> datasets = {}, types = {};
+    std::unique_ptr<Hdf5Handle> checksums = nullptr;
   };
 
   RowReader::RowReader(MPI_Comm communicator, const std::filesystem::path &path, const std::string &group_name)
@@ -312,10 +375,18 @@ namespace crawler
                           read_attribute_of(dataset, "unit", path),
                           read_attribute_of(dataset, "description", path),
                           {}});
-      const std::size_t n = length_of(dataset);
+      const std::size_t n = length_of(dataset, *handles_->types.back(), name, path);
       if (i > 0 && n != n_rows_)
         found(-1, path, "has columns of different lengths");
       n_rows_ = n;
+    }
+    if (H5Lexists(handles_->file, checksums, H5P_DEFAULT) > 0)
+    {
+      handles_->checksums = std::make_unique<Hdf5Handle>(
+        found(H5Dopen(handles_->file, checksums, H5P_DEFAULT), path, "has no dataset of checksums"), H5Dclose);
+      const Hdf5Handle type(H5Dget_type(*handles_->checksums), H5Tclose);
+      if (length_of(*handles_->checksums, type, checksums, path) != n_rows_)
+        found(-1, path, "has another number of checksums than of rows");
     }
   }
 
@@ -365,6 +436,31 @@ namespace crawler
       column.values = std::move(numbers);
     }
     return column;
+  }
+
+  std::optional<std::vector<bool>>
+  RowReader::intact(const std::vector<RowFile::Column> &written, const unsigned long first, const unsigned long n) const
+  {
+    if (!handles_->checksums)
+      return std::nullopt;
+    std::vector<RowChecksum> found_checksums(n);
+    for (const RowFile::Column &column : written)
+    {
+      const crawler::Column part = read(index_of(column.name), first, n);
+      for (unsigned long row = 0; row < n; ++row)
+        std::visit([&](const auto &values) { found_checksums[row].add(values[row], column.width); }, part.values);
+    }
+    const hsize_t start = first, count = n;
+    const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose),
+      space(H5Dget_space(*handles_->checksums), H5Sclose);
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
+    std::vector<double> kept(n);
+    hdf5::checked(
+      H5Dread(*handles_->checksums, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, kept.data()), path_, "read");
+    std::vector<bool> result;
+    for (unsigned long row = 0; row < n; ++row)
+      result.push_back(kept[row] == found_checksums[row].value());
+    return result;
   }
 
   Table

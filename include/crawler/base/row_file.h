@@ -10,6 +10,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -29,7 +30,7 @@ namespace crawler
    * A table in an HDF5 file into which all ranks write rows as they come (parallel HDF5). Its layout is fixed when it
    * is created: a group with a dataset for each column, contiguous and allocated, so later only numbers are written, no
    * structure, and a file whose writers were killed is a valid file with all rows that were written. A row that has not
-   * been written has NaN in its numbers and empty texts.
+   * been written has NaN in its numbers and empty texts. Each row that is written has a checksum.
    */
   class RowFile
   {
@@ -115,6 +116,11 @@ namespace crawler
     read(std::size_t number, unsigned long first, unsigned long n) const;
     Table
     read(unsigned long first, unsigned long n) const;
+
+    /// Whether these rows have still what was written into them, the columns @p written (this rank alone). Nothing if
+    /// the file has no checksums. Throws FileError.
+    std::optional<std::vector<bool>>
+    intact(const std::vector<RowFile::Column> &written, unsigned long first, unsigned long n) const;
 
   private:
     struct Handles;

@@ -3,6 +3,7 @@
 #include <crawler/base/file_lock.h>
 #include <crawler/studies/core/output_folder.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <unistd.h>
@@ -10,6 +11,35 @@
 namespace crawler
 {
   namespace fs = std::filesystem;
+
+  const std::string study_lock_name = "study.lock", report_name = "report.html";
+
+  namespace
+  {
+    /// A link would lead what is written or removed to places outside.
+    void
+    require_own_folders(const fs::path &folder)
+    {
+      std::error_code error;
+      for (const auto &entry : fs::directory_iterator(folder, error))
+      {
+        const std::string name = entry.path().filename().string();
+        const bool is_own =
+          name == "solution" || name == "points" || name == "starts" || name == "rows" || name.starts_with("best");
+        if (is_own && entry.is_symlink(error))
+          throw FileError("\"" + entry.path().string() + "\" is a link, but a folder of the program's own is expected");
+      }
+    }
+
+    /// Has it nothing but perhaps a lock?
+    bool
+    is_free(const fs::path &folder)
+    {
+      std::error_code error;
+      const fs::directory_iterator files(folder, error), end;
+      return std::all_of(begin(files), end, [](const auto &file) { return file.path().filename() == study_lock_name; });
+    }
+  } // namespace
 
   fs::path
   output_folder(const std::string &option, const std::string &parameter_file)
@@ -43,23 +73,36 @@ namespace crawler
     if (fs::exists(folder / "solution", error) && !fs::is_directory(folder / "solution", error))
       throw FileError("\"" + (folder / "solution").string() +
                       "\" is not a folder, but one for the snapshots is expected");
-    if (!overwrite && !fs::is_empty(folder, error))
+    require_own_folders(folder);
+    if (!overwrite && !is_free(folder))
       throw InputError("the output folder \"" + folder.string() +
                        "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
   }
 
-  const std::string study_lock_name = "study.lock", report_name = "report.html";
-
-  void
-  require_no_study(const fs::path &folder)
+  FolderLock::FolderLock(const fs::path &folder, const bool overwrite)
   {
     std::error_code error;
-    if (!fs::exists(folder / study_lock_name, error))
-      return;
-    FileLock lock(folder / study_lock_name);
-    if (lock.lock() == FileLock::State::of_another_process)
-      throw InputError("a study writes to \"" + folder.string() +
-                       "\"; another folder is expected for --output, or that the study has ended");
+    fs::create_directories(folder, error);
+    if (error)
+      throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
+    lock_.emplace(folder / study_lock_name);
+    if (lock_->lock() == FileLock::State::of_another_process)
+      throw InputError("a run or study writes to \"" + folder.string() +
+                       "\"; another folder is expected for --output, or that it has ended");
+    try
+    {
+      require_usable(folder, overwrite); // whoever had the lock may have written
+    }
+    catch (...)
+    {
+      lock_->remove();
+      throw;
+    }
+  }
+
+  FolderLock::~FolderLock()
+  {
+    lock_->remove();
   }
 
   void

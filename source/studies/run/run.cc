@@ -114,7 +114,6 @@ namespace crawler
     const auto folder              = output_folder(options.output, options.file);
     on_first_rank(communicator, [&]() {
       require_usable(folder, options.overwrite);
-      require_no_study(folder);
       return "";
     });
 
@@ -176,7 +175,9 @@ namespace crawler
     guarded([&]() { build(chosen->numerics); });
 
     // Everything is in order, or as good as it will be: from here on there are files.
+    std::optional<FolderLock> lock;
     on_first_rank(communicator, [&]() {
+      lock.emplace(folder, options.overwrite);
       begin_files(log, input, folder);
       return "";
     });
@@ -424,6 +425,7 @@ namespace crawler
       const auto seconds_from = [](const Clock::time_point from) {
         return std::chrono::duration<double>(Clock::now() - from).count();
       };
+      const FolderLock lock(folder, options.overwrite);
       begin_files(log, input, folder);
       report_scene(log, input);
       log.line(choice.explanation);

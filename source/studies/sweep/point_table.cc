@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/plain_numbers.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/sweep/point_table.h>
@@ -55,8 +56,9 @@ namespace crawler
 
     /// Of the rows of @p table.
     std::vector<bool>
-    rows_that_are_there(const RowReader &rows, const PointTable &table)
+    rows_that_are_there(const RowReader &rows, const PointTable &table, Log &log)
     {
+      unsigned long n_damaged = 0;
       constexpr double larger = 1.2;
       std::vector<bool> done;
       for (unsigned long first = 0; first < rows.n_rows(); first += rows_together)
@@ -66,6 +68,13 @@ namespace crawler
         const Column is_done  = column(table.done);
         for (unsigned long i = 0; i < n; ++i)
           done.push_back(!text_of(is_done, i).empty());
+        if (const auto intact = rows.intact(table.written_columns(), first, n))
+          for (unsigned long i = 0; i < n; ++i)
+            if (done[first + i] && !(*intact)[i])
+            {
+              done[first + i] = false;
+              ++n_damaged;
+            }
         for (const auto &[reason_name, seconds_name] : table.reasons_and_seconds)
         {
           const Column reason = column(reason_name), seconds = column(seconds_name);
@@ -75,6 +84,12 @@ namespace crawler
               done[first + i] = false;
         }
       }
+      if (n_damaged > 0)
+        log.warn(
+          fmt::format("warning: {} of the table {} not what was written, so the file was damaged; {} computed anew",
+                      counted(n_damaged, "row"),
+                      n_damaged == 1 ? "is" : "are",
+                      n_damaged == 1 ? "it is" : "they are"));
       return done;
     }
   } // namespace
@@ -163,7 +178,7 @@ namespace crawler
                                         was,
                                         folder.kind().name,
                                         version));
-    return rows_that_are_there(*rows, table);
+    return rows_that_are_there(*rows, table, folder.log());
   }
 
   std::vector<bool>
