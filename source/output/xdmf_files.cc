@@ -113,7 +113,8 @@ namespace crawler
   XdmfFiles::XdmfFiles(const std::filesystem::path &folder, const double length, const std::size_t n_frames)
     : path_(folder / "solution.h5")
     , length_(length)
-    , most_frames_(n_frames)
+    , expected_(n_frames)
+    , most_frames_(std::min<std::size_t>(n_frames, 4096)) // more only when they come
     , body_(folder / "solution.xdmf", description_begin, description_end)
     , line_(folder / "line.xdmf", description_begin, description_end)
   {
@@ -127,7 +128,10 @@ namespace crawler
     const std::size_t row = frames_.size(), n = frame.s.size();
     const bool grows = !file_ || row == most_frames_ || n > most_points_;
     if (grows)
-      resize(row == most_frames_ ? 2 * row : most_frames_, !file_ ? n : n > most_points_ ? n + n / 2 : most_points_);
+      resize(row == most_frames_ ? std::max(row + 1, std::min(2 * row, expected_)) : most_frames_,
+             !file_             ? n
+             : n > most_points_ ? n + n / 2
+                                : most_points_);
     if (scenery_changed || grows)
       write_scenery(scenery);
     const auto write = [&](const std::string &name, const std::vector<double> &values) {

@@ -51,7 +51,8 @@ namespace crawler
 
     const std::filesystem::path path_; ///< of the HDF5 file
     const double length_;
-    std::size_t most_frames_, most_points_ = 0;
+    const std::size_t expected_;                ///< frames
+    std::size_t most_frames_, most_points_ = 0; ///< for which there is room
     std::unique_ptr<SnapshotHdf5> file_;
     std::vector<FrameSize> frames_;
     GrowingText body_, line_; ///< the descriptions
