@@ -223,11 +223,15 @@ def test_large(program, browser):
 
 
 ALL_KNOWN_NUMBERS = """[...document.querySelectorAll('[data-key] data')].map(one => [one.closest('[data-key]').dataset.key, Number(one.value)])"""
-# Pictures with fewer colours within their axes than a line on a grid has.
+# How many pictures look (nearly) the same if nothing is painted within their axes.
 BLANK = """charts.filter(one => one.context && one.box.isConnected && !one.box.hidden && one.width > 60).filter(one => {
-  const m = one.axes ? one.margin : {left: 0, right: 0, top: 0, bottom: 0};
-  const data = one.context.getImageData(m.left + 2, m.top + 2, one.width - m.left - m.right - 4, one.height - m.top - m.bottom - 4);
-  return new Set(new Uint32Array(data.data.buffer)).size < 6; }).length"""
+  const image = () => { one.draw(); return new Uint32Array(one.context.getImageData(0, 0, one.width, one.height).data.buffer); };
+  const painted = image(), paint = one.paint;
+  one.paint = () => {};
+  const blank = image();
+  one.paint = paint;
+  one.draw();
+  return painted.filter((colour, i) => colour !== blank[i]).length < 50; }).length"""
 BRIGHTNESS = """(() => { const c = getComputedStyle(document.documentElement).backgroundColor.match(/\\d+/g).map(Number);
   return (c[0] + c[1] + c[2]) / 3; })()"""
 

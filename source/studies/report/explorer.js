@@ -55,7 +55,7 @@ class Explorer {
     const what = this.cells ? 'a map' : this.lines ? 'lines' : 'dots';
     this.caption.replaceChildren(el('b', {}, `${plural(list.length, NOUN)}, ${what}.`), ' Point at one for its numbers, click for its details; arrow keys go from one to the next.');
     const status = this.columns.get(this.statusName);
-    this.isOpen = this.axes.length && status && this.colour !== this.statusName ? row => status.value(row) !== 'finished' : () => false;
+    this.isOpen = this.axes.length && status && this.colour !== this.statusName ? row => ![null, 'finished'].includes(status.value(row)) : () => false;
     if (list.some(this.isOpen)) this.caption.append(' Crossed out: did not finish.');
     this.restyle();
     this.chart.draw();

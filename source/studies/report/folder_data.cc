@@ -140,7 +140,7 @@ namespace crawler
     const fs::path file = folder / "summary.json";
     if (!is_there(file))
       return nullptr;
-    const Json json = Json::parse(read_whole_file(file), nullptr, /*allow_exceptions=*/false);
+    Json json = Json::parse(read_whole_file(file), nullptr, /*allow_exceptions=*/false);
     if (!json.is_object() || !json.contains("status"))
       throw InputError("\"" + file.string() + "\" is damaged: a JSON object with the key \"status\" is expected");
     return json;

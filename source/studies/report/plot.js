@@ -44,7 +44,7 @@ class Chart {
   constructor(parent, options) {
     Object.assign(this, {height: 260, margin: {left: 58, right: 14, top: 8, bottom: 42}}, options);
     this.below = el('canvas', {role: 'img', 'aria-label': options.label});
-    this.above = el('canvas', options.keys ? {tabindex: 0, 'aria-label': `${options.label}; arrow keys move`} : {'aria-hidden': 'true'});
+    this.above = el('canvas', options.keys ? {tabindex: 0, role: 'application', 'aria-label': `${options.label}; arrow keys move`} : {'aria-hidden': 'true'});
     this.tip = el('div', {class: 'tip', hidden: true, role: options.keys ? 'status' : null});
     this.box = el('div', {class: 'chart', style: `height:${this.height}px`}, this.below, this.above, this.tip);
     parent.append(this.box);

@@ -142,16 +142,21 @@ namespace crawler
     with_data(const Json &data)
     {
       const std::string mark  = "{{data}}";
-      const auto place        = page_template.find(mark);
       const std::string words = data.dump(-1, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace);
-      std::string page(page_template.substr(0, place));
-      page.reserve(page_template.size() + words.size());
-      for (const char c : words)
-        if (c == '<')
-          page += "\\u003c";
-        else
-          page += c;
-      page += page_template.substr(place + mark.size());
+      std::string page;
+      for (const std::string_view part : page_parts)
+      {
+        const auto place = part.find(mark);
+        page += part.substr(0, place);
+        if (place == part.npos)
+          continue;
+        for (const char c : words)
+          if (c == '<')
+            page += "\\u003c";
+          else
+            page += c;
+        page += part.substr(place + mark.size());
+      }
       return page;
     }
   } // namespace
