@@ -5,6 +5,7 @@
 
 #include <deal.II/base/utilities.h>
 
+#include <boost/algorithm/string/trim.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 
 #include <cstdint>
@@ -19,7 +20,7 @@ namespace crawler
     std::vector<double>
     decoded(const boost::property_tree::ptree &array)
     {
-      const std::vector<unsigned char> bytes = dealii::Utilities::decode_base64(array.data());
+      const std::vector<unsigned char> bytes = dealii::Utilities::decode_base64(boost::trim_copy(array.data()));
       if (array.get<std::string>("<xmlattr>.type") != "Float64" || bytes.size() < sizeof(std::uint64_t))
         throw InputError("an array without numbers");
       std::vector<double> values((bytes.size() - sizeof(std::uint64_t)) / sizeof(double));
@@ -40,7 +41,7 @@ namespace crawler
     }
   } // namespace
 
-  Kymograph
+  KymographTable
   read_kymograph(const std::filesystem::path &path)
   {
     std::istringstream text(read_whole_file(path));
@@ -53,7 +54,7 @@ namespace crawler
       const auto points             = decoded(piece.get_child("Points.DataArray"));
       if (points.size() != 3 * n_places * n_rows)
         throw InputError("another number of points than its grid");
-      Kymograph kymograph;
+      KymographTable kymograph;
       for (std::size_t i = 0; i < n_places; ++i)
         kymograph.places.push_back(points[3 * i]);
       for (std::size_t j = 0; j < n_rows; ++j)

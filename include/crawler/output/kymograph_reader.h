@@ -9,7 +9,7 @@
 namespace crawler
 {
   /// What a KymographWriter has written: fields on a grid over body and time.
-  struct Kymograph
+  struct KymographTable
   {
     std::vector<double> places; ///< s/L, ascending
     std::vector<double> times;  ///< t/T, ascending; jumps of the active stress are there twice
@@ -17,6 +17,6 @@ namespace crawler
   };
 
   /// Reads kymograph.vts. Throws FileError if it cannot be read, InputError if it is no such file or is damaged.
-  Kymograph
+  KymographTable
   read_kymograph(const std::filesystem::path &path);
 } // namespace crawler

@@ -65,7 +65,7 @@ namespace crawler
 
     /// The factor c(x) of the ground where the body has been; null where it is 1 everywhere or not known here.
     Json
-    ground_data(const ParameterFile &file, const Kymograph &kymograph, const double length)
+    ground_data(const ParameterFile &file, const KymographTable &kymograph, const double length)
     {
       constexpr std::size_t n_places = 400;
       constexpr double margin        = 0.3; // on both sides, of the length
@@ -197,8 +197,8 @@ namespace crawler
       json["along_body"] = packed_rows(read_csv_table(folder / "sensitivity_body.csv"), most_steps);
     if (is_there(folder / "kymograph.vts"))
     {
-      const Kymograph kymograph = read_kymograph(folder / "kymograph.vts");
-      json["kymograph"]         = packed(kymograph, most_rows);
+      const KymographTable kymograph = read_kymograph(folder / "kymograph.vts");
+      json["kymograph"]              = packed(kymograph, most_rows);
       if (parameters)
         json["ground"] = ground_data(*parameters, kymograph, length);
     }

@@ -110,10 +110,10 @@ namespace crawler
       return list;
     }
 
-    Kymograph
-    part_of(const Kymograph &whole, const std::vector<std::size_t> &rows, const std::vector<std::size_t> &places)
+    KymographTable
+    part_of(const KymographTable &whole, const std::vector<std::size_t> &rows, const std::vector<std::size_t> &places)
     {
-      Kymograph part;
+      KymographTable part;
       for (const std::size_t i : places)
         part.places.push_back(whole.places[i]);
       for (const std::size_t j : rows)
@@ -131,7 +131,7 @@ namespace crawler
     /// Is every other row (or place) what a line between its neighbours gives, to a colour of the 256 that a picture
     /// has?
     bool
-    can_be_halved(const Kymograph &kymograph, const bool in_time)
+    can_be_halved(const KymographTable &kymograph, const bool in_time)
     {
       constexpr double tolerance = 1. / 256;
       const std::size_t n_rows = kymograph.times.size(), n_places = kymograph.places.size();
@@ -183,10 +183,10 @@ namespace crawler
   }
 
   Json
-  packed(const Kymograph &kymograph, const std::size_t most_rows)
+  packed(const KymographTable &kymograph, const std::size_t most_rows)
   {
     constexpr std::uint16_t unknown = std::numeric_limits<std::uint16_t>::max();
-    Kymograph small                 = kymograph;
+    KymographTable small            = kymograph;
     for (const bool in_time : {true, false})
       while (can_be_halved(small, in_time))
         small = part_of(small, every(in_time ? 2 : 1, small.times.size()), every(in_time ? 1 : 2, small.places.size()));

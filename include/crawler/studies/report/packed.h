@@ -23,5 +23,5 @@ namespace crawler
   /// not known. Rows and places that lines between the others give to a 256th of the range are left out; there are no
   /// more than @p most_rows times.
   Json
-  packed(const Kymograph &kymograph, std::size_t most_rows);
+  packed(const KymographTable &kymograph, std::size_t most_rows);
 } // namespace crawler
