@@ -143,7 +143,7 @@ with tempfile.TemporaryDirectory() as place:
     expect(refused.returncode == 2 and "Optimize/Largest strain was" in refused.stderr, f"resume: {refused.stderr}")
 
     # A time limit ends with the best so far.
-    stopped = run("optimize_from_rest", place / "stopped", "Optimize/Time limit=1")
+    stopped = run("optimize_from_rest", place / "stopped", "Optimize/Time limit=4")
     expect(stopped.returncode == 5 and summary(place / "stopped")["optimize"]["status"] == "stopped"
            and (place / "stopped" / "best" / "summary.json").exists(),
            f"time limit: exit code {stopped.returncode}, {stopped.stderr}")
