@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace crawler
 {
@@ -209,6 +210,8 @@ namespace crawler
           error.error       = n_errors++;
           list.push_back(std::move(error));
         }
+      if (n_errors != static_cast<int>(NumberErrors::n))
+        throw std::logic_error("the table of results has another number of errors than NumberErrors");
       for (ResultEntry &entry : std::vector<ResultEntry>{
              word("formulation",
                   "position or stretch",

@@ -10,7 +10,7 @@ namespace crawler
   /// Error bounds of the numbers of a summary besides the displacement; not a number where unknown.
   struct NumberErrors
   {
-    static constexpr std::size_t n = 16;
+    static constexpr std::size_t n = 17;
 
     /// In the order of entries_with_errors() (result_table.h).
     std::array<double, n> values;
