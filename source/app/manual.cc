@@ -62,7 +62,7 @@ namespace crawler
     std::cout << ".\\\" Made by \"crawler man\".\n.TH CRAWLER 1 \"\" \"crawler " << roff(versions().at("crawler"))
               << "\" \"User Commands\"\n.SH NAME\ncrawler \\- simulates limbless crawlers: earthworms, snails, soft "
                  "robots\n.SH SYNOPSIS\n.B crawler\n.I COMMAND\n[\\fIARGUMENT\\fR] [\\fIOPTION\\fR]... [-- "
-                 "\\fIPETSC OPTION\\fR...]\n.br\n.B mpirun -n\n.I N\n.B crawler\n.I COMMAND\n...\n"
+                 "\\fIPETSC OPTION\\fR...]\n.br\n.B mpirun -n\n.I N\n.B crawler\n.I COMMAND\n\\&...\n"
                  ".SH DESCRIPTION\n"
               << roff(app.get_description())
               << "\nThe scene is in a parameter file; what can be in it is printed by\n.BR \"crawler parameters\" .\n"

@@ -613,9 +613,14 @@ namespace crawler
   {
     if (std::find(sections_.begin(), sections_.end(), path) != sections_.end())
       return;
-    auto near = nearest_names(path, sections_);
+    const auto near = nearest_names(path, sections_);
     if (near.empty())
-      near = sections_;
+    {
+      std::vector<std::string> outer;
+      std::ranges::copy_if(
+        sections_, std::back_inserter(outer), [](const std::string &s) { return s.find('/') == std::string::npos; });
+      throw InputError(fmt::format("unknown section \"{}\"; {} is expected", path, quoted_list(outer)), path);
+    }
     throw InputError(fmt::format("unknown section \"{}\"; the nearest {} {}",
                                  path,
                                  near.size() > 1 ? "names are" : "name is",

@@ -7,10 +7,13 @@
 import json
 import os
 import pathlib
+import pty
 import re
+import select
 import subprocess
 import sys
 import tempfile
+import time
 import xml.etree.ElementTree
 
 import jsonschema
@@ -44,7 +47,7 @@ def printed(*arguments):
 
 def templates(folder):
     """Each template is short and has comments, is in order, and runs."""
-    names = re.search(r"TEMPLATE REQUIRED\s+(.*)", re.sub(r",\n\s+", ", ", printed("init", "--help")))[1].split(", ")
+    names = re.search(r"TEMPLATE TEXT REQUIRED\s+(.*)", printed("init", "--help"))[1].split(", ")
     check({"robot", "earthworm", "snail", "larva", "table", "samples", "sweep", "optimize"} == set(names),
           "the help names all templates")
     (folder / "samples.csv").write_text(printed("init", "samples"))
@@ -76,8 +79,9 @@ def sections():
     """One section alone is a part of the list of all, and a parameter file."""
     whole = printed("parameters").splitlines()
     body = printed("parameters", "Body").splitlines()
-    check(10 < len(body) < len(whole) / 4 and all(line in whole for line in body) and "subsection Body" in body
-          and not any("subsection" in line for line in body[1:]), "parameters Body prints this section")
+    check(10 < len(body) < len(whole) / 4 and all(line in whole for line in body) and
+          [line for line in body if line.startswith("subsection")] == ["subsection Body"],
+          "parameters Body prints this section")
     inner = printed("parameters", "Active stress/Pulse")
     check("subsection Active stress" in inner and "set Repetition period" in inner and "Duty cycle" not in inner,
           "parameters prints a section within another one")
@@ -139,11 +143,12 @@ def schema():
             place[entry] = converted(value, inner["properties"][entry])
         return root
 
-    files = sorted(PRM.rglob("*.prm"))
-    check(len(files) > 30, "there are files")
-    for path in files:
-        errors = [error.message for error in validator.iter_errors(as_json(path.read_text()))]
-        check(not errors, f"{path.relative_to(PRM)} satisfies the schema {errors[:3]}")
+    texts = {str(path.relative_to(PRM)): path.read_text() for path in sorted(PRM.rglob("*.prm"))}
+    check(len(texts) > 30, "there are files")
+    texts["default.prm"] = printed("parameters")
+    for name, text in texts.items():
+        errors = [error.message for error in validator.iter_errors(as_json(text))]
+        check(not errors, f"{name} satisfies the schema {errors[:3]}")
     for text, what in (("subsection Body\nset Length = -1\nend", "a range"), ("set Model = none", "a choice"),
                        ("subsection Time\nset Order = 2.5\nend", "a type"), ("set Accuracy = 0", "an open range")):
         check(not validator.is_valid(as_json(text)), f"the schema knows {what}")
@@ -179,17 +184,27 @@ def bash(folder, *words):
 
 
 def zsh(folder, typed):
-    """What a zsh in a pseudo terminal makes of this line and the Tab key."""
-    script = f"""zmodload zsh/zpty; zpty shell zsh -f
-        zpty -w shell "PS1=; autoload -U compinit; compinit -D -u; source {SHELL_FILES / '_crawler'}; cd {folder}"
-        zpty -w shell "LISTMAX=0; unsetopt automenu; bindkey '^I' complete-word; echo re''ady"
-        while zpty -r shell line; do [[ $line == ready* ]] && break; done
-        zpty -n -w shell {json.dumps(typed)}$'\\t'
-        sleep 1; zpty -n -w shell $'\\x15echo do''ne\\n'
-        while zpty -r shell line; do print -r -- "$line"; [[ $line == done* ]] && break; done"""
-    done = subprocess.run(["zsh", "-f", "-c", script], capture_output=True, text=True, check=False, timeout=30,
-                          env={**os.environ, "TERM": "dumb"})
-    return done.stdout + done.stderr
+    """What a zsh in a pseudo terminal shows for this line and the Tab key."""
+    main, inner = pty.openpty()
+    shell = subprocess.Popen(["zsh", "-f", "-i"], cwd=folder, stdin=inner, stdout=inner, stderr=inner,
+                             start_new_session=True, env={**os.environ, "TERM": "dumb", "ZDOTDIR": str(folder)})
+    os.close(inner)
+
+    def read_until(mark, seconds):
+        text, end = "", time.monotonic() + seconds
+        while mark not in text and select.select([main], [], [], max(0., end - time.monotonic()))[0]:
+            text += os.read(main, 65536).decode("utf-8", errors="replace")
+        return text
+
+    os.write(main, f"unsetopt zle_bracketed_paste; autoload -U compinit; compinit -D -u; source {SHELL_FILES}/_crawler; "
+                   "echo rea''dy\n".encode())
+    read_until("ready", 20)
+    os.write(main, f"{typed}\t".encode())
+    text = read_until("no such text", 2)
+    shell.kill()
+    shell.wait()
+    os.close(main)
+    return text
 
 
 def completion(folder):
@@ -205,9 +220,9 @@ def completion(folder):
     check(bash(folder, "run", "") == ["inner", "scene.prm"], "bash completes parameter files and folders")
     check(bash(folder, "report", "") == ["inner"], "bash completes folders")
     check(bash(folder, "run", "scene.prm", "--set", "Body/Le") == ["Body/Length="], "bash completes entries")
-    check(bash(folder, "run", "--set", '"Active stress/Pulse/W') == ["Active stress/Pulse/Width="],
+    check(bash(folder, "run", "--set", '"Active stress/Pulse/Wid') == ["Active stress/Pulse/Width="],
           "bash completes entries in quotes")
-    check(bash(folder, "run", "--set", "Active\\ stress/Pulse/W") == ["Active\\ stress/Pulse/Width="],
+    check(bash(folder, "run", "--set", "Active\\ stress/Pulse/Wid") == ["Active\\ stress/Pulse/Width="],
           "bash completes entries with blanks")
     check(bash(folder, "init", "r") == ["robot"] and bash(folder, "parameters", "--format", "s") == ["schema"] and
           bash(folder, "plot", "--kind", "tr") == ["tradeoff"] and bash(folder, "parameters", "Bo") == ["Body"],
