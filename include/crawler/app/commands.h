@@ -62,12 +62,4 @@ namespace crawler
     std::string format_ = "prm", name_, kind_; ///< name_: of a template, a shell or a section
     bool plot_help_     = false;
   };
-
-  /// All commands of the program, in the order of the help.
-  std::vector<const CLI::App *>
-  all_commands(const CLI::App &app);
-
-  /// The names of an option as they are typed: "--set", "-h".
-  std::vector<std::string>
-  typed_names(const CLI::Option &option);
 } // namespace crawler
