@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 packages=(g++ cmake ninja-build git libdeal.ii-dev libcli11-dev nlohmann-json3-dev libfmt-dev openmpi-bin)
 python=(python3-dev pybind11-dev python3-numpy)
 [ "${1:-}" = python ] && packages+=("${python[@]}")
-[ "${1:-}" = tests ] && packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev python3-scipy python3-vtk9 python3-h5py python3-pandas python3-matplotlib chromium clang-format clang-tidy doxygen texlive-binaries)
+[ "${1:-}" = tests ] && packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev python3-scipy python3-vtk9 python3-h5py python3-pandas python3-matplotlib python3-jsonschema zsh groff-base chromium clang-format clang-tidy doxygen texlive-binaries)
 
 missing=()
 for package in "${packages[@]}"; do

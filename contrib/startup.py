@@ -4,9 +4,10 @@
 
     python3 contrib/startup.py [--build build] [--file prm/paper/fig_s1_chi_0.4.prm] [--repeat 15]
 
-Runs tests/benchmark/empty_program (MPI and PETSc start and end) and `crawler run FILE --quiet` in turns, from start to
-exit, and prints medians of the wall time [s], their ratio, the processor time of the program itself (MPI also waits for
-a helper process), and the largest peak of resident memory [MiB].
+Runs tests/benchmark/empty_program (MPI and PETSc start and end), `crawler run FILE --quiet`, and commands that compute
+nothing and start neither MPI nor PETSc, in turns, from start to exit. Prints medians of the wall time [s], the ratio of
+those of `crawler run` and the empty program, the processor time of the program itself (MPI also waits for a helper
+process), and the largest peak of resident memory [MiB].
 """
 import argparse
 import os
@@ -20,7 +21,7 @@ import time
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 
 
-def measure(command):
+def measure(command, expected=0):
     """Wall and processor time [s] and peak of resident memory [MiB] of one run; its output is shown if it fails."""
     start = time.perf_counter()
     with tempfile.TemporaryFile() as printed:
@@ -28,7 +29,7 @@ def measure(command):
         _, status, usage = os.wait4(process.pid, 0)
         seconds = time.perf_counter() - start
         process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode != 0:
+        if process.returncode != expected:
             printed.seek(0)
             sys.exit(f"{' '.join(map(str, command))} ended with {process.returncode}:\n{printed.read().decode()}")
     return seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024  # Linux counts in KiB
@@ -49,13 +50,14 @@ def main():
         os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     with tempfile.TemporaryDirectory() as folder:
         run = [crawler, "run", arguments.file, "--quiet", "--overwrite", "--output", folder + "/output"]
-        programs = {"empty program": [empty], "crawler run": run}
-        for command in programs.values():
-            measure(command)  # the first run reads the libraries from disk
+        programs = {"empty program": ([empty], 0), "crawler run": (run, 0), "--version": ([crawler, "--version"], 0),
+                    "parameters": ([crawler, "parameters"], 0), "input error": ([crawler, "run"], 2)}
+        for command, expected in programs.values():
+            measure(command, expected)  # the first run reads the libraries from disk
         results = {name: [] for name in programs}
         for _ in range(arguments.repeat):
-            for name, command in programs.items():
-                results[name].append(measure(command))
+            for name, (command, expected) in programs.items():
+                results[name].append(measure(command, expected))
     medians = {}
     print(f"{'':15}{'median [s]':>12}{'minimum [s]':>13}{'processor [s]':>15}{'peak memory [MiB]':>19}")
     for name, samples in results.items():

@@ -8,6 +8,7 @@
 #include <crawler/base/plain_numbers.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
+#include <crawler/parameters/entry_lists.h>
 #include <crawler/run/summary.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/sensitivities.h>
@@ -324,7 +325,7 @@ namespace crawler
       Declarations declarations;
       parameters.add_parameters(declarations);
       std::ostringstream text;
-      declarations.print_json(text);
+      print_json(declarations, text);
       return text.str();
     }
 

@@ -26,7 +26,7 @@ namespace crawler
     const ModelChoice model = choose_model(input);
     if (!model.needs_mesh())
       return check_reduced_model(input, model, log);
-    PilotProgress pilots(log);
+    WaitProgress pilots(log, pilot_runs);
     NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, input.parameters, input.scene, [&]() {
       pilots.step();
       return true;

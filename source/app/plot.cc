@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/app/plot.h>
-#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/studies/core/pictures.h>
 
@@ -76,11 +76,9 @@ namespace crawler
     return names;
   }
 
-  ExitCode
-  plot(MPI_Comm communicator, const std::string &path, const std::string &kind, const std::vector<std::string> &options)
+  void
+  plot(const std::string &path, const std::string &kind, const std::vector<std::string> &options)
   {
-    if (rank_of(communicator) != 0)
-      return ExitCode::finished;
     const std::vector<std::string> known = plot_kinds();
     if (path.empty())
       throw InputError("the folder is missing; \"crawler plot DIR\" is expected");
@@ -98,6 +96,5 @@ namespace crawler
     std::error_code ignored;
     if (kind.empty() && fs::exists(fs::path(path) / "sensitivity_body.csv", ignored))
       std::cout << fmt::format("Also there: crawler plot {} --kind sensitivity", path) << std::endl;
-    return ExitCode::finished;
   }
 } // namespace crawler

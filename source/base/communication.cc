@@ -27,6 +27,15 @@ namespace crawler
     return static_cast<unsigned int>(size);
   }
 
+  unsigned int
+  rank_of_launcher()
+  {
+    for (const char *const name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
+      if (const char *const rank = std::getenv(name); rank != nullptr)
+        return static_cast<unsigned int>(std::strtoul(rank, nullptr, 10));
+    return 0;
+  }
+
   std::string
   broadcast(const std::string &text, MPI_Comm communicator)
   {

@@ -6,7 +6,6 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +16,37 @@ namespace crawler
 {
   namespace
   {
+    /// What deal.II calls the values of an entry, so that parameter_gui has the right field for them; empty if it has
+    /// no word for them.
+    std::string
+    dealii_words(const EntryValues &values)
+    {
+      namespace Patterns = dealii::Patterns;
+      if (values.may_be_automatic)
+        return "";
+      const auto bound = [](const double x) { return static_cast<int>(std::min(x, 2147483647.)); };
+      switch (values.kind)
+      {
+        case EntryKind::number:
+          return Patterns::Double(values.range.lower, values.range.upper).description();
+        case EntryKind::whole_number:
+          return Patterns::Integer(bound(values.range.lower), bound(values.range.upper)).description();
+        case EntryKind::choice:
+          return Patterns::Selection(fmt::format("{}", fmt::join(values.words, "|"))).description();
+        case EntryKind::flag:
+          return Patterns::Bool().description();
+        default:
+          return "";
+      }
+    }
+
     /// A pattern that says in words what it expects.
     class WordyPattern : public dealii::Patterns::PatternBase
     {
     public:
-      WordyPattern(std::string expected, std::function<bool(const std::string &)> match)
+      WordyPattern(std::string expected, std::string machine_words, std::function<bool(const std::string &)> match)
         : expected_(std::move(expected))
+        , machine_words_(std::move(machine_words))
         , match_(std::move(match))
       {
       }
@@ -32,9 +56,9 @@ namespace crawler
         return match_(trimmed(text));
       }
       std::string
-      description(const OutputStyle) const override
+      description(const OutputStyle style) const override
       {
-        return expected_;
+        return style == Machine && !machine_words_.empty() ? machine_words_ : expected_;
       }
       std::unique_ptr<PatternBase>
       clone() const override
@@ -43,7 +67,7 @@ namespace crawler
       }
 
     private:
-      std::string expected_;
+      std::string expected_, machine_words_;
       std::function<bool(const std::string &)> match_;
     };
 
@@ -172,18 +196,11 @@ namespace crawler
 
     /// The nearest of the words that a choice offers, as a hint.
     std::string
-    nearest_word(const std::string &value, const std::string &expected)
+    nearest_word(const std::string &value, const std::vector<std::string> &words)
     {
-      if (value.empty() || expected.front() != '"')
+      if (value.empty())
         return "";
-      std::vector<std::string> choices;
-      for (std::size_t start = expected.find('"'); start != std::string::npos;)
-      {
-        const std::size_t end = expected.find('"', start + 1);
-        choices.push_back(expected.substr(start + 1, end - start - 1));
-        start = expected.find('"', end + 1);
-      }
-      const auto near = nearest_names(value, choices, 1);
+      const auto near = nearest_names(value, words, 1);
       return near.empty() ? "" : "; the nearest is " + quoted_list(near);
     }
   } // namespace
@@ -230,8 +247,9 @@ namespace crawler
   }
 
 
-  Declarations::Declarations()
-    : handler_(std::make_unique<dealii::ParameterHandler>())
+  Declarations::Declarations(std::string only)
+    : only_(std::move(only))
+    , handler_(std::make_unique<dealii::ParameterHandler>())
   {
   }
 
@@ -240,16 +258,24 @@ namespace crawler
   void
   Declarations::enter(const std::string &section)
   {
-    handler_->enter_subsection(section);
     section_.push_back(section);
     sections_.push_back(path_text(section_));
+    if (is_wanted(sections_.back()))
+      handler_->enter_subsection(section);
   }
 
   void
   Declarations::leave()
   {
-    handler_->leave_subsection();
+    if (is_wanted(path_text(section_)))
+      handler_->leave_subsection();
     section_.pop_back();
+  }
+
+  bool
+  Declarations::is_wanted(const std::string &section) const
+  {
+    return only_.empty() || section == only_ || section.starts_with(only_ + "/") || only_.starts_with(section + "/");
   }
 
   std::string
@@ -263,6 +289,9 @@ namespace crawler
   void
   Declarations::Entry::means(const std::string &documentation)
   {
+    const std::string &only = owner_.only_;
+    if (!only.empty() && info_.path != only && !info_.path.starts_with(only + "/"))
+      return;
     info_.documentation = documentation;
     if (info_.names_file)
       info_.documentation +=
@@ -270,7 +299,7 @@ namespace crawler
     const std::string unit_text = info_.unit.empty() ? "" : " Unit: " + info_.unit + ".";
     owner_.handler_->declare_entry(name_,
                                    info_.default_value,
-                                   WordyPattern(info_.expected, match_),
+                                   WordyPattern(info_.expected, dealii_words(info_.values), match_),
                                    info_.documentation + " Expected: " + info_.expected + "." + unit_text);
     owner_.handler_->add_action(name_, [assign = assign_](const std::string &text) { assign(trimmed(text)); });
     owner_.entries_.push_back(info_);
@@ -278,15 +307,21 @@ namespace crawler
 
   template <typename Value, typename Read>
   Declarations::Entry
-  Declarations::entry(
-    const std::string &name, Value &value, const std::string &expected, const std::string &unit, const Read &read)
+  Declarations::entry(const std::string &name,
+                      Value &value,
+                      const std::string &expected,
+                      const std::string &unit,
+                      EntryValues values,
+                      const Read &read)
   {
     constexpr bool is_optional = may_be_automatic<Value>;
     Entry result(
       *this,
       name,
       {path_of(name), default_text(value), is_optional ? expected + " or the word \"automatic\"" : expected, unit, ""});
-    result.match_ = [read](const std::string &text) {
+    values.may_be_automatic = is_optional;
+    result.info_.values     = std::move(values);
+    result.match_           = [read](const std::string &text) {
       return (is_optional && text == automatic) || read(text).has_value();
     };
     result.assign_ = [&value, read](const std::string &text) {
@@ -301,7 +336,7 @@ namespace crawler
   Declarations::Entry
   Declarations::number(const std::string &name, double &value, const Range &range, const std::string &unit)
   {
-    return entry(name, value, range.in_words(), unit, reader(range));
+    return entry(name, value, range.in_words(), unit, {EntryKind::number, range}, reader(range));
   }
 
   Declarations::Entry
@@ -310,7 +345,7 @@ namespace crawler
                        const Range &range,
                        const std::string &unit)
   {
-    return entry(name, value, range.in_words(), unit, reader(range));
+    return entry(name, value, range.in_words(), unit, {EntryKind::number, range}, reader(range));
   }
 
   Declarations::Entry
@@ -319,7 +354,12 @@ namespace crawler
                              const unsigned int lower,
                              const unsigned int upper)
   {
-    return entry(name, value, count_range(lower, upper), "", reader(lower, upper));
+    return entry(name,
+                 value,
+                 count_range(lower, upper),
+                 "",
+                 {EntryKind::whole_number, between(lower, upper)},
+                 reader(lower, upper));
   }
 
   Declarations::Entry
@@ -328,7 +368,12 @@ namespace crawler
                              const unsigned int lower,
                              const unsigned int upper)
   {
-    return entry(name, value, count_range(lower, upper), "", reader(lower, upper));
+    return entry(name,
+                 value,
+                 count_range(lower, upper),
+                 "",
+                 {EntryKind::whole_number, between(lower, upper)},
+                 reader(lower, upper));
   }
 
   Declarations::Entry
@@ -336,12 +381,14 @@ namespace crawler
   {
     const bool may_be_empty    = value.empty();
     const std::string expected = "a list of numbers separated by commas";
-    Entry result               = entry(
-      name, value, may_be_empty ? expected + ", or nothing" : expected, unit, [may_be_empty](const std::string &text) {
-        return may_be_empty && text.empty() ? std::optional(std::vector<double>()) : to_numbers(text);
-      });
-    result.info_.is_list = true;
-    return result;
+    return entry(name,
+                 value,
+                 may_be_empty ? expected + ", or nothing" : expected,
+                 unit,
+                 {.kind = EntryKind::numbers, .may_be_empty = may_be_empty},
+                 [may_be_empty](const std::string &text) {
+                   return may_be_empty && text.empty() ? std::optional(std::vector<double>()) : to_numbers(text);
+                 });
   }
 
   Declarations::Entry
@@ -354,8 +401,9 @@ namespace crawler
       return static_cast<std::size_t>(std::find(words.begin(), words.end(), text) - words.begin());
     };
     Entry result(*this, name, {path_of(name), words[value], quoted_list(words), "", ""});
-    result.match_  = [place, n = words.size()](const std::string &text) { return place(text) < n; };
-    result.assign_ = [place, assign](const std::string &text) { assign(place(text)); };
+    result.info_.values = {.kind = EntryKind::choice, .words = words};
+    result.match_       = [place, n = words.size()](const std::string &text) { return place(text) < n; };
+    result.assign_      = [place, assign](const std::string &text) { assign(place(text)); };
     return result;
   }
 
@@ -366,6 +414,7 @@ namespace crawler
                  value,
                  words.size() == 1 ? "the word " + quoted_list(words) : quoted_list(words),
                  "",
+                 {.kind = EntryKind::choice, .words = words},
                  [words](const std::string &text) {
                    return std::find(words.begin(), words.end(), text) != words.end() ? std::optional(text)
                                                                                      : std::nullopt;
@@ -375,15 +424,20 @@ namespace crawler
   Declarations::Entry
   Declarations::flag(const std::string &name, bool &value)
   {
-    return entry(name, value, "\"true\" or \"false\"", "", [](const std::string &text) {
-      return text == "true" || text == "false" ? std::optional(text == "true") : std::nullopt;
-    });
+    return entry(name,
+                 value,
+                 "\"true\" or \"false\"",
+                 "",
+                 {.kind = EntryKind::flag, .words = {"true", "false"}},
+                 [](const std::string &text) {
+                   return text == "true" || text == "false" ? std::optional(text == "true") : std::nullopt;
+                 });
   }
 
   Declarations::Entry
   Declarations::text(const std::string &name, std::string &value, const std::string &expected, const std::string &unit)
   {
-    return entry(name, value, expected, unit, [](const std::string &text) { return std::optional(text); });
+    return entry(name, value, expected, unit, {}, [](const std::string &text) { return std::optional(text); });
   }
 
   Declarations::Entry
@@ -393,7 +447,7 @@ namespace crawler
                      const std::string &unit,
                      const std::string &ending)
   {
-    Entry result             = entry(name, value, expected, unit, [ending](const std::string &text) {
+    Entry result             = entry(name, value, expected, unit, {}, [ending](const std::string &text) {
       return std::optional(text.ends_with(ending) ? seen_from_here(text) : text);
     });
     result.info_.names_file  = true;
@@ -432,7 +486,7 @@ namespace crawler
                                  value,
                                  entry.expected,
                                  is_number ? number_hint(trimmed(value)) : "",
-                                 nearest_word(value, entry.expected)),
+                                 nearest_word(value, entry.values.words)),
                      entry.path);
   }
 
@@ -440,7 +494,7 @@ namespace crawler
   std::vector<double>
   Declarations::numbers_of(const EntryInfo &entry, const std::size_t place) const
   {
-    if (!entry.is_list)
+    if (entry.values.kind != EntryKind::numbers)
       throw InputError(
         fmt::format("\"{0}[{1}]\" names a number of a list, but \"{0}\" is {2}", entry.path, place, entry.expected),
         entry.path);
@@ -559,9 +613,14 @@ namespace crawler
   {
     if (std::find(sections_.begin(), sections_.end(), path) != sections_.end())
       return;
-    auto near = nearest_names(path, sections_);
+    const auto near = nearest_names(path, sections_);
     if (near.empty())
-      near = sections_;
+    {
+      std::vector<std::string> outer;
+      std::ranges::copy_if(
+        sections_, std::back_inserter(outer), [](const std::string &s) { return s.find('/') == std::string::npos; });
+      throw InputError(fmt::format("unknown section \"{}\"; {} is expected", path, quoted_list(outer)), path);
+    }
     throw InputError(fmt::format("unknown section \"{}\"; the nearest {} {}",
                                  path,
                                  near.size() > 1 ? "names are" : "name is",
@@ -586,47 +645,9 @@ namespace crawler
   }
 
   void
-  Declarations::print_json(std::ostream &out) const
+  Declarations::print_xml(std::ostream &out) const
   {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const EntryInfo &entry : entries_)
-      list.push_back({{"entry", entry.path},
-                      {"default", entry.default_value},
-                      {"expected", entry.expected},
-                      {"unit", entry.unit},
-                      {"documentation", entry.documentation}});
-    out << list.dump(2) << '\n';
-  }
-
-  void
-  Declarations::print_markdown(std::ostream &out) const
-  {
-    out << "# Parameters\n\nGenerated by `crawler parameters --format markdown`; do not edit. An entry "
-           "`Section/Entry` is written\nin the file as `set Entry = value` within `subsection Section` ... "
-           "`end`, and on the command line as\n`--set \"Section/Entry=value\"`.\n";
-    std::string section = "-";
-    for (const EntryInfo &entry : entries_)
-    {
-      const auto words      = split_path(entry.path);
-      const std::string own = section_of(words);
-      if (own != section)
-      {
-        section = own;
-        out << "\n## " << (section.empty() ? "Top level" : section)
-            << "\n\n| entry | default | expected | unit | meaning |\n|---|---|---|---|---|\n";
-      }
-      const auto cell = [](std::string text) {
-        for (std::size_t i = text.find('|'); i != std::string::npos; i = text.find('|', i + 2))
-          text.replace(i, 1, "\\|");
-        return text;
-      };
-      out << fmt::format("| {} | `{}` | {} | {} | {} |\n",
-                         words.back(),
-                         entry.default_value.empty() ? " " : cell(entry.default_value),
-                         cell(entry.expected),
-                         entry.unit,
-                         cell(entry.documentation));
-    }
+    handler_->print_parameters(out, dealii::ParameterHandler::XML | dealii::ParameterHandler::KeepDeclarationOrder);
   }
 
 

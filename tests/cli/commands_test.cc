@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "../support/program.h"
 
+#include <deal.II/base/parameter_handler.h>
+
 #include <boost/property_tree/xml_parser.hpp>
 #include <nlohmann/json.hpp>
 
@@ -170,6 +172,34 @@ TEST_F(Commands, VersionAndHelp)
     for (const std::string &word : words)
       EXPECT_TRUE(contains(help.out, word)) << word << "\nin: " << help.out;
   }
+}
+
+/// parameter_gui is deal.II's, and so is what reads the XML here: every default comes back.
+TEST_F(Commands, DealIIReadsItsXml)
+{
+  dealii::ParameterHandler handler;
+  const json list  = json::parse(run_program(folder.path, {"parameters", "--format", "json"}).out);
+  const auto visit = [&handler](const std::string &path, const auto &action) {
+    std::vector<std::string> words;
+    std::istringstream in(path);
+    for (std::string word; std::getline(in, word, '/');)
+      words.push_back(word);
+    for (std::size_t i = 0; i + 1 < words.size(); ++i)
+      handler.enter_subsection(words[i]);
+    action(words.back());
+    for (std::size_t i = 0; i + 1 < words.size(); ++i)
+      handler.leave_subsection();
+  };
+  for (const json &entry : list)
+    visit(entry.at("entry"), [&](const std::string &name) { handler.declare_entry(name, "not read"); });
+  const ProgramResult printed = run_program(folder.path, {"parameters", "--format", "xml"});
+  EXPECT_EQ(printed.exit_code, 0);
+  std::istringstream text(printed.out);
+  handler.parse_input_from_xml(text);
+  EXPECT_GT(list.size(), 100u);
+  for (const json &entry : list)
+    visit(entry.at("entry"),
+          [&](const std::string &name) { EXPECT_EQ(handler.get(name), entry.at("default")) << entry.at("entry"); });
 }
 
 TEST_F(Commands, ParametersInThreeFormats)

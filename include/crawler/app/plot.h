@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/exceptions.h>
-
-#include <mpi.h>
-
 #include <string>
 #include <vector>
 
@@ -17,9 +13,6 @@ namespace crawler
   /// crawler plot: draws the output folder @p path of a run or study, or the table of a calibration, with the script of
   /// @p kind; if this is empty, with the one that fits the files. @p options are passed on to the script. Throws
   /// InputError and FileError with what the script says.
-  ExitCode
-  plot(MPI_Comm communicator,
-       const std::string &path,
-       const std::string &kind,
-       const std::vector<std::string> &options);
+  void
+  plot(const std::string &path, const std::string &kind, const std::vector<std::string> &options);
 } // namespace crawler

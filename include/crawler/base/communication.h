@@ -15,6 +15,11 @@ namespace crawler
   unsigned int
   size_of(MPI_Comm communicator);
 
+  /// Number of this process as its launcher (mpirun, srun) says in the environment, before MPI is started; 0 without
+  /// one.
+  unsigned int
+  rank_of_launcher();
+
   /// The text of rank 0, on all ranks.
   std::string
   broadcast(const std::string &text, MPI_Comm communicator);

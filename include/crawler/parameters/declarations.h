@@ -40,6 +40,26 @@ namespace crawler
   Range
   between(double lower, double upper);
 
+  enum class EntryKind
+  {
+    text,
+    number,
+    whole_number,
+    numbers, ///< a list; "Section/Entry[2]" is the second of them
+    choice,
+    flag
+  };
+
+  /// What values an entry has, for other programs.
+  struct EntryValues
+  {
+    EntryKind kind                 = EntryKind::text;
+    Range range                    = {};    ///< of a number
+    std::vector<std::string> words = {};    ///< of a choice
+    bool may_be_automatic          = false; ///< the word "automatic" as well
+    bool may_be_empty              = false; ///< of a list
+  };
+
   /// What a user can read about one entry of the parameter file.
   struct EntryInfo
   {
@@ -50,7 +70,7 @@ namespace crawler
     std::string documentation;
     bool names_file         = false; ///< its value is, or may be, the name of a file that is read
     std::string file_ending = "";    ///< without it a value is not the name of a file
-    bool is_list            = false; ///< of numbers; "Section/Entry[2]" is the second of them
+    EntryValues values      = {};
   };
 
   /**
@@ -64,7 +84,8 @@ namespace crawler
   class Declarations
   {
   public:
-    Declarations();
+    /// With @p only, the name of a section or an entry, all others are passed over.
+    explicit Declarations(std::string only = "");
     ~Declarations();
 
     void
@@ -167,12 +188,9 @@ namespace crawler
     /// The present values as a .prm file with every entry explained.
     void
     print_prm(std::ostream &out) const;
-    /// The same list as JSON (an array of objects: entry, default, expected, unit, documentation).
+    /// The same in the XML of dealii::ParameterHandler, which deal.II's parameter_gui opens.
     void
-    print_json(std::ostream &out) const;
-    /// The same list as a Markdown page.
-    void
-    print_markdown(std::ostream &out) const;
+    print_xml(std::ostream &out) const;
 
   private:
     Entry
@@ -182,8 +200,16 @@ namespace crawler
            const std::function<void(std::size_t)> &assign);
     template <typename Value, typename Read>
     Entry
-    entry(
-      const std::string &name, Value &value, const std::string &expected, const std::string &unit, const Read &read);
+    entry(const std::string &name,
+          Value &value,
+          const std::string &expected,
+          const std::string &unit,
+          EntryValues values,
+          const Read &read);
+
+    /// Whether a section is, or contains, or is in what is declared.
+    bool
+    is_wanted(const std::string &section) const;
 
     void
     enter_sections(const std::vector<std::string> &path) const;
@@ -202,6 +228,7 @@ namespace crawler
     std::string
     path_of(const std::string &name) const;
 
+    const std::string only_;
     std::unique_ptr<dealii::ParameterHandler> handler_;
     std::vector<std::string> section_; ///< where declarations go at present
     std::vector<EntryInfo> entries_;

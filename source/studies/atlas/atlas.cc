@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
@@ -135,7 +136,7 @@ namespace crawler
   {
     const StopSignal stop_signal; // from here on a signal ends the atlas in order
     const double start = now();
-    Log log(rank_of(communicator) == 0, options.quiet);
+    Log log(rank_of(communicator) == 0, options);
     const ParameterFile file   = read_file(communicator, options.file, options.overrides);
     const AtlasAxes axes       = read_axes(file);
     const auto path            = output_folder(options.output, options.file);

@@ -2,6 +2,7 @@
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/run_as_promised.h>
+#include <crawler/base/clock.h>
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>

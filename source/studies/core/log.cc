@@ -1,27 +1,68 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/plain_numbers.h>
+#include <crawler/base/terminal.h>
+#include <crawler/base/versions.h>
+#include <crawler/studies/core/command_options.h>
 #include <crawler/studies/core/log.h>
 
+#include <fmt/format.h>
+
 #include <iostream>
+#include <utility>
 
 namespace crawler
 {
   Log::Log(const bool is_first_rank, const bool quiet)
     : active_(is_first_rank)
     , quiet_(quiet)
+    , status_width_(is_first_rank && !quiet ? terminal_width() : 0)
   {
   }
 
+  Log::Log(const bool is_first_rank, const CommandOptions &options)
+    : Log(is_first_rank, options.quiet)
+  {
+    const auto all = versions();
+    first_line_    = fmt::format("crawler {} (revision {}, deal.II {}, PETSc {})",
+                              all.at("crawler"),
+                              all.at("revision"),
+                              all.at("deal.II"),
+                              all.at("PETSc"));
+    if (!options.petsc_options.empty())
+      status_width_ = 0;
+  }
+
+  Log::~Log()
+  {
+    clear_status();
+    std::cout.flush();
+  }
+
   void
-  Log::line(const std::string &raw)
+  Log::write(const std::string &raw, const bool on_screen)
   {
     if (!active_)
       return;
+    clear_status();
+    if (const std::string first = std::exchange(first_line_, ""); !first.empty())
+      write(first, /*on_screen=*/true);
     const std::string text = without_controls(with_plain_numbers(raw));
-    if (!quiet_)
+    if (!quiet_ && on_screen)
       std::cout << text << std::endl;
     keep(text);
+  }
+
+  void
+  Log::line(const std::string &text)
+  {
+    write(text, /*on_screen=*/true);
+  }
+
+  void
+  Log::progress(const std::string &text)
+  {
+    write(text, /*on_screen=*/status_width_ == 0);
   }
 
   void
@@ -29,9 +70,50 @@ namespace crawler
   {
     if (!active_)
       return;
+    clear_status();
+    std::cout.flush();
     const std::string text = without_controls(with_plain_numbers(raw));
     std::cerr << "crawler: " << text << std::endl;
     keep(text);
+  }
+
+  void
+  Log::show_status(const std::vector<std::string> &rows)
+  {
+    if (status_width_ == 0)
+      return;
+    // Row over row, so that nothing flickers; rows that were there before and are more than those of now go first.
+    if (status_rows_ > rows.size())
+      clear_status();
+    if (rows.empty())
+      return;
+    std::string text = "\r";
+    if (status_rows_ > 1)
+      text += fmt::format("\x1b[{}A", status_rows_ - 1);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      text += (i > 0 ? "\n" : "") + rows[i] + "\x1b[K";
+    std::cout << text << std::flush;
+    status_rows_ = rows.size();
+  }
+
+  void
+  Log::leave_status()
+  {
+    if (status_rows_ > 0)
+      std::cout << std::endl;
+    status_rows_ = 0;
+  }
+
+  void
+  Log::clear_status()
+  {
+    if (status_rows_ == 0)
+      return;
+    std::string text = "\r\x1b[K";
+    for (std::size_t i = 1; i < status_rows_; ++i)
+      text += "\x1b[A\x1b[K";
+    std::cout << text << std::flush;
+    status_rows_ = 0;
   }
 
   void

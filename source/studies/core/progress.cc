@@ -1,49 +1,211 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/terminal.h>
+#include <crawler/output/kymograph_writer.h>
 #include <crawler/studies/core/progress.h>
+#include <crawler/studies/core/text_kymograph.h>
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace crawler
 {
-  Progress::Progress(Log &log, const Scene &scene)
+  namespace
+  {
+    constexpr double between_bars  = 0.1; ///< [s]
+    constexpr double between_waits = 3.;
+    constexpr double between_lines = 5.;
+
+    /// Characters, of a text in UTF-8.
+    std::size_t
+    length_of(const std::string &text)
+    {
+      return static_cast<std::size_t>(std::ranges::count_if(text, [](const char c) { return (c & 0xC0) != 0x80; }));
+    }
+
+    /// A bar of @p n characters, the part from @p first to @p last of it (from 0 to 1) filled.
+    std::string
+    bar_text(const double first, const double last, const unsigned int n)
+    {
+      const bool utf8 = terminal_has_utf8();
+      const auto at   = [n](const double x) { return static_cast<unsigned int>(std::lround(x * n)); };
+      std::string text;
+      for (unsigned int i = 0; i < n; ++i)
+        text += i >= at(first) && i < at(last) ? (utf8 ? "█" : "#") : (utf8 ? "░" : "-");
+      return text;
+    }
+  } // namespace
+
+  std::string
+  duration_in_words(const double seconds)
+  {
+    return seconds <= 0.       ? "0 s"
+           : seconds < 0.01    ? fmt::format("{:.2g} ms", 1e3 * seconds)
+           : seconds < 1.      ? fmt::format("{:.0f} ms", 1e3 * seconds)
+           : seconds < 10.     ? fmt::format("{:.1f} s", seconds)
+           : seconds < 120.    ? fmt::format("{:.0f} s", seconds)
+           : seconds < 7200.   ? fmt::format("{:.0f} min", seconds / 60.)
+           : seconds < 172800. ? fmt::format("{:.1f} h", seconds / 3600.)
+                               : fmt::format("{:.1f} days", seconds / 86400.);
+  }
+
+
+  ProgressBar::ProgressBar(Log &log)
+    : log_(log)
+  {
+  }
+
+  ProgressBar::~ProgressBar()
+  {
+    log_.show_status({});
+  }
+
+  bool
+  ProgressBar::is_due() const
+  {
+    return log_.status_width() > 0 && now() >= last_ + between_bars;
+  }
+
+  void
+  ProgressBar::show(const std::optional<double> done, const std::string &text, const std::vector<std::string> &picture)
+  {
+    last_                        = now();
+    const double gone            = seconds();
+    constexpr unsigned int n_bar = 24;
+    const double swing           = 0.5 - 0.5 * std::cos(2. * gone); // of a bar that moves
+    std::string line =
+      done
+        ? fmt::format("{} {:3.0f} %  {}",
+                      bar_text(0., *done, n_bar),
+                      100. * *done,
+                      *done > 0. ? duration_in_words(gone * (1. - *done) / *done) + " left" : "time left not known yet")
+        : fmt::format("{}  {}", bar_text(0.8 * swing, 0.8 * swing + 0.2, n_bar), duration_in_words(gone));
+    line += "  " + text;
+    while (length_of(line) >= log_.status_width() && !line.empty())
+    {
+      while (line.size() > 1 && (line.back() & 0xC0) == 0x80)
+        line.pop_back();
+      line.pop_back();
+    }
+    std::vector<std::string> rows = picture;
+    rows.push_back(line);
+    log_.show_status(rows);
+  }
+
+
+  WaitProgress::WaitProgress(Log &log, std::string what)
+    : log_(log)
+    , what_(std::move(what))
+    , bar_(log)
+    , next_line_(between_waits)
+  {
+  }
+
+  void
+  WaitProgress::step()
+  {
+    if (bar_.seconds() >= next_line_)
+    {
+      next_line_ += between_waits;
+      log_.progress(fmt::format("  {} ... {:.0f} s", what_, bar_.seconds()));
+    }
+    if (bar_.is_due())
+      bar_.show(std::nullopt, what_);
+  }
+
+
+  RunProgress::RunProgress(Log &log, const Scene &scene, const Kymograph *const watched, const std::size_t n_rows)
     : log_(log)
     , end_time_(scene.end_time)
     , length_(scene.body.length)
-  {
-  }
-
-  PilotProgress::PilotProgress(Log &log)
-    : log_(log)
-    , start_(Clock::now())
+    , watched_(watched)
+    , n_rows_(n_rows)
+    , bar_(log)
   {
   }
 
   void
-  PilotProgress::step()
+  RunProgress::observe(const Snapshot &snapshot)
   {
-    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    if (seconds < next_)
+    if (!snapshot.is_step_end || snapshot.step.number == 0)
       return;
-    next_ += every;
-    log_.line(fmt::format("  pilot runs choose mesh and time steps ... {:.0f} s", seconds));
-  }
-
-  void
-  Progress::observe(const Snapshot &snapshot)
-  {
-    const double done = 10. * snapshot.step.time / end_time_;
-    if (!snapshot.is_step_end || done < next_tenth_ || snapshot.step.number == 0)
+    const double done = snapshot.step.time / end_time_;
+    if (bar_.is_due())
+      bar_.show(std::min(done, 1.),
+                fmt::format("t = {:.4g}  displacement {:.6g}  stretch {:.3g} to {:.3g}",
+                            snapshot.step.time,
+                            snapshot.integrals.displacement / length_,
+                            snapshot.stretch.min.value,
+                            snapshot.stretch.max.value),
+                watched_ == nullptr ? std::vector<std::string>()
+                                    : text_kymograph(*watched_, n_rows_, log_.status_width()));
+    if (10. * done < next_tenth_)
       return;
-    while (next_tenth_ <= done)
+    while (next_tenth_ <= 10. * done)
       ++next_tenth_;
-    log_.line(
+    log_.progress(
       fmt::format("  {:3.0f} %  t = {:<10.4g} step {:<6} size {:<9.3g} displacement {:<14.8g} stretch {:.3g} to {:.3g}",
-                  10. * done,
+                  100. * done,
                   snapshot.step.time,
                   snapshot.step.number,
                   snapshot.step.size,
                   snapshot.integrals.displacement / length_,
                   snapshot.stretch.min.value,
                   snapshot.stretch.max.value));
+  }
+
+  void
+  RunProgress::end()
+  {
+    if (watched_ != nullptr)
+      watch(*watched_, n_rows_, log_);
+  }
+
+  void
+  watch(const Kymograph &kymograph, const std::size_t n_times, Log &log)
+  {
+    log.show_status(text_kymograph(kymograph, n_times, log.status_width()));
+    log.leave_status();
+  }
+
+
+  StudyProgress::StudyProgress(Log &log, const unsigned long n_parts, std::string parts)
+    : log_(log)
+    , n_parts_(n_parts)
+    , parts_(std::move(parts))
+    , bar_(log)
+  {
+  }
+
+  bool
+  StudyProgress::is_line_due() const
+  {
+    return now() >= last_line_ + between_lines;
+  }
+
+  bool
+  StudyProgress::is_due() const
+  {
+    return bar_.is_due() || is_line_due();
+  }
+
+  void
+  StudyProgress::report(const unsigned long done, const std::string &remark)
+  {
+    const double seconds = bar_.seconds(), rate = done / seconds;
+    const std::string words = fmt::format("{} of {} {}, {:.3g} {}/s", done, n_parts_, parts_, rate, parts_);
+    if (is_line_due())
+    {
+      last_line_ = now();
+      log_.progress(
+        fmt::format("  {:3.0f} %  {}, {}{}",
+                    100. * done / n_parts_,
+                    words,
+                    done > 0 ? duration_in_words((n_parts_ - done) / rate) + " left" : "time left not known yet",
+                    remark));
+    }
+    if (bar_.is_due())
+      bar_.show(static_cast<double>(done) / n_parts_, words + remark);
   }
 } // namespace crawler

@@ -26,7 +26,7 @@ namespace crawler
       std::vector<std::string> paths;
       if (to_number(value)) // also a list of one
         paths.push_back(entry.path);
-      else if (entry.is_list && !value.empty())
+      else if (entry.values.kind == EntryKind::numbers && !value.empty())
         for (std::ptrdiff_t n = 0; n <= std::ranges::count(value, ','); ++n)
           paths.push_back(fmt::format("{}[{}]", entry.path, n + 1));
       all_.insert(all_.end(), paths.begin(), paths.end());
@@ -45,7 +45,7 @@ namespace crawler
         return true;
       // A list of one by its place, or a number behind those that a list has now.
       const std::string entry = path.substr(0, path.find('['));
-      return path.ends_with(']') && declarations_.info(path).is_list &&
+      return path.ends_with(']') && declarations_.info(path).values.kind == EntryKind::numbers &&
              (std::ranges::find(list, entry) != list.end() || std::ranges::find(list, entry + "[1]") != list.end());
     };
     if (!is_in(all_))

@@ -6,6 +6,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/parameter_file.h>
 #include <crawler/studies/core/parameters.h>
+#include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/study.h>
 
 #include <fmt/format.h>
@@ -17,51 +18,6 @@
 
 namespace crawler
 {
-  std::string
-  duration_in_words(const double seconds)
-  {
-    return seconds <= 0.       ? "0 s"
-           : seconds < 0.01    ? fmt::format("{:.2g} ms", 1e3 * seconds)
-           : seconds < 1.      ? fmt::format("{:.0f} ms", 1e3 * seconds)
-           : seconds < 10.     ? fmt::format("{:.1f} s", seconds)
-           : seconds < 120.    ? fmt::format("{:.0f} s", seconds)
-           : seconds < 7200.   ? fmt::format("{:.0f} min", seconds / 60.)
-           : seconds < 172800. ? fmt::format("{:.1f} h", seconds / 3600.)
-                               : fmt::format("{:.1f} days", seconds / 86400.);
-  }
-
-  StudyProgress::StudyProgress(Log &log, const unsigned long n_parts, std::string parts)
-    : log_(log)
-    , n_parts_(n_parts)
-    , parts_(std::move(parts))
-  {
-  }
-
-  bool
-  StudyProgress::is_due() const
-  {
-    constexpr double pause = 5.; // seconds
-    return now() >= last_ + pause;
-  }
-
-  void
-  StudyProgress::report(const unsigned long done, const std::string &remark)
-  {
-    if (!is_due())
-      return;
-    last_             = now();
-    const double rate = done / (last_ - start_);
-    log_.line(fmt::format("  {:3.0f} %  {} of {} {}, {:.3g} {}/s, {}{}",
-                          100. * done / n_parts_,
-                          done,
-                          n_parts_,
-                          parts_,
-                          rate,
-                          parts_,
-                          done > 0 ? duration_in_words((n_parts_ - done) / rate) + " left" : "time left not known yet",
-                          remark));
-  }
-
   unsigned long
   golden_stride(const unsigned long n)
   {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
@@ -186,7 +187,7 @@ namespace crawler
   {
     const StopSignal stop_signal; // from here on a signal ends the study in order
     const double begin = now();
-    Log log(rank_of(communicator) == 0, options.quiet);
+    Log log(rank_of(communicator) == 0, options);
     const ParameterFile file = read_file(communicator, options.file, options.overrides);
     OptimizeCases cases(communicator, file);
     const OptimizeParameters own = cases.parameters().optimize;

@@ -107,7 +107,7 @@ namespace crawler
     const StopSignal stop_signal; // from here on a signal ends the run in order
     const auto start = std::chrono::steady_clock::now();
     const bool first = rank_of(communicator) == 0;
-    Log log(first, options.quiet);
+    Log log(first, options);
     Input input                    = read_input(std::move(file));
     const Parameters &parameters   = input.parameters;
     const OutputParameters &output = parameters.output;
@@ -149,7 +149,7 @@ namespace crawler
     guarded([&]() {
       input.parameters.model = model->model;
       // The linear level (a = 0) is computed by what follows, as the nonlinear one.
-      PilotProgress pilots(log);
+      WaitProgress pilots(log, pilot_runs);
       chosen = choose_numerics(MPI_COMM_SELF, parameters, input.scene, [&]() {
         pilots.step();
         return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
@@ -167,7 +167,12 @@ namespace crawler
     shared = size_of(communicator) > 1 && chosen && chosen->numerics.formulation == Formulation::position &&
              parameters.discretization.shares(chosen->numerics.n_cells);
     const MPI_Comm computing = shared ? communicator : MPI_COMM_SELF;
-    const auto keep_going    = [&]() { return !stop_signal.arrived_anywhere(computing); };
+    std::optional<WaitProgress> other_runs; // those without a progress of their own
+    const auto keep_going = [&]() {
+      if (other_runs)
+        other_runs->step();
+      return !stop_signal.arrived_anywhere(computing);
+    };
     std::unique_ptr<Simulation> simulation;
     const auto build = [&](const Numerics &numerics) {
       simulation = std::make_unique<Simulation>(computing, input.scene, parameters.time, numerics);
@@ -189,6 +194,8 @@ namespace crawler
     const bool writes           = shared || first;
     const double length         = input.scene.body.length;
     const PictureTimes pictures = picture_times(output, input.scene);
+    const auto n_rows           = static_cast<std::size_t>(
+      std::ranges::count_if(pictures.all(), [](const PictureTimes::Time &time) { return time.kinds.is_row; }));
     const auto create_observers = [&]() {
       std::vector<std::unique_ptr<Observer>> observers;
       if (writes && output.has_snapshots())
@@ -198,10 +205,13 @@ namespace crawler
         if (output.kymograph)
           observers.push_back(std::make_unique<KymographWriter>(length, input.scene.end_time, folder));
       }
+      const Kymograph *const kymograph = options.watch && output.has_snapshots() && output.kymograph
+                                           ? static_cast<Kymograph *>(observers.back().get())
+                                           : nullptr;
       if (writes && output.statistics)
         observers.push_back(std::make_unique<StatisticsWriter>(length, first, folder, output.energy_balance));
       if (writes && !options.quiet)
-        observers.push_back(std::make_unique<Progress>(log, input.scene));
+        observers.push_back(std::make_unique<RunProgress>(log, input.scene, kymograph, n_rows));
       return observers;
     };
     const double setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -226,10 +236,13 @@ namespace crawler
           });
         log.line(describe(choice.numerics, input));
       }
+      other_runs.reset();
       SimulationResult run = simulation->run(pictures, run_options, create_observers(), keep_going);
-      latest               = run.time;
+      other_runs.emplace(log, "other runs measure the error");
+      latest = run.time;
       return run;
     };
+    other_runs.emplace(log, "runs on other meshes come before");
     guarded([&]() {
       Answer answer = run_as_promised(
         computing, parameters, input.scene, *chosen, simulate, run_options, /*writes=*/true, keep_going);
@@ -249,12 +262,19 @@ namespace crawler
     check_identities(result, parameters);
     if (first && !shared && chosen)
       sweep_error(parameters, input.scene, *chosen, result, keep_going);
+    other_runs.reset();
     if (first && !input.sensitivities.empty())
     {
+      WaitProgress progress(log, "runs for the sensitivities");
       if (result.time.status == Status::finished) // by this rank alone
-        write_sensitivities(
-          add_sensitivities(input, *chosen, result, [&]() { return !stop_signal.arrived_anywhere(MPI_COMM_SELF); }),
-          folder);
+        write_sensitivities(add_sensitivities(input,
+                                              *chosen,
+                                              result,
+                                              [&]() {
+                                                progress.step();
+                                                return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
+                                              }),
+                            folder);
       else
         log.warn("there are no sensitivities, since the run did not end as it should");
       if (result.time.status == Status::finished && stop_signal.arrived_anywhere(MPI_COMM_SELF) &&
@@ -320,12 +340,14 @@ namespace crawler
       return points;
     }
 
-    /// Writes the output times of a level as a run with a mesh does. Returns false if it was interrupted.
+    /// Writes the output times of a level as a run with a mesh does, and shows them in the log @p watching. Returns
+    /// false if it was interrupted.
     bool
     write_pictures(const ReducedModel &level,
                    const Input &input,
                    const std::filesystem::path &folder,
-                   const StopSignal &signal)
+                   const StopSignal &signal,
+                   Log *watching)
     {
       const OutputParameters &output = input.parameters.output;
       const double length            = input.scene.body.length;
@@ -349,6 +371,8 @@ namespace crawler
         snapshots->end();
       if (output.has_snapshots() && output.kymograph)
         kymograph.end();
+      if (watching != nullptr)
+        watch(kymograph, kymograph.times().size(), *watching);
       return whole;
     }
   } // namespace
@@ -448,7 +472,7 @@ namespace crawler
 
         const auto before = Clock::now();
         if (result.error && (output.has_snapshots() || output.statistics) &&
-            !write_pictures(level, input, folder, stop_signal))
+            !write_pictures(level, input, folder, stop_signal, options.watch ? &log : nullptr))
           result.time.status = Status::stopped;
         result.output_seconds = seconds_from(before);
       }

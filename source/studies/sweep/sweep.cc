@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
@@ -8,6 +9,7 @@
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/sweep/point_table.h>
@@ -155,7 +157,7 @@ namespace crawler
     const StopSignal stop_signal; // from here on a signal ends the sweep in order
     const double start         = now();
     const unsigned int n_ranks = size_of(communicator);
-    Log log(rank_of(communicator) == 0, options.quiet);
+    Log log(rank_of(communicator) == 0, options);
     SweepPoints points(communicator, file);
     const SweepDesign &design  = points.design();
     const SweepParameters &own = points.sweep();

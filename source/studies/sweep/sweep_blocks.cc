@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/core/study.h>

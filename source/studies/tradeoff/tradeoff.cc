@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/model_choice.h>
+#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
@@ -11,6 +12,7 @@
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/pictures.h>
+#include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/core/study_folder.h>
 #include <crawler/studies/tradeoff/tradeoff.h>
@@ -249,7 +251,7 @@ namespace crawler
     const StopSignal stop_signal; // from here on a signal ends the study in order
     const double start = now();
     const bool first   = rank_of(communicator) == 0;
-    Log log(first, options.quiet);
+    Log log(first, options);
     const Input input                       = read_input(communicator, options.file, options.overrides);
     const Parameters &parameters            = input.parameters;
     const TradeoffLists lists               = lists_of(input);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/numerics_choice.h>
+#include <crawler/base/clock.h>
 #include <crawler/run/accuracy_rule.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/study.h>

@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/parameters/entry_lists.h>
 
 #include <gtest/gtest.h>
 
@@ -86,8 +87,8 @@ TEST(Declarations, PrintsAllEntries)
   Example example;
   std::ostringstream prm, json, markdown;
   example.declarations.print_prm(prm);
-  example.declarations.print_json(json);
-  example.declarations.print_markdown(markdown);
+  print_json(example.declarations, json);
+  print_markdown(example.declarations, markdown);
   for (const char *name : {"Length", "Cells", "List", "Word"})
   {
     EXPECT_NE(prm.str().find(name), std::string::npos);

@@ -4,14 +4,24 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace crawler
 {
+  struct CommandOptions;
+
   /// What the user reads: lines on the screen (unless quiet) and in log.txt. Only rank 0 writes.
   class Log
   {
   public:
     Log(bool is_first_rank, bool quiet);
+
+    /// Of a command that computes: the first line names the program's version. PETSc may print, too, if there are
+    /// options for it.
+    Log(bool is_first_rank, const CommandOptions &options);
+
+    Log(const Log &) = delete;
+    ~Log();
 
     void
     line(const std::string &text);
@@ -20,6 +30,26 @@ namespace crawler
     void
     warn(const std::string &text);
 
+    /// The same for lines that say how far the work is: where a status is shown instead, only in the file.
+    void
+    progress(const std::string &text);
+
+    /// Columns of the status; 0 if none is shown, because nobody sees it: standard output is no terminal, or is quiet.
+    unsigned int
+    status_width() const
+    {
+      return status_width_;
+    }
+
+    /// Shows @p rows below all lines, in the place of those that were there before. They must not be wider than
+    /// status_width(). The next line takes their place.
+    void
+    show_status(const std::vector<std::string> &rows);
+
+    /// The rows stay where they are.
+    void
+    leave_status();
+
     /// Writes everything from now on, and all earlier lines, to @p file as well, behind what is in it if @p append.
     /// Throws FileError.
     void
@@ -27,9 +57,16 @@ namespace crawler
 
   private:
     void
+    write(const std::string &raw, bool on_screen);
+    void
     keep(const std::string &text);
+    void
+    clear_status();
 
     const bool active_, quiet_;
+    unsigned int status_width_;
+    std::size_t status_rows_ = 0; ///< that are on the screen
+    std::string first_line_;      ///< still to be written
     std::string earlier_;
     std::ofstream file_;
   };

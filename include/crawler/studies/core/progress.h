@@ -1,43 +1,124 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/clock.h>
 #include <crawler/output/observer.h>
 #include <crawler/studies/core/log.h>
 
-#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace crawler
 {
-  /// A line every few seconds of the pilot runs that choose the numerics.
-  class PilotProgress
+  class Kymograph;
+
+  /// "0.83 ms", "83 s", "12 min", "3.4 h", "2.1 days".
+  std::string
+  duration_in_words(double seconds);
+
+  /// How far a piece of work is, as a bar in place on a terminal. Where there is none, its owners write lines.
+  class ProgressBar
   {
   public:
-    explicit PilotProgress(Log &log);
+    explicit ProgressBar(Log &log);
+    ProgressBar(const ProgressBar &) = delete;
+    /// Takes the bar away.
+    ~ProgressBar();
 
-    /// To be called after every step of a pilot.
+    /// Whether there is a bar, and the last one is old enough to be drawn anew.
+    bool
+    is_due() const;
+
+    /// @p done from 0 to 1, with the time left if that is known; without it, the time that went by. @p text stands
+    /// behind the bar, @p picture above it.
+    void
+    show(std::optional<double> done, const std::string &text, const std::vector<std::string> &picture = {});
+
+    /// Seconds since the beginning.
+    double
+    seconds() const
+    {
+      return now() - start_;
+    }
+
+  private:
+    Log &log_;
+    const double start_ = now();
+    double last_        = now();
+  };
+
+  /// Of work whose length is not known, such as the pilot runs that choose the numerics: a bar that moves, or a line
+  /// every few seconds.
+  class WaitProgress
+  {
+  public:
+    /// @p what: "pilot runs choose mesh and time steps".
+    WaitProgress(Log &log, std::string what);
+
+    /// To be called after every step of the work.
     void
     step();
 
   private:
-    using Clock                   = std::chrono::steady_clock;
-    static constexpr double every = 3.; ///< [s]
     Log &log_;
-    const Clock::time_point start_;
-    double next_ = every;
+    const std::string what_;
+    ProgressBar bar_;
+    double next_line_; ///< [s]
   };
 
-  /// A line at every tenth of the duration.
-  class Progress : public Observer
+  inline constexpr const char *pilot_runs = "pilot runs choose mesh and time steps";
+
+  /// Of a run: a bar, with the picture of a kymograph if that is given, or a line at every tenth of the duration.
+  class RunProgress : public Observer
   {
   public:
-    Progress(Log &log, const Scene &scene);
+    /// @p watched: collected by another observer, which comes before this one. @p n_rows: that it will have.
+    RunProgress(Log &log, const Scene &scene, const Kymograph *watched, std::size_t n_rows);
 
     void
     observe(const Snapshot &snapshot) override;
 
+    /// The picture stays.
+    void
+    end() override;
+
   private:
     Log &log_;
     const double end_time_, length_;
+    const Kymograph *const watched_;
+    const std::size_t n_rows_;
+    ProgressBar bar_;
     unsigned int next_tenth_ = 1;
+  };
+
+  /// Leaves the picture of a kymograph on the terminal (text_kymograph.h).
+  void
+  watch(const Kymograph &kymograph, std::size_t n_times, Log &log);
+
+  /// Of a study of many runs: a bar, or a line every few seconds, with parts done, speed, and time left.
+  class StudyProgress
+  {
+  public:
+    /// @p parts names the @p n_parts parts, as "points".
+    StudyProgress(Log &log, unsigned long n_parts, std::string parts);
+
+    /// Whether report() would show anything.
+    bool
+    is_due() const;
+
+    /// @p remark stands at the end of the line.
+    void
+    report(unsigned long done, const std::string &remark = "");
+
+  private:
+    bool
+    is_line_due() const;
+
+    Log &log_;
+    const unsigned long n_parts_;
+    const std::string parts_;
+    ProgressBar bar_;
+    double last_line_ = now();
   };
 } // namespace crawler

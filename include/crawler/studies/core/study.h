@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/clock.h>
 #include <crawler/studies/core/log.h>
 
 #include <mpi.h>
@@ -15,33 +14,6 @@
 namespace crawler
 {
   /// What the commands have in common that compute many runs.
-
-  /// "0.83 ms", "83 s", "12 min", "3.4 h", "2.1 days".
-  std::string
-  duration_in_words(double seconds);
-
-  /// A line every few seconds at most: parts done, speed, time left.
-  class StudyProgress
-  {
-  public:
-    /// @p parts names the @p n_parts parts, as "points".
-    StudyProgress(Log &log, unsigned long n_parts, std::string parts);
-
-    /// Whether report() would write.
-    bool
-    is_due() const;
-
-    /// @p remark stands at the end of the line.
-    void
-    report(unsigned long done, const std::string &remark = "");
-
-  private:
-    Log &log_;
-    const unsigned long n_parts_;
-    const std::string parts_;
-    const double start_ = now();
-    double last_        = now();
-  };
 
   /// A number without common divisor with @p n, near the golden section of it: its multiples modulo n visit all of n
   /// parts, spread out from the beginning. So the time left is known early, and a study that is stopped is a coarse

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI
+{
+  class App;
+}
+
+namespace crawler
+{
+  /// "bash", "zsh".
+  std::vector<std::string>
+  completion_shells();
+
+  /// crawler completion: prints a script by which @p shell completes commands, options, files and the names of entries.
+  /// Throws InputError if it is another shell.
+  void
+  print_completion(const CLI::App &app, const std::string &shell);
+} // namespace crawler

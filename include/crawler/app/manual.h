@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+namespace CLI
+{
+  class App;
+}
+
+namespace crawler
+{
+  /// crawler man: prints the manual page, for man(1).
+  void
+  print_manual(const CLI::App &app);
+} // namespace crawler

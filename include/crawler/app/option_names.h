@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// All commands of the program, in the order of the help.
+  std::vector<const CLI::App *>
+  all_commands(const CLI::App &app);
+
+  /// The names of an option as they are typed: "--set", "-h".
+  std::vector<std::string>
+  typed_names(const CLI::Option &option);
+} // namespace crawler

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI
+{
+  class App;
+  class ParseError;
+} // namespace CLI
+
+namespace crawler
+{
+  /// Throws InputError unless the first argument is a command or an option.
+  void
+  require_command(const CLI::App &app, const std::vector<std::string> &arguments);
+
+  /// What is wrong with the arguments, in a sentence; CLI11 knows less.
+  std::string
+  usage_error(const CLI::ParseError &error, const CLI::App &app, const std::vector<std::string> &arguments);
+} // namespace crawler

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/app/check.h>
+#include <crawler/app/commands.h>
+#include <crawler/app/completion.h>
+#include <crawler/app/help_texts.h>
+#include <crawler/app/manual.h>
+#include <crawler/app/parameter_listing.h>
+#include <crawler/app/plot.h>
+#include <crawler/app/templates.h>
+#include <crawler/app/usage_errors.h>
+#include <crawler/base/communication.h>
+#include <crawler/base/versions.h>
+#include <crawler/studies/atlas/atlas.h>
+#include <crawler/studies/optimize/optimize.h>
+#include <crawler/studies/report/report.h>
+#include <crawler/studies/run/run.h>
+#include <crawler/studies/sweep/sweep.h>
+#include <crawler/studies/tradeoff/tradeoff.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+
+namespace crawler
+{
+  namespace
+  {
+    /// A command that reads a parameter file, or the folder that another one has made.
+    struct Command
+    {
+      const char *name, *description;
+      ExitCode (*function)(MPI_Comm, const CommandOptions &);
+      bool writes, is_study, takes_petsc_options; ///< --overwrite and --quiet; --resume
+    };
+    constexpr Command commands[] = {
+      {"run",
+       "Runs the crawler of a parameter file",
+       run,
+       /*writes=*/true,
+       /*is_study=*/false,
+       /*takes_petsc_options=*/true},
+      {"check",
+       "Says what run would do with a parameter file; runs and writes nothing",
+       check,
+       /*writes=*/false,
+       /*is_study=*/false,
+       /*takes_petsc_options=*/true},
+      {"atlas",
+       "Maps two entries of a parameter file: runs every point in all forms and compares",
+       atlas,
+       /*writes=*/true,
+       /*is_study=*/true,
+       /*takes_petsc_options=*/false},
+      {"tradeoff",
+       "Measures cost against error of many settings on the scene of a parameter file",
+       tradeoff,
+       /*writes=*/true,
+       /*is_study=*/true,
+       /*takes_petsc_options=*/false},
+      {"optimize",
+       "Looks for the best gait of section Optimize of a parameter file",
+       optimize,
+       /*writes=*/true,
+       /*is_study=*/true,
+       /*takes_petsc_options=*/false},
+      {"sweep",
+       "Runs all points of section Sweep of a parameter file and makes a table of them",
+       sweep,
+       /*writes=*/true,
+       /*is_study=*/true,
+       /*takes_petsc_options=*/true},
+      {"report",
+       "Makes a page for browsers, report.html, of the output folder of any other command",
+       report,
+       /*writes=*/false,
+       /*is_study=*/false,
+       /*takes_petsc_options=*/false}};
+
+    const Command *
+    find_command(const std::string &name)
+    {
+      const auto *const found =
+        std::find_if(std::begin(commands), std::end(commands), [&](const Command &c) { return c.name == name; });
+      return found == std::end(commands) ? nullptr : found;
+    }
+
+    std::string
+    version_text()
+    {
+      std::string text;
+      for (const auto &[name, version] : versions())
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, version);
+      return text;
+    }
+
+    void
+    add_command(const Command &command, CLI::App &app, CommandOptions &options)
+    {
+      CLI::App *own = app.add_subcommand(command.name, command.description);
+      if (command.function == report)
+      {
+        own->add_option("DIR", options.file, "Output folder of a run, sweep, atlas, tradeoff or optimisation")
+          ->required();
+        own->add_flag("--quiet", options.quiet, "Prints nothing but errors");
+        return;
+      }
+      own->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();
+      own->add_option("--set", options.overrides, "Sets an entry: \"Section/Entry=value\" (repeatable)")
+        ->allow_extra_args(false)
+        ->take_all()
+        ->option_text("ENTRY=VALUE");
+      own->add_option("--output", options.output, "Output folder (default: output-NAME for NAME.prm)")
+        ->option_text("DIR");
+      if (command.is_study)
+        own->add_flag("--resume",
+                      options.resume,
+                      fmt::format("Goes on with {} {} that was stopped or killed",
+                                  command.name[0] == 'a' || command.name[0] == 'o' ? "an" : "a",
+                                  command.name));
+      if (command.function == optimize)
+        own->add_flag("--check-gradient",
+                      options.check_gradient,
+                      "Compares the derivatives at the start with differences, and optimises nothing");
+      if (command.function == sweep)
+        own->add_flag("--strict", options.strict, "Exit code 8 if the row of a point failed");
+      if (command.writes)
+      {
+        own->add_flag("--overwrite", options.overwrite, "Replaces the results in the output folder");
+        own->add_flag("--quiet", options.quiet, "Prints nothing but errors");
+      }
+      if (command.function == run)
+        own->add_flag(
+          "--watch", options.watch, "Shows the stretch along the body while the run goes on, on a terminal");
+    }
+  } // namespace
+
+  Commands::Commands()
+    : app_("Crawler: the limbless crawler, a body that pushes itself along by waves of active stress.", "crawler")
+  {
+    app_.set_version_flag("--version", version_text());
+    app_.require_subcommand(1);
+    for (const Command &command : commands)
+      add_command(command, app_, options_);
+    add_own_commands();
+    app_.footer([]() { return help_footer(); });
+    for (CLI::App *command : app_.get_subcommands([](CLI::App *) { return true; }))
+      command->footer(help_footer(command->get_name()));
+  }
+
+  void
+  Commands::add_own_commands()
+  {
+    CLI::App *plot = app_.add_subcommand("plot", "Draws the output folder of a run or study into it");
+    plot->set_help_flag();
+    plot->add_option("DIR", options_.file, "Output folder of a run or study, or the table of a calibration");
+    plot->add_option("--kind", kind_, fmt::format("{} (default: what fits)", fmt::join(plot_kinds(), ", ")))
+      ->option_text("KIND");
+    plot->add_flag("-h,--help", plot_help_, "Help; behind DIR that of the script, which takes all other options");
+    plot->allow_extras();
+
+    CLI::App *parameters = app_.add_subcommand("parameters", "Prints every entry of the parameter file");
+    parameters->add_option("SECTION", name_, "Only this section, or this entry: \"Active stress/Pulse\"");
+    parameters->add_option("--format", format_, fmt::format("{}", fmt::join(parameter_formats(), ", ")))
+      ->option_text("FORMAT");
+
+    CLI::App *init = app_.add_subcommand("init", "Prints a parameter file to begin with");
+    init->add_option("TEMPLATE", name_, fmt::format("{}", fmt::join(template_names(), ", ")))->required();
+    init->add_option("--output", options_.output, "Writes it to this file, which must be new")->option_text("FILE");
+
+    CLI::App *completion = app_.add_subcommand("completion", "Prints what lets a shell complete this command line");
+    completion->add_option("SHELL", name_, fmt::format("{}", fmt::join(completion_shells(), ", ")))->required();
+
+    app_.add_subcommand("man", "Prints the manual page: crawler man | man -l -");
+  }
+
+  const std::string &
+  Commands::chosen() const
+  {
+    return app_.get_subcommands().front()->get_name();
+  }
+
+  bool
+  Commands::parse(const std::vector<std::string> &arguments, const std::vector<std::string> &petsc_options)
+  {
+    options_.command_line  = fmt::format("crawler {}", fmt::join(arguments, " "));
+    options_.petsc_options = fmt::format("{}", fmt::join(petsc_options, " "));
+    if (!petsc_options.empty())
+      options_.command_line += " -- " + options_.petsc_options;
+    require_command(app_, arguments);
+    if (!petsc_options.empty() && !petsc_options[0].starts_with("-"))
+      throw InputError("behind \"--\" stands \"" + petsc_options[0] +
+                       "\", but a PETSc option is expected, like -ts_monitor");
+    try
+    {
+      app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    }
+    catch (const CLI::Success &success)
+    {
+      if (rank_of_launcher() == 0)
+        app_.exit(success);
+      return false;
+    }
+    catch (const CLI::ParseError &error)
+    {
+      throw InputError(usage_error(error, app_, arguments) + " (crawler --help tells the commands and options)");
+    }
+    const CLI::App *const command = app_.get_subcommands().front();
+    if (command->get_option_no_throw("--output") != nullptr && command->count("--output") > 0 &&
+        options_.output.empty())
+      throw InputError(fmt::format("behind \"--output\" stands \"\", but the name of a {} is expected",
+                                   needs_mpi() ? "folder" : "file"));
+    if (!petsc_options.empty())
+    {
+      check_petsc_options(petsc_options);
+      // they are for PETSc's objects, unless the user wants something else
+      options_.overrides.insert(options_.overrides.begin(), "Time/Engine=petsc");
+    }
+    return true;
+  }
+
+  void
+  Commands::check_petsc_options(const std::vector<std::string> &petsc_options) const
+  {
+    const Command *const command = find_command(chosen());
+    if (command == nullptr || !command->takes_petsc_options)
+      throw InputError(fmt::format("behind \"--\" stands \"{}\", but the command \"{}\" has no use for PETSc options",
+                                   petsc_options[0],
+                                   chosen()));
+  }
+
+  bool
+  Commands::needs_mpi() const
+  {
+    return find_command(chosen()) != nullptr;
+  }
+
+  void
+  Commands::run_alone()
+  {
+    const std::string &name = chosen();
+    if (name == "parameters")
+      print_parameters(format_, name_);
+    else if (name == "init")
+      print_template(name_, options_.output);
+    else if (name == "completion")
+      print_completion(app_, name_);
+    else if (name == "man")
+      print_manual(app_);
+    else if (plot_help_ && options_.file.empty())
+      std::cout << app_.get_subcommands().front()->help();
+    else
+    {
+      std::vector<std::string> others = app_.get_subcommands().front()->remaining();
+      if (plot_help_)
+        others.emplace_back("--help");
+      plot(options_.file, kind_, others);
+    }
+  }
+
+  ExitCode
+  Commands::run(MPI_Comm communicator) const
+  {
+    return find_command(chosen())->function(communicator, options_);
+  }
+} // namespace crawler

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/app/help_texts.h>
+#include <crawler/app/texts.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+namespace crawler
+{
+  namespace
+  {
+    /// A word of the command line for each example: which command it belongs to is its second word or, behind mpirun -n
+    /// N, its fifth.
+    const std::vector<Example> all_examples = {
+      {"crawler init earthworm > worm.prm", "a parameter file to begin with"},
+      {"crawler init table --output my.prm", "the same into a file that is new"},
+      {"crawler check worm.prm", "what would be computed, and whether all entries are right"},
+      {"crawler run worm.prm", "one run, with its files in output-worm/"},
+      {"crawler run worm.prm --watch", "the same with a picture of the stretch while it runs"},
+      {"crawler run worm.prm --set \"Body/Length=12\" --output longer", "another value, another folder"},
+      {"crawler run worm.prm -- -ts_monitor", "options for PETSc stand behind a lone \"--\""},
+      {"mpirun -n 2 crawler sweep sweep.prm", "a table of many runs, shared by two processes"},
+      {"crawler sweep sweep.prm --resume", "goes on with one that was stopped"},
+      {"crawler optimize gait.prm", "the best gait within limits"},
+      {"crawler atlas map.prm", "a map over two entries, every answer cross-checked"},
+      {"crawler tradeoff scene.prm", "what accuracy costs on this scene"},
+      {"crawler plot output-worm", "a picture into the folder"},
+      {"crawler report output-worm", "a page for browsers into the folder"},
+      {"crawler parameters Body", "one section of the parameter file, every entry explained"},
+      {"crawler parameters --format schema", "types, ranges and defaults for other programs"},
+      {"source <(crawler completion bash)", "the Tab key completes commands, options and entries"},
+      {"crawler man | man -l -", "the manual page"}};
+
+    std::string
+    command_of(const Example &example)
+    {
+      const std::size_t start = example.command.find("crawler ") + 8;
+      return example.command.substr(start, example.command.find(' ', start) - start);
+    }
+
+    std::string
+    in_columns(const std::vector<Example> &examples)
+    {
+      std::size_t width = 0;
+      for (const Example &example : examples)
+        width = std::max(width, example.command.size());
+      std::string text = "Examples:\n";
+      for (const Example &example : examples)
+        text += fmt::format("  {:{}}  {}\n", example.command, width, example.meaning);
+      return text;
+    }
+  } // namespace
+
+  std::vector<Example>
+  examples_of(const std::string &command)
+  {
+    const std::vector<std::string> first_steps = {"init", "check", "run", "sweep", "plot", "parameters"};
+    std::vector<Example> list;
+    for (const Example &example : all_examples)
+    {
+      const std::string own = command_of(example);
+      const bool is_first = std::ranges::none_of(list, [&](const Example &other) { return command_of(other) == own; });
+      if (command.empty() ? is_first && std::ranges::find(first_steps, own) != first_steps.end() : own == command)
+        list.push_back(example);
+    }
+    return list;
+  }
+
+  std::vector<ExitCodeMeaning>
+  exit_code_meanings()
+  {
+    std::vector<ExitCodeMeaning> list;
+    std::istringstream lines{std::string(exit_codes_section)};
+    for (std::string line; std::getline(lines, line);)
+      if (line.size() > 6 && line.starts_with("| ") && std::isdigit(static_cast<unsigned char>(line[2])))
+      {
+        const std::size_t first = line.find(" | "), second = line.find(" | ", first + 3);
+        list.push_back({line.substr(2, first - 2), line.substr(first + 3, second - first - 3)});
+      }
+    return list;
+  }
+
+  std::string
+  help_footer()
+  {
+    std::string text = in_columns(examples_of()) + "\nExit codes:\n";
+    for (const ExitCodeMeaning &one : exit_code_meanings())
+      text += fmt::format("  {}  {}\n", one.code, one.meaning);
+    return text + "\nOptions for PETSc go behind a lone \"--\", e.g. crawler run FILE.prm -- -ts_monitor\n"
+                  "crawler COMMAND --help tells the options of a command, crawler man has it all.";
+  }
+
+  std::string
+  help_footer(const std::string &command)
+  {
+    const auto examples = examples_of(command);
+    return examples.empty() ? "" : in_columns(examples);
+  }
+} // namespace crawler

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/app/parameter_listing.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/parameters/entry_lists.h>
+#include <crawler/parameters/parameter_file.h>
+#include <crawler/studies/core/parameters.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <iostream>
+
+namespace crawler
+{
+  namespace
+  {
+    struct Format
+    {
+      const char *name;
+      std::function<void(const Declarations &, std::ostream &)> print;
+    };
+
+    const std::vector<Format> &
+    formats()
+    {
+      static const std::vector<Format> list = {{"prm", &Declarations::print_prm},
+                                               {"json", print_json},
+                                               {"markdown", print_markdown},
+                                               {"schema", print_schema},
+                                               {"xml", &Declarations::print_xml}};
+      return list;
+    }
+
+    /// All entries, with one term of a sum, to show its entries.
+    void
+    declare(Parameters &parameters, Declarations &declarations)
+    {
+      parameters.count_terms(ParameterFile::from_text("subsection Active stress\nsubsection Sum\nsubsection Term 1\n"
+                                                      "end\nend\nend\n",
+                                                      "one term"));
+      parameters.add_parameters(declarations);
+    }
+  } // namespace
+
+  std::vector<std::string>
+  parameter_formats()
+  {
+    std::vector<std::string> names;
+    for (const Format &format : formats())
+      names.emplace_back(format.name);
+    return names;
+  }
+
+  void
+  print_parameters(const std::string &format, const std::string &section)
+  {
+    const auto found = std::ranges::find(formats(), format, [](const Format &one) { return std::string(one.name); });
+    if (found == formats().end())
+      throw InputError(
+        fmt::format("\"--format\" is \"{}\", but {} is expected", format, quoted_list(parameter_formats())));
+    Parameters parameters;
+    Declarations declarations(section.empty() ? "" : normal_path(section));
+    declare(parameters, declarations);
+    if (declarations.entries().empty())
+      declarations.require_section(normal_path(section));
+    found->print(declarations, std::cout);
+  }
+
+  std::vector<std::string>
+  entry_names()
+  {
+    Parameters parameters;
+    Declarations declarations;
+    declare(parameters, declarations);
+    std::vector<std::string> names;
+    for (const EntryInfo &entry : declarations.entries())
+      names.push_back(entry.path);
+    return names;
+  }
+} // namespace crawler

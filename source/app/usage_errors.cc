@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/app/option_names.h>
+#include <crawler/app/usage_errors.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/base/nearest_name.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace crawler
+{
+  namespace
+  {
+    /// What stands behind a command without a name of its own.
+    struct Argument
+    {
+      const char *name, *meaning, *usage;
+    };
+    constexpr Argument arguments_of_commands[] = {{"FILE", "parameter file", "FILE.prm"},
+                                                  {"DIR", "folder", "DIR"},
+                                                  {"TEMPLATE", "template", "TEMPLATE"},
+                                                  {"SHELL", "shell", "SHELL"},
+                                                  {"SECTION", "section", "SECTION"}};
+
+    /// Whether @p words, the first of which is the command, are too few or too many. Empty if they are not.
+    std::string
+    count_error(const CLI::App &command, const std::vector<std::string> &words)
+    {
+      const Argument *const argument = std::ranges::find_if(
+        arguments_of_commands, [&](const Argument &one) { return command.get_option_no_throw(one.name) != nullptr; });
+      const bool has_one = argument != std::end(arguments_of_commands);
+      if (words.size() == 1 && has_one)
+        return fmt::format(
+          "the {} is missing; \"crawler {} {}\" is expected", argument->meaning, command.get_name(), argument->usage);
+      const std::size_t most = has_one ? 2 : 1;
+      if (words.size() > most)
+        return fmt::format("found \"{}\" behind \"{}\", but {} is expected",
+                           words[most],
+                           words[most - 1],
+                           has_one ? fmt::format("one {}", argument->meaning) : "nothing");
+      return "";
+    }
+  } // namespace
+
+  void
+  require_command(const CLI::App &app, const std::vector<std::string> &arguments)
+  {
+    std::vector<std::string> names;
+    for (const CLI::App *command : all_commands(app))
+      names.push_back(command->get_name());
+    if (arguments.empty())
+      throw InputError("the command is missing; " + quoted_list(names) + " is expected (see crawler --help)");
+    if (arguments[0].starts_with("-") || std::find(names.begin(), names.end(), arguments[0]) != names.end())
+      return;
+    if (arguments[0].ends_with(".prm"))
+      throw InputError(
+        fmt::format("the command is missing before \"{0}\"; did you mean \"crawler run {0}\"?", arguments[0]));
+    const auto near = nearest_names(arguments[0], names, 1);
+    throw InputError(fmt::format("unknown command \"{}\"; {} is expected{}",
+                                 arguments[0],
+                                 quoted_list(names),
+                                 near.empty() ? "" : "; the nearest is " + quoted_list(near)));
+  }
+
+  std::string
+  usage_error(const CLI::ParseError &error, const CLI::App &app, const std::vector<std::string> &arguments)
+  {
+    const bool has_command  = !app.get_subcommands().empty();
+    const CLI::App *command = has_command ? app.get_subcommands().front() : &app;
+    std::vector<std::string> known;
+    for (const CLI::Option *option : command->get_options())
+      for (const std::string &name : typed_names(*option))
+        known.push_back(name);
+    known.push_back("-h");
+    std::vector<std::string> words; // without the values of options
+    for (std::size_t i = 0; i < arguments.size(); ++i)
+    {
+      const std::string name = arguments[i].substr(0, arguments[i].find('='));
+      if (!name.starts_with("-") || name == "-")
+      {
+        words.push_back(name);
+        continue;
+      }
+      const CLI::Option *option = name == "-h" ? nullptr : command->get_option_no_throw(name);
+      if (option == nullptr && name != "-h")
+      {
+        const auto near = nearest_names(name, known, 1);
+        return fmt::format("unknown option \"{}\"{}{}",
+                           name,
+                           has_command ? fmt::format(" of the command \"{}\"", command->get_name()) : "",
+                           near.empty() ? "" : "; the nearest is " + quoted_list(near));
+      }
+      const bool has_value = option != nullptr && option->get_items_expected_max() > 0;
+      if (has_command && words.empty())
+        return fmt::format(
+          "\"{}\" stands before the command \"{}\", but behind it is expected", name, command->get_name());
+      if (has_value && arguments[i] == name + "=")
+        return fmt::format("found \"{}\", but a value is expected behind it", arguments[i]);
+      if (!has_value && name != arguments[i])
+        return fmt::format("found \"{}\", but \"{}\" without a value is expected", arguments[i], name);
+      if (has_value && name == arguments[i] && ++i == arguments.size())
+        return fmt::format("\"{}\" is the last word, but a value is expected behind it", name);
+      if (has_value && name != "--set" && option->count() > 1)
+        return fmt::format("\"{}\" is there {} times, but once is expected", name, option->count());
+    }
+    if (const std::string problem = has_command ? count_error(*command, words) : ""; !problem.empty())
+      return problem;
+    return error.what();
+  }
+} // namespace crawler

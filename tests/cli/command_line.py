@@ -1,0 +1,312 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Commands that compute nothing: templates, lists of entries, completion, manual page, help, and their errors.
+
+    python3 command_line.py PATH_TO_CRAWLER PATH_TO_SHELL_FILES MPIEXEC...
+"""
+import json
+import os
+import pathlib
+import pty
+import re
+import select
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree
+
+import jsonschema
+
+PROGRAM, SHELL_FILES, MPIEXEC = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3:]
+PRM = pathlib.Path(__file__).resolve().parents[2] / "prm"
+# MPI_Init ends a program in which Open MPI is told to use what does not exist.
+BROKEN_MPI = {"OMPI_MCA_pml": "none_such", "OMPI_MCA_btl": "none_such"}
+failures = []
+
+
+def check(condition, what):
+    """Prints one line and keeps failures."""
+    print(("ok     " if condition else "FAILED ") + what)
+    if not condition:
+        failures.append(what)
+
+
+def crawler(*arguments, folder=None, launcher=(), environment=None, **more):
+    """One call of the program."""
+    return subprocess.run([*launcher, PROGRAM, *arguments], cwd=folder, capture_output=True, text=True, check=False,
+                          timeout=120, env={**os.environ, **(environment or {})}, **more)
+
+
+def printed(*arguments):
+    """What a call prints that must succeed."""
+    done = crawler(*arguments)
+    check(done.returncode == 0 and done.stderr == "", f"crawler {' '.join(arguments)} succeeds")
+    return done.stdout
+
+
+def templates(folder):
+    """Each template is short and has comments, is in order, and runs."""
+    names = re.search(r"TEMPLATE TEXT REQUIRED\s+(.*)", printed("init", "--help"))[1].split(", ")
+    check({"robot", "earthworm", "snail", "larva", "table", "samples", "sweep", "optimize"} == set(names),
+          "the help names all templates")
+    (folder / "samples.csv").write_text(printed("init", "samples"))
+    for name in names:
+        text = printed("init", name)
+        if name == "samples":
+            continue
+        check(10 <= len(text.splitlines()) <= 24 and "# " in text and "Expect" not in text, f"{name} is short")
+        (folder / f"{name}.prm").write_text(text)
+        done = crawler("check", f"{name}.prm", folder=folder)
+        check(done.returncode == 0 and "is in order" in done.stdout, f"{name} is in order {done.stderr}")
+        command = name if name in ("sweep", "optimize") else "run"
+        quick = ["--set", "Output/Number of snapshots=2"] if command == "run" else []
+        done = crawler(command, f"{name}.prm", *quick, folder=folder)
+        check(done.returncode == 0 and (folder / f"output-{name}" / "summary.json").exists(),
+              f"{name} runs {done.stderr}")
+    check(crawler("init", "snail", "--output", "my.prm", folder=folder).returncode == 0 and
+          (folder / "my.prm").read_text() == (folder / "snail.prm").read_text(), "init --output writes the template")
+    again = crawler("init", "robot", "--output", "my.prm", folder=folder)
+    check(again.returncode == 2 and '"my.prm" is there already' in again.stderr and
+          (folder / "my.prm").read_text() == (folder / "snail.prm").read_text(), "init never overwrites a file")
+    wrong = crawler("init", "robbot")
+    check(wrong.returncode == 2 and 'the nearest is "robot"' in wrong.stderr, "init names the nearest template")
+    check(crawler("init", "robot", "--output", "none/my.prm", folder=folder).returncode == 6,
+          "init says that a file cannot be written")
+
+
+def sections():
+    """One section alone is a part of the list of all, and a parameter file."""
+    whole = printed("parameters").splitlines()
+    body = printed("parameters", "Body").splitlines()
+    check(10 < len(body) < len(whole) / 4 and all(line in whole for line in body) and
+          [line for line in body if line.startswith("subsection")] == ["subsection Body"],
+          "parameters Body prints this section")
+    inner = printed("parameters", "Active stress/Pulse")
+    check("subsection Active stress" in inner and "set Repetition period" in inner and "Duty cycle" not in inner,
+          "parameters prints a section within another one")
+    done = crawler("check", "-", input=inner)
+    check(done.returncode == 0, f"it is a parameter file {done.stderr}")
+    one = json.loads(printed("parameters", "Body/Length", "--format", "json"))
+    check([entry["entry"] for entry in one] == ["Body/Length"], "parameters prints one entry")
+    wrong = crawler("parameters", "Bodi")
+    check(wrong.returncode == 2 and 'unknown section "Bodi"' in wrong.stderr and '"Body"' in wrong.stderr,
+          "parameters names the nearest section")
+
+
+def assignments(text):
+    """[(sections, entry, value)] of a parameter file."""
+    path, found = [], []
+    for line in text.replace("\\\n", " ").splitlines():
+        line = line.split("#")[0].strip()
+        if line.startswith("subsection "):
+            path.append(line.removeprefix("subsection ").strip())
+        elif line == "end":
+            path.pop()
+        elif line.startswith("set "):
+            entry, value = line.removeprefix("set ").split("=", 1)
+            found.append((list(path), entry.strip(), value.strip()))
+    return found
+
+
+def place_in(schema, section):
+    """The schema of a section within another one."""
+    for pattern, inner in schema.get("patternProperties", {}).items():
+        if re.search(pattern, section):
+            return inner
+    return schema["properties"][section]
+
+
+def converted(value, schema):
+    """A value of a parameter file as the schema wants it."""
+    if "anyOf" in schema:
+        return value if value == "automatic" else converted(value, schema["anyOf"][0])
+    if schema.get("type") in ("number", "integer"):
+        return json.loads(value) if re.fullmatch(r"-?\d+", value) else float(value)
+    if schema.get("type") == "array":
+        return [float(number) for number in value.split(",")] if value else []
+    return value == "true" if schema.get("type") == "boolean" else value
+
+
+def schema():
+    """All files of the repository satisfy the schema, and wrong values do not."""
+    rules = json.loads(printed("parameters", "--format", "schema"))
+    jsonschema.Draft202012Validator.check_schema(rules)
+    validator = jsonschema.Draft202012Validator(rules)
+
+    def as_json(text):
+        root = {}
+        for path, entry, value in assignments(text):
+            place, inner = root, rules
+            for section in path:
+                place, inner = place.setdefault(section, {}), place_in(inner, section)
+            place[entry] = converted(value, inner["properties"][entry])
+        return root
+
+    texts = {str(path.relative_to(PRM)): path.read_text() for path in sorted(PRM.rglob("*.prm"))}
+    check(len(texts) > 30, "there are files")
+    texts["default.prm"] = printed("parameters")
+    for name, text in texts.items():
+        errors = [error.message for error in validator.iter_errors(as_json(text))]
+        check(not errors, f"{name} satisfies the schema {errors[:3]}")
+    for text, what in (("subsection Body\nset Length = -1\nend", "a range"), ("set Model = none", "a choice"),
+                       ("subsection Time\nset Order = 2.5\nend", "a type"), ("set Accuracy = 0", "an open range")):
+        check(not validator.is_valid(as_json(text)), f"the schema knows {what}")
+    check(not validator.is_valid({"Body": {"Lenght": 1}}), "the schema knows the names")
+    listed = json.loads(printed("parameters", "--format", "json"))
+    for entry in listed:
+        inner = rules
+        for section in entry["entry"].split("/")[:-1]:
+            inner = place_in(inner, section)
+        inner = inner["properties"][entry["entry"].split("/")[-1]]
+        check(inner["description"] == entry["documentation"] and inner.get("unit", "") == entry["unit"] and
+              converted(entry["default"], inner) == inner["default"] and
+              jsonschema.Draft202012Validator(inner).is_valid(inner["default"]), f"{entry['entry']} is in the schema")
+
+
+def xml_of_dealii():
+    """What parameter_gui reads; tests/cli/commands_test.cc has deal.II itself read it."""
+    root = xml.etree.ElementTree.fromstring(printed("parameters", "Body", "--format", "xml"))
+    length = root.find("Body/Length")
+    check(root.tag == "ParameterHandler" and length.find("value").text == "1" and
+          length.find("pattern_description").text.startswith("[Double 0"), "XML has values and deal.II's patterns")
+    check(root.find("Time") is None, "XML of one section has no other")
+
+
+def bash(folder, *words):
+    """What the Tab key gives behind these words."""
+    script = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _crawler; '
+              'printf "%s\\n" "${COMPREPLY[@]}"')
+    done = subprocess.run(["bash", "-c", script, "bash", SHELL_FILES / "crawler", "crawler", *words], cwd=folder,
+                          capture_output=True, text=True, check=False, timeout=20)
+    check(done.stderr == "", f"bash completes {words} {done.stderr}")
+    return [line for line in done.stdout.splitlines() if line]
+
+
+def zsh(folder, typed):
+    """What a zsh in a pseudo terminal shows for this line and the Tab key."""
+    main, inner = pty.openpty()
+    shell = subprocess.Popen(["zsh", "-f", "-i"], cwd=folder, stdin=inner, stdout=inner, stderr=inner,
+                             start_new_session=True, env={**os.environ, "TERM": "dumb", "ZDOTDIR": str(folder)})
+    os.close(inner)
+
+    def read_until(mark, seconds):
+        text, end = "", time.monotonic() + seconds
+        while mark not in text and select.select([main], [], [], max(0., end - time.monotonic()))[0]:
+            text += os.read(main, 65536).decode("utf-8", errors="replace")
+        return text
+
+    os.write(main, f"unsetopt zle_bracketed_paste; autoload -U compinit; compinit -D -u; source {SHELL_FILES}/_crawler; "
+                   "echo rea''dy\n".encode())
+    read_until("ready", 20)
+    os.write(main, f"{typed}\t".encode())
+    text = read_until("no such text", 2)
+    shell.kill()
+    shell.wait()
+    os.close(main)
+    return text
+
+
+def completion(folder):
+    """The files that are installed: commands, options, files, entries; quoted or not."""
+    for shell, name in (("bash", "crawler"), ("zsh", "_crawler")):
+        check(printed("completion", shell) == (SHELL_FILES / name).read_text(), f"the file for {shell} is up to date")
+    (folder / "scene.prm").touch()
+    (folder / "notes.txt").touch()
+    (folder / "inner").mkdir()
+    check(bash(folder, "s") == ["sweep"], "bash completes commands")
+    check({"run", "plot", "init", "--version"} <= set(bash(folder, "")), "bash lists commands")
+    check(set(bash(folder, "sweep", "--s")) == {"--set", "--strict"}, "bash completes the options of a command")
+    check(bash(folder, "run", "") == ["inner", "scene.prm"], "bash completes parameter files and folders")
+    check(bash(folder, "report", "") == ["inner"], "bash completes folders")
+    check(bash(folder, "run", "scene.prm", "--set", "Body/Le") == ["Body/Length="], "bash completes entries")
+    check(bash(folder, "run", "--set", '"Active stress/Pulse/Wid') == ["Active stress/Pulse/Width="],
+          "bash completes entries in quotes")
+    check(bash(folder, "run", "--set", "Active\\ stress/Pulse/Wid") == ["Active\\ stress/Pulse/Width="],
+          "bash completes entries with blanks")
+    check(bash(folder, "init", "r") == ["robot"] and bash(folder, "parameters", "--format", "s") == ["schema"] and
+          bash(folder, "plot", "--kind", "tr") == ["tradeoff"] and bash(folder, "parameters", "Bo") == ["Body"],
+          "bash completes words")
+    check("optimize" in zsh(folder, "crawler opt"), "zsh completes commands")
+    check("Body/Length=" in zsh(folder, "crawler run scene.prm --set Body/Le"), "zsh completes entries")
+    check("scene.prm" in zsh(folder, "crawler check sc"), "zsh completes parameter files")
+    wrong = crawler("completion", "fish")
+    check(wrong.returncode == 2 and '"bash" or "zsh"' in wrong.stderr, "other shells are refused")
+
+
+def manual():
+    """The manual page is well formed and has all commands, options and exit codes."""
+    page = printed("man")
+    check(page == (SHELL_FILES / "crawler.1").read_text(), "the page that is installed is up to date")
+    done = subprocess.run(["groff", "-man", "-Tascii", "-ww", "-P-cbou"], input=page, capture_output=True, text=True,
+                          check=False, timeout=20)
+    check(done.returncode == 0 and done.stderr == "", f"groff sets the page {done.stderr}")
+    words = " ".join(done.stdout.split())
+    for word in ("crawler run FILE", "--set ENTRY=VALUE", "crawler parameters [SECTION]", "EXIT STATUS",
+                 "self-check failed", "crawler init earthworm > worm.prm", "--check-gradient"):
+        check(word in words, f"the page has {word}")
+
+
+def helps():
+    """Help has examples and the exit codes of the user guide."""
+    text = printed("--help")
+    guide = (PRM.parent / "doc/user_guide.md").read_text()
+    rows = re.findall(r"^\| (\d) \| (.*?) \|", guide.split("\n## Exit codes\n")[1].split("\n## ")[0], re.M)
+    check(len(rows) == 8 and all(f"  {code}  {meaning}\n" in text for code, meaning in rows), "help has all exit codes")
+    check("crawler init earthworm > worm.prm" in text, "help has examples")
+    check("crawler sweep sweep.prm --resume" in printed("sweep", "--help"), "the help of a command has its examples")
+
+
+def without_mpi():
+    """What computes nothing does not start MPI; several processes speak once."""
+    for arguments in (["--version"], ["--help"], ["run", "--help"], ["parameters"], ["init", "robot"], ["man"],
+                      ["completion", "zsh"], ["plot", "--help"]):
+        done = crawler(*arguments, environment=BROKEN_MPI)
+        check(done.returncode == 0 and done.stdout and not done.stderr, f"{arguments} starts no MPI {done.stderr}")
+    for arguments in ([], ["runn"], ["run"], ["run", "a.prm", "--sett", "x"], ["init", "x"], ["parameters", "x"]):
+        done = crawler(*arguments, environment=BROKEN_MPI)
+        check(done.returncode == 2 and len(done.stderr.splitlines()) == 1 and done.stderr.startswith("crawler: "),
+              f"the error of {arguments} starts no MPI {done.stderr}")
+    check(crawler("check", "none.prm", environment=BROKEN_MPI).returncode not in (0, 2), "MPI can be broken")
+    if MPIEXEC:
+        two = [*MPIEXEC, "-n", "2"]
+        check(crawler("--version", launcher=two).stdout.count("deal.II") == 1, "two processes print the version once")
+        wrong = crawler("runn", launcher=two)
+        check(wrong.returncode == 2 and wrong.stderr.count("unknown command") == 1, "two processes complain once")
+
+
+def full_disk(folder):
+    """Text that is lost is an error, but not if its reader has left."""
+    prm = str(PRM / "examples/small_wave.prm")
+    for arguments in (["parameters"], ["check", prm], ["--help"], ["--version"], ["man"], ["init", "robot"],
+                      ["run", prm, "--output", str(folder / "full")]):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, check=False,
+                                  timeout=60)
+        check(done.returncode == 6 and len(done.stderr.splitlines()) == 1 and "No space left" in done.stderr,
+              f"{arguments[0]} to a full device: {done.returncode}, {done.stderr.strip()}")
+    check(json.loads((folder / "full/summary.json").read_text())["status"] == "finished", "the results are there")
+    for arguments in (["parameters"], ["run", prm, "--output", str(folder / "left")]):
+        process = subprocess.Popen([PROGRAM, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process.stdout.close()
+        problem = process.stderr.read()
+        check(process.wait(timeout=60) == 0 and problem == "", f"the reader of {arguments[0]} may leave {problem}")
+
+
+def main():
+    """All of it; the exit status says whether something failed."""
+    with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
+        templates(pathlib.Path(first))
+        sections()
+        schema()
+        xml_of_dealii()
+        completion(pathlib.Path(second))
+        manual()
+        helps()
+        without_mpi()
+        full_disk(pathlib.Path(first))
+    sys.exit("\n".join(failures) or 0)
+
+
+if __name__ == "__main__":
+    main()

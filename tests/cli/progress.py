@@ -1,0 +1,192 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How the program shows how far it is: a bar and a kymograph in place on a terminal, lines where there is none.
+
+    python3 progress.py PATH_TO_CRAWLER MPIEXEC...
+
+The program runs in a pseudo terminal; a small terminal of our own follows its control sequences, so that what stands on
+the screen at any time is known.
+"""
+import fcntl
+import os
+import pathlib
+import pty
+import re
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+import termios
+import time
+
+PROGRAM, MPIEXEC = sys.argv[1], sys.argv[2:]
+PRM = pathlib.Path(__file__).resolve().parents[2] / "prm"
+WIDTH = 100
+VERSION = re.compile(r"crawler \d+\.\d+\.\d+ \(revision \S+, deal\.II \S+, PETSc \S+\)")
+BAR = re.compile(r"^[█░]{24} ")
+LEFT = re.compile(r"^[█░]{24} +(\d+) %  \S+ (ms|s|min) left  ")
+failures = []
+
+
+def check(condition, what):
+    """Prints one line and keeps failures."""
+    print(("ok     " if condition else "FAILED ") + what)
+    if not condition:
+        failures.append(what)
+
+
+class Screen:
+    """The lines of a terminal, as far as the program's control sequences go. Any other is an error."""
+
+    def __init__(self):
+        self.rows, self.row, self.column, self.seen = [""], 0, 0, []
+
+    def write(self, text):
+        """Follows the text."""
+        for part in re.findall(r"\x1b\[\d*[A-Za-z]|\r|\n|[^\x1b\r\n]+|\x1b", text):
+            if part == "\n":
+                self.row += 1
+                self.rows += [""] * (self.row + 1 - len(self.rows))
+            elif part == "\r":
+                self.column = 0
+            elif part == "\x1b[K":
+                self.rows[self.row] = self.rows[self.row][:self.column]
+            elif re.fullmatch(r"\x1b\[\d*A", part):
+                self.row -= int(part[2:-1] or 1)
+            else:
+                if part.startswith("\x1b") or self.row < 0:
+                    raise ValueError(f"not expected: {part!r}")
+                line = self.rows[self.row].ljust(self.column)
+                self.rows[self.row] = line[:self.column] + part + line[self.column + len(part):]
+                self.column += len(part)
+        self.seen.append([row for row in self.rows if row])
+
+
+def on_terminal(command, folder, language="C.UTF-8", term="xterm"):
+    """The screen, with all that was seen on it, and the exit code."""
+    main, inner = pty.openpty()
+    fcntl.ioctl(inner, termios.TIOCSWINSZ, struct.pack("HHHH", 40, WIDTH, 0, 0))
+    environment = {**os.environ, "TERM": term, "LC_ALL": language}
+    process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=inner, stderr=inner,
+                               env=environment)
+    os.close(inner)
+    screen, waiting, end = Screen(), b"", time.monotonic() + 240
+    while time.monotonic() < end:
+        try:
+            data = os.read(main, 65536)
+        except OSError:  # the other end is closed
+            break
+        if not data:
+            break
+        whole, _, waiting = (waiting + data).rpartition(b"\n") if b"\x1b" not in data else (waiting + data, b"", b"")
+        text = (whole + (b"\n" if waiting or data.endswith(b"\n") and b"\x1b" not in data else b""))
+        screen.write(text.decode("utf-8", errors="replace").replace("\r\n", "\n\r"))
+    screen.write(waiting.decode("utf-8"))
+    os.close(main)
+    return screen, process.wait(timeout=60)
+
+
+def shown(screen):
+    """All rows that ever were on the screen."""
+    return [row for rows in screen.seen for row in rows]
+
+
+def run(folder):
+    """A run of some seconds: a bar for pilots and run, which is gone at the end; log.txt has the lines."""
+    slow = [PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--set", "Accuracy=1e-9", "--set",
+            "Time/Engine=petsc", "--set", "Time/End time=400", "--set", "Output/Number of snapshots=20"]
+    screen, code = on_terminal([*slow, "--output", "bar"], folder)
+    rows, last = shown(screen), screen.seen[-1]
+    check(code == 0, f"the run finishes {last}")
+    check(VERSION.fullmatch(last[0]) is not None, f"the first line names the version: {last[0]}")
+    check(last[-1].startswith("Results are in bar/"), f"the last line says where the files are: {last[-1]}")
+    check(not any(BAR.match(row) for row in last), "no bar stays")
+    percents = [int(match[1]) for match in map(LEFT.match, rows) if match]
+    check(len(percents) > 5 and percents == sorted(percents) and percents[-1] > 50, f"the bar grows: {percents}")
+    check(max(len(row) for row in rows if BAR.match(row)) <= WIDTH, "no bar is wider than the terminal")
+    tenths = [line for line in (folder / "bar/log.txt").read_text().splitlines() if re.match(r" +\d+ %  t = ", line)]
+    check(len(tenths) >= 8 and not any(line in last for line in tenths), "the lines are in log.txt only")
+    check("\x1b" not in (folder / "bar/log.txt").read_text(), "log.txt has no control sequences")
+
+    plain = subprocess.run([*slow, "--output", "plain"], cwd=folder, capture_output=True, text=True, check=False,
+                           timeout=240)
+    lines = plain.stdout.splitlines()
+    check(plain.returncode == 0 and "\x1b" not in plain.stdout and "\r" not in plain.stdout, "redirected: plain text")
+    check(VERSION.fullmatch(lines[0]) is not None and lines[-1].startswith("Results are in plain/"),
+          "redirected: the version first, the folder last")
+    check(sum(re.match(r" +\d+ %  t = ", line) is not None for line in lines) >= 8, "redirected: a line at each tenth")
+    check(lines == (folder / "plain/log.txt").read_text().splitlines(), "log.txt has the same lines")
+
+    screen, code = on_terminal([*slow, "--output", "dumb"], folder, term="dumb")
+    check(code == 0 and not any(BAR.match(row) for row in shown(screen)) and
+          any(re.match(r" +\d+ %  t = ", row) for row in screen.seen[-1]), "a terminal that cannot do it has lines")
+
+
+def watch(folder):
+    """--watch leaves the kymograph of the stretch: the wave of an earthworm runs from head to tail."""
+    for name, language, shades in (("utf8", "C.UTF-8", "█▓▒░ "), ("ascii", "C", "#*+- ")):
+        command = [PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--watch", "--output", name]
+        screen, code = on_terminal(command, folder, language=language)
+        rows = [row for row in screen.seen[-1] if re.match(r"(head|tail|    )  ", row)]
+        check(code == 0 and len(rows) == 9 and rows[0].startswith("head") and rows[7].startswith("tail"),
+              f"{name}: a kymograph of eight rows and a scale {screen.seen[-1]}")
+        check("t = 0 to 10" in rows[8] or "to 10;" in rows[8], f"{name}: the scale names the times: {rows[8]}")
+        summary = (folder / name / "summary.json").read_text()
+        smallest = float(re.search(r'"min_stretch": \{\s*"value": ([\d.]+)', summary)[1])
+        printed = float(re.search(r"stretch ([\d.]+)", rows[8])[1])
+        check(abs(printed - smallest) < 0.02, f"{name}: the scale has the smallest stretch, {printed} of {smallest}")
+        # Row by row from head to tail the pattern comes later: 7/8 of the period, 64 times of which each third is shown.
+        values = [[shades.index(character) for character in row[6:].ljust(len(rows[0]) - 6)] for row in rows[:8]]
+        lags = [min(range(16), key=lambda lag, a=first, b=second: statistics.mean(
+            (x - y) ** 2 for x, y in zip(a[16:-16], b[16 + lag:]))) for first, second in zip(values, values[1:])]
+        check(abs(sum(lags) - 7 / 8 * 64 / 3) < 4, f"{name}: the wave runs from head to tail: {lags}")
+        check(all(len(row) <= WIDTH for row in rows) and set("".join(row[6:] for row in rows[:8])) == set(shades),
+              f"{name}: compressed parts are dark, stretched ones light")
+    screen, code = on_terminal([PROGRAM, "run", str(PRM / "examples/small_wave.prm"), "--watch", "--output", "reduced"],
+                               folder)
+    check(code == 0 and sum(re.match(r"(head|tail)  ", row) is not None for row in screen.seen[-1]) == 2,
+          "a run without a mesh has a kymograph, too")
+    plain = subprocess.run([PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--watch", "--output", "redirected"],
+                           cwd=folder, capture_output=True, text=True, check=False, timeout=60)
+    check(plain.returncode == 0 and "head" not in plain.stdout and "█" not in plain.stdout,
+          "redirected there is no picture")
+    screen, code = on_terminal([PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--quiet", "--output", "quiet"],
+                               folder)
+    check(code == 0 and not any(shown(screen)), "--quiet shows nothing")
+
+
+def sweep(folder):
+    """The bar of a sweep counts the points of all ranks."""
+    command = [PROGRAM, "sweep", str(PRM / "studies/sweep_p_chi.prm"), "--set",
+               "Sweep/Axes=Body/Anchoring exponent : linspace(1.5, 4, 200); "
+               "Active stress/Optimal wave/Perturbation parameter : linspace(0.05, 0.45, 200)"]
+    # mpirun gives its processes pseudo terminals even if its own output is redirected.
+    two = [*MPIEXEC, "--oversubscribe", "-n", "2", *command]
+    done = subprocess.run([*two, "--output", "plain_sweep"], cwd=folder, capture_output=True, text=True, check=False,
+                          env={**os.environ, "TERM": "xterm"}, timeout=240)
+    check(done.returncode == 0 and VERSION.fullmatch(done.stdout.splitlines()[0]) is not None and
+          "\x1b" not in done.stdout and "█" not in done.stdout,
+          f"a sweep on two ranks, redirected, is plain: {done.returncode} {done.stdout[:200]!r} {done.stderr[:200]!r}")
+    for name, line in (("one", command), ("two", two)):
+        screen, code = on_terminal([*line, "--output", name], folder)
+        rows, last = shown(screen), screen.seen[-1]
+        counts = [int(match[1]) for row in rows for match in [re.search(r"(\d+) of 40000 points, ", row)] if match]
+        check(code == 0 and len(counts) > 3 and counts == sorted(counts) and counts[-1] > 10000,
+              f"the bar of a sweep on {name} counts points: {counts[:3]} ... {counts[-3:]}")
+        check(any(LEFT.match(row) for row in rows), "it has the time left")
+        check(VERSION.fullmatch(last[0]) is not None and f"Results are in {name}/" in last[-1] and
+              not any(BAR.match(row) for row in last), f"the version first, the folder last: {last[-1]}")
+
+
+def main():
+    """All of it; the exit status says whether something failed."""
+    with tempfile.TemporaryDirectory() as folder:
+        run(pathlib.Path(folder))
+        watch(pathlib.Path(folder))
+        sweep(pathlib.Path(folder))
+    sys.exit("\n".join(failures) or 0)
+
+
+if __name__ == "__main__":
+    main()
