@@ -2,6 +2,7 @@
 #include <crawler/app/check.h>
 #include <crawler/app/command_line.h>
 #include <crawler/app/plot.h>
+#include <crawler/app/table_command.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/base/petsc_object.h>
@@ -119,7 +120,12 @@ namespace crawler
           return fmt::format("\"{}\" is there {} times, but once is expected", name, option->count());
       }
       const bool wants_folder  = command->get_option_no_throw("DIR") != nullptr;
-      const std::size_t wanted = command->get_option_no_throw("FILE") == nullptr && !wants_folder ? 1 : 2;
+      const bool wants_table   = command->get_option_no_throw("OUT") != nullptr;
+      const std::size_t wanted = wants_table                                                        ? 3
+                                 : command->get_option_no_throw("FILE") == nullptr && !wants_folder ? 1
+                                                                                                    : 2;
+      if (has_command && words.size() < wanted && wants_table)
+        return "a file is missing; \"crawler table IN.csv OUT.csv\" is expected";
       if (has_command && words.size() < wanted)
         return fmt::format("the {} is missing; \"crawler {} {}\" is expected",
                            wants_folder ? "folder" : "parameter file",
@@ -131,6 +137,7 @@ namespace crawler
                            words[wanted - 1],
                            wanted == 1    ? "nothing"
                            : wants_folder ? "one folder"
+                           : wants_table  ? "IN.csv OUT.csv"
                                           : "one parameter file");
       return error.what();
     }
@@ -242,7 +249,7 @@ namespace crawler
         : command(app.add_subcommand("plot", "Draws the output folder of a run or study into it"))
       {
         command->set_help_flag();
-        command->add_option("DIR", path, "Output folder of a run or study, or the table of a calibration");
+        command->add_option("DIR", path, "Output folder of a run or study, or the table of a calibration or of crawler table");
         command->add_option("--kind", kind, fmt::format("{} (default: what fits)", fmt::join(plot_kinds(), ", ")));
         command->add_flag("-h,--help", help, "Help; behind DIR that of the script, which takes all other options");
         command->allow_extras();
@@ -286,6 +293,7 @@ namespace crawler
       parameter_command->add_option("--format", format, "prm, json or markdown");
 
       PlotCommand plot_command(app);
+      const TableCommand table_command(app);
 
       require_command(app, arguments);
       if (!petsc_options.empty() && !petsc_options[0].starts_with("-"))
@@ -318,6 +326,8 @@ namespace crawler
                                      chosen->get_name()));
       if (chosen == plot_command.command)
         return static_cast<int>(plot_command(communicator));
+      if (table_command.is(chosen))
+        return static_cast<int>(table_command(communicator));
       if (command == std::end(commands))
         return first ? print_parameters(format) : 0;
       if (!petsc_options.empty()) // they are for PETSc's objects, unless the user wants something else

@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
-#include <optional>
 #include <sstream>
 
 namespace crawler
@@ -24,22 +23,6 @@ namespace crawler
       constexpr const char *blanks = " \t\r\n";
       const auto first             = text.find_first_not_of(blanks);
       return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-    }
-
-    /// A finite number if the whole text is one.
-    std::optional<double>
-    number_in(std::string_view text)
-    {
-      text = without_blanks(text);
-      if (text.size() > 1 && text[0] == '+' && text[1] != '-')
-        text.remove_prefix(1);
-      double value             = 0.;
-      const auto [end, result] = std::from_chars(text.data(), text.data() + text.size(), value);
-      if (result == std::errc::invalid_argument || end != text.data() + text.size())
-        return std::nullopt;
-      if (result == std::errc::result_out_of_range) // smaller or larger than any double
-        value = std::strtod(std::string(text).c_str(), nullptr);
-      return std::isfinite(value) ? std::optional(value) : std::nullopt;
     }
 
     /// The next part of @p text before @p separator, which is taken away from it.
@@ -59,6 +42,21 @@ namespace crawler
       return line.find(';') != line.npos ? " (columns are separated by commas, and decimals written with a point)" : "";
     }
   } // namespace
+
+  std::optional<double>
+  number_in(std::string_view text)
+  {
+    text = without_blanks(text);
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+      text.remove_prefix(1);
+    double value             = 0.;
+    const auto [end, result] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (result == std::errc::invalid_argument || end != text.data() + text.size())
+      return std::nullopt;
+    if (result == std::errc::result_out_of_range) // smaller or larger than any double
+      value = std::strtod(std::string(text).c_str(), nullptr);
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  }
 
   void
   Mistakes::add_row(const std::size_t row)
