@@ -249,7 +249,8 @@ namespace crawler
         : command(app.add_subcommand("plot", "Draws the output folder of a run or study into it"))
       {
         command->set_help_flag();
-        command->add_option("DIR", path, "Output folder of a run or study, or the table of a calibration or of crawler table");
+        command->add_option(
+          "DIR", path, "Output folder of a run or study, or the table of a calibration or of crawler table");
         command->add_option("--kind", kind, fmt::format("{} (default: what fits)", fmt::join(plot_kinds(), ", ")));
         command->add_flag("-h,--help", help, "Help; behind DIR that of the script, which takes all other options");
         command->allow_extras();

@@ -54,9 +54,9 @@ namespace crawler
         return first.starts_with("s,t,") ? "table" : "calibration";
       }
       if (!fs::is_directory(path, ignored))
-        throw InputError(fmt::format(
-          "\"{}\" is not a folder; the output folder of a run or study is expected (or the table of a calibration or of crawler table)",
-          path.string()));
+        throw InputError(fmt::format("\"{}\" is not a folder; the output folder of a run or study is expected (or the "
+                                     "table of a calibration or of crawler table)",
+                                     path.string()));
       std::vector<std::string> names;
       for (const Kind &kind : kinds())
       {

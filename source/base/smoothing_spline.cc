@@ -2,7 +2,6 @@
 #include <crawler/base/smoothing_spline.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -11,46 +10,65 @@ namespace crawler
   namespace
   {
     constexpr std::size_t width_of_band = 4;
-    constexpr std::size_t n_polynomials = 4;
 
-    /// Legendre polynomials of degree 0 to 3 and their second derivatives at x in [-1, 1].
-    std::array<double, n_polynomials>
-    polynomials(const double x)
+    /// Legendre polynomials of degree 0 to n - 1 at x in [-1, 1], and their second derivatives.
+    struct Polynomials
     {
-      return {{1., x, 1.5 * x * x - 0.5, (2.5 * x * x - 1.5) * x}};
-    }
-    std::array<double, n_polynomials>
-    curvatures_of_polynomials(const double x)
-    {
-      return {{0., 0., 3., 15. * x}};
-    }
+      std::vector<double> values, curvatures;
 
-    /// Coefficients of the cubic polynomial nearest to the values, by the normal equations.
-    std::array<double, n_polynomials>
-    nearest_cubic(const std::vector<double> &x, const std::span<const double> y, const std::vector<double> &weights)
-    {
-      std::array<std::array<double, n_polynomials + 1>, n_polynomials> a{};
-      for (std::size_t k = 0; k < x.size(); ++k)
+      Polynomials(const double x, const std::size_t n)
+        : values(n, 1.)
+        , curvatures(n, 0.)
       {
-        const auto p = polynomials(x[k]);
-        for (std::size_t i = 0; i < n_polynomials; ++i)
+        std::vector<double> slopes(n, 0.);
+        for (std::size_t k = 1; k < n; ++k)
         {
-          for (std::size_t j = 0; j < n_polynomials; ++j)
-            a[i][j] += weights[k] * p[i] * p[j];
-          a[i][n_polynomials] += weights[k] * p[i] * y[k];
+          const auto m  = static_cast<double>(k);
+          values[k]     = k == 1 ? x : ((2. * m - 1.) * x * values[k - 1] - (m - 1.) * values[k - 2]) / m;
+          slopes[k]     = (k == 1 ? 0. : slopes[k - 2]) + (2. * m - 1.) * values[k - 1];
+          curvatures[k] = (k == 1 ? 0. : curvatures[k - 2]) + (2. * m - 1.) * slopes[k - 1];
         }
       }
-      for (std::size_t i = 0; i < n_polynomials; ++i) // positive definite: no pivoting is needed
-        for (std::size_t r = 0; r < n_polynomials; ++r)
+    };
+
+    /// Of the waves longer than the width: one half wave for each degree, as far as the samples bear it.
+    std::size_t
+    number_of_polynomials(const std::size_t n_knots, const double length, const double width)
+    {
+      constexpr double least = 4., most = 10.;
+      const double wanted = 2. + std::round(length / width), bearable = 2. * std::sqrt(static_cast<double>(n_knots));
+      return static_cast<std::size_t>(std::clamp(std::floor(std::min(wanted, bearable)), least, most));
+    }
+
+    /// Coefficients of the polynomial nearest to the values, by the normal equations.
+    std::vector<double>
+    nearest_polynomial(const std::vector<double> &x,
+                       const std::span<const double> y,
+                       const std::vector<double> &weights,
+                       const std::size_t n)
+    {
+      std::vector<std::vector<double>> a(n, std::vector<double>(n + 1, 0.));
+      for (std::size_t k = 0; k < x.size(); ++k)
+      {
+        const std::vector<double> p = Polynomials(x[k], n).values;
+        for (std::size_t i = 0; i < n; ++i)
+        {
+          for (std::size_t j = 0; j < n; ++j)
+            a[i][j] += weights[k] * p[i] * p[j];
+          a[i][n] += weights[k] * p[i] * y[k];
+        }
+      }
+      for (std::size_t i = 0; i < n; ++i) // positive definite: no pivoting is needed
+        for (std::size_t r = 0; r < n; ++r)
           if (r != i)
           {
             const double factor = a[r][i] / a[i][i];
-            for (std::size_t j = i; j <= n_polynomials; ++j)
+            for (std::size_t j = i; j <= n; ++j)
               a[r][j] -= factor * a[i][j];
           }
-      std::array<double, n_polynomials> result{};
-      for (std::size_t i = 0; i < n_polynomials; ++i)
-        result[i] = a[i][n_polynomials] / a[i][i];
+      std::vector<double> result(n);
+      for (std::size_t i = 0; i < n; ++i)
+        result[i] = a[i][n] / a[i][i];
       return result;
     }
   } // namespace
@@ -75,6 +93,7 @@ namespace crawler
                                    std::vector<double> weights)
     : knots_(std::move(knots))
     , is_periodic_(ends == CubicSpline::Ends::periodic)
+    , width_(width)
     , weights_(std::move(weights))
     , spline_(std::make_shared<CubicSpline>(knots_, ends))
   {
@@ -183,16 +202,21 @@ namespace crawler
     if (lambda_ == 0.)
       return {spline_, y, spline_->curvatures(values)};
     const double centre = 0.5 * (knots_.front() + knots_.back()), half = 0.5 * (knots_.back() - knots_.front());
-    std::vector<double> x(n);
-    std::array<double, n_polynomials> cubic{};
+    std::vector<Polynomials> polynomials;
+    std::vector<double> trend;
     if (!is_periodic_)
     {
+      const std::size_t n_polynomials = number_of_polynomials(n, 2. * half, width_);
+      std::vector<double> x(n);
       for (std::size_t i = 0; i < n; ++i)
+      {
         x[i] = (knots_[i] - centre) / half;
-      cubic = nearest_cubic(x, values, weights_);
+        polynomials.emplace_back(x[i], n_polynomials);
+      }
+      trend = nearest_polynomial(x, values, weights_, n_polynomials);
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n_polynomials; ++j)
-          y[i] -= cubic[j] * polynomials(x[i])[j];
+          y[i] -= trend[j] * polynomials[i].values[j];
     }
     std::vector<double> unknowns(n_unknowns_, 0.);
     const std::size_t n_rows = is_periodic_ ? n_unknowns_ : n;
@@ -212,10 +236,10 @@ namespace crawler
     }
     else
       for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n_polynomials; ++j)
+        for (std::size_t j = 0; j < trend.size(); ++j)
         {
-          y[i] += cubic[j] * polynomials(x[i])[j];
-          M[i] += cubic[j] * curvatures_of_polynomials(x[i])[j] / (half * half);
+          y[i] += trend[j] * polynomials[i].values[j];
+          M[i] += trend[j] * polynomials[i].curvatures[j] / (half * half);
         }
     return {spline_, std::move(y), std::move(M)};
   }

@@ -14,9 +14,9 @@ namespace crawler
   std::vector<std::string>
   plot_kinds();
 
-  /// crawler plot: draws the output folder @p path of a run or study, or the table of a calibration or of crawler table, with
-  /// the script of @p kind; if this is empty, with the one that fits the files. @p options are passed on to the script. Throws
-  /// InputError and FileError with what the script says.
+  /// crawler plot: draws the output folder @p path of a run or study, or the table of a calibration or of crawler
+  /// table, with the script of @p kind; if this is empty, with the one that fits the files. @p options are passed on to
+  /// the script. Throws InputError and FileError with what the script says.
   ExitCode
   plot(MPI_Comm communicator,
        const std::string &path,

@@ -49,8 +49,9 @@ namespace crawler
    * smallest (Reinsch 1967), with lambda = (width/2 pi)^4/h and the mean step h of the knots. From many equally spaced
    * samples a wave of the length P is kept to the part 1/(1 + (width/P)^4): the width is the length of the waves that
    * are halved. With width 0 f goes through the samples (CubicSpline).
-   *  - not-a-knot: the cubic polynomial that is next to the samples is taken away before and added again, so that cubic
-   *    polynomials are reproduced at any width;
+   *  - not-a-knot: the polynomial that is next to the samples is taken away before and added again, so that cubic
+   *    polynomials are reproduced at any width, and f'' = 0, which the functional asks for at the ends, is asked of the
+   *    rest only. Its degree is 1 + length/width, from 3 to 9, and at most 2 sqrt(number of knots) - 1;
    *  - periodic: as in CubicSpline, the last knot is the first one of the next period.
    */
   class SmoothingSpline
@@ -86,6 +87,7 @@ namespace crawler
 
     const std::vector<double> knots_;
     const bool is_periodic_;
+    const double width_;
     std::vector<double> weights_;
     double lambda_          = 0.;
     std::size_t n_unknowns_ = 0;

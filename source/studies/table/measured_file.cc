@@ -78,12 +78,12 @@ namespace crawler
         return result;
       }
 
-      /// A number; a gap is one, too, but not @p as_first of a row.
+      /// A number; a gap is one, too.
       std::optional<double>
-      number(std::string cell, const bool as_first = false) const
+      number(std::string cell) const
       {
         if (is_gap(cell))
-          return as_first ? std::nullopt : std::optional(gap);
+          return gap;
         if (has_decimal_commas)
         {
           if (cell.find('.') != cell.npos)
@@ -93,13 +93,12 @@ namespace crawler
         return number_in(cell);
       }
 
-      /// A row of numbers begins with one.
+      /// A row of numbers and gaps.
       bool
       is_row(const std::vector<std::string> &cells) const
       {
-        return cells.size() > 1 && number(cells[0], true) &&
-               std::all_of(
-                 cells.begin(), cells.end(), [&](const std::string &cell) { return number(cell).has_value(); });
+        return cells.size() > 1 && !std::ranges::all_of(cells, is_gap) &&
+               std::ranges::all_of(cells, [&](const std::string &cell) { return number(cell).has_value(); });
       }
     };
 
@@ -249,17 +248,15 @@ namespace crawler
       else
       {
         const auto wrong = static_cast<std::size_t>(
-          std::find_if(cells.begin(),
-                       cells.end(),
-                       [&](const std::string &cell) { return !style.number(cell, &cell == &cells[0]); }) -
+          std::find_if(cells.begin(), cells.end(), [&](const std::string &cell) { return !style.number(cell); }) -
           cells.begin());
-        mistakes.say(fmt::format("row {} of \"{}\" has \"{}\" under {}, but a number{}{} is expected",
-                                 line->number,
-                                 name,
-                                 cells[wrong],
-                                 file.columns[wrong],
-                                 style.has_decimal_commas ? " with a decimal comma" : "",
-                                 wrong == 0 ? "" : " (or nothing or NaN for a gap)"));
+        mistakes.say(
+          fmt::format("row {} of \"{}\" has \"{}\" under {}, but a number{} (or nothing or NaN for a gap) is expected",
+                      line->number,
+                      name,
+                      cells[wrong],
+                      file.columns[wrong],
+                      style.has_decimal_commas ? " with a decimal comma" : ""));
       }
     }
     mistakes.refuse("");

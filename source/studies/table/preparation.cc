@@ -359,6 +359,34 @@ namespace crawler
       return full;
     }
 
+    /// Tracks from the first to the last frame that has all markers, if no more than @p most are left out at an end.
+    Samples
+    without_ragged_ends(const Samples &tracks, const unsigned int most, std::vector<std::string> &words)
+    {
+      const auto is_complete = [&](const std::size_t j) {
+        const std::vector<double> x = tracks.over_body(j);
+        return std::none_of(x.begin(), x.end(), [](const double place) { return std::isnan(place); });
+      };
+      std::size_t begin = 0, end = tracks.t.size();
+      while (begin + least < end && begin < most && !is_complete(begin))
+        ++begin;
+      while (begin + least < end && tracks.t.size() - end < most && !is_complete(end - 1))
+        --end;
+      const std::size_t n = tracks.s.size(), n_left_out = tracks.t.size() - (end - begin);
+      if (n_left_out == 0)
+        return tracks;
+      words.push_back(
+        fmt::format("{} at the begin or end left out, in which markers are missing", counted(n_left_out, "frame")));
+      const auto frame = [&](const std::size_t j) {
+        return tracks.values.begin() + static_cast<std::ptrdiff_t>(j * n);
+      };
+      Samples result = tracks;
+      result.t.assign(tracks.t.begin() + static_cast<std::ptrdiff_t>(begin),
+                      tracks.t.begin() + static_cast<std::ptrdiff_t>(end));
+      result.values.assign(frame(begin), frame(end));
+      return result;
+    }
+
     /// One period from all cycles, at n + 1 times.
     Samples
     one_period(const Samples &samples,
@@ -521,10 +549,13 @@ namespace crawler
     if (is_tracks)
     {
       Filled of_tracks;
-      samples = strain_of_tracks(
-        without_gaps(measured, settings.width_t, /*is_smoothed=*/false, settings.largest_gap, of_tracks),
-        settings,
-        result.words);
+      samples        = strain_of_tracks(without_gaps(without_ragged_ends(measured, settings.largest_gap, result.words),
+                                              settings.width_t,
+                                              /*is_smoothed=*/false,
+                                              settings.largest_gap,
+                                              of_tracks),
+                                 settings,
+                                 result.words);
       filled.n       = of_tracks.n;
       filled.longest = of_tracks.longest;
     }

@@ -85,7 +85,7 @@ namespace crawler
             "\"--columns\" has \"{}\", but NAME=COLUMN is expected, NAME being {}", part, quoted_list(choices)));
         if (column == file.columns.end())
           throw InputError(fmt::format(
-            "\"--columns\" has the column \"{}\", but \"{}\" has {}", name, file.name, quoted_list(file.columns)));
+            "\"--columns\" has the column \"{}\", but \"{}\" has {}", name, file.name, fmt::join(file.columns, ", ")));
         result[meaning] = static_cast<std::size_t>(column - file.columns.begin());
       }
       return result;
@@ -161,6 +161,11 @@ namespace crawler
                         is_over_s ? "time" : "place s"));
         for (std::size_t r = 0; r < file.values.size(); ++r)
         {
+          if (std::isnan(file.values[r][0]))
+            throw InputError(fmt::format("row {} of \"{}\" has no {}, but only what is measured may have gaps",
+                                         file.lines[r],
+                                         file.name,
+                                         file.columns[0]));
           result.s.push_back(is_over_s ? file.values[r][0] : *number);
           result.t.push_back(is_over_s ? *number : file.values[r][0]);
           result.values.push_back(file.values[r][i]);
@@ -308,7 +313,7 @@ namespace crawler
         fmt::format("\"{}\" has the columns {}, but s, t and m (or strain, stretch) are expected; or t, marker "
                     "and x; or t and a column for each s or marker (\"--columns\" gives them other names)",
                     file.name,
-                    quoted_list(file.columns)));
+                    fmt::join(file.columns, ", ")));
     const bool is_tracked = quantity == "markers";
     Samples samples       = on_grid(found,
                               is_tracked        ? Quantity::marker
