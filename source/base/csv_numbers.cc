@@ -35,11 +35,17 @@ namespace crawler
       return part;
     }
 
-    /// What a spreadsheet of another country writes.
+    /// What to do about the rows of a spreadsheet of another country, and about gaps.
     std::string
-    hint(const std::string_view line)
+    hint(const std::string_view line, const std::size_t n_columns)
     {
-      return line.find(';') != line.npos ? " (columns are separated by commas, and decimals written with a point)" : "";
+      const bool is_of_samples = n_columns == 3;
+      if (line.find(';') != line.npos)
+        return fmt::format(" (columns are separated by commas, and decimals written with a point{})",
+                           is_of_samples ? "; \"crawler table IN OUT\" does that" : "");
+      const bool has_gap = line.ends_with(',') || line.find(",,") != line.npos || line.find("nan") != line.npos ||
+                           line.find("NaN") != line.npos;
+      return has_gap && is_of_samples ? " (\"crawler table IN OUT\" fills gaps)" : "";
     }
   } // namespace
 
@@ -104,7 +110,7 @@ namespace crawler
                                    file,
                                    first.substr(0, 80),
                                    header,
-                                   hint(first)),
+                                   hint(first, names.size())),
                        entry);
     CsvNumbers numbers;
     numbers.columns.resize(names.size());
@@ -131,7 +137,7 @@ namespace crawler
                                  line.substr(0, 80),
                                  names.size() == 2 ? "two" : "three",
                                  header,
-                                 hint(line)));
+                                 hint(line, names.size())));
       else
         mistakes.add_row(number);
     }
