@@ -163,7 +163,8 @@ TEST(GridTable, SaysWhatIsWrongInCsv)
   EXPECT_EQ(complaint("s;t;m\n0;0;1\n"),
             "the first row of FILE is \"s;t;m\", but the header s,t,m is expected (columns are separated by commas, "
             "and decimals written with a point; \"crawler table IN OUT\" does that)");
-  EXPECT_EQ(complaint("s,t,m\n0,0,1\n0,1,\n"), "row 3 of FILE is \"0,1,\", " + three + " (\"crawler table IN OUT\" fills gaps)");
+  EXPECT_EQ(complaint("s,t,m\n0,0,1\n0,1,\n"),
+            "row 3 of FILE is \"0,1,\", " + three + " (\"crawler table IN OUT\" fills gaps)");
   EXPECT_EQ(complaint("s,t,m\n0,0,1\n\n0,1,nan\n"),
             "row 4 of FILE is \"0,1,nan\", " + three + " (\"crawler table IN OUT\" fills gaps)");
   EXPECT_EQ(complaint("s,t,m\n0,0,-inf\n"), "row 2 of FILE is \"0,0,-inf\", " + three);
