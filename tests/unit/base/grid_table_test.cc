@@ -178,9 +178,10 @@ TEST(GridTable, SaysWhatIsWrongInCsv)
   EXPECT_EQ(complaint("s,t,m\n0,0,1\n0,1,2\n1,0,3\n"),
             "FILE has 3 rows after the header, but 4 are expected, each of 2 values of s with each of 2 values of t; "
             "the first that is missing is s = 1, t = 1 (\"crawler table IN OUT\" fills gaps)");
-  EXPECT_EQ(complaint("s,t,m\n0,0,1\n1,1,2\n2,2,3\n"),
-            "FILE has 3 rows after the header, but 9 are expected, each of 3 values of s with each of 3 values of t; "
-            "the first that are missing are s = 1, t = 0; s = 2, t = 0; s = 0, t = 1");
+  EXPECT_EQ(
+    complaint("s,t,m\n0,0,1\n1,1,2\n2,2,3\n"),
+    "FILE has 3 rows after the header, but 9 are expected, each of 3 values of s with each of 3 values of t; "
+    "the first that are missing are s = 1, t = 0; s = 2, t = 0; s = 0, t = 1 (\"crawler table IN OUT\" fills gaps)");
   std::string scattered = "s,t,m\n";
   for (unsigned int i = 0; i < 200; ++i)
     scattered += to_text(i) + "," + to_text(i) + ",0\n";
