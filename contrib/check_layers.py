@@ -9,7 +9,7 @@ import sys
 
 # From the lowest room to the highest.
 ROOMS = ["base", "parameters", "formula", "scene", "mesh", "time", "equation", "lanes", "reduced_models", "output", "run",
-         "adjoint", "accuracy", "studies/core", "studies/run", "studies/sweep", "studies/atlas", "studies/tradeoff", "studies/optimize", "studies/report", "app"]
+         "adjoint", "accuracy", "studies/core", "studies/run", "studies/sweep", "studies/atlas", "studies/tradeoff", "studies/optimize", "studies/report", "studies/table", "app"]
 # What else may not enter: a pattern of includes, and the rooms.
 FORBIDDEN = [(r"<deal\.II", ["formula", "scene", "reduced_models"]),
              (r"<crawler/scene/", ["time"])]

@@ -151,9 +151,12 @@ namespace crawler
   void
   Commands::add_own_commands()
   {
+    table_.emplace(app_);
+
     CLI::App *plot = app_.add_subcommand("plot", "Draws the output folder of a run or study into it");
     plot->set_help_flag();
-    plot->add_option("DIR", options_.file, "Output folder of a run or study, or the table of a calibration");
+    plot->add_option(
+      "DIR", options_.file, "Output folder of a run or study, or the table of a calibration or of crawler table");
     plot->add_option("--kind", kind_, fmt::format("{} (default: what fits)", fmt::join(plot_kinds(), ", ")))
       ->option_text("KIND");
     plot->add_flag("-h,--help", plot_help_, "Help; behind DIR that of the script, which takes all other options");
@@ -232,7 +235,7 @@ namespace crawler
   bool
   Commands::needs_mpi() const
   {
-    return find_command(chosen()) != nullptr;
+    return find_command(chosen()) != nullptr || table_->is(app_.get_subcommands().front());
   }
 
   void
@@ -261,6 +264,8 @@ namespace crawler
   ExitCode
   Commands::run(MPI_Comm communicator) const
   {
+    if (table_->is(app_.get_subcommands().front()))
+      return (*table_)(communicator);
     return find_command(chosen())->function(communicator, options_);
   }
 } // namespace crawler

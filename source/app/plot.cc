@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 
 namespace crawler
@@ -35,6 +36,7 @@ namespace crawler
         {"optimize", "an optimisation", {"starts.csv"}},
         {"sweep", "a sweep", {"results.h5"}},
         {"calibration", "a calibration", {"calibration.csv"}},
+        {"table", "a table of crawler table", {}},
         {"kymograph", "a run", {"kymograph.vts", "statistics.csv", "solution.pvd", "summary.json"}},
         {"sensitivity", "a run with Output/Sensitivities", {}},
         {"scaling", "the sweep of prm/studies/scaling.prm", {}}};
@@ -46,11 +48,15 @@ namespace crawler
     {
       std::error_code ignored;
       if (path.extension() == ".csv" && fs::is_regular_file(path, ignored))
-        return "calibration";
+      {
+        std::string first;
+        std::getline(std::ifstream(path) >> std::ws, first);
+        return first.starts_with("s,t,") ? "table" : "calibration";
+      }
       if (!fs::is_directory(path, ignored))
-        throw InputError(fmt::format(
-          "\"{}\" is not a folder; the output folder of a run or study is expected (or the table of a calibration)",
-          path.string()));
+        throw InputError(fmt::format("\"{}\" is not a folder; the output folder of a run or study is expected (or the "
+                                     "table of a calibration or of crawler table)",
+                                     path.string()));
       std::vector<std::string> names;
       for (const Kind &kind : kinds())
       {

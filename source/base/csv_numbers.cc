@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
-#include <optional>
 #include <sstream>
 
 namespace crawler
@@ -26,22 +25,6 @@ namespace crawler
       return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
     }
 
-    /// A finite number if the whole text is one.
-    std::optional<double>
-    number_in(std::string_view text)
-    {
-      text = without_blanks(text);
-      if (text.size() > 1 && text[0] == '+' && text[1] != '-')
-        text.remove_prefix(1);
-      double value             = 0.;
-      const auto [end, result] = std::from_chars(text.data(), text.data() + text.size(), value);
-      if (result == std::errc::invalid_argument || end != text.data() + text.size())
-        return std::nullopt;
-      if (result == std::errc::result_out_of_range) // smaller or larger than any double
-        value = std::strtod(std::string(text).c_str(), nullptr);
-      return std::isfinite(value) ? std::optional(value) : std::nullopt;
-    }
-
     /// The next part of @p text before @p separator, which is taken away from it.
     std::string_view
     next_part(std::string_view &text, const char separator)
@@ -52,13 +35,34 @@ namespace crawler
       return part;
     }
 
-    /// What a spreadsheet of another country writes.
+    /// What to do about the rows of a spreadsheet of another country, and about gaps.
     std::string
-    hint(const std::string_view line)
+    hint(const std::string_view line, const std::size_t n_columns)
     {
-      return line.find(';') != line.npos ? " (columns are separated by commas, and decimals written with a point)" : "";
+      const bool is_of_samples = n_columns == 3;
+      if (line.find(';') != line.npos)
+        return fmt::format(" (columns are separated by commas, and decimals written with a point{})",
+                           is_of_samples ? "; \"crawler table IN OUT\" does that" : "");
+      const bool has_gap = line.ends_with(',') || line.find(",,") != line.npos || line.find("nan") != line.npos ||
+                           line.find("NaN") != line.npos;
+      return has_gap && is_of_samples ? " (\"crawler table IN OUT\" fills gaps)" : "";
     }
   } // namespace
+
+  std::optional<double>
+  number_in(std::string_view text)
+  {
+    text = without_blanks(text);
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+      text.remove_prefix(1);
+    double value             = 0.;
+    const auto [end, result] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (result == std::errc::invalid_argument || end != text.data() + text.size())
+      return std::nullopt;
+    if (result == std::errc::result_out_of_range) // smaller or larger than any double
+      value = std::strtod(std::string(text).c_str(), nullptr);
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  }
 
   void
   Mistakes::add_row(const std::size_t row)
@@ -106,7 +110,7 @@ namespace crawler
                                    file,
                                    first.substr(0, 80),
                                    header,
-                                   hint(first)),
+                                   hint(first, names.size())),
                        entry);
     CsvNumbers numbers;
     numbers.columns.resize(names.size());
@@ -133,7 +137,7 @@ namespace crawler
                                  line.substr(0, 80),
                                  names.size() == 2 ? "two" : "three",
                                  header,
-                                 hint(line)));
+                                 hint(line, names.size())));
       else
         mistakes.add_row(number);
     }

@@ -113,7 +113,7 @@ namespace crawler
               "{}s = {:g}, t = {:g}", first.empty() ? "" : "; ", grid.s[missing % n_s], grid.t[missing / n_s]);
           }
         source.refuse("\"{}\" has {} rows after the header, but {} are expected, each of {} values of s with "
-                      "each of {} values of t; the first that {} missing {} {}",
+                      "each of {} values of t; the first that {} missing {} {} (\"crawler table IN OUT\" fills gaps)",
                       source.file,
                       n,
                       n_s * n_t,

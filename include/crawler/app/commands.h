@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/app/table_command.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/core/command_options.h>
 
@@ -59,6 +60,7 @@ namespace crawler
 
     CLI::App app_;
     CommandOptions options_;
+    std::optional<TableCommand> table_;
     std::string format_ = "prm", name_, kind_; ///< name_: of a template, a shell or a section
     bool plot_help_     = false;
   };

@@ -10,9 +10,9 @@ namespace crawler
   std::vector<std::string>
   plot_kinds();
 
-  /// crawler plot: draws the output folder @p path of a run or study, or the table of a calibration, with the script of
-  /// @p kind; if this is empty, with the one that fits the files. @p options are passed on to the script. Throws
-  /// InputError and FileError with what the script says.
+  /// crawler plot: draws the output folder @p path of a run or study, or the table of a calibration or of crawler
+  /// table, with the script of @p kind; if this is empty, with the one that fits the files. @p options are passed on to
+  /// the script. Throws InputError and FileError with what the script says.
   void
   plot(const std::string &path, const std::string &kind, const std::vector<std::string> &options);
 } // namespace crawler

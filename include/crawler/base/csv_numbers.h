@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,10 @@ namespace crawler
     std::string sentence_;
     std::vector<std::size_t> rows_;
   };
+
+  /// A finite number if the whole text is one, apart from blanks.
+  std::optional<double>
+  number_in(std::string_view text);
 
   /// Columns of finite numbers.
   struct CsvNumbers

@@ -52,14 +52,16 @@ namespace crawler
       {
         if (std::abs(grid.values[i] - grid.values[last + i]) > most)
           throw InputError(
-            fmt::format("\"{}\" has m = {:g} at s = {:g}, t = {:g} but m = {:g} at its last time, t = {:g}; "
-                        "equal values are expected, the period being the difference of these times",
-                        file,
-                        grid.values[i],
-                        grid.s[i],
-                        grid.t.front(),
-                        grid.values[last + i],
-                        grid.t.back()),
+            fmt::format(
+              "\"{}\" has m = {:g} at s = {:g}, t = {:g} but m = {:g} at its last time, t = {:g}; "
+              "equal values are expected, the period being the difference of these times (\"crawler table IN OUT "
+              "--period whole\" closes it within the noise)",
+              file,
+              grid.values[i],
+              grid.s[i],
+              grid.t.front(),
+              grid.values[last + i],
+              grid.t.back()),
             section + "Outside");
         grid.values[last + i] = grid.values[i];
       }

@@ -162,9 +162,11 @@ TEST(GridTable, SaysWhatIsWrongInCsv)
   EXPECT_EQ(complaint("0,0,1\n"), "the first row of FILE is \"0,0,1\", but the header s,t,m is expected");
   EXPECT_EQ(complaint("s;t;m\n0;0;1\n"),
             "the first row of FILE is \"s;t;m\", but the header s,t,m is expected (columns are separated by commas, "
-            "and decimals written with a point)");
-  EXPECT_EQ(complaint("s,t,m\n0,0,1\n0,1,\n"), "row 3 of FILE is \"0,1,\", " + three);
-  EXPECT_EQ(complaint("s,t,m\n0,0,1\n\n0,1,nan\n"), "row 4 of FILE is \"0,1,nan\", " + three);
+            "and decimals written with a point; \"crawler table IN OUT\" does that)");
+  EXPECT_EQ(complaint("s,t,m\n0,0,1\n0,1,\n"),
+            "row 3 of FILE is \"0,1,\", " + three + " (\"crawler table IN OUT\" fills gaps)");
+  EXPECT_EQ(complaint("s,t,m\n0,0,1\n\n0,1,nan\n"),
+            "row 4 of FILE is \"0,1,nan\", " + three + " (\"crawler table IN OUT\" fills gaps)");
   EXPECT_EQ(complaint("s,t,m\n0,0,-inf\n"), "row 2 of FILE is \"0,0,-inf\", " + three);
   EXPECT_EQ(complaint("s,t,m\n0,0,1e999\n"), "row 2 of FILE is \"0,0,1e999\", " + three);
   EXPECT_EQ(complaint("s,t,m\n0,0,1,2\n"), "row 2 of FILE is \"0,0,1,2\", " + three);
@@ -175,10 +177,11 @@ TEST(GridTable, SaysWhatIsWrongInCsv)
             "row 6 of FILE gives s = 0, t = 1 a second time, after row 3; 1 more row is like it: 7");
   EXPECT_EQ(complaint("s,t,m\n0,0,1\n0,1,2\n1,0,3\n"),
             "FILE has 3 rows after the header, but 4 are expected, each of 2 values of s with each of 2 values of t; "
-            "the first that is missing is s = 1, t = 1");
-  EXPECT_EQ(complaint("s,t,m\n0,0,1\n1,1,2\n2,2,3\n"),
-            "FILE has 3 rows after the header, but 9 are expected, each of 3 values of s with each of 3 values of t; "
-            "the first that are missing are s = 1, t = 0; s = 2, t = 0; s = 0, t = 1");
+            "the first that is missing is s = 1, t = 1 (\"crawler table IN OUT\" fills gaps)");
+  EXPECT_EQ(
+    complaint("s,t,m\n0,0,1\n1,1,2\n2,2,3\n"),
+    "FILE has 3 rows after the header, but 9 are expected, each of 3 values of s with each of 3 values of t; "
+    "the first that are missing are s = 1, t = 0; s = 2, t = 0; s = 0, t = 1 (\"crawler table IN OUT\" fills gaps)");
   std::string scattered = "s,t,m\n";
   for (unsigned int i = 0; i < 200; ++i)
     scattered += to_text(i) + "," + to_text(i) + ",0\n";
