@@ -118,6 +118,7 @@ def draw_progress(axes, optimisation):
     for one in optimisation.optima:
         which = cases.index(one["number"]) if several else one["start"]
         last = optimisation.lengths[one["number"], one["start"]]
+        values.append(one["objective"] if one["objective"] is not None else values[0])
         if last and one["objective"] is not None:
             axes.plot(last, one["objective"], marker="*", markersize=11, color=COLOURS[which % len(COLOURS)],
                       markeredgecolor="black", markeredgewidth=0.6, linestyle="none", clip_on=False, zorder=5)
@@ -146,8 +147,10 @@ def draw_gait(figure, panels, gait, title):
 
 
 def axis_of_cases(optima):
-    """What the cases are drawn over: name, values, whether logarithmic. The first number that differs, else numbers."""
-    for name in optima[0]["case"]:
+    """What the cases are drawn over: name, values, whether logarithmic. What varies, if that is one number."""
+    varied = [name for name in optima[0]["case"] if any(one["case"][name] != optima[0]["case"][name] for one in optima)
+              and name not in optima[0]["variables"]]
+    for name in varied if len(varied) == 1 else ():
         values = [one["case"][name] for one in optima]
         if name == "Optimize/Work":
             return NAMES["work"], [one["stress_power"] for one in optima], True

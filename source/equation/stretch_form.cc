@@ -194,16 +194,20 @@ namespace crawler
       if (w[j] > w[most])
         most = j;
     }
+    // Beside jumps straight lines and parabolas may lead far below what the cells have, even below 0.
+    const auto is_credible = [](const double value, const double of_cell) {
+      return of_cell > nearly_empty && value > 0.5 * of_cell;
+    };
     const auto sharpened = [&](const std::size_t j) -> StretchAt {
       if (j == 0 || j + 1 == n) // the end of the body, from the two cells there
       {
         const std::size_t next = j == 0 ? 1 : n - 2, end = j == 0 ? 0 : n - 1;
         const double value = w[end] + (w[end] - w[next]) * 0.5 * size[end] / std::abs(middle(next) - middle(end));
-        return w[end] > nearly_empty ? StretchAt{value, j == 0 ? 0. : discretization_.length()}
-                                     : StretchAt{w[j], middle(j)};
+        return is_credible(value, w[end]) ? StretchAt{value, j == 0 ? 0. : discretization_.length()}
+                                          : StretchAt{w[j], middle(j)};
       }
       const auto [s, value] = parabola_vertex(middle(j - 1), w[j - 1], middle(j), w[j], middle(j + 1), w[j + 1]);
-      const bool inside     = s > middle(j - 1) && s < middle(j + 1) && std::isfinite(value) && w[j] > nearly_empty;
+      const bool inside = s > middle(j - 1) && s < middle(j + 1) && std::isfinite(value) && is_credible(value, w[j]);
       return inside ? StretchAt{value, s} : StretchAt{w[j], middle(j)};
     };
     return {sharpened(least), sharpened(most)};

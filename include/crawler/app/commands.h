@@ -10,7 +10,6 @@
 #include <CLI/CLI.hpp>
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace crawler

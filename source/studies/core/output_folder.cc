@@ -138,6 +138,7 @@ namespace crawler
                              "scaling.png",
                              "starts.csv",
                              "optimum.prm",
+                             "optima.csv",
                              "optimize.png",
                              "reference.json",
                              report_name.c_str()})

@@ -296,6 +296,17 @@ namespace crawler
     return *best;
   }
 
+  double
+  GaitProblem::unused_limits(const std::vector<double> &y, const std::vector<double> &multipliers)
+  {
+    const std::vector<double> c = at(y, /*with_gradients=*/false).constraints;
+    double sum                  = 0.;
+    for (std::size_t i = 0; i < c.size(); ++i)
+      if (multipliers[i] != 0.)
+        sum += std::abs(multipliers[i]) * std::max(multipliers[i] > 0. ? upper_[i] - c[i] : c[i] - lower_[i], 0.);
+    return sum;
+  }
+
   std::vector<GaitLimit>
   GaitProblem::limits(const std::vector<double> &multipliers) const
   {

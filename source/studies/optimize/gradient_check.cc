@@ -47,7 +47,7 @@ namespace crawler
     GaitModel &model, const SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &x, Log &log)
   {
     const double noise = model.noise();
-    const double step = noise > 0. ? 0.5 * std::cbrt(noise) : 1e-6, tolerance = noise > 0. ? 20. * noise / step : 1e-6;
+    const double step = noise > 0. ? 0.5 * std::cbrt(noise) : 1e-6, tolerance = noise > 0. ? 20. * noise / step : 1e-5;
     const GaitValues here = model.evaluate(x, /*with_gradients=*/true);
     here.require_start();
     std::vector<Checked> list;

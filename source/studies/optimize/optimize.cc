@@ -61,6 +61,35 @@ namespace crawler
       return fs::exists(file) && !unpack_start(read_whole_file(file)).was_interrupted;
     }
 
+    /// The parameter files and runs of an earlier study, but for files that are not the program's.
+    void
+    remove_optima(const fs::path &folder)
+    {
+      std::vector<fs::path> files, runs;
+      for (const auto &entry : fs::directory_iterator(folder))
+      {
+        const std::string name = entry.path().filename().string();
+        const auto is_own      = [&](const std::string &word, const std::string &ending) {
+          return name.starts_with(word + "-") && name.ends_with(ending) &&
+                 to_number(name.substr(word.size() + 1, name.size() - word.size() - 1 - ending.size())).has_value();
+        };
+        if (is_own("optimum", ".prm"))
+          files.push_back(entry.path());
+        if ((name == "best" || is_own("best", "")) && entry.is_directory())
+          runs.push_back(entry.path());
+      }
+      std::error_code error;
+      for (const fs::path &file : files)
+        fs::remove(file, error);
+      for (const fs::path &run : runs)
+      {
+        prepare(run);
+        fs::remove(run / "active_stress.csv", error);
+        fs::remove(run / "solution", error); // these if they are empty
+        fs::remove(run, error);
+      }
+    }
+
     void
     begin_or_resume(MPI_Comm communicator, StudyFolder &folder, const ParameterFile &file, const std::string &effective)
     {
@@ -73,6 +102,7 @@ namespace crawler
           });
         else
         {
+          remove_optima(folder.path());
           fs::remove_all(starts);
           fs::create_directories(starts);
         }
@@ -91,8 +121,9 @@ namespace crawler
                          model.description());
     }
 
-    /// The optimum as a parameter file, and its run in a folder of its own. Returns the summary of the run.
-    std::string
+    /// The optimum as a parameter file, and its run in a folder of its own. Returns the summary of the run, and whether
+    /// it ended as it should.
+    std::pair<std::string, bool>
     run_optimum(OptimizeCases &cases, const StartResult &start, const fs::path &folder, const CommandOptions &options)
     {
       const auto family           = cases.family(start.number_of_case);
@@ -114,8 +145,8 @@ namespace crawler
       if (parameters.create_scene().active_stress->feedback() == nullptr)
         one.overrides.push_back("Output/Active stress table=129, 513");
       fs::create_directories(place);
-      run(MPI_COMM_SELF, one);
-      return fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}";
+      const bool is_good = run(MPI_COMM_SELF, one) == ExitCode::finished;
+      return {fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}", is_good};
     }
 
     /// Tables, the optima with their runs, and the summary, by rank 0. Returns the exit code.
@@ -140,19 +171,22 @@ namespace crawler
       write_hdf5(folder / "results.h5", "optimize", evaluations, provenance(effective, options.command_line));
       write_file(folder / "starts.csv", csv(start_table(results)));
       std::vector<std::string> summaries;
-      bool is_admissible = !results.best.empty(), has_converged = !results.best.empty();
+      bool is_admissible = !results.best.empty(), has_converged = !results.best.empty(), runs = true;
       for (std::size_t i = 0; i < results.best.size(); ++i)
       {
-        const StartResult &best = results.starts[results.best[i]];
-        is_admissible           = is_admissible && best.is_admissible();
-        has_converged           = has_converged && best.has_converged;
-        summaries.push_back(run_optimum(cases, best, folder, options));
+        const StartResult &best       = results.starts[results.best[i]];
+        is_admissible                 = is_admissible && best.is_admissible();
+        has_converged                 = has_converged && best.has_converged;
+        const auto [summary, is_good] = run_optimum(cases, best, folder, options);
+        summaries.push_back(summary);
+        runs = runs && is_good;
       }
       write_file(folder / "optima.csv", csv(optimum_table(results, summaries)));
-      const std::string status = !is_whole ? "stopped" : is_admissible && has_converged ? "finished" : "failed";
+      const std::string status = !is_whole ? "stopped" : is_admissible && has_converged && runs ? "finished" : "failed";
       const std::string why    = !is_whole        ? reason
                                  : !is_admissible ? "limits_exceeded"
                                  : !has_converged ? "optimiser_not_converged"
+                                 : !runs          ? "best_run_failed"
                                                   : "";
       write_file(folder / "summary.json",
                  optimize_json(results, summaries, status, why, now() - begin, options.command_line));
@@ -168,7 +202,8 @@ namespace crawler
           why == "limits_exceeded"
             ? "no gait that keeps to all limits was found; the limits may contradict each other, or the start is "
               "far from them"
-            : "the optimiser did not converge; the lines above say why");
+          : why == "best_run_failed" ? "the run of a best gait did not end as it should; its log.txt says why"
+                                     : "the optimiser did not converge; the lines above say why");
       log.line(fmt::format("{} evaluations from {}, {:.1f} s. The best gait is in {}/optimum{}.prm, its run in "
                            "{}/best{}/.",
                            std::get<std::vector<double>>(evaluations.front().values).size(),

@@ -300,7 +300,7 @@ namespace crawler
       if (its.paths.size() > most_variables)
         lines.push_back(fmt::format("  and {} more variables", its.paths.size() - most_variables));
       for (const GaitLimit &limit : start.limits)
-        if (limit.multiplier != 0.)
+        if (std::isfinite(limit.multiplier) && limit.multiplier != 0.)
           lines.push_back(fmt::format(
             "  {} = {:g} holds it back: one unit more would add {:.4g}", limit.name, limit.value, limit.multiplier));
     }

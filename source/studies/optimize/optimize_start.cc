@@ -136,7 +136,7 @@ namespace crawler
       void
       improve(GaitModel &model, const bool is_rough)
       {
-        constexpr double roughly = 1e-3;
+        constexpr double roughly = 1e-3, most_unused = 0.01;
         GaitProblem problem(model, parameters_, family_.variables(), x_, stops_);
         const auto keep = [&](const GaitRecord &best) {
           result_.best = best;
@@ -161,6 +161,12 @@ namespace crawler
           keep(end.has_converged && is_gait ? problem.record(end.y) : problem.best());
           result_.has_converged = end.has_converged && is_gait;
           result_.message       = end.message;
+          if (result_.has_converged && problem.unused_limits(end.y, end.multipliers) > most_unused)
+          {
+            result_.has_converged = false;
+            result_.message = "a limit that holds the gait back is not reached, so better ones are near; a smaller "
+                              "Tolerance, with an Accuracy of a tenth of it, is needed";
+          }
           result_.iterations += end.iterations;
           result_.limits = problem.limits(end.multipliers);
         }
@@ -190,6 +196,8 @@ namespace crawler
                                          1. + result_.records.front().violation);
         for (GaitLimit &limit : result_.limits)
         {
+          if (!result_.is_admissible()) // what the optimiser has then is no price
+            limit.multiplier = NAN;
           if (is_cost) // the multiplier is that of D/W
             limit.multiplier *= -result_.best.objective * result_.best.objective;
           if (limit.name == "Smallest strain") // as it was wanted, not tightened

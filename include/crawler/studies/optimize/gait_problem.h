@@ -106,6 +106,11 @@ namespace crawler
       return records_;
     }
 
+    /// How much better the objective would become, relative to its size, if what the limits leave unused were worth
+    /// what their multipliers say: 0 at an optimum.
+    double
+    unused_limits(const std::vector<double> &y, const std::vector<double> &multipliers);
+
     /// The limits, by the multipliers of c.
     std::vector<GaitLimit>
     limits(const std::vector<double> &multipliers) const;

@@ -7,7 +7,7 @@
 namespace crawler
 {
   /// Prints the derivatives of all wanted numbers, and of the limited ones where they are most extreme, at @p x beside
-  /// differences of what the model gives. Returns whether they agree to 1e-6 of the gradient's size, or, where gaits
+  /// differences of what the model gives. Returns whether they agree to 1e-5 of the gradient's size, or, where gaits
   /// are simulated, to what the accuracy of these allows.
   bool
   check_gradient(
