@@ -192,7 +192,7 @@ with tempfile.TemporaryDirectory() as place:
                             (["Optimize/Work=0"], "positive number"),
                             (["Optimize/Work=0.1, 0.2"], "positive number"),
                             (["Sweep/Axes=Optimize/Objective : merit, speed"], "the same for all cases"),
-                            (["Sweep/Axes=Body/Lenght : 1, 2"], "nearest name is \"Body/Length\""),
+                            (["Sweep/Axes=Body/Lenght : 1, 2"], "nearest name is \"Length\""),
                             (["Sweep/Axes=Active stress/Modes/Coefficients[2] : 0.2, 3"], "expected in its range"),
                             (no_limit, "has no maximum"),
                             (["Model=perturbation"], "perturbation")]:

@@ -74,7 +74,7 @@ namespace crawler
       throw FileError("\"" + (folder / "solution").string() +
                       "\" is not a folder, but one for the snapshots is expected");
     require_own_folders(folder);
-    if (!overwrite && !is_free(folder))
+    if (!overwrite && !fs::is_empty(folder, error))
       throw InputError("the output folder \"" + folder.string() +
                        "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
   }
@@ -91,7 +91,7 @@ namespace crawler
                        "\"; another folder is expected for --output, or that it has ended");
     try
     {
-      require_usable(folder, overwrite); // whoever had the lock may have written
+      require_usable(folder, overwrite || is_free(folder)); // whoever had the lock may have written
     }
     catch (...)
     {
