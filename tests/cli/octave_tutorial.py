@@ -49,7 +49,7 @@ def main():
     expect(ended.returncode == 0, f"Octave: {ended.stdout} {ended.stderr}")
     wanted = [f"finished: displacement {summary['displacement']:.10g} +- ",
               f"at t = 1 with displacement {summary['displacement']:.10g}",
-              "stretch, velocity, active_stress, friction_force, displacement", "201 points at 129 times"]
+              "stretch, displacement, velocity, active_stress, friction_force", "201 points at 129 times"]
     wanted += [f"k = {float(row['Body/Elastic modulus']):g}: displacement {float(row['displacement']):.8g} +- "
                for row in rows]
     for words in wanted:

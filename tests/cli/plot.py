@@ -71,7 +71,7 @@ REFUSED = [
     (["run", "--from", "1", "--to", "1.001"], 2, "has 1 times"), (["run", "--last-stride", "--to", "1"], 2, "one of the two ways"),
     (["no_stride", "--last-stride"], 2, "has no stride"),
     (["run", "--output", "picture.doc"], 2, ".png, .svg or .pdf"), (["run", "--output", "no/picture.png"], 6, "no/picture.png"),
-    (["optimum", "--optimum", "2"], 2, "a number from 1 to 1"), (["run", "--", "-ts_monitor"], 2, "no use for PETSc options"),
+    (["optimum", "--optimum", "2"], 2, "the number of a case is expected: 1"), (["run", "--", "-ts_monitor"], 2, "no use for PETSc options"),
     (["calibration.csv", "--value", "x"], 2, "--value")]
 failures = []
 

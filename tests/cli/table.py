@@ -54,7 +54,7 @@ end
 """
 # Arguments, exit code, what the one sentence has.
 REFUSED = [
-    ([], 2, "a file is missing"), (["larva_raw.csv"], 2, "a file is missing"), (["a.csv", "b.csv", "c.csv"], 2, "c.csv"),
+    ([], 2, "file is missing"), (["larva_raw.csv"], 2, "file is missing"), (["a.csv", "b.csv", "c.csv"], 2, "c.csv"),
     (["nowhere.csv", "out.csv"], 6, "nowhere.csv"), (["larva_raw.csv", "larva.csv"], 2, "--overwrite"),
     (["larva_raw.csv", "larva_raw.csv"], 2, "another name"), (["larva_raw.csv", "out.txt"], 2, ".csv"),
     (["larva_raw.csv", "no/out.csv"], 6, "no/out"), (["larva_raw.csv", "out.csv", "--smoth-t", "1"], 2, "--smooth-t"),

@@ -174,11 +174,11 @@ def _read_kymograph(path, parameters):
     """kymograph.vts has arrays in base 64, behind the number of their bytes; x is s/L, y is t/T."""
     try:
         piece = ElementTree.parse(path).getroot().find("StructuredGrid/Piece")
-        arrays = {array.get("Name", "points"): np.frombuffer(base64.b64decode(array.text)[8:])
+        arrays = {array.get("Name"): np.frombuffer(base64.b64decode(array.text)[8:])
                   for array in piece.iter("DataArray")}
         _, last, _, last_row, _, _ = map(int, piece.get("Extent").split())
         shape = (last_row + 1, last + 1)
-        points = arrays.pop("points").reshape(*shape, 3)
+        points = arrays.pop("Points").reshape(*shape, 3)
         return fields_of(points[:, 0, 1] * parameters["Time/End time"], parameters["Body/Length"],
                          {name: arrays[name].reshape(shape) for name in
                           ("displacement", "stretch", "velocity", "active_stress", "friction_force")})
