@@ -4,12 +4,8 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/table/measured_table.h>
 
+#include <CLI/CLI.hpp>
 #include <mpi.h>
-
-namespace CLI
-{
-  class App;
-}
 
 namespace crawler
 {

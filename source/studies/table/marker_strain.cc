@@ -90,7 +90,7 @@ namespace crawler
                                    s.back(),
                                    length));
     Samples strain;
-    strain.quantity          = Quantity::strain;
+    strain.quantity          = MeasuredQuantity::strain;
     strain.t                 = tracks.t;
     const unsigned int n_out = settings.n_s == 0 ? usual_n_s : settings.n_s;
     for (unsigned int i = 0; i < n_out; ++i)

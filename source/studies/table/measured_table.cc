@@ -57,8 +57,8 @@ namespace crawler
     std::string
     before_text(const Samples &samples)
     {
-      std::string text =
-        fmt::format("{},t,{}\n", samples.quantity == Quantity::marker ? "marker" : "s", column_of(samples.quantity));
+      std::string text = fmt::format(
+        "{},t,{}\n", samples.quantity == MeasuredQuantity::marker ? "marker" : "s", column_of(samples.quantity));
       for (std::size_t j = 0; j < samples.t.size(); ++j)
         for (std::size_t i = 0; i < samples.s.size(); ++i)
           if (!std::isnan(samples.at(j, i)))
@@ -124,7 +124,7 @@ namespace crawler
     log.line(fmt::format(
       "Picture: crawler plot {}. In the parameter file: {}",
       options.output,
-      table.quantity == Quantity::strain
+      table.quantity == MeasuredQuantity::strain
         ? "Generator = prescribed strain, Given by = table, File = " + options.output
         : fmt::format("Generator = table, File = {}{}", options.output, table.period ? ", Outside = periodic" : "")));
   }

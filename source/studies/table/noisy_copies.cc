@@ -43,20 +43,20 @@ namespace crawler
 
     /// Where the scene names the file of its table.
     std::string &
-    file_entry(Parameters &parameters, const Quantity quantity, const std::string &name)
+    file_entry(Parameters &parameters, const MeasuredQuantity quantity, const std::string &name)
     {
       ActiveStressParameters &stress = parameters.active_stress;
-      if (quantity == Quantity::active_stress && stress.generator == "table")
+      if (quantity == MeasuredQuantity::active_stress && stress.generator == "table")
         return stress.table.file;
-      if (quantity == Quantity::strain && stress.generator == "prescribed strain" &&
+      if (quantity == MeasuredQuantity::strain && stress.generator == "prescribed strain" &&
           stress.prescribed_strain.given_by == "table")
         return stress.prescribed_strain.file;
-      throw InputError(
-        fmt::format("\"{}\" has the generator \"{}\", but for a table of {} one is expected that reads it: {}",
-                    name,
-                    stress.generator,
-                    quantity == Quantity::strain ? "strain" : "active stress",
-                    quantity == Quantity::strain ? "\"prescribed strain\" with Given by = table" : "\"table\""));
+      throw InputError(fmt::format(
+        "\"{}\" has the generator \"{}\", but for a table of {} one is expected that reads it: {}",
+        name,
+        stress.generator,
+        quantity == MeasuredQuantity::strain ? "strain" : "active stress",
+        quantity == MeasuredQuantity::strain ? "\"prescribed strain\" with Given by = table" : "\"table\""));
     }
 
     /// What went wrong with a run; empty if nothing did.

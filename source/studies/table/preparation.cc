@@ -289,7 +289,7 @@ namespace crawler
         fmt::format("{} is missing at {} = {:g} from t = {:g} to {:g}, {} in a row, but at most {} between "
                     "measured ones are filled (\"--gap\"), in time or else along the body",
                     column_of(samples.quantity),
-                    samples.quantity == Quantity::marker ? "marker" : "s",
+                    samples.quantity == MeasuredQuantity::marker ? "marker" : "s",
                     samples.s[i],
                     samples.t[from],
                     samples.t[to],
@@ -347,7 +347,7 @@ namespace crawler
       for (std::size_t j = 0; j < samples.t.size(); ++j)
       {
         std::vector<double> y = full.over_body(j);
-        if (samples.quantity != Quantity::marker)
+        if (samples.quantity != MeasuredQuantity::marker)
           fill_along_body(samples.s, y, most, filled);
         for (std::size_t i = 0; i < y.size(); ++i)
         {
@@ -545,7 +545,7 @@ namespace crawler
     require_steps(measured.t, settings.largest_gap);
     Filled filled;
     Samples samples      = measured;
-    const bool is_tracks = measured.quantity == Quantity::marker;
+    const bool is_tracks = measured.quantity == MeasuredQuantity::marker;
     if (is_tracks)
     {
       Filled of_tracks;

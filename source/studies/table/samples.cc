@@ -176,14 +176,14 @@ namespace crawler
     }
 
     Samples
-    on_grid(const Columns &columns, const Quantity quantity, const std::string &name)
+    on_grid(const Columns &columns, const MeasuredQuantity quantity, const std::string &name)
     {
       Samples samples;
       samples.quantity            = quantity;
       samples.s                   = distinct(columns.s);
       samples.t                   = distinct(columns.t);
       constexpr std::size_t least = 4, most_gaps = 20;
-      const std::string of = quantity == Quantity::marker ? "markers" : "places s";
+      const std::string of = quantity == MeasuredQuantity::marker ? "markers" : "places s";
       if (samples.s.size() < least || samples.t.size() < least)
         throw InputError(fmt::format("\"{}\" has {} different {} and {} different times, but at least {} of each are "
                                      "expected",
@@ -214,7 +214,7 @@ namespace crawler
           mistakes.say(fmt::format("row {} of \"{}\" gives {} = {:g}, t = {:g} a second time, after row {}",
                                    columns.lines[r],
                                    name,
-                                   quantity == Quantity::marker ? "marker" : "s",
+                                   quantity == MeasuredQuantity::marker ? "marker" : "s",
                                    columns.s[r],
                                    columns.t[r],
                                    seen[point]));
@@ -253,9 +253,9 @@ namespace crawler
   } // namespace
 
   std::string
-  column_of(const Quantity quantity)
+  column_of(const MeasuredQuantity quantity)
   {
-    return quantity == Quantity::active_stress ? "m" : quantity == Quantity::strain ? "strain" : "x";
+    return quantity == MeasuredQuantity::active_stress ? "m" : quantity == MeasuredQuantity::strain ? "strain" : "x";
   }
 
   std::vector<double>
@@ -316,9 +316,9 @@ namespace crawler
                     fmt::join(file.columns, ", ")));
     const bool is_tracked = quantity == "markers";
     Samples samples       = on_grid(found,
-                              is_tracked        ? Quantity::marker
-                                    : quantity == "m" ? Quantity::active_stress
-                                                      : Quantity::strain,
+                              is_tracked        ? MeasuredQuantity::marker
+                                    : quantity == "m" ? MeasuredQuantity::active_stress
+                                                      : MeasuredQuantity::strain,
                               file.name);
     const auto factor     = [&](const std::string &wanted, const std::size_t column, const char *option) {
       return wanted.empty() ? 1. : unit_factor(file.units[column], wanted, option);

@@ -13,7 +13,7 @@ namespace crawler
 {
   struct PreparedTable
   {
-    Quantity quantity;              ///< active stress or strain
+    MeasuredQuantity quantity;      ///< active stress or strain
     GridTable grid;                 ///< full
     std::optional<double> period;   ///< its last samples are the first ones
     double noise;                   ///< as given, or as estimated from the samples

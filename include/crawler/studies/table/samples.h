@@ -10,7 +10,7 @@
 namespace crawler
 {
   /// What is measured.
-  enum class Quantity
+  enum class MeasuredQuantity
   {
     active_stress,
     strain,
@@ -19,12 +19,12 @@ namespace crawler
 
   /// The name of the column that a table of it has: "m", "strain", "x".
   std::string
-  column_of(Quantity quantity);
+  column_of(MeasuredQuantity quantity);
 
   /// Samples at all points of a grid over s (of markers: their numbers) and t; a gap is not a number.
   struct Samples
   {
-    Quantity quantity = Quantity::active_stress;
+    MeasuredQuantity quantity = MeasuredQuantity::active_stress;
     std::vector<double> s, t;   ///< increasing
     std::vector<double> values; ///< [t][s]
 

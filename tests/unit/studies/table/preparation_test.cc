@@ -218,10 +218,10 @@ TEST(Preparation, turns_tracks_into_strain)
   };
   const auto error = [&](const std::size_t n, const double width) {
     Samples tracks        = samples_of(place, n, 21, 0.8);
-    tracks.quantity       = Quantity::marker;
+    tracks.quantity       = MeasuredQuantity::marker;
     const PreparedTable e = prepare_table(tracks, settings_with([=](auto &p) { p.width_s = width; }));
     double largest        = 0.;
-    EXPECT_EQ(e.quantity, Quantity::strain);
+    EXPECT_EQ(e.quantity, MeasuredQuantity::strain);
     EXPECT_DOUBLE_EQ(e.grid.s.back(), 1.);
     for (std::size_t j = 0; j < e.grid.t.size(); ++j)
       for (std::size_t i = 0; i < e.grid.s.size(); ++i)
@@ -245,7 +245,7 @@ TEST(Preparation, extrapolates_strain_as_stated)
     7,
     5,
     1.);
-  tracks.quantity              = Quantity::marker;
+  tracks.quantity              = MeasuredQuantity::marker;
   PreparationSettings settings = settings_with([](auto &p) {
     p.n_s          = 6;
     p.first_marker = 0.2;
