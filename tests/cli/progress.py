@@ -7,6 +7,7 @@
 The program runs in a pseudo terminal; a small terminal of our own follows its control sequences, so that what stands on
 the screen at any time is known.
 """
+import codecs
 import fcntl
 import os
 import pathlib
@@ -71,7 +72,8 @@ def on_terminal(command, folder, language="C.UTF-8", term="xterm"):
     process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=inner, stderr=inner,
                                env=environment)
     os.close(inner)
-    screen, waiting, end = Screen(), b"", time.monotonic() + 240
+    screen, waiting, end = Screen(), "", time.monotonic() + 240
+    decoder = codecs.getincrementaldecoder("utf-8")(errors="replace")
     while time.monotonic() < end:
         try:
             data = os.read(main, 65536)
@@ -79,10 +81,12 @@ def on_terminal(command, folder, language="C.UTF-8", term="xterm"):
             break
         if not data:
             break
-        whole, _, waiting = (waiting + data).rpartition(b"\n") if b"\x1b" not in data else (waiting + data, b"", b"")
-        text = (whole + (b"\n" if waiting or data.endswith(b"\n") and b"\x1b" not in data else b""))
-        screen.write(text.decode("utf-8", errors="replace").replace("\r\n", "\n\r"))
-    screen.write(waiting.decode("utf-8"))
+        # A piece may end within a character or a control sequence: these wait for their rest.
+        text = waiting + decoder.decode(data)
+        whole = text[:re.search(r"(\r|\x1b(\[\d*)?)?\Z", text).start()]
+        waiting = text[len(whole):]
+        screen.write(whole.replace("\r\n", "\n\r"))
+    screen.write(waiting + decoder.decode(b"", final=True))
     os.close(main)
     return screen, process.wait(timeout=60)
 
