@@ -178,6 +178,22 @@ with tempfile.TemporaryDirectory() as place:
         expect(done.returncode == 0, f"gradient of {study}: {done.stdout}{done.stderr}")
     expect(not (place / "nothing").exists(), "--check-gradient writes files")
 
+    # The range says little of how large a variable is; and what has no adjoint is not compared with itself.
+    lag, robot = "Active stress/Segments/Phase lag", "Active stress/Segments/Amplitude"
+    wide = run("optimize_robot", place / "nothing", f"Optimize/Variables={robot} : 0.01 to 1000", options=["--check-gradient"])
+    expect(wide.returncode == 0 and "allowed" in wide.stdout, f"gradient in a wide range: {wide.stdout}{wide.stderr}")
+    rough = run("optimize_robot", place / "nothing", f"Optimize/Variables={lag} : 0.1 to 0.2", "Time/Engine=petsc",
+                options=["--check-gradient"])
+    expect(rough.returncode == 0 and "nothing to compare" in rough.stdout, f"without adjoint: {rough.stdout}{rough.stderr}")
+
+    # What holds a gait back is said: friction that no gait can use, a body that all but inverts.
+    flat = run("optimize_robot", place / "flat", "Sweep/Axes=Body/Anchoring exponent : 1", f"Optimize/Variables={lag} : 0.1 to 0.2")
+    expect(flat.returncode == 3 and "no gait moves the body" in flat.stdout and "There is no picture" not in flat.stdout,
+           f"a = 0: {flat.stdout}{flat.stderr}")
+    strong = run("optimize_robot", place / "strong", f"Optimize/Variables={robot} : 0.1 to 0.95", "Optimize/Tolerance=1e-2",
+                 "Active stress/Segments/Switching=smooth", "Active stress/Segments/Rate limit=automatic")
+    expect("Optimize/Smallest strain sets one" in strong.stdout, f"near inversion: {strong.stdout}{strong.stderr}")
+
     # Bad input.
     no_limit = ["Optimize/Smallest strain=automatic", "Optimize/Largest strain=automatic"]
     for settings, words in [(["Optimize/Variables="], "Variables is empty"),

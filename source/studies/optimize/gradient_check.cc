@@ -63,8 +63,19 @@ namespace crawler
     if (wishes.stress_rate)
       add_extremes("stress rate", here, &GaitValues::stress_rate, x.size(), list);
 
-    std::vector<std::vector<double>> differences(list.size(), std::vector<double>(x.size()));
+    std::vector<std::size_t> checked;
     for (std::size_t i = 0; i < x.size(); ++i)
+      if (here.by_differences.empty() || !here.by_differences[i])
+        checked.push_back(i);
+      else
+        log.line(fmt::format("{}: its derivatives are differences of simulations, since the adjoint does not cover it; "
+                             "there is nothing to compare",
+                             family.variables()[i].path));
+    if (checked.empty())
+      return true;
+
+    std::vector<std::vector<double>> differences(list.size(), std::vector<double>(x.size()));
+    for (const std::size_t i : checked)
     {
       const auto around = family.stencil(x, i, step);
       for (std::size_t k = 0; k < around.places.size(); ++k)
@@ -81,12 +92,9 @@ namespace crawler
     bool agrees = true;
     for (std::size_t c = 0; c < list.size(); ++c)
     {
-      // In ranges of the variables, in which the optimiser works.
-      const auto scaled = [&](const double derivative, const std::size_t i) {
-        return derivative * (family.variables()[i].to - family.variables()[i].from);
-      };
+      const auto scaled = [&](const double derivative, const std::size_t i) { return derivative * family.scale(x, i); };
       double size = noise * std::abs(list[c].value(here)), largest = 0.;
-      for (std::size_t i = 0; i < x.size(); ++i)
+      for (const std::size_t i : checked)
       {
         size    = std::max({size, std::abs(scaled(differences[c][i], i)), std::abs(list[c].value(here))});
         largest = std::max(largest, std::abs(scaled(list[c].derivative(here, i) - differences[c][i], i)));
@@ -98,7 +106,7 @@ namespace crawler
                            size > 0. ? largest / size : 0.,
                            tolerance,
                            is_good ? "allowed" : "allowed: they do NOT agree"));
-      for (std::size_t i = 0; i < x.size(); ++i)
+      for (const std::size_t i : checked)
         log.line(fmt::format("  {:<60} {:>17.10g} {:>17.10g}",
                              family.variables()[i].path,
                              list[c].derivative(here, i),

@@ -111,12 +111,13 @@ namespace crawler
     }
 
     std::string
-    in_words(const OptimizeCases &cases, const SceneFamily &family, const GaitModel &model)
+    in_words(const OptimizeCases &cases, const GaitModel &model)
     {
+      const auto [fewest, most] = cases.n_variables();
       return fmt::format("Optimisation of the {}: {}{}, {}; {}.",
                          cases.parameters().optimize.objective,
-                         counted(family.variables().size(), "variable"),
-                         cases.size() > 1 ? fmt::format(" in each of {} cases", cases.size()) : "",
+                         fewest < most ? fmt::format("{} to {} variables", fewest, most) : counted(most, "variable"),
+                         !cases.axes().empty() ? fmt::format(" in each of {}", counted(cases.size(), "case")) : "",
                          counted(cases.parameters().optimize.n_starts, "start"),
                          model.description());
     }
@@ -128,7 +129,7 @@ namespace crawler
     {
       const auto family           = cases.family(start.number_of_case);
       const Parameters parameters = family->parameters(start.best.x);
-      const std::string number    = cases.size() > 1 ? fmt::format("-{}", start.number_of_case + 1) : "";
+      const std::string number    = !cases.axes().empty() ? fmt::format("-{}", start.number_of_case + 1) : "";
       std::ostringstream text;
       Declarations &entries = family->form().declarations;
       entries.set("Sweep/Axes", "");
@@ -210,9 +211,9 @@ namespace crawler
                            counted(results.starts.size(), "start"),
                            now() - begin,
                            folder.string(),
-                           cases.size() > 1 ? "-N" : "",
+                           !cases.axes().empty() ? "-N" : "",
                            folder.string(),
-                           cases.size() > 1 ? "-N" : ""));
+                           !cases.axes().empty() ? "-N" : ""));
       return !is_whole ? ExitCode::stopped : status == "finished" ? ExitCode::finished : ExitCode::numerical_failure;
     }
   } // namespace
@@ -233,7 +234,7 @@ namespace crawler
         family->form().declarations.set("Accuracy", to_text(std::min(cases.parameters().accuracy, accuracy_of_check)));
       const auto start = start_values(own, family->variables(), 0);
       const auto model = make_gait_model(*family, start, []() { return false; });
-      log.line(in_words(cases, *family, *model));
+      log.line(in_words(cases, *model));
       if (options.check_gradient)
         return check_gradient(*model, *family, GaitProblem::wishes(family->form().parameters.optimize), start, log)
                  ? ExitCode::finished
@@ -296,12 +297,12 @@ namespace crawler
         const auto start  = start_values(own, family->variables(), 0);
         const auto model  = make_gait_model(*family, start, []() { return false; });
         if (number == 0)
-          log.line(in_words(cases, *family, *model));
+          log.line(in_words(cases, *model));
         GaitProblem problem(
           *model, family->form().parameters.optimize, family->variables(), start, []() { return false; });
         const GaitRecord record = problem.record(problem.to_y(start));
         log.line(fmt::format("  The start{}: {} {:.6g}, which {}.",
-                             cases.size() > 1 ? " with " + cases.in_words(number) : "",
+                             !cases.axes().empty() ? " with " + cases.in_words(number) : "",
                              own.objective,
                              record.objective,
                              record.violation <= problem.admissible()

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace crawler
@@ -44,7 +45,11 @@ namespace crawler
       for (unsigned long number = 0; number < size(); ++number)
         try
         {
-          family(number)->form().parameters.create_scene();
+          const auto its = family(number);
+          its->form().parameters.create_scene();
+          const std::size_t n = its->variables().size();
+          n_variables_        = number == 0 ? std::pair(n, n)
+                                            : std::pair(std::min(n, n_variables_.first), std::max(n, n_variables_.second));
         }
         catch (const InputError &error)
         {

@@ -272,6 +272,7 @@ namespace crawler
   in_words(const OptimizeResults &results, const std::vector<std::string> &summaries)
   {
     constexpr std::size_t most_variables = 12;
+    constexpr double near_inversion      = 0.02;
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < results.best.size(); ++i)
     {
@@ -294,6 +295,12 @@ namespace crawler
                                       100. * efficiency,
                                       is_stride ? "dissipation" : "work",
                                       is_stride ? ", in the last stride" : ""));
+        const double stretch = number_at(Json::parse(summaries[i]), "/min_stretch/value");
+        if (stretch < near_inversion)
+          lines.push_back(
+            fmt::format("  Here the body is pressed together to a stretch of {:.2g}: inversion holds the gait "
+                        "back, not a limit that was set. Optimize/Smallest strain sets one",
+                        stretch));
       }
       for (std::size_t k = 0; k < std::min(its.paths.size(), most_variables); ++k)
         lines.push_back(fmt::format("  {} = {:.8g}", its.paths[k], start.best.x[k]));

@@ -178,6 +178,13 @@ namespace crawler
         }
       }
 
+      bool
+      nothing_moves_the_body() const
+      {
+        const Scene scene = family_.parameters(result_.best.x).create_scene();
+        return scene.is_plain() && scene.body.friction_exponent() == 0.;
+      }
+
       /// Is it an optimum, and what do the limits cost?
       void
       judge()
@@ -188,7 +195,10 @@ namespace crawler
         if (result_.has_converged && !(sign * result_.best.objective > least_motion))
         {
           result_.has_converged = false;
-          result_.message = "what was found does not move the body in the wanted direction; another start is needed";
+          result_.message =
+            nothing_moves_the_body()
+              ? "friction does not depend on the stretch here (Anchoring exponent 1), so that no gait moves the body"
+              : "what was found does not move the body in the wanted direction; another start is needed";
         }
         constexpr double far = 10.;
         if (!result_.has_converged && !result_.records.empty() && result_.records.front().violation > far)

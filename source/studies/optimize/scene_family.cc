@@ -53,11 +53,20 @@ namespace crawler
       form_.declarations.set(variable.path, to_text(variable.start));
   }
 
+  double
+  SceneFamily::scale(const std::vector<double> &x, const std::size_t i) const
+  {
+    constexpr double least = 0.01, of_unknown = 0.1;
+    const OptimizeVariable &variable = variables_[i];
+    const double range = variable.to - variable.from, size = std::max(std::abs(x[i]), std::abs(variable.start));
+    return size > 0. ? std::clamp(size, least * range, range) : of_unknown * range;
+  }
+
   SceneFamily::Stencil
   SceneFamily::stencil(const std::vector<double> &x, const std::size_t i, const double relative_step) const
   {
     const OptimizeVariable &variable = variables_[i];
-    const double step                = relative_step * (variable.to - variable.from);
+    const double step                = relative_step * scale(x, i);
     if (x[i] - 2. * step >= variable.from && x[i] + 2. * step <= variable.to)
       return {{-2. * step, -step, step, 2. * step},
               {1. / (12. * step), -8. / (12. * step), 8. / (12. * step), -1. / (12. * step)}};

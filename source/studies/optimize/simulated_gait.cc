@@ -234,6 +234,8 @@ namespace crawler
           weights.emplace_back(i, around.weights[k]);
         }
       }
+    values.by_differences = is_known;
+    values.by_differences.flip();
     std::vector<double> extremes(2 * x.size()); // [smallest, largest][variable]
     const std::vector<Task> tasks = answers(places);
     for (std::size_t i = 0; i < x.size(); ++i)

@@ -37,7 +37,8 @@ namespace crawler
     std::string problem; ///< in words; empty if all is well
     std::array<double, n_gait_numbers> numbers{};
     std::array<std::vector<double>, n_gait_numbers> gradients; ///< by the variables, if they were asked for
-    LimitedValues strain, stress, stress_rate;                 ///< of what is limited
+    std::vector<bool> by_differences; ///< for which variables the gradients are differences of gaits; empty: for none
+    LimitedValues strain, stress, stress_rate; ///< of what is limited
 
     /// Throws InputError if the start has a problem.
     void

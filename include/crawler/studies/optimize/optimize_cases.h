@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crawler
@@ -22,6 +23,13 @@ namespace crawler
     size() const
     {
       return points_ ? points_->design().n_points() : 1;
+    }
+
+    /// The smallest and the largest number of variables of a case.
+    std::pair<std::size_t, std::size_t>
+    n_variables() const
+    {
+      return n_variables_;
     }
 
     /// The scenes of a case. One at a time: it goes before the next one comes.
@@ -61,5 +69,6 @@ namespace crawler
     Form file_form_;
     std::unique_ptr<SweepPoints> points_; ///< if there are axes
     std::vector<std::string> axes_;
+    std::pair<std::size_t, std::size_t> n_variables_;
   };
 } // namespace crawler

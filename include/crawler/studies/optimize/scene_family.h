@@ -36,8 +36,13 @@ namespace crawler
       return parameters_at(form_, variables_, x);
     }
 
-    /// Where variable @p i differs a little: x + step @p places, all in its range; the weights of the values there make
-    /// the derivative, of fourth order inside of the range.
+    /// By how much variable @p i changes a gait: about its value, here or at the start; between 0.01 and 1 of its
+    /// range.
+    double
+    scale(const std::vector<double> &x, std::size_t i) const;
+
+    /// Where variable @p i differs a little: x + @p places, all in its range; the weights of the values there make the
+    /// derivative, of fourth order inside of the range. @p relative_step: in scales of the variable.
     struct Stencil
     {
       std::vector<double> places, weights;
