@@ -78,6 +78,21 @@ namespace crawler
     refuse("\"" + input.formula_entry + "\" is a formula, read by muParser", input.formula_entry);
   }
 
+  Library::Library(const LibraryParameters &, const Body &, double)
+  {
+    refuse("\"Active stress/Library\" is a shared object", "Active stress/Library/File");
+  }
+  std::unique_ptr<ActiveStressAtPoints>
+  Library::evaluator(const std::vector<double> &, bool) const
+  {
+    refuse("\"Active stress/Library\" is a shared object");
+  }
+  void
+  Library::report(std::ostream &) const
+  {
+    refuse("\"Active stress/Library\" is a shared object");
+  }
+
   GridTable
   read_grid_table(const std::string &, const std::string &, const std::string &entry)
   {
@@ -99,5 +114,4 @@ namespace crawler
   {
     refuse("\"" + entry + "\" names a file", entry);
   }
-
 } // namespace crawler
