@@ -34,9 +34,7 @@ namespace crawler
       Json notes      = input.notes;
       RunInMemory run = run_in_memory(std::move(input), model, std::nullopt, []() { return false; });
       kymograph       = std::move(run.kymograph);
-      Json summary    = summary_of(run.result);
-      summary["displacement_corrected"] = nullptr;
-      return {{"summary", std::move(summary)},
+      return {{"summary", summary_of(run.result)},
               {"length", length},
               {"end_time", end_time},
               {"model", model.explanation},

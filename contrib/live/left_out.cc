@@ -23,24 +23,30 @@ namespace crawler
     }
   } // namespace
 
+  namespace
+  {
+    constexpr const char *petsc = "this run needs PETSc's time integration (a step that the fused engine does not take, as "
+                                  "before an inversion, an adaptive mesh or a coupling of distant places)";
+  }
+
   struct TimeStepper::Implementation
   {
   };
   TimeStepper::TimeStepper(MPI_Comm, ImplicitSystem &, const TimeParameters &)
   {
-    refuse("this scene needs PETSc's time integration");
+    refuse(petsc);
   }
   TimeStepper::~TimeStepper() = default;
   TimeOutcome
   TimeStepper::solve(
     std::vector<double> &, const std::vector<double> &, double, double, std::span<const StepLimit>, double)
   {
-    refuse("this scene needs PETSc's time integration");
+    refuse(petsc);
   }
   void
   TimeStepper::interpolate(double, Vector)
   {
-    refuse("this scene needs PETSc's time integration");
+    refuse(petsc);
   }
 
   struct Triangulation::Implementation

@@ -12,28 +12,31 @@ const SLIDERS = {
   strides: {name: 'strides', low: 1, high: 6, step: 1, value: 2},
 };
 
-const lines = (generator, section, entries) => `subsection Active stress
-  set Generator = ${generator}
-  subsection ${section}
+const section = (name, entries) => `  subsection ${name}
 ${Object.entries(entries).map(([entry, value]) => `    set ${entry} = ${value}`).join('\n')}
   end
-end
+`;
+const stress = (generator, ...sections) => `subsection Active stress
+  set Generator = ${generator}
+${sections.join('')}end
 `;
 const exact = x => String(Number(x.toPrecision(12)));
+
+/** A wave that comes up in half a period. */
+const travelling = (v, amplitude) => section('Travelling wave', {Amplitude: exact(amplitude), 'Wave number': v.waves, 'Given by': 'wave speed',
+  'Wave speed': v.speed, 'Ramp duration': exact(0.5 / (v.speed * v.waves))});
 
 /** What moves the body: the sliders that matter, waves as whole numbers or not, and the lines of the parameter file. */
 const SCENES = {
   optimal: {name: 'optimal wave (Fig. S1)', uses: ['strain', 'waves'], wholeWaves: true,
-    text: v => lines('optimal wave', 'Optimal wave', {'Perturbation parameter': v.strain, 'Sine coefficients': '0, '.repeat(v.waves - 1) + '1',
-      'Choose wave by': 'wave speed', 'Wave speed': v.speed})},
-  wave: {name: 'travelling stress', uses: ['strain', 'waves'],
-    text: v => lines('travelling wave', 'Travelling wave', {Amplitude: exact(v.strain * v.stiffness), 'Wave number': v.waves, 'Given by': 'wave speed',
-      'Wave speed': v.speed, 'Ramp duration': exact(0.5 / (v.speed * v.waves))})},
+    text: v => stress('optimal wave', section('Optimal wave', {'Perturbation parameter': v.strain, 'Sine coefficients': '0, '.repeat(v.waves - 1) + '1',
+      'Choose wave by': 'wave speed', 'Wave speed': v.speed}))},
+  wave: {name: 'travelling stress', uses: ['strain', 'waves'], text: v => stress('travelling wave', travelling(v, v.strain * v.stiffness))},
   segments: {name: 'segments of a robot', uses: ['strain', 'waves', 'segments'],
-    text: v => lines('segments', 'Segments', {'Number of segments': v.segments, Amplitude: exact(v.strain * v.stiffness), Frequency: exact(v.speed * v.waves),
-      'Phase lag': exact(v.waves / v.segments), 'Rate limit': exact(5 * v.strain * v.stiffness * v.speed * v.waves), 'Ramp duration': exact(0.5 / (v.speed * v.waves))})},
-  strain: {name: 'prescribed strain', uses: ['strain', 'waves'], wholeWaves: true,
-    text: v => lines('prescribed strain', 'Prescribed strain', {'Given by': 'wave', Amplitude: v.strain, 'Wave number': v.waves, 'Wave speed': v.speed})},
+    text: v => stress('segments', section('Segments', {'Number of segments': v.segments, Amplitude: exact(v.strain * v.stiffness), Frequency: exact(v.speed * v.waves),
+      'Phase lag': exact(v.waves / v.segments), 'Rate limit': exact(5 * v.strain * v.stiffness * v.speed * v.waves), 'Ramp duration': exact(0.5 / (v.speed * v.waves))}))},
+  strain: {name: 'prescribed strain', uses: ['strain', 'waves'],
+    text: v => stress('prescribed strain', section('Prescribed strain', {'Given by': 'travelling wave'}), travelling(v, v.strain))},
 };
 
 /** The parameter file of a scene with these values. */
