@@ -31,8 +31,8 @@ namespace crawler
       for (std::size_t i = 0; i < right.size(); ++i)
       {
         const std::size_t last = n - right.size() + i, first = n - 1 - last;
-        rule.points[last]  = static_cast<double>((1 + right[i]) / 2);
-        rule.points[first] = static_cast<double>((1 - right[i]) / 2);
+        rule.points[last]   = static_cast<double>((1 + right[i]) / 2);
+        rule.points[first]  = static_cast<double>((1 - right[i]) / 2);
         rule.weights[first] = rule.weights[last] = static_cast<double>(weight(right[i]) / 2);
       }
       return rule;

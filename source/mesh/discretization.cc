@@ -9,8 +9,8 @@
 
 namespace crawler
 {
-  /// A sequence of meshes: cells of one size or between given ends, and what became of them. Most runs never adapt their
-  /// mesh, and need no triangulation.
+  /// A sequence of meshes: cells of one size or between given ends, and what became of them. Most runs never adapt
+  /// their mesh, and need no triangulation.
   struct Discretization::Mesh
   {
     /// The ends of the cells of the first mesh.
@@ -52,21 +52,17 @@ namespace crawler
                                  const double length,
                                  const unsigned int n_cells,
                                  const unsigned int degree)
-    : Discretization(communicator,
-                     length,
-                     degree,
-                     std::make_shared<Mesh>(Mesh{length, size_of(communicator), n_cells}))
+    : Discretization(communicator, length, degree, std::make_shared<Mesh>(Mesh{length, size_of(communicator), n_cells}))
   {
   }
 
   Discretization::Discretization(MPI_Comm communicator, std::vector<double> cell_ends, const unsigned int degree)
-    : Discretization(communicator,
-                     cell_ends.back(),
-                     degree,
-                     std::make_shared<Mesh>(Mesh{cell_ends.back(),
-                                                 size_of(communicator),
-                                                 static_cast<unsigned int>(cell_ends.size() - 1),
-                                                 cell_ends}))
+    : Discretization(
+        communicator,
+        cell_ends.back(),
+        degree,
+        std::make_shared<Mesh>(
+          Mesh{cell_ends.back(), size_of(communicator), static_cast<unsigned int>(cell_ends.size() - 1), cell_ends}))
   {
   }
 

@@ -39,7 +39,7 @@ namespace crawler
     std::vector<double>
     integration_matrix(const std::vector<double> &nodes, const std::vector<double> &points)
     {
-      const auto n = static_cast<unsigned int>(nodes.size());
+      const auto n               = static_cast<unsigned int>(nodes.size());
       const QuadratureRule gauss = gauss_rule(n);
       std::vector<double> matrix;
       for (const double end : points)

@@ -227,9 +227,9 @@ namespace crawler
       for (unsigned int i = 0; i < n; ++i)
         right(i, k) = vector[i];
     }
-    const Matrix<Complex> left = inverse_of(right);
-    const auto rounded         = [](const Complex z) { return std::complex<double>(z); };
-    real_eigenvalue            = static_cast<double>(zeros[0].real());
+    const Matrix<Complex> left     = inverse_of(right);
+    const auto rounded             = [](const Complex z) { return std::complex<double>(z); };
+    real_eigenvalue                = static_cast<double>(zeros[0].real());
     std::vector<unsigned int> kept = {0};
     for (unsigned int k = 1; k < n; k += 2)
     {

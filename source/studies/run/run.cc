@@ -321,13 +321,13 @@ namespace crawler
       std::optional<StatisticsWriter> statistics;
       if (output.statistics)
         statistics.emplace(length, true, folder, output.energy_balance);
-      const bool whole = show_pictures(level,
-                                       times,
-                                       {snapshots ? [&](const Frame &frame) { snapshots->write(frame); }
-                                                  : std::function<void(const Frame &)>(),
-                                        output.has_snapshots() ? &kymograph : nullptr,
-                                        statistics ? &*statistics : nullptr},
-                                       [&]() { return !signal.arrived_anywhere(MPI_COMM_SELF); });
+      const bool whole = show_pictures(
+        level,
+        times,
+        {snapshots ? [&](const Frame &frame) { snapshots->write(frame); } : std::function<void(const Frame &)>(),
+         output.has_snapshots() ? &kymograph : nullptr,
+         statistics ? &*statistics : nullptr},
+        [&]() { return !signal.arrived_anywhere(MPI_COMM_SELF); });
       if (statistics)
         statistics->end();
       if (snapshots)

@@ -127,7 +127,8 @@ namespace crawler
     try
     {
       if (model.needs_mesh())
-        compute_on_mesh(input, wanted ? *wanted : picture_times(output, input.scene), has_kymograph, keep_going, afterwards, run);
+        compute_on_mesh(
+          input, wanted ? *wanted : picture_times(output, input.scene), has_kymograph, keep_going, afterwards, run);
       else
         compute_without_mesh(input, wanted, has_kymograph, keep_going, run);
     }
