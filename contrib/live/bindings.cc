@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
-// What the page calls: the text of a parameter file goes in, JSON and fields come out, as `crawler run` would write them.
+// What the page calls: the text of a parameter file goes in, JSON and fields come out, as `crawler run` would write
+// them.
 #include <crawler/base/plain_numbers.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
@@ -87,8 +88,8 @@ extern "C"
   crawler_field(const char *name)
   {
     const auto *field = std::ranges::find(field_names, std::string(name), [](const FieldName &f) { return f.name; });
-    return kymograph && field != std::end(field_names) && field->in_kymograph ?
-             (kymograph->rows().*field->values).data() :
-             nullptr;
+    return kymograph && field != std::end(field_names) && field->in_kymograph
+             ? (kymograph->rows().*field->values).data()
+             : nullptr;
   }
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // What needs libraries that the page does not have: PETSc (adaptive meshes, BDF, couplings of distant cells), deal.II's
-// triangulation, muParser's formulas, HDF5's tables, shared objects. Each is refused in a sentence when a scene asks for
-// it; all else is the program's own code.
+// triangulation, muParser's formulas, HDF5's tables, shared objects. Each is refused in a sentence when a scene asks
+// for it; all else is the program's own code.
 #include <crawler/base/exceptions.h>
 #include <crawler/base/grid_table.h>
 #include <crawler/formula/formula.h>
@@ -25,8 +25,9 @@ namespace crawler
 
   namespace
   {
-    constexpr const char *petsc = "this run needs PETSc's time integration (a step that the fused engine does not take, as "
-                                  "before an inversion, an adaptive mesh or a coupling of distant places)";
+    constexpr const char *petsc =
+      "this run needs PETSc's time integration (a step that the fused engine does not take, as "
+      "before an inversion, an adaptive mesh or a coupling of distant places)";
   }
 
   struct TimeStepper::Implementation

@@ -75,11 +75,11 @@ namespace std
       };
     }
 
-#    define CRAWLER_WITH_PREDICATE(name)                                                                               \
-      template <typename Range, typename Predicate, typename Projection = Itself>                                    \
-      auto name(Range &&range, Predicate predicate, Projection projection = {})                                        \
-      {                                                                                                                \
-        return std::name(std::begin(range), std::end(range), after_projection(predicate, projection));                 \
+#    define CRAWLER_WITH_PREDICATE(name)                                                               \
+      template <typename Range, typename Predicate, typename Projection = Itself>                      \
+      auto name(Range &&range, Predicate predicate, Projection projection = {})                        \
+      {                                                                                                \
+        return std::name(std::begin(range), std::end(range), after_projection(predicate, projection)); \
       }
     CRAWLER_WITH_PREDICATE(all_of)
     CRAWLER_WITH_PREDICATE(any_of)
@@ -88,11 +88,11 @@ namespace std
     CRAWLER_WITH_PREDICATE(count_if)
 #    undef CRAWLER_WITH_PREDICATE
 
-#    define CRAWLER_WITH_ORDER(name)                                                                                   \
-      template <typename Range, typename Order = std::less<>, typename Projection = Itself>                               \
-      auto name(Range &&range, Order order = {}, Projection projection = {})                                           \
-      {                                                                                                                \
-        return std::name(std::begin(range), std::end(range), after_projection(order, projection));                     \
+#    define CRAWLER_WITH_ORDER(name)                                                               \
+      template <typename Range, typename Order = std::less<>, typename Projection = Itself>        \
+      auto name(Range &&range, Order order = {}, Projection projection = {})                       \
+      {                                                                                            \
+        return std::name(std::begin(range), std::end(range), after_projection(order, projection)); \
       }
     CRAWLER_WITH_ORDER(min_element)
     CRAWLER_WITH_ORDER(max_element)

@@ -19,7 +19,7 @@ constexpr MPI_Comm MPI_COMM_WORLD = 0, MPI_COMM_SELF = 1;
 constexpr MPI_Datatype MPI_CHAR = 1, MPI_INT = sizeof(int), MPI_UNSIGNED_LONG = sizeof(unsigned long),
                        MPI_DOUBLE = sizeof(double);
 constexpr MPI_Op MPI_SUM = 0, MPI_MAX = 1, MPI_MIN = 2;
-constexpr int MPI_PROC_NULL = -1;
+constexpr int MPI_PROC_NULL                = -1;
 inline void *const MPI_IN_PLACE            = nullptr;
 inline MPI_Status *const MPI_STATUS_IGNORE = nullptr;
 
@@ -65,8 +65,7 @@ MPI_Allgatherv(
   return MPI_Allgather(from, n, bytes, to, n, bytes, communicator);
 }
 inline int
-MPI_Gather(
-  const void *from, int n, MPI_Datatype bytes, void *to, int, MPI_Datatype, int, MPI_Comm communicator)
+MPI_Gather(const void *from, int n, MPI_Datatype bytes, void *to, int, MPI_Datatype, int, MPI_Comm communicator)
 {
   return MPI_Allgather(from, n, bytes, to, n, bytes, communicator);
 }
@@ -85,18 +84,7 @@ MPI_Gatherv(const void *from,
 }
 /// With the neighbours along the body, of which there is none.
 inline int
-MPI_Sendrecv(const void *,
-             int,
-             MPI_Datatype,
-             int,
-             int,
-             void *,
-             int,
-             MPI_Datatype,
-             int,
-             int,
-             MPI_Comm,
-             MPI_Status *)
+MPI_Sendrecv(const void *, int, MPI_Datatype, int, int, void *, int, MPI_Datatype, int, int, MPI_Comm, MPI_Status *)
 {
   return 0;
 }
