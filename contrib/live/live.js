@@ -9,7 +9,7 @@ const SLIDERS = {
   speed: {name: 'wave speed c', low: 0.25, high: 4, step: 0.05, value: 1},
   waves: {name: 'waves on the body', low: 0.5, high: 4, step: 0.25, value: 1},
   segments: {name: 'segments', low: 2, high: 24, step: 1, value: 8},
-  strides: {name: 'strides', low: 1, high: 6, step: 1, value: 2},
+  strides: {name: 'strides', low: 1, high: 6, step: 1, value: 3},
 };
 
 const section = (name, entries) => `  subsection ${name}

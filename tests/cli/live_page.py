@@ -39,7 +39,7 @@ require(core)().then(module => {
   })));
 });
 """
-VALUES = {"p": 2, "strain": 0.3, "stiffness": 1, "speed": 1, "waves": 1, "segments": 8, "strides": 2}
+VALUES = {"p": 2, "strain": 0.3, "stiffness": 1, "speed": 1, "waves": 1, "segments": 8, "strides": 3}
 SCENES = {"Fig. S1": ("optimal", {}), "a = 2": ("optimal", {"p": -1}), "a = -3": ("optimal", {"p": 4}),
           "a = 0": ("optimal", {"p": 1}), "travelling": ("wave", {"stiffness": 0.2, "waves": 2.5}),
           "segments": ("segments", {}), "given strain": ("strain", {"strain": 0.4})}
