@@ -11,7 +11,8 @@ import sys
 ROOMS = ["base", "parameters", "formula", "scene", "mesh", "time", "equation", "lanes", "reduced_models", "output", "run",
          "adjoint", "accuracy", "studies/core", "studies/run", "studies/sweep", "studies/atlas", "studies/tradeoff", "studies/optimize", "studies/report", "studies/table", "app"]
 # What else may not enter: a pattern of includes, and the rooms.
-FORBIDDEN = [(r"<deal\.II", ["formula", "scene", "reduced_models"]),
+FORBIDDEN = [(r"<deal\.II", ["formula", "scene", "time", "equation", "lanes", "reduced_models", "run", "adjoint", "accuracy"]),
+             (r"<petsc", ["formula", "scene", "mesh", "equation", "lanes", "reduced_models", "run", "adjoint", "accuracy"]),
              (r"<crawler/scene/", ["time"])]
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 

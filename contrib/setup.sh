@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Installs from Debian what is missing (as root or with sudo), and builds crawler in Release mode into build/.
-# Usage: contrib/setup.sh [tests|python]    with "tests": also what the tests need, and the tests themselves;
-#                                           with "python": the Python package, in build/python (doc/python.md).
+# Usage: contrib/setup.sh [tests|python|live]    with "tests": also what the tests need, and the tests themselves;
+#                                           with "python": the Python package, in build/python (doc/python.md);
+#                                           with "live": the live page, in build/live (doc/live_page.md), by
+#                                           emscripten (some 1 GB).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(g++ cmake ninja-build git libdeal.ii-dev libcli11-dev nlohmann-json3-dev libfmt-dev openmpi-bin)
 python=(python3-dev pybind11-dev python3-numpy)
 [ "${1:-}" = python ] && packages+=("${python[@]}")
+[ "${1:-}" = live ] && packages+=(emscripten)
 [ "${1:-}" = tests ] && packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev python3-scipy python3-vtk9 python3-h5py python3-pandas python3-matplotlib python3-jsonschema zsh groff-base chromium clang-format clang-tidy doxygen texlive-binaries)
 
 missing=()
@@ -25,6 +28,8 @@ if [ ${#missing[@]} -gt 0 ]; then
   "${as_root[@]}" apt-get update -qq
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 fi
+
+[ "${1:-}" = live ] && exec contrib/live/build.sh
 
 with_tests=OFF
 if [ "${1:-}" = tests ]; then

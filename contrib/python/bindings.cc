@@ -14,6 +14,7 @@
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/run/run_in_memory.h>
+#include <crawler/studies/run/sensitivity_files.h>
 #include <crawler/studies/sweep/point_table.h>
 #include <crawler/studies/sweep/sweep.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
@@ -162,6 +163,7 @@ namespace crawler
     {
       std::string effective;
       std::vector<std::string> notes;
+      LocalSensitivity local;
       const RunInMemory run = without_lock([&](const std::function<bool()> &interrupted) {
         Input input      = read_input(source.file());
         effective        = input.effective;
@@ -176,7 +178,12 @@ namespace crawler
         const ModelChoice model = choose_model(input);
         if (model.needs_mesh())
           Libraries::start();
-        return run_in_memory(std::move(input), model, times, interrupted);
+        Afterwards sensitivities;
+        if (!input.sensitivities.empty())
+          sensitivities = [&](const Input &computed, const NumericsChoice &choice, SimulationResult &result) {
+            local = add_sensitivities(computed, choice, result, [&]() { return !interrupted(); });
+          };
+        return run_in_memory(std::move(input), model, times, interrupted, sensitivities);
       });
       py::dict answer;
       answer["summary"]    = summary_text(run.result);
@@ -201,7 +208,7 @@ namespace crawler
         answer["statistics"] =
           array_of(run.statistics->values(), {run.statistics->values().size() / names.size(), names.size()});
       }
-      if (const LocalSensitivity &local = run.local; !local.s.empty())
+      if (!local.s.empty())
       {
         const std::size_t n = local.s.size(), n_t = local.times.size();
         answer["local"] = py::dict(py::arg("s")               = array_of(local.s, {n}),

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/adjoint/cell_points.h>
+#include <crawler/base/gauss_rule.h>
 #include <crawler/mesh/reference_element.h>
 #include <crawler/time/radau_loops.h>
-
-#include <deal.II/base/quadrature_lib.h>
 
 namespace crawler
 {
@@ -20,12 +19,9 @@ namespace crawler
     : setup_(setup)
     , per_cell_(setup.degree + 1 + n_more)
   {
-    const dealii::QGauss<1> gauss(static_cast<unsigned int>(per_cell_));
-    for (unsigned int p = 0; p < per_cell_; ++p)
-    {
-      places_.push_back(gauss.point(p)[0]);
-      weights_.push_back(gauss.weight(p));
-    }
+    const QuadratureRule gauss       = gauss_rule(static_cast<unsigned int>(per_cell_));
+    places_                          = gauss.points;
+    weights_                         = gauss.weights;
     const std::vector<double> &nodes = reference_element(setup.degree).nodes;
     values_                          = interpolation_matrix(nodes, places_);
     slopes_                          = interpolation_matrix(nodes, places_, 1);

@@ -1,77 +1,28 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
 #include <crawler/mesh/discretization.h>
-
-#include <deal.II/distributed/shared_tria.h>
-#include <deal.II/grid/grid_generator.h>
+#include <crawler/mesh/triangulation.h>
 
 #include <algorithm>
-#include <cmath>
 #include <complex>
+#include <stdexcept>
 
 namespace crawler
 {
-  namespace
-  {
-    /// The rank that owns a cell: each owns a run of neighbouring cells.
-    unsigned int
-    owner(const std::uint64_t cell, const std::uint64_t n_cells, const std::uint64_t n_ranks)
-    {
-      return static_cast<unsigned int>(cell * std::min(n_cells, n_ranks) / n_cells);
-    }
-  } // namespace
-
-  /// A sequence of meshes: cells of one size and what became of them. Most runs never adapt their mesh, and cells of
-  /// one size need no triangulation.
+  /// A sequence of meshes: cells of one size or between given ends, and what became of them. Most runs never adapt
+  /// their mesh, and need no triangulation.
   struct Discretization::Mesh
   {
-    void
-    make_triangulation(MPI_Comm communicator)
+    /// The ends of the cells of the first mesh.
+    std::vector<double>
+    all_ends() const
     {
-      triangulation     = std::make_unique<Triangulation>(communicator,
-                                                      dealii::Triangulation<1>::none,
-                                                      /*allow_artificial_cells=*/false,
-                                                      Triangulation::partition_custom_signal);
-      const auto assign = [this]() { assign_ranks(); };
-      triangulation->signals.create.connect(assign); // the first mesh does not count as a refinement
-      triangulation->signals.post_refinement.connect(assign);
+      std::vector<double> all = ends;
+      for (unsigned int c = 0; ends.empty() && c < n_coarse_cells; ++c)
+        all.push_back(c * coarse_size(c));
       if (ends.empty())
-        dealii::GridGenerator::subdivided_hyper_cube(*triangulation, n_coarse_cells, 0., length);
-      else
-      {
-        std::vector<dealii::Point<1>> vertices;
-        for (const double s : ends)
-          vertices.emplace_back(s);
-        std::vector<dealii::CellData<1>> coarse(n_coarse_cells);
-        for (unsigned int c = 0; c < n_coarse_cells; ++c)
-          coarse[c].vertices = {c, c + 1};
-        triangulation->create_triangulation(vertices, coarse, {});
-      }
-    }
-
-    using Triangulation = dealii::parallel::shared::Triangulation<1>;
-    using Iterator      = dealii::Triangulation<1>::active_cell_iterator;
-
-    /// The active cells from left to right; deal.II has them level by level.
-    std::vector<Iterator>
-    cells_along_the_body() const
-    {
-      std::vector<Iterator> cells;
-      cells.reserve(triangulation->n_active_cells());
-      for (const auto &cell : triangulation->active_cell_iterators())
-        cells.push_back(cell);
-      if (triangulation->n_levels() > 1)
-        std::sort(cells.begin(), cells.end(), [](const Iterator &a, const Iterator &b) {
-          return a->vertex(0)[0] < b->vertex(0)[0];
-        });
-      return cells;
-    }
-
-    void
-    assign_ranks()
-    {
-      const auto cells = cells_along_the_body();
-      for (std::size_t i = 0; i < cells.size(); ++i)
-        cells[i]->set_subdomain_id(owner(i, cells.size(), n_ranks));
+        all.push_back(length);
+      return all;
     }
 
     /// The cells from left to right.
@@ -79,26 +30,10 @@ namespace crawler
     cells() const
     {
       std::vector<Cell> result;
-      if (!triangulation)
-      {
-        result.reserve(n_coarse_cells);
-        for (unsigned int c = 0; c < n_coarse_cells; ++c)
-          result.push_back({ends.empty() ? c * coarse_size(c) : ends[c], coarse_size(c), 0, false});
-        return result;
-      }
-      result.reserve(triangulation->n_active_cells());
-      for (const auto &cell : cells_along_the_body())
-      {
-        auto coarse = dealii::Triangulation<1>::cell_iterator(cell);
-        while (coarse->level() > 0)
-          coarse = coarse->parent();
-        const bool is_left_half = cell->level() > 0 && cell->parent()->child_index(0) == cell->index();
-        result.push_back({cell->vertex(0)[0],
-                          std::ldexp(coarse_size(static_cast<unsigned int>(coarse->index())), -cell->level()),
-                          static_cast<unsigned int>(cell->level()),
-                          is_left_half});
-      }
-      return result;
+      result.reserve(n_coarse_cells);
+      for (unsigned int c = 0; c < n_coarse_cells; ++c)
+        result.push_back({ends.empty() ? c * coarse_size(c) : ends[c], coarse_size(c), 0, false});
+      return triangulation ? triangulation->cells(result) : result;
     }
 
     double
@@ -117,21 +52,17 @@ namespace crawler
                                  const double length,
                                  const unsigned int n_cells,
                                  const unsigned int degree)
-    : Discretization(communicator,
-                     length,
-                     degree,
-                     std::make_shared<Mesh>(length, dealii::Utilities::MPI::n_mpi_processes(communicator), n_cells))
+    : Discretization(communicator, length, degree, std::make_shared<Mesh>(Mesh{length, size_of(communicator), n_cells}))
   {
   }
 
   Discretization::Discretization(MPI_Comm communicator, std::vector<double> cell_ends, const unsigned int degree)
-    : Discretization(communicator,
-                     cell_ends.back(),
-                     degree,
-                     std::make_shared<Mesh>(cell_ends.back(),
-                                            dealii::Utilities::MPI::n_mpi_processes(communicator),
-                                            static_cast<unsigned int>(cell_ends.size() - 1),
-                                            cell_ends))
+    : Discretization(
+        communicator,
+        cell_ends.back(),
+        degree,
+        std::make_shared<Mesh>(
+          Mesh{cell_ends.back(), size_of(communicator), static_cast<unsigned int>(cell_ends.size() - 1), cell_ends}))
   {
   }
 
@@ -142,7 +73,7 @@ namespace crawler
     : communicator_(communicator)
     , length_(length)
     , element_(reference_element(degree))
-    , rank_(dealii::Utilities::MPI::this_mpi_process(communicator))
+    , rank_(rank_of(communicator))
     , n_ranks_(mesh->n_ranks)
     , mesh_(std::move(mesh))
   {
@@ -172,9 +103,8 @@ namespace crawler
   {
     const unsigned int n = n_cells();
     if (!mesh_->triangulation)
-      mesh_->make_triangulation(communicator_);
-    const auto cells = mesh_->cells_along_the_body();
-    if (cells.size() != n)
+      mesh_->triangulation = std::make_unique<Triangulation>(communicator_, mesh_->all_ends());
+    if (mesh_->triangulation->n_cells() != n)
       throw std::logic_error("only the latest of a sequence of meshes can be adapted");
 
     // Joining takes both halves of a cell.
@@ -212,12 +142,7 @@ namespace crawler
           changed = true;
         }
     }
-    for (unsigned int c = 0; c < n; ++c)
-      if (changes[c] == CellChange::divide)
-        cells[c]->set_refine_flag();
-      else if (changes[c] == CellChange::join)
-        cells[c]->set_coarsen_flag();
-    mesh_->triangulation->execute_coarsening_and_refinement();
+    mesh_->triangulation->change(changes);
     return std::unique_ptr<Discretization>(new Discretization(communicator_, length_, element_.degree, mesh_));
   }
 

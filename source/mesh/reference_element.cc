@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/gauss_rule.h>
 #include <crawler/mesh/reference_element.h>
-
-#include <deal.II/base/polynomial.h>
-#include <deal.II/base/quadrature_lib.h>
 
 #include <map>
 
@@ -13,16 +11,24 @@ namespace crawler
                        const std::vector<double> &points,
                        const unsigned int derivative)
   {
-    std::vector<dealii::Point<1>> support(nodes.size());
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      support[i][0] = nodes[i];
-    const auto basis = dealii::Polynomials::generate_complete_Lagrange_basis(support);
-    std::vector<double> matrix, values(derivative + 1);
+    std::vector<double> matrix;
     for (const double x : points)
-      for (const auto &polynomial : basis)
+      for (std::size_t i = 0; i < nodes.size(); ++i)
       {
-        polynomial.value(x, values);
-        matrix.push_back(values[derivative]);
+        double factorial = 1., scale = 1.;
+        std::vector<double> derivatives(derivative + 1, 0.); // over their factorials
+        derivatives[0] = 1.;
+        for (std::size_t j = 0; j < nodes.size(); ++j)
+          if (j != i)
+          {
+            for (unsigned int k = derivative; k > 0; --k)
+              derivatives[k] = derivatives[k] * (x - nodes[j]) + derivatives[k - 1];
+            derivatives[0] *= x - nodes[j];
+            scale *= nodes[i] - nodes[j];
+          }
+        for (unsigned int k = 2; k <= derivative; ++k)
+          factorial *= k;
+        matrix.push_back(derivatives[derivative] * (factorial * (1. / scale)));
       }
     return matrix;
   }
@@ -33,20 +39,20 @@ namespace crawler
     std::vector<double>
     integration_matrix(const std::vector<double> &nodes, const std::vector<double> &points)
     {
-      const auto n = static_cast<unsigned int>(nodes.size());
-      const dealii::QGauss<1> gauss(n);
+      const auto n               = static_cast<unsigned int>(nodes.size());
+      const QuadratureRule gauss = gauss_rule(n);
       std::vector<double> matrix;
       for (const double end : points)
       {
         std::vector<double> x;
         for (unsigned int g = 0; g < n; ++g)
-          x.push_back(end * gauss.point(g)[0]);
+          x.push_back(end * gauss.points[g]);
         const std::vector<double> values = interpolation_matrix(nodes, x);
         for (unsigned int i = 0; i < n; ++i)
         {
           double sum = 0.;
           for (unsigned int g = 0; g < n; ++g)
-            sum += end * gauss.weight(g) * values[g * n + i];
+            sum += end * gauss.weights[g] * values[g * n + i];
           matrix.push_back(sum);
         }
       }
@@ -58,15 +64,13 @@ namespace crawler
     : degree(degree)
     , n(degree + 1)
   {
-    const dealii::QGaussLobatto<1> lobatto(n);
-    const dealii::QGauss<1> gauss(n);
-    for (unsigned int i = 0; i < n; ++i)
-    {
-      nodes.push_back(lobatto.point(i)[0]);
-      node_weights.push_back(lobatto.weight(i));
-      points.push_back(gauss.point(i)[0]);
-      weights.push_back(gauss.weight(i));
-    }
+    const QuadratureRule lobatto = gauss_lobatto_rule(n), gauss = gauss_rule(n), inner = gauss_rule(degree);
+    nodes             = lobatto.points;
+    node_weights      = lobatto.weights;
+    points            = gauss.points;
+    weights           = gauss.weights;
+    stretch_points    = inner.points;
+    stretch_weights   = inner.weights;
     values            = interpolation_matrix(nodes, points);
     derivatives       = interpolation_matrix(nodes, points, 1);
     left_derivatives  = interpolation_matrix(nodes, {0.}, 1);
@@ -77,12 +81,6 @@ namespace crawler
         for (unsigned int j = 0; j < n; ++j)
           stiffness[i * n + j] += weights[p] * derivatives[p * n + i] * derivatives[p * n + j];
 
-    const dealii::QGauss<1> stretch_gauss(degree);
-    for (unsigned int p = 0; p < degree; ++p)
-    {
-      stretch_points.push_back(stretch_gauss.point(p)[0]);
-      stretch_weights.push_back(stretch_gauss.weight(p));
-    }
     stretch_derivatives = interpolation_matrix(nodes, stretch_points, 1);
     integrate_points    = integration_matrix(points, points);
   }

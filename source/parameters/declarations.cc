@@ -2,8 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
-
-#include <deal.II/base/parameter_handler.h>
+#include <crawler/parameters/entry_store.h>
 
 #include <fmt/format.h>
 
@@ -16,61 +15,6 @@ namespace crawler
 {
   namespace
   {
-    /// What deal.II calls the values of an entry, so that parameter_gui has the right field for them; empty if it has
-    /// no word for them.
-    std::string
-    dealii_words(const EntryValues &values)
-    {
-      namespace Patterns = dealii::Patterns;
-      if (values.may_be_automatic)
-        return "";
-      const auto bound = [](const double x) { return static_cast<int>(std::min(x, 2147483647.)); };
-      switch (values.kind)
-      {
-        case EntryKind::number:
-          return Patterns::Double(values.range.lower, values.range.upper).description();
-        case EntryKind::whole_number:
-          return Patterns::Integer(bound(values.range.lower), bound(values.range.upper)).description();
-        case EntryKind::choice:
-          return Patterns::Selection(fmt::format("{}", fmt::join(values.words, "|"))).description();
-        case EntryKind::flag:
-          return Patterns::Bool().description();
-        default:
-          return "";
-      }
-    }
-
-    /// A pattern that says in words what it expects.
-    class WordyPattern : public dealii::Patterns::PatternBase
-    {
-    public:
-      WordyPattern(std::string expected, std::string machine_words, std::function<bool(const std::string &)> match)
-        : expected_(std::move(expected))
-        , machine_words_(std::move(machine_words))
-        , match_(std::move(match))
-      {
-      }
-      bool
-      match(const std::string &text) const override
-      {
-        return match_(trimmed(text));
-      }
-      std::string
-      description(const OutputStyle style) const override
-      {
-        return style == Machine && !machine_words_.empty() ? machine_words_ : expected_;
-      }
-      std::unique_ptr<PatternBase>
-      clone() const override
-      {
-        return std::make_unique<WordyPattern>(*this);
-      }
-
-    private:
-      std::string expected_, machine_words_;
-      std::function<bool(const std::string &)> match_;
-    };
-
     const std::string automatic         = "automatic";
     constexpr unsigned int longest_list = 10000; ///< that a place in brackets makes
 
@@ -206,50 +150,9 @@ namespace crawler
   } // namespace
 
 
-  bool
-  Range::contains(const double value) const
-  {
-    return std::isfinite(value) && (value > lower || (lower_included && value == lower)) &&
-           (value < upper || (upper_included && value == upper));
-  }
-
-  std::string
-  Range::in_words() const
-  {
-    const bool has_lower = std::isfinite(lower), has_upper = std::isfinite(upper);
-    if (!has_lower && !has_upper)
-      return "a number";
-    if (has_lower && !has_upper)
-      return lower == 0 ? (lower_included ? "a number that is not negative" : "a positive number")
-                        : fmt::format("a number {} {}", lower_included ? "from" : "above", lower);
-    return fmt::format(
-      "a number {} {} {} {}", lower_included ? "from" : "above", lower, upper_included ? "to" : "and below", upper);
-  }
-
-  Range
-  any_number()
-  {
-    return {};
-  }
-
-  Range
-  positive()
-  {
-    Range range;
-    range.lower = 0;
-    return range;
-  }
-
-  Range
-  between(const double lower, const double upper)
-  {
-    return {lower, upper, true, true};
-  }
-
-
   Declarations::Declarations(std::string only)
     : only_(std::move(only))
-    , handler_(std::make_unique<dealii::ParameterHandler>())
+    , store_(std::make_unique<EntryStore>())
   {
   }
 
@@ -260,22 +163,12 @@ namespace crawler
   {
     section_.push_back(section);
     sections_.push_back(path_text(section_));
-    if (is_wanted(sections_.back()))
-      handler_->enter_subsection(section);
   }
 
   void
   Declarations::leave()
   {
-    if (is_wanted(path_text(section_)))
-      handler_->leave_subsection();
     section_.pop_back();
-  }
-
-  bool
-  Declarations::is_wanted(const std::string &section) const
-  {
-    return only_.empty() || section == only_ || section.starts_with(only_ + "/") || only_.starts_with(section + "/");
   }
 
   std::string
@@ -296,12 +189,10 @@ namespace crawler
     if (info_.names_file)
       info_.documentation +=
         " A file counts from the folder of this parameter file (with --set, from the current one).";
-    const std::string unit_text = info_.unit.empty() ? "" : " Unit: " + info_.unit + ".";
-    owner_.handler_->declare_entry(name_,
-                                   info_.default_value,
-                                   WordyPattern(info_.expected, dealii_words(info_.values), match_),
-                                   info_.documentation + " Expected: " + info_.expected + "." + unit_text);
-    owner_.handler_->add_action(name_, [assign = assign_](const std::string &text) { assign(trimmed(text)); });
+    const auto of_trimmed = [](const auto &function) {
+      return [function](const std::string &text) { return function(trimmed(text)); };
+    };
+    owner_.store_->declare(split_path(info_.path), info_, of_trimmed(match_), of_trimmed(assign_));
     owner_.entries_.push_back(info_);
   }
 
@@ -467,18 +358,7 @@ namespace crawler
       return;
     }
     const std::string text = with_absolute_name(path, value, folder);
-    bool is_admissible     = true;
-    enter_sections(words);
-    try
-    {
-      handler_->set(words.back(), text);
-    }
-    catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
-    {
-      is_admissible = false;
-    }
-    leave_sections(words);
-    if (is_admissible)
+    if (store_->set(words, text))
       return;
     const bool is_number = entry.expected.find("number") != std::string::npos;
     throw InputError(fmt::format("\"{}\" is \"{}\", but {} is expected{}{}",
@@ -595,20 +475,6 @@ namespace crawler
   }
 
   void
-  Declarations::enter_sections(const std::vector<std::string> &path) const
-  {
-    for (std::size_t i = 0; i + 1 < path.size(); ++i)
-      handler_->enter_subsection(path[i]);
-  }
-
-  void
-  Declarations::leave_sections(const std::vector<std::string> &path) const
-  {
-    for (std::size_t i = 0; i + 1 < path.size(); ++i)
-      handler_->leave_subsection();
-  }
-
-  void
   Declarations::require_section(const std::string &path) const
   {
     if (std::find(sections_.begin(), sections_.end(), path) != sections_.end())
@@ -631,25 +497,20 @@ namespace crawler
   std::string
   Declarations::value(const unsigned int index) const
   {
-    const std::vector<std::string> words = split_path(entries_[index].path);
-    enter_sections(words);
-    std::string result = handler_->get(words.back());
-    leave_sections(words);
-    return result;
+    return store_->get(split_path(entries_[index].path));
   }
 
   void
   Declarations::print_prm(std::ostream &out) const
   {
-    handler_->print_parameters(out, dealii::ParameterHandler::PRM | dealii::ParameterHandler::KeepDeclarationOrder);
+    store_->print_prm(out);
   }
 
   void
   Declarations::print_xml(std::ostream &out) const
   {
-    handler_->print_parameters(out, dealii::ParameterHandler::XML | dealii::ParameterHandler::KeepDeclarationOrder);
+    store_->print_xml(out);
   }
-
 
   std::string
   trimmed(const std::string &text)

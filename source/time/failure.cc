@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
-#include <crawler/base/petsc_object.h>
+#include <crawler/base/petsc_failure.h>
 #include <crawler/time/failure.h>
 
 #include <filesystem>
@@ -42,7 +42,7 @@ namespace crawler
     {
       outcome.reason  = "petsc_error";
       outcome.message = problem.what();
-      if (problem.code == PETSC_ERR_MEM)
+      if (problem.is_out_of_memory)
         out_of_memory();
     }
     catch (const std::bad_alloc &)

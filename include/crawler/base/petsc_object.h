@@ -1,28 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/petsc_failure.h>
+
 #include <petscts.h>
 
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 
 namespace crawler
 {
-  /// A function of PETSc has failed.
-  class PetscFailure : public std::runtime_error
-  {
-  public:
-    PetscFailure(const PetscErrorCode code, const std::string &words)
-      : std::runtime_error("PETSc error " + std::to_string(code) + ": " + words)
-      , code(code)
-    {
-    }
-
-    const PetscErrorCode code;
-  };
-
   /// Throws PetscFailure with PETSc's own words if @p code is an error.
   inline void
   petsc(const PetscErrorCode code)
@@ -31,7 +19,7 @@ namespace crawler
       return;
     const char *text = nullptr;
     PetscErrorMessage(code, &text, nullptr);
-    throw PetscFailure(code, text != nullptr ? text : "without a message");
+    throw PetscFailure(code, text != nullptr ? text : "without a message", code == PETSC_ERR_MEM);
   }
 
   /// The integrator of the option -ts_type behind "--", else @p otherwise.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/mesh/cell.h>
 #include <crawler/mesh/reference_element.h>
 
 #include <mpi.h>
@@ -11,22 +12,6 @@
 
 namespace crawler
 {
-  /// A cell of the whole mesh.
-  struct Cell
-  {
-    double left, size;  ///< [length]
-    unsigned int level; ///< how often one of the cells of the first mesh was halved
-    bool is_left_half;  ///< of the cell of which it is a half
-  };
-
-  /// What is to become of a cell; two halves of a former cell are joined if both are marked.
-  enum class CellChange : signed char
-  {
-    join   = -1,
-    keep   = 0,
-    divide = 1
-  };
-
   /**
    * Mesh, element and numbering of the unknowns. Each rank owns a run of neighbouring cells (ranks beyond the number of
    * cells own none). A mesh that is adapted is a deal.II parallel::shared::Triangulation<1>. Unknowns are numbered
@@ -164,7 +149,7 @@ namespace crawler
     gather(std::span<const double> own) const;
 
   private:
-    struct Mesh; ///< holds deal.II's triangulation, kept out of this header
+    struct Mesh;
 
     Discretization(MPI_Comm communicator, double length, unsigned int degree, std::shared_ptr<Mesh> mesh);
 

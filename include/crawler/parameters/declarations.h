@@ -2,76 +2,19 @@
 #pragma once
 
 #include <crawler/base/words.h>
+#include <crawler/parameters/entry_info.h>
 
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace dealii
-{
-  class ParameterHandler;
-}
-
 namespace crawler
 {
-  /// The admissible values of a number: an interval whose ends may be left out.
-  struct Range
-  {
-    double lower        = -std::numeric_limits<double>::infinity();
-    double upper        = std::numeric_limits<double>::infinity();
-    bool lower_included = false;
-    bool upper_included = false;
-
-    bool
-    contains(double value) const;
-    std::string
-    in_words() const;
-  };
-
-  Range
-  any_number();
-  Range
-  positive();
-  Range
-  between(double lower, double upper);
-
-  enum class EntryKind
-  {
-    text,
-    number,
-    whole_number,
-    numbers, ///< a list; "Section/Entry[2]" is the second of them
-    choice,
-    flag
-  };
-
-  /// What values an entry has, for other programs.
-  struct EntryValues
-  {
-    EntryKind kind                 = EntryKind::text;
-    Range range                    = {};    ///< of a number
-    std::vector<std::string> words = {};    ///< of a choice
-    bool may_be_automatic          = false; ///< the word "automatic" as well
-    bool may_be_empty              = false; ///< of a list
-  };
-
-  /// What a user can read about one entry of the parameter file.
-  struct EntryInfo
-  {
-    std::string path; ///< "Section/Subsection/Entry"
-    std::string default_value;
-    std::string expected; ///< the admissible values in words
-    std::string unit;     ///< empty for words and counts
-    std::string documentation;
-    bool names_file         = false; ///< its value is, or may be, the name of a file that is read
-    std::string file_ending = "";    ///< without it a value is not the name of a file
-    EntryValues values      = {};
-  };
+  class EntryStore;
 
   /**
    * The list of all entries of the parameter file. A parameter struct declares its members here, each
@@ -79,7 +22,7 @@ namespace crawler
    *
    *   declarations.number("Length", length, positive(), "length").means("Rest length L of the body.");
    *
-   * Values are kept and printed by dealii::ParameterHandler. Names are unique and have one spelling.
+   * Values are kept and printed by an EntryStore. Names are unique and have one spelling.
    */
   class Declarations
   {
@@ -207,14 +150,6 @@ namespace crawler
           EntryValues values,
           const Read &read);
 
-    /// Whether a section is, or contains, or is in what is declared.
-    bool
-    is_wanted(const std::string &section) const;
-
-    void
-    enter_sections(const std::vector<std::string> &path) const;
-    void
-    leave_sections(const std::vector<std::string> &path) const;
     /// Throws InputError with the nearest names if there is no such entry.
     const EntryInfo &
     find(const std::vector<std::string> &path) const;
@@ -229,7 +164,7 @@ namespace crawler
     path_of(const std::string &name) const;
 
     const std::string only_;
-    std::unique_ptr<dealii::ParameterHandler> handler_;
+    std::unique_ptr<EntryStore> store_;
     std::vector<std::string> section_; ///< where declarations go at present
     std::vector<EntryInfo> entries_;
     std::vector<std::string> sections_;

@@ -3,18 +3,11 @@
 
 #include <crawler/run/simulation_result.h>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <string>
 #include <vector>
 
 namespace crawler
 {
-  /// What summary.json says of a result but for the process that made it (ranks, versions, command line): keys are a
-  /// contract (doc/user_guide.md). What is not known is null or not a number, which is written as null.
-  nlohmann::ordered_json
-  summary_of(const SimulationResult &result);
-
   /// The text of summary.json.
   std::string
   summary_json(const SimulationResult &result, unsigned int n_ranks, const std::string &command_line);

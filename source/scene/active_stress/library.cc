@@ -311,17 +311,6 @@ namespace crawler
     }
   } // namespace
 
-  void
-  LibraryParameters::add_parameters(Declarations &declarations)
-  {
-    declarations.enter("Library");
-    declarations.file("File", file, "the name of a shared object")
-      .means("Shared object with the active stress as a plug-in (doc/generators/library.md).");
-    declarations.text("Parameters", parameters, "a list name=value, name=value")
-      .means("What the plug-in is told; it says itself which names it knows.");
-    declarations.leave();
-  }
-
   Library::Library(const LibraryParameters &parameters, const Body &body, const double end_time)
     : file_(parameters.file)
     , failures_(std::make_shared<LibraryFailures>())

@@ -137,8 +137,12 @@ function colourScale(low, high, {middle = 0, log = false} = {}) {
   const of = log ? Math.log : x => x;
   const list = palette(diverges ? [ink('low'), ink('middle'), ink('high')] : CIVIDIS), unknown = rgb(ink('unknown'));
   const from = of(low), scale = 255 / (of(high) - from);
-  const colour = x => isFinite(x) ? list[Math.max(0, Math.min(255, Math.round((of(x) - from) * scale)))] : unknown;
-  return {low, high, log, list, colour, css: x => `rgb(${colour(x).join()})`};
+  const index = x => Math.max(0, Math.min(255, Math.round((of(x) - from) * scale)));
+  const colour = x => isFinite(x) ? list[index(x)] : unknown;
+  // The bytes of a pixel with one write.
+  const words = new Uint32Array(new Uint8Array([...list, unknown].flatMap(([r, g, b]) => [r, g, b, 255])).buffer);
+  const pixel = x => words[isFinite(x) ? index(x) : 256];
+  return {low, high, log, list, colour, pixel, css: x => `rgb(${colour(x).join()})`};
 }
 
 function range(values) {

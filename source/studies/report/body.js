@@ -80,17 +80,22 @@ class Clock {
 /** The body on its ground, from the side: its thickness is 1/stretch, so that its volume stays. */
 class BodyPicture {
   constructor(parent, run, fields, clock) {
-    Object.assign(this, {run, fields, clock});
+    this.clock = clock;
+    this.use(run, fields);
+    this.chart = new Chart(parent, {height: 210, label: 'the body on its ground', paint: chart => this.paint(chart)});
+    clock.listeners.push(() => this.chart.draw());
+  }
+  /** From now on it shows these. */
+  use(run, fields) {
+    Object.assign(this, {run, fields});
     const [low, high] = range(fields.fields.position), L = fields.length;
     this.follows = high - low > 2.6 * L;
     this.span = this.follows ? 1.9 * L : (high - low) * 1.08;
     this.middle = (low + high) / 2;
     this.least = range(fields.fields.stretch)[0];
-    this.centres = fields.centres(clock.pace);
+    this.centres = fields.centres(this.clock.pace);
     this.reach = Math.max(...range(fields.fields.friction_force ?? []).map(Math.abs));
     if (run.ground) this.ground = {x: new Column(run.ground.places).numbers(), c: new Column(run.ground.factor).numbers()};
-    this.chart = new Chart(parent, {height: 210, label: 'the body on its ground', paint: chart => this.paint(chart)});
-    clock.listeners.push(() => this.chart.draw());
   }
   paint({context: c, width}) {
     const ground = 128, scale = width / this.span, f = this.fields, t = this.clock.t;
@@ -179,7 +184,7 @@ class KymographPicture {
     Object.assign(this, {fields, clock, over: 's'});
     this.chart = new Chart(parent, {height: 380, label: 'kymograph', axesAbove: true, keys: event => this.keys(event),
       axes: () => ({x: {...this.domain(), title: withUnit(this.over === 's' ? 'place s on the body' : 'place x on the ground', 'length')},
-                    y: {low: 0, high: fields.end, title: withUnit('time t', 'time')}}),
+                    y: {low: 0, high: this.fields.end, title: withUnit('time t', 'time')}}),
       paint: chart => this.paint(chart),
       overlay: chart => {
         const y = chart.y(clock.t), c = chart.top;
@@ -216,14 +221,14 @@ class KymographPicture {
     const m = chart.margin, ratio = devicePixelRatio || 1, {n} = this.fields;
     const wide = Math.round((chart.width - m.left - m.right) * ratio), tall = Math.round((chart.height - m.top - m.bottom) * ratio);
     if (wide < 1 || tall < 1) return;
-    const image = new ImageData(wide, tall), x = Array.from({length: wide}, (_, i) => chart.x.inverse(m.left + (i + 0.5) / ratio));
+    const image = new ImageData(wide, tall), pixels = new Uint32Array(image.data.buffer), x = Array.from({length: wide}, (_, i) => chart.x.inverse(m.left + (i + 0.5) / ratio));
     for (let j = 0; j < tall; ++j) {
       const t = chart.y.inverse(m.top + (j + 0.5) / ratio), values = this.fields.along(this.field, t), index = this.indexer(t);
       for (let i = 0; i < wide; ++i) {
         const at = index(x[i]);
         if (at < 0) continue;
-        const k = Math.min(Math.floor(at), n - 2), colour = this.colours.colour(values[k] + (at - k) * (values[k + 1] - values[k]));
-        image.data.set([...colour, 255], 4 * (j * wide + i));
+        const k = Math.min(Math.floor(at), n - 2);
+        pixels[j * wide + i] = this.colours.pixel(values[k] + (at - k) * (values[k + 1] - values[k]));
       }
     }
     const canvas = el('canvas', {width: wide, height: tall});
@@ -239,7 +244,7 @@ class KymographPicture {
   }
 }
 
-/** Body and kymograph of a run, with what steers them. */
+/** Body and kymograph of a run, with what steers them: {right: where more may stand, use(run, fields): shows another run}. */
 function showBody(parent, run, clock, fields) {
   const names = Object.keys(FIELDS).filter(name => fields.fields[name]);
   const top = figure('The body on its ground.', 'It is as thick as its volume asks for (1/stretch). Arrows: friction of the ground on the body. ▲ centre of mass.');
@@ -278,5 +283,13 @@ function showBody(parent, run, clock, fields) {
   clock.set(clock.t);
   const right = el('div');
   two.append(right);
-  return right;
+  const use = (other, otherFields) => {
+    fields = map.fields = otherFields;
+    Object.assign(clock, {end: fields.end, pace: other.pace ?? clock.pace});
+    body.use(other, fields);
+    restyle();
+    map.chart.draw();
+    clock.set(clock.t);
+  };
+  return {right, use};
 }

@@ -6,7 +6,6 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/stop_signal.h>
-#include <crawler/equation/crawler_equation.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/snapshot_writer.h>
 #include <crawler/output/statistics_writer.h>
@@ -20,6 +19,7 @@
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
 #include <crawler/studies/core/run_files.h>
+#include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/run/sensitivity_files.h>
 #include <crawler/time/failure.h>
@@ -302,44 +302,6 @@ namespace crawler
 
   namespace
   {
-    /// The fields of a state in the user's units, at @p points in natural ones.
-    Fields
-    physical_fields(const ReducedFields &state,
-                    const std::vector<double> &points,
-                    const Scene &scene,
-                    const Units &units)
-    {
-      const std::size_t n = points.size();
-      Fields fields;
-      fields.active_stress = state.active_stress;
-      fields.velocity      = state.velocity;
-      fields.friction_force.resize(n);
-      for (std::size_t i = 0; i < n; ++i)
-      {
-        fields.displacement.push_back(state.displacement[i] * units.length);
-        fields.position.push_back(points[i] * units.length + fields.displacement[i]);
-        fields.stretch.push_back(1. + state.strain[i]);
-        fields.elastic_stress.push_back(units.force *
-                                        equation::body_force(state.strain[i], 0., scene.body.elastic_modulus));
-        fields.active_stress[i] *= units.force;
-        fields.velocity[i] *= units.velocity();
-      }
-      scene.friction->values(fields.stretch, fields.friction_force);
-      for (std::size_t i = 0; i < n; ++i)
-        fields.friction_force[i] =
-          equation::friction_force(fields.friction_force[i], state.velocity[i]) * units.force / units.length;
-      return fields;
-    }
-
-    std::vector<double>
-    equidistant(const unsigned int n)
-    {
-      std::vector<double> points(n);
-      for (unsigned int i = 0; i < n; ++i)
-        points[i] = static_cast<double>(i) / (n - 1);
-      return points;
-    }
-
     /// Writes the output times of a level as a run with a mesh does, and shows them in the log @p watching. Returns
     /// false if it was interrupted.
     bool
@@ -359,12 +321,13 @@ namespace crawler
       std::optional<StatisticsWriter> statistics;
       if (output.statistics)
         statistics.emplace(length, true, folder, output.energy_balance);
-      const bool whole = show_pictures(level,
-                                       times,
-                                       {snapshots ? &*snapshots : nullptr,
-                                        output.has_snapshots() ? &kymograph : nullptr,
-                                        statistics ? &*statistics : nullptr},
-                                       [&]() { return !signal.arrived_anywhere(MPI_COMM_SELF); });
+      const bool whole = show_pictures(
+        level,
+        times,
+        {snapshots ? [&](const Frame &frame) { snapshots->write(frame); } : std::function<void(const Frame &)>(),
+         output.has_snapshots() ? &kymograph : nullptr,
+         statistics ? &*statistics : nullptr},
+        [&]() { return !signal.arrived_anywhere(MPI_COMM_SELF); });
       if (statistics)
         statistics->end();
       if (snapshots)
@@ -376,61 +339,6 @@ namespace crawler
       return whole;
     }
   } // namespace
-
-  PictureTimes
-  times_without_mesh(const Input &input)
-  {
-    OutputParameters wanted = input.parameters.output;
-    if (!wanted.has_snapshots())
-    {
-      wanted.n_snapshots.reset();
-      wanted.kymograph = false;
-    }
-    return picture_times(wanted, input.scene);
-  }
-
-  bool
-  show_pictures(const ReducedModel &level,
-                const PictureTimes &times,
-                const PictureViewers &viewers,
-                const std::function<bool()> &keep_going)
-  {
-    const Units &units = level.reduced_scene().units();
-    const auto points  = equidistant(Kymograph::n_points);
-    std::vector<double> natural;
-    for (std::size_t i = 0; i < times.all().size(); ++i)
-      natural.push_back(times.natural(i));
-    std::vector<double> places; // [length]
-    for (const double point : points)
-      places.push_back(point * units.length);
-    unsigned int number = 0, n_rows = 0;
-    bool stopped  = false;
-    double before = 0.;
-    level.replay(natural, points, [&](const double t, const ReducedModel::State &state) {
-      const PictureTimes::Time &picture = times.all()[number++];
-      const double time                 = picture.value;
-      const Fields fields               = physical_fields(state.fields, points, level.reduced_scene().scene(), units);
-      if (picture.kinds.is_row && viewers.kymograph != nullptr)
-        viewers.kymograph->add(time, fields);
-      stopped = !keep_going();
-      if (!picture.kinds.is_snapshot)
-        return !stopped && t <= 1.;
-      const Step step{time, time - before, n_rows++, true, 0, 0};
-      before = time;
-      if (viewers.snapshots != nullptr)
-        viewers.snapshots->write({time, step.number, static_cast<unsigned int>(points.size()), places, fields});
-      const auto stretch_at = [&](const StrainExtreme &e) { return StretchAt{1. + e.strain, e.s * units.length}; };
-      if (viewers.statistics != nullptr)
-        viewers.statistics->write({step,
-                                   state.displacement * units.length,
-                                   {stretch_at(state.smallest), stretch_at(state.largest)},
-                                   state.velocity * units.velocity(),
-                                   state.energies.scaled(units.energy()),
-                                   state.net_friction * units.force});
-      return !stopped && t <= 1.;
-    });
-    return !stopped;
-  }
 
   ExitCode
   run_reduced_model(MPI_Comm communicator,

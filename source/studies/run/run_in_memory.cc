@@ -6,9 +6,8 @@
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
 #include <crawler/run/simulation.h>
-#include <crawler/studies/run/run.h>
+#include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run_in_memory.h>
-#include <crawler/studies/run/sensitivity_files.h>
 #include <crawler/time/failure.h>
 
 #include <cmath>
@@ -73,6 +72,7 @@ namespace crawler
                     const PictureTimes &pictures,
                     const bool has_kymograph,
                     const std::function<bool()> &keep_going,
+                    const Afterwards &afterwards,
                     RunInMemory &run)
     {
       const Parameters &parameters = input.parameters;
@@ -104,8 +104,8 @@ namespace crawler
       run.result.refinements      = answer.refinements;
       check_identities(run.result, parameters);
       sweep_error(parameters, input.scene, answer.choice, run.result, keep_going);
-      if (!input.sensitivities.empty() && run.result.time.status == Status::finished)
-        run.local = add_sensitivities(input, answer.choice, run.result, keep_going);
+      if (afterwards && run.result.time.status == Status::finished)
+        afterwards(input, answer.choice, run.result);
     }
   } // namespace
 
@@ -113,7 +113,8 @@ namespace crawler
   run_in_memory(Input input,
                 const ModelChoice &model,
                 const std::optional<std::vector<double>> &times,
-                const std::function<bool()> &interrupted)
+                const std::function<bool()> &interrupted,
+                const Afterwards &afterwards)
   {
     RunInMemory run;
     input.parameters.model         = model.model;
@@ -126,7 +127,8 @@ namespace crawler
     try
     {
       if (model.needs_mesh())
-        compute_on_mesh(input, wanted ? *wanted : picture_times(output, input.scene), has_kymograph, keep_going, run);
+        compute_on_mesh(
+          input, wanted ? *wanted : picture_times(output, input.scene), has_kymograph, keep_going, afterwards, run);
       else
         compute_without_mesh(input, wanted, has_kymograph, keep_going, run);
     }

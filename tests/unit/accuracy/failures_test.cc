@@ -84,8 +84,8 @@ TEST(Failures, HaveNames)
 {
   const auto name_of = [](const auto &error) { return failure_of(std::make_exception_ptr(error)).reason; };
   EXPECT_EQ(name_of(std::bad_alloc()), "out_of_memory");
-  EXPECT_EQ(name_of(PetscFailure(PETSC_ERR_MEM, "no memory")), "out_of_memory");
-  EXPECT_EQ(name_of(PetscFailure(PETSC_ERR_ARG_OUTOFRANGE, "out of range")), "petsc_error");
+  EXPECT_EQ(name_of(PetscFailure(PETSC_ERR_MEM, "no memory", true)), "out_of_memory");
+  EXPECT_EQ(name_of(PetscFailure(PETSC_ERR_ARG_OUTOFRANGE, "out of range", false)), "petsc_error");
   EXPECT_EQ(name_of(NonfiniteStress("nan")), "nonfinite");
   EXPECT_EQ(name_of(std::logic_error("a slip")), "exception");
   EXPECT_EQ(name_of(42), "exception");

@@ -4,7 +4,7 @@
 #include "../../support/lane_runs.h"
 #include "../../support/observed_order.h"
 
-#include <crawler/run/summary.h>
+#include <crawler/run/result_json.h>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -4,7 +4,6 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/accuracy/numerics_choice.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/output/picture_times.h>
 #include <crawler/studies/core/command_options.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
@@ -12,7 +11,6 @@
 #include <mpi.h>
 
 #include <chrono>
-#include <functional>
 
 namespace crawler
 {
@@ -27,33 +25,7 @@ namespace crawler
   void
   report_plan(Log &log, const Input &input, const ModelChoice &model, const NumericsChoice &choice);
 
-  class Kymograph;
-  class Log;
-  class ReducedModel;
-  class SnapshotWriter;
-  class Statistics;
   class StopSignal;
-
-  /// Who sees the states of a level that needs no mesh; null: nobody.
-  struct PictureViewers
-  {
-    SnapshotWriter *snapshots;
-    Kymograph *kymograph;
-    Statistics *statistics;
-  };
-
-  /// When: without snapshots the table of statistics alone has its rows as often as there would be snapshots by
-  /// default.
-  PictureTimes
-  times_without_mesh(const Input &input);
-
-  /// Shows the states at @p times at equidistant points: one cell, the whole body. After compute(). Returns false if
-  /// @p keep_going said no.
-  bool
-  show_pictures(const ReducedModel &level,
-                const PictureTimes &times,
-                const PictureViewers &viewers,
-                const std::function<bool()> &keep_going);
 
   /// What `crawler run` does on a level that needs no mesh (collective; the first rank computes and writes all files,
   /// whose names and contents are those of any run). @p start is when the program started.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/adjoint/run_gradient.h>
+#include <crawler/accuracy/numerics_choice.h>
 #include <crawler/run/simulation_result.h>
 #include <crawler/studies/core/input.h>
 
@@ -19,10 +19,12 @@ namespace crawler
   struct RunInMemory
   {
     SimulationResult result;
-    LocalSensitivity local;                 ///< where and when it matters, if sensitivities are wanted
     std::unique_ptr<Kymograph> kymograph;   ///< null if it is not wanted, or if the run broke off before
     std::unique_ptr<Statistics> statistics; ///< the same
   };
+
+  /// What else is to be computed of a run on a mesh that has finished.
+  using Afterwards = std::function<void(const Input &input, const NumericsChoice &choice, SimulationResult &result)>;
 
   /**
    * Computes what `crawler run` does on one rank, with the same bits, and keeps what that writes to files. The
@@ -34,5 +36,6 @@ namespace crawler
   run_in_memory(Input input,
                 const ModelChoice &model,
                 const std::optional<std::vector<double>> &times,
-                const std::function<bool()> &interrupted);
+                const std::function<bool()> &interrupted,
+                const Afterwards &afterwards = {});
 } // namespace crawler

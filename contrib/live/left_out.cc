@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// What needs libraries that the page does not have: PETSc (adaptive meshes, BDF, couplings of distant cells), deal.II's
+// triangulation, muParser's formulas, HDF5's tables, shared objects. Each is refused in a sentence when a scene asks
+// for it; all else is the program's own code.
+#include <crawler/base/exceptions.h>
+#include <crawler/base/grid_table.h>
+#include <crawler/formula/formula.h>
+#include <crawler/mesh/triangulation.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/formula_input.h>
+#include <crawler/scene/active_stress/library.h>
+#include <crawler/time/time_stepper.h>
+
+namespace crawler
+{
+  namespace
+  {
+    [[noreturn]] void
+    refuse(const std::string &what, const std::string &entry = "")
+    {
+      throw InputError(what + ", which this page does not have; crawler run computes it", entry);
+    }
+  } // namespace
+
+  namespace
+  {
+    constexpr const char *petsc =
+      "this run needs PETSc's time integration (a step that the fused engine does not take, as "
+      "before an inversion, an adaptive mesh or a coupling of distant places)";
+  }
+
+  struct TimeStepper::Implementation
+  {
+  };
+  TimeStepper::TimeStepper(MPI_Comm, ImplicitSystem &, const TimeParameters &)
+  {
+    refuse(petsc);
+  }
+  TimeStepper::~TimeStepper() = default;
+  TimeOutcome
+  TimeStepper::solve(
+    std::vector<double> &, const std::vector<double> &, double, double, std::span<const StepLimit>, double)
+  {
+    refuse(petsc);
+  }
+  void
+  TimeStepper::interpolate(double, Vector)
+  {
+    refuse(petsc);
+  }
+
+  struct Triangulation::Implementation
+  {
+  };
+  Triangulation::Triangulation(MPI_Comm, const std::vector<double> &)
+  {
+    refuse("this scene needs deal.II's adaptive meshes");
+  }
+  Triangulation::~Triangulation() = default;
+  std::size_t
+  Triangulation::n_cells() const
+  {
+    refuse("this scene needs deal.II's adaptive meshes");
+  }
+  std::vector<Cell>
+  Triangulation::cells(const std::vector<Cell> &) const
+  {
+    refuse("this scene needs deal.II's adaptive meshes");
+  }
+  void
+  Triangulation::change(const std::vector<CellChange> &)
+  {
+    refuse("this scene needs deal.II's adaptive meshes");
+  }
+
+  std::shared_ptr<const Formula>
+  read_formula(const FormulaInput &input, double, double)
+  {
+    refuse("\"" + input.formula_entry + "\" is a formula, read by muParser", input.formula_entry);
+  }
+  void
+  require_finite_values(const ActiveStress &, const FormulaInput &input, const std::string &, double, double)
+  {
+    refuse("\"" + input.formula_entry + "\" is a formula, read by muParser", input.formula_entry);
+  }
+
+  Library::Library(const LibraryParameters &, const Body &, double)
+  {
+    refuse("\"Active stress/Library\" is a shared object", "Active stress/Library/File");
+  }
+  std::unique_ptr<ActiveStressAtPoints>
+  Library::evaluator(const std::vector<double> &, bool) const
+  {
+    refuse("\"Active stress/Library\" is a shared object");
+  }
+  void
+  Library::report(std::ostream &) const
+  {
+    refuse("\"Active stress/Library\" is a shared object");
+  }
+
+  GridTable
+  read_grid_table(const std::string &, const std::string &, const std::string &entry)
+  {
+    refuse("\"" + entry + "\" names a file", entry);
+  }
+  void
+  require_number_of_values(
+    const std::vector<double> &, std::size_t, const std::string &, const std::string &, const std::string &entry)
+  {
+    refuse("\"" + entry + "\" names a file", entry);
+  }
+  void
+  require_reach(const std::vector<double> &,
+                double,
+                const std::string &,
+                const std::string &,
+                const std::string &,
+                const std::string &entry)
+  {
+    refuse("\"" + entry + "\" names a file", entry);
+  }
+} // namespace crawler

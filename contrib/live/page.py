@@ -1,0 +1,34 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Makes the live page, one file: page.html with the compiled core, the styles and scripts that `crawler report` has, and
+those of this folder.
+
+    page.py CORE.js PAGE.html
+"""
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+REPORT = HERE.parents[1] / "source/studies/report"
+
+
+def text_of(*paths):
+    """The texts of files, one after the other."""
+    return "".join(path.read_text(encoding="utf-8") for path in paths)
+
+
+def main():
+    core, page = map(pathlib.Path, sys.argv[1:])
+    parts = {"styles": text_of(REPORT / "page.css", HERE / "live.css"),
+             "core": text_of(core),
+             "scripts": text_of(*(REPORT / name for name in ("base.js", "plot.js", "body.js", "run.js")), HERE / "live.js")}
+    text = text_of(HERE / "page.html")
+    for name, part in parts.items():
+        if "</script" in part:
+            sys.exit(f"{name}: \"</script\" would end the script of the page")
+        text = text.replace("{{" + name + "}}", part)
+    page.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

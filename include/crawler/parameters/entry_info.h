@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// The admissible values of a number: an interval whose ends may be left out.
+  struct Range
+  {
+    double lower        = -std::numeric_limits<double>::infinity();
+    double upper        = std::numeric_limits<double>::infinity();
+    bool lower_included = false;
+    bool upper_included = false;
+
+    bool
+    contains(double value) const;
+    std::string
+    in_words() const;
+  };
+
+  Range
+  any_number();
+  Range
+  positive();
+  Range
+  between(double lower, double upper);
+
+  enum class EntryKind
+  {
+    text,
+    number,
+    whole_number,
+    numbers, ///< a list; "Section/Entry[2]" is the second of them
+    choice,
+    flag
+  };
+
+  /// What values an entry has, for other programs.
+  struct EntryValues
+  {
+    EntryKind kind                 = EntryKind::text;
+    Range range                    = {};    ///< of a number
+    std::vector<std::string> words = {};    ///< of a choice
+    bool may_be_automatic          = false; ///< the word "automatic" as well
+    bool may_be_empty              = false; ///< of a list
+  };
+
+  /// What a user can read about one entry of the parameter file.
+  struct EntryInfo
+  {
+    std::string path; ///< "Section/Subsection/Entry"
+    std::string default_value;
+    std::string expected; ///< the admissible values in words
+    std::string unit;     ///< empty for words and counts
+    std::string documentation;
+    bool names_file         = false; ///< its value is, or may be, the name of a file that is read
+    std::string file_ending = "";    ///< without it a value is not the name of a file
+    EntryValues values      = {};
+  };
+} // namespace crawler

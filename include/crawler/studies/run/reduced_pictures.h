@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/output/picture_times.h>
+#include <crawler/output/snapshot_files.h>
+#include <crawler/studies/core/input.h>
+
+#include <functional>
+
+namespace crawler
+{
+  class Kymograph;
+  class ReducedModel;
+  class Statistics;
+
+  /// Who sees the states of a level that needs no mesh; null: nobody.
+  struct PictureViewers
+  {
+    std::function<void(const Frame &)> snapshots;
+    Kymograph *kymograph;
+    Statistics *statistics;
+  };
+
+  /// When: without snapshots the table of statistics alone has its rows as often as there would be snapshots by
+  /// default.
+  PictureTimes
+  times_without_mesh(const Input &input);
+
+  /// Shows the states at @p times at equidistant points: one cell, the whole body. After compute(). Returns false if
+  /// @p keep_going said no.
+  bool
+  show_pictures(const ReducedModel &level,
+                const PictureTimes &times,
+                const PictureViewers &viewers,
+                const std::function<bool()> &keep_going);
+} // namespace crawler

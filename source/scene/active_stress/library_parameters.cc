@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/parameters/declarations.h>
+#include <crawler/scene/active_stress/library.h>
+
+namespace crawler
+{
+  void
+  LibraryParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Library");
+    declarations.file("File", file, "the name of a shared object")
+      .means("Shared object with the active stress as a plug-in (doc/generators/library.md).");
+    declarations.text("Parameters", parameters, "a list name=value, name=value")
+      .means("What the plug-in is told; it says itself which names it knows.");
+    declarations.leave();
+  }
+} // namespace crawler
