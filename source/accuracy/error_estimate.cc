@@ -88,7 +88,7 @@ namespace crawler
                       const Scene &scene,
                       const NumericsChoice &choice,
                       const SimulationResult &result,
-                      const std::function<bool()> &keep_going)
+                      const KeepGoing &keep_going)
     {
       Numerics numerics         = choice.numerics;
       const Numerics finer_mesh = finer(choice, parameters.time.integrator, scene);
@@ -111,7 +111,7 @@ namespace crawler
               const Scene &scene,
               const NumericsChoice &choice,
               const SimulationResult &result,
-              const std::function<bool()> &keep_going)
+              const KeepGoing &keep_going)
     {
       const TimeParameters time = time_of_finer_run(parameters.time);
       const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene, result.cycles.has_value());
@@ -250,7 +250,7 @@ namespace crawler
                   const Scene &scene,
                   const NumericsChoice &choice,
                   SimulationResult &result,
-                  const std::function<bool()> &keep_going)
+                  const KeepGoing &keep_going)
   {
     if (choice.numerics.linear || choice.is_measured)
       set_errors(choice, result, nullptr, parameters, scene);
