@@ -117,8 +117,11 @@ namespace crawler
       const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene, result.cycles.has_value());
       const auto cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false);
       const auto options        = options_of_finer_run(result, cycles);
-      // Most runs fit the fused engine; then nothing else has to be built.
-      if (size_of(communicator) == 1 && batch_method(scene, time, numerics))
+      // Most runs fit the fused engine; then nothing else has to be built. A long one is left to a simulation, which
+      // can be stopped and taken up again.
+      constexpr double much_work = 1e8; // unknowns times steps: about a minute
+      const double work          = result.mesh ? static_cast<double>(result.mesh->n_unknowns) * result.time.steps : 0.;
+      if (work < much_work && size_of(communicator) == 1 && batch_method(scene, time, numerics))
       {
         const BatchRun run = {&scene, &time, &numerics};
         if (auto finer = run_batch({&run, 1}, options, keep_going, single_engine()).front())

@@ -3,6 +3,8 @@
 #include <crawler/base/clock.h>
 #include <crawler/run/run_journal.h>
 
+#include <algorithm>
+
 namespace crawler
 {
   void
@@ -67,7 +69,8 @@ namespace crawler
   bool
   RunJournal::is_due() const
   {
-    return writes() && now() - last_ >= interval_;
+    constexpr double part = 0.05; // of the time, at most
+    return writes() && now() - last_ >= std::max(interval_, cost_ / part);
   }
 
   void
@@ -95,11 +98,13 @@ namespace crawler
   {
     if (!writes())
       return;
+    const double begin = now();
     Archive archive;
     std::string state = state_.value_or("");
     archive(ended_, identity_, state, end_, prolongs_);
     write_(archive.bytes());
     last_        = now();
+    cost_        = last_ - begin;
     was_written_ = true;
   }
 } // namespace crawler

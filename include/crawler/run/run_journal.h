@@ -131,7 +131,7 @@ namespace crawler
 
     const double interval_;
     const Write write_;
-    double begin_, last_;
+    double begin_, last_, cost_ = 0.; ///< of the latest write [s]
     std::vector<Entry> ended_;
     std::size_t n_begun_ = 0; ///< runs of this process
     std::string identity_;    ///< of the run that goes on

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 
 namespace crawler
 {
@@ -87,11 +88,20 @@ namespace crawler
     {
       std::error_code error;
       const auto has = [&](const char *name) { return fs::exists(folder / name, error); };
-      bool is_empty  = true;
+      // A run that was killed while it began has left some of these.
+      const std::set<std::string> early = {study_lock_name,
+                                           report_name,
+                                           "original.prm",
+                                           "original.prm.part",
+                                           "parameters.prm",
+                                           "parameters.prm.part",
+                                           "solution",
+                                           "log.txt"};
+      bool is_begun                     = true;
       for (const auto &file : fs::directory_iterator(folder))
-        is_empty = is_empty && file.path().filename() == study_lock_name;
+        is_begun = is_begun && early.contains(file.path().filename().string());
       const bool is_study = has("results.h5") || has("atlas.h5") || has("tradeoff.h5") || has("reference.json");
-      if (!is_empty && (is_study || !has("parameters.prm") || !has("log.txt")))
+      if (!is_begun && (is_study || !has("parameters.prm") || !has("log.txt")))
         throw InputError(fmt::format(
           "\"{}\" has no run that could be resumed; another folder is expected for --output, or --overwrite",
           folder.string()));
