@@ -88,7 +88,7 @@ namespace crawler
                       const Scene &scene,
                       const NumericsChoice &choice,
                       const SimulationResult &result,
-                      const std::function<bool()> &keep_going)
+                      const KeepGoing &keep_going)
     {
       Numerics numerics         = choice.numerics;
       const Numerics finer_mesh = finer(choice, parameters.time.integrator, scene);
@@ -111,14 +111,17 @@ namespace crawler
               const Scene &scene,
               const NumericsChoice &choice,
               const SimulationResult &result,
-              const std::function<bool()> &keep_going)
+              const KeepGoing &keep_going)
     {
       const TimeParameters time = time_of_finer_run(parameters.time);
       const Numerics numerics   = numerics_of_finer_run(choice, parameters.time, scene, result.cycles.has_value());
       const auto cycles         = cycle_wish(parameters, scene, /*has_pictures=*/false);
       const auto options        = options_of_finer_run(result, cycles);
-      // Most runs fit the fused engine; then nothing else has to be built.
-      if (size_of(communicator) == 1 && batch_method(scene, time, numerics))
+      // Most runs fit the fused engine; then nothing else has to be built. A long one is left to a simulation, which
+      // can be stopped and taken up again.
+      constexpr double much_work = 1e8; // unknowns times steps: about a minute
+      const double work          = result.mesh ? static_cast<double>(result.mesh->n_unknowns) * result.time.steps : 0.;
+      if (work < much_work && size_of(communicator) == 1 && batch_method(scene, time, numerics))
       {
         const BatchRun run = {&scene, &time, &numerics};
         if (auto finer = run_batch({&run, 1}, options, keep_going, single_engine()).front())
@@ -250,7 +253,7 @@ namespace crawler
                   const Scene &scene,
                   const NumericsChoice &choice,
                   SimulationResult &result,
-                  const std::function<bool()> &keep_going)
+                  const KeepGoing &keep_going)
   {
     if (choice.numerics.linear || choice.is_measured)
       set_errors(choice, result, nullptr, parameters, scene);

@@ -25,7 +25,7 @@ namespace crawler
              const Scene &scene,
              const NumericsChoice &choice,
              const Simulation::Options &options,
-             const std::function<bool()> &keep_going)
+             const KeepGoing &keep_going)
         : parameters_(parameters)
         , scene_(scene)
         , options_(options)
@@ -384,7 +384,7 @@ namespace crawler
       const RunParameters &parameters_;
       const Scene &scene_;
       Simulation::Options options_;
-      const std::function<bool()> &keep_going_;
+      const KeepGoing &keep_going_;
       const double accuracy_;
       Answer answer_;
       SimulationResult latest_, extrapolated_;
@@ -402,7 +402,7 @@ namespace crawler
                    const NumericsChoice &choice,
                    const Simulation::Options &options,
                    const std::function<SimulationResult(const NumericsChoice &)> &simulate,
-                   const std::function<bool()> &keep_going)
+                   const KeepGoing &keep_going)
   {
     Answer answer = Family(parameters, scene, choice, options, keep_going).compute();
     if (!simulate || answer.result.time.status == Status::stopped)

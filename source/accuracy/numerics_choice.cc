@@ -48,10 +48,7 @@ namespace crawler
     class Chooser
     {
     public:
-      Chooser(MPI_Comm communicator,
-              const RunParameters &parameters,
-              const Scene &scene,
-              const std::function<bool()> &keep_going)
+      Chooser(MPI_Comm communicator, const RunParameters &parameters, const Scene &scene, const KeepGoing &keep_going)
         : communicator_(communicator)
         , keep_going_(keep_going)
         , parameters_(parameters)
@@ -672,7 +669,7 @@ namespace crawler
 
       const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
       const MPI_Comm communicator_;
-      const std::function<bool()> &keep_going_;
+      const KeepGoing &keep_going_;
       const RunParameters &parameters_;
       const Scene &scene_;
       const StressScales scales_;
@@ -695,7 +692,7 @@ namespace crawler
   choose_numerics(MPI_Comm communicator,
                   const RunParameters &parameters,
                   const Scene &scene,
-                  const std::function<bool()> &keep_going)
+                  const KeepGoing &keep_going)
   {
     try
     {

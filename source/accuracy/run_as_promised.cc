@@ -26,7 +26,7 @@ namespace crawler
                       const Scene &scene,
                       const NumericsChoice &choice,
                       SimulationResult &result,
-                      const std::function<bool()> &keep_going)
+                      const KeepGoing &keep_going)
     {
       constexpr unsigned int most_runs = 4;
       constexpr double same            = 0.02; // relative
@@ -87,7 +87,7 @@ namespace crawler
                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
                   const Simulation::Options &options,
                   const bool writes,
-                  const std::function<bool()> &keep_going)
+                  const KeepGoing &keep_going)
   {
     using Clock = std::chrono::steady_clock;
     if (choice.is_family)

@@ -31,50 +31,50 @@ namespace crawler
     {
       const char *name, *description;
       ExitCode (*function)(MPI_Comm, const CommandOptions &);
-      bool writes, is_study, takes_petsc_options; ///< --overwrite and --quiet; --resume
+      bool writes, resumes, takes_petsc_options; ///< --overwrite and --quiet; --resume
     };
     constexpr Command commands[] = {
       {"run",
        "Runs the crawler of a parameter file",
        run,
        /*writes=*/true,
-       /*is_study=*/false,
+       /*resumes=*/true,
        /*takes_petsc_options=*/true},
       {"check",
        "Says what run would do with a parameter file; runs and writes nothing",
        check,
        /*writes=*/false,
-       /*is_study=*/false,
+       /*resumes=*/false,
        /*takes_petsc_options=*/true},
       {"atlas",
        "Maps two entries of a parameter file: runs every point in all forms and compares",
        atlas,
        /*writes=*/true,
-       /*is_study=*/true,
+       /*resumes=*/true,
        /*takes_petsc_options=*/false},
       {"tradeoff",
        "Measures cost against error of many settings on the scene of a parameter file",
        tradeoff,
        /*writes=*/true,
-       /*is_study=*/true,
+       /*resumes=*/true,
        /*takes_petsc_options=*/false},
       {"optimize",
        "Looks for the best gait of section Optimize of a parameter file",
        optimize,
        /*writes=*/true,
-       /*is_study=*/true,
+       /*resumes=*/true,
        /*takes_petsc_options=*/false},
       {"sweep",
        "Runs all points of section Sweep of a parameter file and makes a table of them",
        sweep,
        /*writes=*/true,
-       /*is_study=*/true,
+       /*resumes=*/true,
        /*takes_petsc_options=*/true},
       {"report",
        "Makes a page for browsers, report.html, of the output folder of any other command",
        report,
        /*writes=*/false,
-       /*is_study=*/false,
+       /*resumes=*/false,
        /*takes_petsc_options=*/false}};
 
     const Command *
@@ -112,7 +112,7 @@ namespace crawler
         ->option_text("ENTRY=VALUE");
       own->add_option("--output", options.output, "Output folder (default: output-NAME for NAME.prm)")
         ->option_text("DIR");
-      if (command.is_study)
+      if (command.resumes)
         own->add_flag("--resume",
                       options.resume,
                       fmt::format("Goes on with {} {} that was stopped or killed",

@@ -21,6 +21,7 @@ namespace crawler
       {"crawler run worm.prm", "one run, with its files in output-worm/"},
       {"crawler run worm.prm --watch", "the same with a picture of the stretch while it runs"},
       {"crawler run worm.prm --set \"Body/Length=12\" --output longer", "another value, another folder"},
+      {"crawler run worm.prm --resume", "goes on with a run that was stopped"},
       {"crawler run worm.prm -- -ts_monitor", "options for PETSc stand behind a lone \"--\""},
       {"mpirun -n 2 crawler sweep sweep.prm", "a table of many runs, shared by two processes"},
       {"crawler sweep sweep.prm --resume", "goes on with one that was stopped"},

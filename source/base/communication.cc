@@ -36,6 +36,15 @@ namespace crawler
     return 0;
   }
 
+  bool
+  is_true_anywhere(const bool is_true, MPI_Comm communicator)
+  {
+    int any = is_true;
+    if (size_of(communicator) > 1)
+      MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, communicator);
+    return any != 0;
+  }
+
   std::string
   broadcast(const std::string &text, MPI_Comm communicator)
   {

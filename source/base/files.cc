@@ -49,6 +49,22 @@ namespace crawler
       throw FileError("cannot write \"" + path.string() + "\": " + error.message());
   }
 
+  void
+  cut_file(const std::filesystem::path &path, const std::uintmax_t size)
+  {
+    std::error_code error;
+    const bool is_own           = std::filesystem::is_regular_file(std::filesystem::symlink_status(path, error));
+    const std::uintmax_t before = is_own ? std::filesystem::file_size(path, error) : 0;
+    if (!is_own || error || before < size)
+      throw FileError(fmt::format("cannot go on with \"{}\": a file of at least {} bytes is expected, but {}",
+                                  path.string(),
+                                  size,
+                                  is_own ? fmt::format("it has {}", before) : "it is not there"));
+    std::filesystem::resize_file(path, size, error);
+    if (error)
+      throw FileError("cannot write \"" + path.string() + "\": " + error.message());
+  }
+
   std::string
   read_whole_file(const std::filesystem::path &path)
   {

@@ -37,4 +37,15 @@ namespace crawler
     out_.open(path_, std::ios::binary | std::ios::in | std::ios::out); // "in" keeps what is there
     last_lines_ = static_cast<std::streamoff>(begin_.size() + text.size());
   }
+
+  void
+  GrowingText::exchange(Archive &archive)
+  {
+    archive(last_lines_);
+    if (!archive.reads() || last_lines_ == 0)
+      return;
+    cut_file(path_, static_cast<std::uintmax_t>(last_lines_));
+    out_.open(path_, std::ios::binary | std::ios::in | std::ios::out);
+    add("");
+  }
 } // namespace crawler

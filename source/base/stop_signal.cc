@@ -3,42 +3,47 @@
 #include <crawler/base/stop_signal.h>
 
 #include <csignal>
+#include <iterator>
 
 namespace crawler
 {
   namespace
   {
-    volatile std::sig_atomic_t arrived = 0;
+    volatile std::sig_atomic_t noted = 0;
 
     void
     note(int number)
     {
-      arrived = 1;
+      noted = 1;
       std::signal(number, SIG_DFL);
     }
   } // namespace
 
   StopSignal::StopSignal()
   {
-    arrived = 0;
-    sigaction(SIGINT, nullptr, &before_interrupt_);
-    sigaction(SIGTERM, nullptr, &before_termination_);
-    std::signal(SIGINT, note);
-    std::signal(SIGTERM, note);
+    noted = 0;
+    for (std::size_t i = 0; i < std::size(numbers); ++i)
+    {
+      sigaction(numbers[i], nullptr, &before_[i]);
+      std::signal(numbers[i], note);
+    }
   }
 
   StopSignal::~StopSignal()
   {
-    sigaction(SIGINT, &before_interrupt_, nullptr);
-    sigaction(SIGTERM, &before_termination_, nullptr);
+    for (std::size_t i = 0; i < std::size(numbers); ++i)
+      sigaction(numbers[i], &before_[i], nullptr);
+  }
+
+  bool
+  StopSignal::arrived() const
+  {
+    return noted != 0;
   }
 
   bool
   StopSignal::arrived_anywhere(MPI_Comm communicator) const
   {
-    int any = arrived;
-    if (size_of(communicator) > 1)
-      MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, communicator);
-    return any != 0;
+    return is_true_anywhere(arrived(), communicator);
   }
 } // namespace crawler

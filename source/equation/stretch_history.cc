@@ -54,6 +54,47 @@ namespace crawler
     steps_.clear();
   }
 
+  /// Steps on one mesh share its cells.
+  void
+  StretchHistory::exchange(Archive &archive)
+  {
+    if (archive.reads())
+      steps_.clear();
+    std::size_t n = steps_.size();
+    archive(n);
+    std::shared_ptr<const std::vector<Cell>> latest;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      if (archive.reads())
+        steps_.emplace_back();
+      Step &step          = steps_[i];
+      bool is_same        = latest && step.cells == latest;
+      unsigned int degree = step.element != nullptr ? step.element->degree : 0;
+      archive(step.from, step.to, step.coefficients, is_same, degree);
+      if (!is_same)
+      {
+        std::vector<Cell> cells = step.cells ? *step.cells : std::vector<Cell>();
+        archive(cells);
+        latest = archive.reads() ? std::make_shared<const std::vector<Cell>>(std::move(cells)) : step.cells;
+      }
+      if (archive.reads())
+      {
+        step.cells   = latest;
+        step.element = &reference_element(degree);
+      }
+    }
+  }
+
+  void
+  StretchHistory::scale_time(const double ratio)
+  {
+    for (Step &step : steps_)
+    {
+      step.from *= ratio;
+      step.to *= ratio;
+    }
+  }
+
   void
   StretchHistory::add(Step step, const double forget)
   {

@@ -46,30 +46,34 @@ namespace crawler
     output_times_             = output_times;
     if (output_times_.empty() || output_times_.back() < end_time)
       output_times_.push_back(end_time);
-    job_ = {.k         = scene_.body.elastic_modulus,
-            .a         = scene_.body.friction_exponent(),
-            .tolerance = tolerance,
-            // On a stiff body an error of the stretch is one of the forces, k times as large.
-            .newton_factor = setup_.is_stretch ? std::min(1., 10. / scene_.body.elastic_modulus) : 1.,
-            .initial_step  = initial_step,
-            .limits        = limits.data(),
-            .n_limits      = static_cast<unsigned int>(limits.size()),
-            .most_steps    = std::numeric_limits<unsigned int>::max(), // the monitor's business
-            // Cells may be empty where friction then holds them.
-            .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
-            .is_last_resort = setup_.is_stretch,
-            .start_time     = start_time,
-            .start          = y.data(),
-            .output_times   = output_times_.data(),
-            .n_output_times = static_cast<unsigned int>(output_times_.size()),
-            .restarts       = nullptr}; // a solve for each piece
+    job_                = {.k         = scene_.body.elastic_modulus,
+                           .a         = scene_.body.friction_exponent(),
+                           .tolerance = tolerance,
+                           // On a stiff body an error of the stretch is one of the forces, k times as large.
+                           .newton_factor = setup_.is_stretch ? std::min(1., 10. / scene_.body.elastic_modulus) : 1.,
+                           .initial_step  = initial_step,
+                           .limits        = limits.data(),
+                           .n_limits      = static_cast<unsigned int>(limits.size()),
+                           .most_steps    = std::numeric_limits<unsigned int>::max(), // the monitor's business
+                           // Cells may be empty where friction then holds them.
+                           .least_stretch  = setup_.is_stretch && scene_.friction_exponent() < 0. ? -HUGE_VAL : 0.,
+                           .is_last_resort = setup_.is_stretch,
+                           .start_time     = start_time,
+                           .start          = y.data(),
+                           .output_times   = output_times_.data(),
+                           .n_output_times = static_cast<unsigned int>(output_times_.size()),
+                           .restarts       = nullptr, // a solve for each piece
+                           .progress       = goes_on_ ? &progress_ : nullptr,
+                           .old_z          = goes_on_ ? old_z_.data() : nullptr};
+    const bool is_first = !goes_on_;
+    goes_on_            = false;
     if (laws_)
       laws_->set(job_);
     started_ = false;
     bad_friction_.reset();
     y_       = &y;
     outcome_ = {};
-    if (monitor && !monitor({start_time, 0., 0, false, 0, 0}, y))
+    if (is_first && monitor && !monitor({start_time, 0., 0, false, 0, 0}, y))
     {
       outcome_.status    = Status::stopped;
       outcome_.time      = start_time;
@@ -152,6 +156,19 @@ namespace crawler
     self.outcome_.steps             = outcome.steps;
     self.outcome_.rejected_steps    = outcome.rejected;
     self.outcome_.newton_iterations = outcome.newton_iterations;
+  }
+
+  bool
+  LaneStepper::exchange(Archive &archive)
+  {
+    if (!archive.reads())
+    {
+      progress_ = *step_.progress;
+      old_z_.assign(step_.z, step_.z + tableau_.n * y_->size());
+    }
+    archive(progress_, old_z_);
+    goes_on_ = archive.reads();
+    return true;
   }
 
   void

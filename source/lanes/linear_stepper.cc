@@ -218,59 +218,83 @@ namespace crawler
     std::vector<double> ends = output_times;
     if (ends.empty() || ends.back() < 1.)
       ends.push_back(1.);
+    const bool is_first = !goes_on_;
+    goes_on_            = false;
+    if (is_first)
+    {
+      time_  = start_time;
+      steps_ = rejected_ = 0;
+      plan_              = Plan{initial_step};
+    }
+    tolerance_ = tolerance;
     TimeOutcome outcome;
-    outcome.time = start_time;
-    steps_       = 0;
-    tolerance_   = tolerance;
-    Plan plan{initial_step};
-    const auto goes_on = [&](const double h, const bool is_output_time) {
-      if (!monitor || monitor({outcome.time, h, steps_, is_output_time, outcome.rejected_steps, 0}, y))
-        return true;
-      outcome.status    = Status::stopped;
-      outcome.step_size = plan.next;
-      return false;
-    };
-    if (!goes_on(0., false))
+    const auto ended = [&](const Status status, const double step_size) {
+      outcome.status         = status;
+      outcome.time           = time_;
+      outcome.step_size      = step_size;
+      outcome.steps          = steps_;
+      outcome.rejected_steps = rejected_;
       return outcome;
+    };
+    const auto goes_on = [&](const double h, const bool is_output_time) {
+      return !monitor || monitor({time_, h, steps_, is_output_time, rejected_, 0}, y);
+    };
+    if (is_first && !goes_on(0., false))
+      return ended(Status::stopped, plan_.next);
     for (const double end : ends)
-      for (plan.left = 0; outcome.time < end;)
+      while (time_ < end)
       {
-        plan_steps(plan, outcome.time, end, limits);
-        const double h      = plan.h;
-        outcome.step_size   = h;
-        const bool finite   = make_step(outcome.time, h, y);
-        const double error  = finite && adaptive_ ? error_of_step(outcome.time, h, y) : 0.;
+        plan_steps(plan_, time_, end, limits);
+        const double h      = plan_.h;
+        const bool finite   = make_step(time_, h, y);
+        const double error  = finite && adaptive_ ? error_of_step(time_, h, y) : 0.;
         const double factor = error > 0. ? radau::safety * std::pow(error, -1. / (tableau_.n + 1.)) : most_growth;
         if (!finite || h < least_step)
         {
-          outcome.status  = Status::failed;
           outcome.reason  = finite ? "step_underflow" : "nonfinite";
           outcome.message = finite ? "the step size fell below the resolution of the time"
                                    : "a state of the linear model is not finite";
-          return outcome;
+          return ended(Status::failed, h);
         }
         if (!(error <= 1.))
         {
-          ++outcome.rejected_steps;
-          plan.next = std::max(factor, radau::least_change) * h;
-          plan.left = 0;
+          ++rejected_;
+          plan_.next = std::max(factor, radau::least_change) * h;
+          plan_.left = 0;
           continue;
         }
         const std::size_t last = (tableau_.n - 1) * y.size();
         for (std::size_t d = 0; d < y.size(); ++d)
           y[d] = start_[d] + z_[last + d];
-        --plan.left;
-        outcome.steps = ++steps_;
-        outcome.time  = plan.left == 0 ? end : outcome.time + h;
-        end_          = outcome.time;
-        plan_next_step(plan, factor);
+        --plan_.left;
+        ++steps_;
+        time_ = plan_.left == 0 ? end : time_ + h;
+        end_  = time_;
+        plan_next_step(plan_, factor);
         if (stage_rates)
           show_rates();
-        if (!goes_on(h, outcome.time == end))
-          return outcome;
+        if (!goes_on(h, time_ == end))
+          return ended(Status::stopped, plan_.next);
       }
-    outcome.status = Status::finished;
-    return outcome;
+    return ended(Status::finished, plan_.h);
+  }
+
+  /// Factors of a size that is nearly another one are used for that, too, so they are those of then.
+  bool
+  LinearStepper::exchange(Archive &archive)
+  {
+    std::vector<double> sizes;
+    for (const Factors &known : factors_)
+      sizes.push_back(known.h);
+    archive(sizes, plan_, steps_, rejected_, time_);
+    if (archive.reads())
+    {
+      factors_.clear();
+      for (auto h = sizes.rbegin(); h != sizes.rend(); ++h)
+        factors(*h);
+    }
+    goes_on_ = archive.reads();
+    return true;
   }
 
   void

@@ -64,6 +64,14 @@ namespace crawler
   }
 
   void
+  Kymograph::exchange(Archive &archive)
+  {
+    archive(times_);
+    for (const FieldName &field : field_names)
+      archive(rows_.*field.values);
+  }
+
+  void
   Kymograph::add(const double time, const Fields &fields)
   {
     times_.push_back(time);

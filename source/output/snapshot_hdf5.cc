@@ -166,6 +166,17 @@ namespace crawler
     return values;
   }
 
+  std::pair<std::size_t, std::size_t>
+  SnapshotHdf5::size() const
+  {
+    const Hdf5Handle space(H5Dget_space(*datasets_.at("line/s")), H5Sclose);
+    if (H5Sget_simple_extent_ndims(space) != 2)
+      throw FileError("cannot go on with \"" + path_.string() + "\": it has another form than was written");
+    hsize_t size[2] = {0, 0};
+    H5Sget_simple_extent_dims(space, size, nullptr);
+    return {size[0], size[1]};
+  }
+
   std::size_t
   SnapshotHdf5::place(const std::string &name, const std::size_t row) const
   {

@@ -78,6 +78,12 @@ namespace crawler
   }
 
   void
+  SnapshotWriter::exchange(Archive &archive)
+  {
+    archive(scenery_, *files_);
+  }
+
+  void
   SnapshotWriter::write(const Frame &frame)
   {
     const bool changed = scenery_.include(frame);

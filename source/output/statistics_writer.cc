@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/output/statistics_writer.h>
 
@@ -85,8 +86,11 @@ namespace crawler
     , writes_(is_first_rank)
     , path_(folder / "statistics.csv")
   {
-    if (!writes_)
-      return;
+  }
+
+  void
+  StatisticsWriter::open()
+  {
     out_.open(path_);
     out_ << fmt::format("{}\n", fmt::join(column_names(), ","));
     if (!out_)
@@ -106,6 +110,8 @@ namespace crawler
   void
   StatisticsWriter::write(const Row &row)
   {
+    if (!out_.is_open())
+      open();
     std::string line;
     for (std::size_t i = 0; i < n_columns_; ++i)
     {
@@ -123,5 +129,18 @@ namespace crawler
   {
     if (writes_)
       out_.flush();
+  }
+
+  void
+  StatisticsWriter::exchange(Archive &archive)
+  {
+    std::uintmax_t size = out_.is_open() ? static_cast<std::uintmax_t>(out_.flush().tellp()) : 0;
+    archive(size);
+    if (!archive.reads() || size == 0 || !writes_)
+      return;
+    cut_file(path_, size);
+    out_.open(path_, std::ios::in | std::ios::out | std::ios::ate);
+    if (!out_)
+      throw FileError("cannot write \"" + path_.string() + "\"");
   }
 } // namespace crawler

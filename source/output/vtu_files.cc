@@ -168,6 +168,12 @@ namespace crawler
   }
 
   void
+  VtuFiles::exchange(Archive &archive)
+  {
+    archive(n_frames_, body_, line_);
+  }
+
+  void
   VtuFiles::write_scenery(const Scenery &scenery) const
   {
     const Corners ground = scenery.ground(), scale = scenery.scale();

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 namespace crawler
 {
@@ -180,6 +181,19 @@ namespace crawler
     write_scenery(scenery);
     rewrite_descriptions();
     file_.reset();
+  }
+
+  void
+  XdmfFiles::exchange(Archive &archive)
+  {
+    archive(frames_);
+    if (!archive.reads() || frames_.empty())
+      return;
+    file_                                = std::make_unique<SnapshotHdf5>(path_);
+    std::tie(most_frames_, most_points_) = file_->size();
+    if (most_frames_ < frames_.size())
+      throw FileError("cannot go on with \"" + path_.string() + "\": it has fewer frames than were written");
+    rewrite_descriptions(); // the places of the frames in the file may have changed since
   }
 
   void

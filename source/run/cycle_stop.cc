@@ -205,4 +205,11 @@ namespace crawler
         go_on(energy_balance->*integral, [&](const End &end) { return end.energy_balance.*integral; });
     return {wish_.period, static_cast<unsigned int>(n), static_cast<unsigned int>(n_cycles_ - n), bound_};
   }
+
+  void
+  CycleStop::exchange(Archive &archive)
+  {
+    archive(
+      repeats_, bound_, stretches_, strains_, changes_, largest_changes_, ends_, largest_u_, least_, sensitivity_);
+  }
 } // namespace crawler

@@ -144,4 +144,37 @@ namespace crawler
       result.gait = gait_meter_->gait();
     return in_user_units(std::move(result), scene_, units_);
   }
+
+  void
+  Recorder::exchange(Archive &archive)
+  {
+    archive.require_same(cycle_stop_.has_value(), "the cycle stop");
+    archive.require_same(gait_meter_.has_value(), "the look at the gait");
+    archive(result, smallest_, largest_, started_, largest_friction_, largest_net_friction_);
+    if (cycle_stop_)
+      archive(*cycle_stop_);
+    if (gait_meter_)
+      archive(*gait_meter_);
+  }
+
+  void
+  Recorder::exchange_end(Archive &archive, const double ratio)
+  {
+    archive(result.min_stretch, result.max_stretch, result.energy_balance, largest_friction_, largest_net_friction_);
+    archive(result.largest_u, result.mesh_changes, result.most_cells, result.largest_indicator);
+    if (!archive.reads())
+      return;
+    for (Extreme *extreme : {&result.min_stretch, &result.max_stretch})
+      extreme->t *= ratio;
+    smallest_.start(result.min_stretch);
+    largest_.start(result.max_stretch);
+    started_ = true;
+    if (result.energy_balance)
+      result.energy_balance = result.energy_balance->scaled(1. / ratio);
+    largest_friction_ /= ratio;
+    largest_net_friction_ /= ratio;
+    cycle_stop_.reset();
+    if (gait_meter_ && gait_meter_->next_time() <= ratio)
+      gait_meter_.reset();
+  }
 } // namespace crawler

@@ -121,11 +121,15 @@ namespace crawler
   Simulation::run(const PictureTimes &pictures,
                   const Options &options,
                   const std::vector<std::unique_ptr<Observer>> &observers,
-                  const std::function<bool()> &keep_going)
+                  const KeepGoing &keep_going)
   {
     const double start = now();
     if (options.cycles && !pictures.is_empty())
       throw std::logic_error("a run that may end when its cycles repeat has no pictures");
+    RunJournal *const journal = options.steps == nullptr ? keep_going.journal() : nullptr;
+    if (journal != nullptr)
+      if (auto known = journal->begin(identity(options, !pictures.is_empty())))
+        return *known;
     segments_.restart();
     run_.reset();
     if (!mesh_.is_first)
@@ -152,6 +156,8 @@ namespace crawler
     result().formulation = numerics_.formulation;
     mesh_.assembler->set_initial_state(y_);
     run_->accepted = {y_, 0., numerics_.initial_step, false};
+    if (journal != nullptr)
+      take_up(*journal, observers);
 
     try
     {
@@ -161,8 +167,17 @@ namespace crawler
     {
       result().time = failure_while_integrating();
     }
+    if (journal != nullptr && result().time.status == Status::finished && !run_->diagnosis &&
+        is_true_anywhere(journal->wants_end(), communicator_) && !run_->recorder.cycles_repeat())
+    {
+      Archive archive;
+      exchange_end(archive, observers);
+      journal->keep_end(together(archive));
+    }
     SimulationResult answer = finish(observers);
     answer.solve_seconds    = now() - start - answer.output_seconds;
+    if (journal != nullptr)
+      journal->end(answer);
     return answer;
   }
 
@@ -216,8 +231,7 @@ namespace crawler
 
   /// From the first state to the end, with changes of mesh on the way.
   TimeOutcome
-  Simulation::integrate(const std::vector<std::unique_ptr<Observer>> &observers,
-                        const std::function<bool()> &keep_going)
+  Simulation::integrate(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going)
   {
     for (;;)
     {
@@ -239,12 +253,15 @@ namespace crawler
 
   /// To the end, or to where something has to be changed.
   TimeOutcome
-  Simulation::integrate_part(const std::vector<std::unique_ptr<Observer>> &observers,
-                             const std::function<bool()> &keep_going)
+  Simulation::integrate_part(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going)
   {
-    bool resumed                   = run_->accepted.is_there;
-    const std::vector<double> ends = run_->output_times.of_segment(segments_, run_->accepted.time);
+    bool resumed = run_->accepted.is_there && !run_->goes_on;
+    if (!run_->goes_on)
+      run_->part_start = run_->accepted.time;
+    run_->goes_on                  = false;
+    const std::vector<double> ends = run_->output_times.of_segment(segments_, run_->part_start);
     run_->lanes_look               = may_take_looks_of_lanes();
+    RunJournal *const journal      = run_->options.steps == nullptr ? keep_going.journal() : nullptr;
     if (integrators_.lanes)
       integrators_.lanes->look_inside(run_->lanes_look);
     integrators_.present->stage_rates = nullptr;
@@ -264,7 +281,7 @@ namespace crawler
       step.newton_iterations += run_->before.newton_iterations;
       run_->latest              = step;
       const bool at_end_of_part = !segments_.is_last() && part.time == segments_.end();
-      if (!sees(step, y, observers) || (keep_going && !keep_going()) || may_end_after(step, y))
+      if (!sees(step, y, observers) || may_end_after(step, y))
         return false;
       if (run_->options.steps != nullptr && step.size > 0. && integrators_.present == integrators_.lanes.get())
         run_->options.steps->add(
@@ -272,10 +289,15 @@ namespace crawler
       look_for_coarser_mesh(step);
       if (at_end_of_part && run_->request == Request::none)
         run_->request = Request::restart;
-      return run_->request == Request::none;
+      if (run_->request != Request::none) // the next step is asked
+        return false;
+      const bool stops = keep_going && !keep_going();
+      if (journal != nullptr)
+        keep_state(*journal, stops, step, observers);
+      return !stops;
     };
     TimeOutcome outcome = integrators_.present->solve(
-      y_, ends, numerics_.tolerance, run_->accepted.next_step, run_->limiter.limits(), run_->accepted.time);
+      y_, ends, numerics_.tolerance, run_->accepted.next_step, run_->limiter.limits(), run_->part_start);
     integrators_.present->monitor = nullptr;
     outcome.steps += run_->before.steps;
     outcome.rejected_steps += run_->before.rejected_steps;

@@ -669,4 +669,16 @@ namespace crawler
     *n_stages = data(ts).tableau->n;
     return 0;
   }
+
+  void
+  radau_exchange(TS ts, Archive &archive)
+  {
+    Radau &radau = data(ts);
+    archive(radau.hard_steps, radau.steps, radau.old_start, radau.old_z, radau.old_h, radau.old_t);
+    archive(radau.known_rate, ts->time_step, ts->steps, ts->reject, ts->snes_its, ts->ksp_its);
+    if (!archive.reads())
+      return;
+    radau.factors_h = 0.;
+    ts->steprestart = PETSC_FALSE;
+  }
 } // namespace crawler

@@ -41,6 +41,11 @@ namespace crawler
              "adaptive. A table of statistics ends with the cycles that are computed.");
     declarations.whole_number("Maximum number of steps", max_steps, 1, 999999999)
       .means("The run stops after so many steps.");
+    declarations.number("Wall time limit", wall_time_limit, positive(), "s")
+      .means("A run stops in order after so much wall time, with exit code 5; --resume goes on. Automatic: none.");
+    declarations.number("Checkpoint interval", checkpoint_interval, between(0., 1e9), "s")
+      .means("Wall time between two states that a run keeps in restart.dat, from which --resume goes on after a crash. "
+             "What takes less writes none, unless it is stopped.");
     declarations.leave();
   }
 

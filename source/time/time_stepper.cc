@@ -56,9 +56,10 @@ namespace crawler
     double tolerance             = 0.;
     double fixed_step            = 0.;
     bool stopped                 = false;
-    bool jacobian_ok             = true;
-    double refused_at            = -1.; ///< time of the last state that was refused
-    double nonfinite_at          = -1.; ///< time of the last residual that was not a finite number
+    std::optional<Archive> goes_on; ///< where solve() is to go on
+    bool jacobian_ok    = true;
+    double refused_at   = -1.; ///< time of the last state that was refused
+    double nonfinite_at = -1.; ///< time of the last residual that was not a finite number
     std::span<const StepLimit> limits;
     unsigned int limit = 0;                          ///< the present one
     bool underflow     = false;                      ///< a step is below the resolution of the time
@@ -604,6 +605,10 @@ namespace crawler
     self.fixed_step           = self.parameters.step_control == StepControl::fixed ? first_step : 0.;
     self.last_correction      = 0.;
     self.convergence_constant = std::numeric_limits<double>::infinity();
+    double time               = start_time;
+    const bool is_first       = !self.goes_on;
+    if (!is_first)
+      (*self.goes_on)(time, self.next_output_time, self.limit, self.refused_at, self.nonfinite_at);
     {
       const WriteAccess access(self.solution.get());
       std::copy(y.begin(), y.end(), access.span.begin());
@@ -611,14 +616,17 @@ namespace crawler
     if (!self.system.solves_exactly())
       self.use_krylov_method();
     petsc(TSSetTolerances(ts, self.tolerance, nullptr, self.relative_tolerance, nullptr));
-    petsc(TSSetTime(ts, start_time));
+    petsc(TSSetTime(ts, time));
     petsc(TSSetStepNumber(ts, 0));
     petsc(TSSetMaxTime(ts, self.parameters.end_time));
     petsc(TSSetTimeStep(ts, first_step));
     petsc(TSRestartStep(ts));
+    if (!is_first)
+      radau_exchange(ts, *self.goes_on);
+    self.goes_on.reset();
 
     PetscErrorCode code = 0;
-    bool go_on          = self.report(start_time, 0.);
+    bool go_on          = !is_first || self.report(start_time, 0.);
     if (go_on)
     {
       petsc(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
@@ -636,6 +644,33 @@ namespace crawler
     if (!go_on)
       result.status = Status::stopped;
     return result;
+  }
+
+  bool
+  TimeStepper::exchange(Archive &archive)
+  {
+    Implementation &self = *implementation_;
+    if (stage_places_.empty())
+      return false;
+    if (archive.reads())
+    {
+      std::string bytes;
+      archive(bytes);
+      self.goes_on.emplace(std::move(bytes));
+      return true;
+    }
+    Archive own;
+    PetscReal time = 0.;
+    TSGetTime(self.ts.get(), &time);
+    // The monitor sees the step before it is counted among the output times.
+    std::size_t next = self.next_output_time;
+    if (time == self.output_times[next])
+      ++next;
+    own(time, next, self.limit, self.refused_at, self.nonfinite_at);
+    radau_exchange(self.ts.get(), own);
+    std::string bytes = own.bytes();
+    archive(bytes);
+    return true;
   }
 
   void

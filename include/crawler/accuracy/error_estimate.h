@@ -28,7 +28,7 @@ namespace crawler
                   const Scene &scene,
                   const NumericsChoice &choice,
                   SimulationResult &result,
-                  const std::function<bool()> &keep_going = {});
+                  const KeepGoing &keep_going = {});
 
   /// The numerics of the next try where the error of @p choice is too large.
   NumericsChoice

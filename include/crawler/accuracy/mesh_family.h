@@ -25,5 +25,5 @@ namespace crawler
                    const NumericsChoice &choice,
                    const Simulation::Options &options,
                    const std::function<SimulationResult(const NumericsChoice &)> &simulate,
-                   const std::function<bool()> &keep_going);
+                   const KeepGoing &keep_going);
 } // namespace crawler

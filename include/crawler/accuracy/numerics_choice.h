@@ -36,6 +36,13 @@ namespace crawler
     double strain  = 0.;
     /// What helps if Accuracy is not met; empty if nothing special does.
     std::string advice;
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(numerics, explanation, promised_error, wanted_error, space_share, least_error, is_rough, is_users);
+      archive(is_measured, is_family, strain, advice);
+    }
   };
 
   /**
@@ -50,7 +57,7 @@ namespace crawler
   choose_numerics(MPI_Comm communicator,
                   const RunParameters &parameters,
                   const Scene &scene,
-                  const std::function<bool()> &keep_going = {});
+                  const KeepGoing &keep_going = {});
 
   /// Pictures at times within steps are less accurate than the ends of the steps of radau 5 and 9. Makes the tolerance
   /// so small that their displacement is as accurate as wanted, too, if it is not the user's.

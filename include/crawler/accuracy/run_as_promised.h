@@ -23,5 +23,5 @@ namespace crawler
                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
                   const Simulation::Options &options,
                   bool writes,
-                  const std::function<bool()> &keep_going = {});
+                  const KeepGoing &keep_going = {});
 } // namespace crawler

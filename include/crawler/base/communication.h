@@ -20,6 +20,10 @@ namespace crawler
   unsigned int
   rank_of_launcher();
 
+  /// Is it so on any rank? (collective)
+  bool
+  is_true_anywhere(bool is_true, MPI_Comm communicator);
+
   /// The text of rank 0, on all ranks.
   std::string
   broadcast(const std::string &text, MPI_Comm communicator);

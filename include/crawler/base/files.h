@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -16,6 +17,10 @@ namespace crawler
   /// complete. Throws FileError.
   void
   write_file(const std::filesystem::path &path, const std::string &content);
+
+  /// Cuts a file that may be longer to @p size bytes. Throws FileError, also if it is shorter.
+  void
+  cut_file(const std::filesystem::path &path, std::uintmax_t size);
 
   /// The whole text of a file. Throws FileError.
   std::string

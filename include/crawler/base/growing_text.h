@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
+
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -21,6 +23,10 @@ namespace crawler
     /// Replaces all that was added. Throws FileError.
     void
     restart(const std::string &text);
+
+    /// How much there is; a file that has grown since then becomes as it was. Throws FileError if it is shorter.
+    void
+    exchange(Archive &archive);
 
   private:
     const std::filesystem::path path_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
+
 #include <array>
 #include <deque>
 
@@ -85,6 +87,12 @@ namespace crawler
     /// The increments of the integrals from the start of the step to this @p place in it, 1 at its end.
     Rates
     until(double place) const;
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(points_, size_, latest_, used_);
+    }
 
   private:
     struct Point

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
 #include <crawler/mesh/discretization.h>
 
 #include <array>
@@ -41,14 +42,21 @@ namespace crawler
 
     struct Step
     {
-      double from, to; ///< [time]
+      double from = 0., to = 0.; ///< [time]
       std::shared_ptr<const std::vector<Cell>> cells;
-      const ReferenceElement *element;
+      const ReferenceElement *element = nullptr;
       std::array<std::vector<double>, 6> coefficients; ///< at the places(), for StretchPlaces
     };
 
     void
     clear();
+
+    void
+    exchange(Archive &archive);
+
+    /// All times times @p ratio.
+    void
+    scale_time(double ratio);
 
     /// Adds a step that follows the last one; forgets those that end before @p forget.
     void

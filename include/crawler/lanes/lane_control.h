@@ -26,18 +26,11 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
   constexpr double least_step      = 1e-18; // a sudden start needs short ones
 
   /// A body and its step.
-  struct Lane
+  struct Lane : LaneProgress
   {
     LaneJob job;
-    bool busy = false, has_old = false, just_rejected = false;
-    bool is_retry  = false; ///< of a step whose failed try is the guess
-    bool iterating = false, failed = false, accepted = false;
-    double t = 0., h = 1., next = 1., old_h = 1.;
+    bool busy = false, iterating = false, failed = false, accepted = false;
     double error = 0.; ///< of the step, relative to the tolerance
-    double rate = 0., known_rate = 1., last_correction = 0.;
-    unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, output_time = 0, limit = 0;
-    unsigned int first_step = 0; ///< steps before the last start
-    unsigned long newton    = 0;
 
     /// The size wanted, but steps end at output times.
     void

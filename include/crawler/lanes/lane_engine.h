@@ -57,6 +57,18 @@ namespace crawler
     double backward_ratio = 1., switching_velocity = 1.; ///< of the ground (scene/ground.h)
   };
 
+  /// What a body knows of its steps from one to the next, besides its state.
+  struct LaneProgress
+  {
+    bool has_old = false, just_rejected = false;
+    bool is_retry = false; ///< of a step whose failed try is the guess
+    double t = 0., h = 1., next = 1., old_h = 1.;
+    double rate = 0., known_rate = 1., last_correction = 0.;
+    unsigned int steps = 0, rejected = 0, failures = 0, all_failures = 0, output_time = 0, limit = 0;
+    unsigned int first_step = 0; ///< steps before the last start
+    unsigned long newton    = 0;
+  };
+
   /// One body to compute.
   struct LaneJob
   {
@@ -76,6 +88,10 @@ namespace crawler
     /// [n_output_times] is the output time a time when the active stress jumps, so the body starts anew there? Null:
     /// none is.
     const unsigned char *restarts;
+
+    // Of a body that goes on between two steps, where `start` is its state; null: it starts.
+    const LaneProgress *progress = nullptr;
+    const double *old_z          = nullptr; ///< [stages][unknowns] of the step before, as in LaneStep
 
     // Of a general body in the position form.
     const double *k_profile = nullptr, *friction_profile = nullptr; ///< [points] k(s)/k and b(s)
@@ -119,6 +135,7 @@ namespace crawler
     const LaneStage *stages; ///< [n_stages]; the last one alone is filled unless `look_inside` is set
     double elastic_energy;   ///< at the end, if rates are asked for
     bool is_settled;         ///< was the velocity at the end found? If rates are asked for
+    const LaneProgress *progress;
   };
 
   struct LaneOutcome

@@ -42,14 +42,14 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
       memory.piece(v, n);
     }
 
-    /// A new body in lane @p l; null: at rest.
+    /// A body in lane @p l; null: at rest, and without a step before.
     void
-    start(const int l, const double *displacement)
+    start(const int l, const double *displacement, const double *stages_before)
     {
       for (int i = 0; i < n; ++i)
         set_lane(y[i], l, displacement != nullptr ? displacement[i] : 0.);
       for (int i = 0; i < s * n; ++i)
-        set_lane(old_z[i], l, 0.);
+        set_lane(old_z[i], l, stages_before != nullptr ? stages_before[i] : 0.);
     }
 
     /// The polynomial of the last step continued where @p use is 1, or rest where it is 0. @p start and @p ratio as in

@@ -30,6 +30,8 @@ namespace crawler
           double start_time) override;
     void
     interpolate(double time, Vector y) override;
+    bool
+    exchange(Archive &archive) override;
 
     /// Is what the stages of the position form give wanted (LaneStage)? For the next solve().
     void
@@ -85,7 +87,9 @@ namespace crawler
     // The state of one solve().
     std::optional<std::pair<double, double>> bad_friction_;
     LaneJob job_;
-    bool started_ = false, looks_inside_ = false;
+    bool started_ = false, looks_inside_ = false, goes_on_ = false;
+    LaneProgress progress_; ///< if it goes on, and the last step's stages:
+    std::vector<double> old_z_;
     std::vector<double> *y_ = nullptr;
     LaneStep step_;
     TimeOutcome outcome_;

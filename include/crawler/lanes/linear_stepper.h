@@ -35,6 +35,8 @@ namespace crawler
           double start_time) override;
     void
     interpolate(double time, Vector y) override;
+    bool
+    exchange(Archive &archive) override;
 
     /// How often the systems of a step size have been factorized so far.
     unsigned int
@@ -89,8 +91,10 @@ namespace crawler
     std::list<Factors> factors_;   ///< latest first
     unsigned int n_factorizations_ = 0;
 
-    unsigned int steps_ = 0;
-    double tolerance_   = 0.;
+    unsigned int steps_ = 0, rejected_ = 0;
+    double tolerance_ = 0., time_ = 0.;
+    Plan plan_;
+    bool goes_on_ = false;
     // The step that was made last.
     double end_ = 0., size_ = 0.;
     std::vector<double> start_, z_; ///< [unknowns], [stages][unknowns] increments

@@ -93,10 +93,12 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
         lane.job = {1., 0., 1., 1., 1., nullptr, 0, 0, 0., false, 0., nullptr, nullptr, 0, nullptr};
       lane.t    = lane.job.start_time;
       lane.next = lane.job.initial_step;
+      if (lane.job.progress != nullptr)
+        static_cast<LaneProgress &>(lane) = *lane.job.progress;
       system_.set_body(l, lane.job, lane.busy);
       set_lane(tolerance_, l, lane.job.tolerance);
       friction_changed_ = true;
-      states_.start(l, lane.job.start);
+      states_.start(l, lane.job.start, lane.job.old_z);
       for (int i = 0; i < s * n_points_; ++i)
         set_lane(m_[i], l, 0.);
       stress(l, lane.t, m_start_);
@@ -327,7 +329,8 @@ namespace crawler::CRAWLER_INSTRUCTION_SET
                                 reinterpret_cast<const double *>(states_.old_z) + l,
                                 stages_[l],
                                 get_lane(elastic_energy_, l),
-                                get_lane(unsettled_, l) <= 1e3});
+                                get_lane(unsettled_, l) <= 1e3,
+                                &lane});
       if (lane.output_time == lane.job.n_output_times)
         end(l, LaneOutcome::finished);
       else if (!go_on || lane.steps >= lane.job.most_steps)

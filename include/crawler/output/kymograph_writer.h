@@ -17,6 +17,8 @@ namespace crawler
 
     void
     observe(const Snapshot &snapshot) override;
+    void
+    exchange(Archive &archive) override;
 
     /// Adds a time with @p fields at all points.
     void

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
 #include <crawler/equation/assembler.h>
 #include <crawler/equation/energy_balance.h>
 #include <crawler/output/picture_times.h>
@@ -35,6 +36,12 @@ namespace crawler
 
     virtual void
     observe(const Snapshot &snapshot) = 0;
+
+    /// What it has seen so far, for one that goes on with the same files. Throws FileError if these are not there.
+    virtual void
+    exchange(Archive &)
+    {
+    }
 
     /// After the last state, however the run ended.
     virtual void

@@ -89,6 +89,12 @@ namespace crawler
       return drawn_;
     }
 
+    void
+    exchange(Archive &archive)
+    {
+      archive(largest_force_, seen_, drawn_, seen_path_, path_);
+    }
+
   private:
     double length_, largest_force_ = 0.;
     std::array<Range, std::size(field_names)> seen_, drawn_; ///< of the fields; the path is that of the position

@@ -18,5 +18,9 @@ namespace crawler
     /// After the last frame, with the final scenery. Throws FileError.
     virtual void
     end(const Scenery &scenery) = 0;
+
+    /// What has been written, as for Observer::exchange().
+    virtual void
+    exchange(Archive &archive) = 0;
   };
 } // namespace crawler

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace crawler
@@ -56,6 +57,10 @@ namespace crawler
     /// Throws FileError.
     std::vector<double>
     read(const std::string &name, std::size_t row, std::size_t n_rows, std::size_t n) const;
+
+    /// Frames, and points of each of them, for which there is room.
+    std::pair<std::size_t, std::size_t>
+    size() const;
 
     /// Where the numbers of a row begin in the file, in bytes.
     std::size_t

@@ -29,6 +29,8 @@ namespace crawler
     observe(const Snapshot &snapshot) override;
     void
     end() override;
+    void
+    exchange(Archive &archive) override;
 
     /// Writes a frame (this rank alone). Throws FileError.
     void

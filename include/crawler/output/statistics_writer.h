@@ -56,7 +56,7 @@ namespace crawler
   class StatisticsWriter : public Statistics
   {
   public:
-    /// Throws FileError.
+    /// The file is made with the first row.
     StatisticsWriter(double length, bool is_first_rank, const std::filesystem::path &folder, bool with_energy_balance);
 
     void
@@ -65,8 +65,13 @@ namespace crawler
     write(const Row &row) override;
     void
     end() override;
+    void
+    exchange(Archive &archive) override;
 
   private:
+    void
+    open();
+
     const bool writes_;
     const std::filesystem::path path_;
     std::ofstream out_;

@@ -17,6 +17,8 @@ namespace crawler
     add(const Frame &frame, const Scenery &scenery, bool scenery_changed) override;
     void
     end(const Scenery &scenery) override;
+    void
+    exchange(Archive &archive) override;
 
   private:
     void

@@ -86,6 +86,9 @@ namespace crawler
     Cycles
     extrapolate(double &displacement, EnergyBalance *energy_balance) const;
 
+    void
+    exchange(Archive &archive);
+
   private:
     /// At the end of a cycle.
     struct End

@@ -110,11 +110,23 @@ namespace crawler
     std::optional<Gait>
     gait() const;
 
+    void
+    exchange(Archive &archive)
+    {
+      archive(n_samples_, next_, samples_, steps_, smallest_, largest_);
+    }
+
   private:
     struct Sample
     {
       double time, displacement;
       std::vector<double> stretch;
+
+      void
+      exchange(Archive &archive)
+      {
+        archive(time, displacement, stretch);
+      }
     };
     /// The range of a number.
     struct Range

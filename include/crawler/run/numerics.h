@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
 #include <crawler/base/step_limits.h>
 #include <crawler/equation/stretch_form.h>
 #include <crawler/mesh/graded_mesh.h>
@@ -30,6 +31,14 @@ namespace crawler
     unsigned int parts      = 1;     ///< of the stretch form, into which each of n_cells is divided
     bool other_rule         = false; ///< of the stretch form, see stretch_method()
     bool jumps_move         = false; ///< the active stress jumps at places that move through the cells
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(
+        degree, n_cells, tolerance, initial_step, step_limits, least_event, formulation, mesh, linear, integrator);
+      archive(grading, layer, parts, other_rule, jumps_move);
+    }
   };
 
   /// In natural units.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
 #include <crawler/output/picture_times.h>
 #include <crawler/scene/breaks.h>
 
@@ -35,6 +36,12 @@ namespace crawler
     /// The last picture that was passed, if it is of this time.
     const PictureTimes::Time *
     passed_at(double time) const;
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(next_);
+    }
 
     /// Are two times one?
     static bool

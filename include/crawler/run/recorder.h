@@ -111,6 +111,15 @@ namespace crawler
     SimulationResult
     finish();
 
+    /// The state between two steps.
+    void
+    exchange(Archive &archive);
+
+    /// What the end of a run gives to a longer one, whose duration is that of the run over @p ratio: the last stride is
+    /// looked at only if it is in what is new.
+    void
+    exchange_end(Archive &archive, double ratio);
+
     SimulationResult result; ///< whoever runs adds what only it knows
 
   private:

@@ -12,6 +12,7 @@
 #include <crawler/run/numerics.h>
 #include <crawler/run/output_times.h>
 #include <crawler/run/recorder.h>
+#include <crawler/run/run_journal.h>
 #include <crawler/run/state_velocity.h>
 #include <crawler/run/step_limiter.h>
 #include <crawler/time/time_stepper.h>
@@ -40,12 +41,12 @@ namespace crawler
 
     /// Runs from rest. If that is wished it ends when its cycles repeat (cycle_stop.h); the result is that of the end
     /// time all the same. @p pictures: what observers see besides the ends of steps. @p keep_going is asked after every
-    /// step.
+    /// step; what its journal has of the run is not computed again, and the journal gets its states and its result.
     SimulationResult
     run(const PictureTimes &pictures,
         const Options &options,
         const std::vector<std::unique_ptr<Observer>> &observers = {},
-        const std::function<bool()> &keep_going                 = {});
+        const KeepGoing &keep_going                             = {});
 
     /// The present mesh, of length 1.
     const Discretization &
@@ -104,6 +105,12 @@ namespace crawler
       std::vector<double> y;
       double time = 0., next_step = 0.;
       bool is_there = false;
+
+      void
+      exchange(Archive &archive)
+      {
+        archive(y, time, next_step, is_there);
+      }
     };
 
     /// Replaces what the time stepper says about the end.
@@ -138,7 +145,9 @@ namespace crawler
       std::vector<CellChange> changes;
       std::vector<double> indicators; ///< of all cells, for the present state of an adaptive mesh
       unsigned int tiny_steps  = 0;
-      unsigned long n_failures = 0; ///< of the active stress before this run
+      unsigned long n_failures = 0;     ///< of the active stress before this run
+      double part_start        = 0.;    ///< where the present integrator has started
+      bool goes_on             = false; ///< within a part that was left
     };
 
     void
@@ -225,13 +234,32 @@ namespace crawler
     void
     under_resolved(double value, double s, double t);
     TimeOutcome
-    integrate(const std::vector<std::unique_ptr<Observer>> &observers, const std::function<bool()> &keep_going);
+    integrate(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going);
     TimeOutcome
-    integrate_part(const std::vector<std::unique_ptr<Observer>> &observers, const std::function<bool()> &keep_going);
+    integrate_part(const std::vector<std::unique_ptr<Observer>> &observers, const KeepGoing &keep_going);
     bool
     goes_on_after(TimeOutcome &outcome);
     TimeOutcome
     failure_while_integrating();
+    std::string
+    identity(const Options &options, bool has_observers) const;
+    void
+    exchange(Archive &archive, const std::vector<std::unique_ptr<Observer>> &observers);
+    void
+    exchange_end(Archive &archive, const std::vector<std::unique_ptr<Observer>> &observers);
+    void
+    exchange_mesh(Archive &archive);
+    std::string
+    together(const Archive &own) const;
+    std::string
+    own_part(const std::string &together) const;
+    void
+    take_up(const RunJournal &journal, const std::vector<std::unique_ptr<Observer>> &observers);
+    void
+    keep_state(RunJournal &journal,
+               bool stops,
+               const Step &step,
+               const std::vector<std::unique_ptr<Observer>> &observers);
     SimulationResult
     finish(const std::vector<std::unique_ptr<Observer>> &observers);
     /// A state that observers see.

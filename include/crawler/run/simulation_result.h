@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
 #include <crawler/base/extreme_history.h>
 #include <crawler/equation/stretch_form.h>
 #include <crawler/reduced_models/model.h>
@@ -104,5 +105,9 @@ namespace crawler
     double setup_seconds = 0., solve_seconds = 0., output_seconds = 0.;
     double estimate_seconds  = 0.; ///< that the error took (error_estimate.h)
     unsigned int refinements = 0;  ///< tries before this one, whose errors were too large
+
+    /// All of it but sensitivities, which no run has.
+    void
+    exchange(Archive &archive);
   };
 } // namespace crawler

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
 #include <crawler/equation/position_form.h>
 
 #include <span>
@@ -48,6 +49,12 @@ namespace crawler
     bool
     compute_within(double t, double end, double size, ConstVector y, std::span<double> v);
 
+    void
+    exchange(Archive &archive)
+    {
+      archive(rates_);
+    }
+
   private:
     void
     remove_rigid_motion(double t, ConstVector y, std::span<double> v);
@@ -56,6 +63,12 @@ namespace crawler
     {
       double time = -1.;
       std::vector<double> y_dot;
+
+      void
+      exchange(Archive &archive)
+      {
+        archive(time, y_dot);
+      }
     };
 
     Assembler &assembler_;

@@ -35,6 +35,14 @@ namespace crawler
     void
     restart();
 
+    void
+    exchange(Archive &archive)
+    {
+      archive(limits_);
+      if (watch_)
+        archive(*watch_);
+    }
+
   private:
     std::vector<StepLimit> limits_;
     std::optional<StressWatch> watch_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
 #include <crawler/scene/active_stress.h>
 
 #include <array>
@@ -42,6 +43,12 @@ namespace crawler
     inside() const
     {
       return inside_;
+    }
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(largest_, end_time_, random_, end_, inside_);
     }
 
   private:

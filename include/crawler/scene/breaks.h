@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
+
 #include <algorithm>
 #include <limits>
 #include <vector>
@@ -74,6 +76,13 @@ namespace crawler
     inside(const double t) const
     {
       return std::clamp(t, from_, to_);
+    }
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(piece_);
+      set_limits();
     }
 
   private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
 #include <crawler/time/implicit_system.h>
 #include <crawler/time/petsc_guard.h>
 
@@ -29,4 +30,8 @@ namespace crawler
   radau_set_stages(TS ts, unsigned int n_stages);
   PetscErrorCode
   radau_get_stages(TS ts, unsigned int *n_stages);
+
+  /// What the type knows between two steps besides the solution, for TimeIntegration::exchange().
+  void
+  radau_exchange(TS ts, Archive &archive);
 } // namespace crawler

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/base/archive.h>
 #include <crawler/base/step_limits.h>
 #include <crawler/base/words.h>
 
@@ -48,6 +49,13 @@ namespace crawler
     double step_size   = 0.;    ///< that was tried last; if the monitor stopped: that would come next
     unsigned int steps = 0, rejected_steps = 0;
     unsigned long newton_iterations = 0, linear_iterations = 0;
+
+    void
+    exchange(Archive &archive)
+    {
+      archive(status, reason, message, domain_error, time, step_size);
+      archive(steps, rejected_steps, newton_iterations, linear_iterations);
+    }
   };
 
   /// Integrates a state over time: by PETSc (time_stepper.h) or by the fused engine (lanes/lane_stepper.h).
@@ -84,6 +92,18 @@ namespace crawler
     /// interpolation.
     virtual void
     interpolate(double time, Vector y) = 0;
+
+    /**
+     * All that solve() knows between two steps besides its arguments, if the integrator can tell. Written within the
+     * monitor; read before a solve() with the same arguments, but with the state of then as @p y, which goes on from
+     * there as if it had not been left. Returns false, and does nothing, if it cannot: then a run has to start anew at
+     * that state.
+     */
+    virtual bool
+    exchange(Archive &)
+    {
+      return false;
+    }
 
     /// The stages of a collocation method, as parts of the step in (0, 1], the last one 1: what is integrated by the
     /// polynomial through them has the accuracy of the method. Empty if it is none.

@@ -56,8 +56,10 @@ namespace crawler
     StepControl step_control = StepControl::adaptive;
     std::optional<double> tolerance;    ///< absolute, in the displacement [length]
     std::optional<double> initial_step; ///< [time]
-    unsigned int max_steps   = 100000000;
-    CycleStopMode cycle_stop = CycleStopMode::automatic;
+    unsigned int max_steps = 100000000;
+    std::optional<double> wall_time_limit; ///< of a run [s]
+    double checkpoint_interval = 60.;      ///< [s]
+    CycleStopMode cycle_stop   = CycleStopMode::automatic;
 
     std::string petsc_prefix; ///< of PETSc's options; not an entry of the file
 

@@ -38,6 +38,9 @@ namespace crawler
           double start_time) override;
     void
     interpolate(double time, Vector y) override;
+    /// Only the radau methods can.
+    bool
+    exchange(Archive &archive) override;
 
   private:
     struct Implementation;

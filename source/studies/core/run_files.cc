@@ -37,15 +37,18 @@ namespace crawler
   }
 
   void
-  begin_files(Log &log, const Input &input, const std::filesystem::path &folder)
+  begin_files(Log &log, const Input &input, const std::filesystem::path &folder, const bool goes_on)
   {
-    prepare(folder);
+    if (!goes_on)
+      prepare(folder);
     const OutputParameters &output = input.parameters.output;
     if (output.has_snapshots() && output.snapshot_format == SnapshotFormat::vtu)
       std::filesystem::create_directories(folder / "solution");
     write_file(folder / "original.prm", input.file.text());
     write_file(folder / "parameters.prm", input.effective);
-    log.open(folder / "log.txt");
+    std::error_code error;
+    std::filesystem::remove(folder / "stop", error);
+    log.open(folder / "log.txt", /*append=*/goes_on);
     const std::vector<double> &size = output.active_stress_table;
     if (size.empty())
       return;

@@ -3,6 +3,7 @@
 #include <crawler/accuracy/numerics_choice.h>
 #include <crawler/accuracy/run_as_promised.h>
 #include <crawler/accuracy/swept_error.h>
+#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
 #include <crawler/base/stop_signal.h>
@@ -21,6 +22,8 @@
 #include <crawler/studies/core/run_files.h>
 #include <crawler/studies/run/reduced_pictures.h>
 #include <crawler/studies/run/run.h>
+#include <crawler/studies/run/run_checkpoint.h>
+#include <crawler/studies/run/run_stops.h>
 #include <crawler/studies/run/sensitivity_files.h>
 #include <crawler/time/failure.h>
 
@@ -73,6 +76,29 @@ namespace crawler
       outcome.message         = text.substr(split + 1);
     }
 
+    void
+    report_resumption(Log &log, const Resumption &resumption, const std::filesystem::path &folder)
+    {
+      for (const std::string &note : resumption.notes)
+        log.warn("warning: " + note);
+      switch (resumption.kind)
+      {
+        case Resumption::begins:
+          log.line(
+            fmt::format("There is no state in \"{}\" with which the run could go on: it begins.", folder.string()));
+          break;
+        case Resumption::goes_on:
+          log.line("The run goes on from the state in restart.dat.");
+          break;
+        case Resumption::prolongs:
+          log.line("The run goes on from its end to a later end time, with the mesh and the tolerance that it has.");
+          break;
+        case Resumption::is_whole:
+          log.line(fmt::format("The run in \"{}\" is complete; nothing was computed.", folder.string()));
+          break;
+      }
+    }
+
     /// PETSc options that were not read are most likely misspelt.
     void
     report_unused_options(Log &log)
@@ -106,16 +132,57 @@ namespace crawler
   {
     const StopSignal stop_signal; // from here on a signal ends the run in order
     const auto start = std::chrono::steady_clock::now();
-    const bool first = rank_of(communicator) == 0;
+    if (options.resume && options.overwrite)
+      throw InputError("--resume and --overwrite contradict each other; one of them is expected");
+    const double begin = now();
+    const bool first   = rank_of(communicator) == 0;
     Log log(first, options);
     Input input                    = read_input(std::move(file));
     const Parameters &parameters   = input.parameters;
     const OutputParameters &output = parameters.output;
     const auto folder              = output_folder(options.output, options.file);
+    std::optional<FolderLock> lock;
+    RunCheckpoint checkpoint;
+    Resumption resumption;
     on_first_rank(communicator, [&]() {
-      require_usable(folder, options.overwrite);
+      require_usable(folder, options.overwrite || options.resume);
+      checkpoint = checkpoint_of(input, options);
+      if (options.resume)
+      {
+        lock.emplace(folder, /*overwrite=*/true);
+        resumption = resumption_of(folder, checkpoint);
+      }
       return "";
     });
+    if (options.resume)
+    {
+      Archive known(broadcast(archived(resumption), communicator));
+      known(resumption);
+      report_resumption(log, resumption, folder);
+      if (resumption.kind == Resumption::is_whole)
+        return ExitCode::finished;
+    }
+    bool has_files = false;
+    RunJournal journal(
+      parameters.time.checkpoint_interval, !first ? RunJournal::Write() : [&](const std::string &all) {
+        if (!has_files)
+          return;
+        checkpoint.journal = all;
+        write_checkpoint(folder, checkpoint);
+      });
+    const bool goes_on = resumption.kind == Resumption::goes_on || resumption.kind == Resumption::prolongs;
+    if (goes_on)
+      journal.load(resumption.journal);
+    if (resumption.kind == Resumption::prolongs)
+    {
+      if (!journal.has_end())
+        throw InputError(fmt::format("the run in \"{}\" has not come to its end yet; the end time that it had is "
+                                     "expected, and a larger one when it is there",
+                                     folder.string()),
+                         "Time/End time");
+      journal.prolong();
+    }
+    RunStops stops(stop_signal, parameters.time.wall_time_limit, begin, folder / stop_file_name);
 
     SimulationResult result;
     bool shared              = false; // the cells, by all ranks
@@ -145,21 +212,33 @@ namespace crawler
     guarded([&]() { model = choose_model(input); });
     agree_on_failure(communicator, result.time);
     if (model && !model->needs_mesh())
-      return run_reduced_model(communicator, options, input, *model, stop_signal, start, log);
+    {
+      lock.reset();
+      CommandOptions its_options = options;
+      its_options.overwrite      = options.overwrite || options.resume;
+      return run_reduced_model(communicator, its_options, input, *model, stop_signal, start, log);
+    }
     guarded([&]() {
       input.parameters.model = model->model;
       // The linear level (a = 0) is computed by what follows, as the nonlinear one.
+      if (journal.prolongs())
+      {
+        chosen.emplace();
+        Archive(resumption.choice)(*chosen);
+        return;
+      }
       WaitProgress pilots(log, pilot_runs);
-      chosen = choose_numerics(MPI_COMM_SELF, parameters, input.scene, [&]() {
+      const auto goes_on_with_pilots = [&]() {
         pilots.step();
-        return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
-      });
+        return !stops.arrived_anywhere(MPI_COMM_SELF);
+      };
+      chosen = choose_numerics(MPI_COMM_SELF, parameters, input.scene, KeepGoing(goes_on_with_pilots, &journal));
       if (chosen && output.has_snapshots())
         prepare_for_pictures(*chosen, parameters);
     });
-    if (stop_signal.arrived_anywhere(communicator))
+    if (stops.arrived_anywhere(communicator))
     {
-      log.warn("stopped by a signal during the pilot runs; nothing was written");
+      log.warn(fmt::format("stopped {} during the pilot runs; nothing was written", stops.in_words()));
       return ExitCode::stopped;
     }
     agree_on_failure(communicator, result.time);
@@ -168,11 +247,12 @@ namespace crawler
              parameters.discretization.shares(chosen->numerics.n_cells);
     const MPI_Comm computing = shared ? communicator : MPI_COMM_SELF;
     std::optional<WaitProgress> other_runs; // those without a progress of their own
-    const auto keep_going = [&]() {
+    const auto continues = [&]() {
       if (other_runs)
         other_runs->step();
-      return !stop_signal.arrived_anywhere(computing);
+      return !stops.arrived_anywhere(computing);
     };
+    const KeepGoing keep_going(continues, &journal);
     std::unique_ptr<Simulation> simulation;
     const auto build = [&](const Numerics &numerics) {
       simulation = std::make_unique<Simulation>(computing, input.scene, parameters.time, numerics);
@@ -180,10 +260,13 @@ namespace crawler
     guarded([&]() { build(chosen->numerics); });
 
     // Everything is in order, or as good as it will be: from here on there are files.
-    std::optional<FolderLock> lock;
     on_first_rank(communicator, [&]() {
-      lock.emplace(folder, options.overwrite);
-      begin_files(log, input, folder);
+      if (!lock)
+        lock.emplace(folder, options.overwrite);
+      begin_files(log, input, folder, goes_on);
+      if (chosen)
+        checkpoint.choice = archived(*chosen);
+      has_files = true;
       return "";
     });
     if (chosen)
@@ -231,12 +314,18 @@ namespace crawler
         build(choice.numerics);
         if (writes)
           on_first_rank(computing, [&]() {
+            if (journal.was_written()) // older states need the files that are removed
+            {
+              remove_checkpoints(folder);
+              journal.write();
+            }
             remove_fields(folder);
             return "";
           });
         log.line(describe(choice.numerics, input));
       }
       other_runs.reset();
+      journal.begins_main();
       SimulationResult run = simulation->run(pictures, run_options, create_observers(), keep_going);
       other_runs.emplace(log, "other runs measure the error");
       latest = run.time;
@@ -256,12 +345,20 @@ namespace crawler
     result.setup_seconds = setup_seconds;
     if (result.time.status == Status::stopped && result.time.reason.empty())
     {
-      result.time.reason  = "signal";
-      result.time.message = fmt::format("stopped by a signal at t = {:.6g}", result.time.time);
+      result.time.reason  = stops.reason();
+      result.time.message = fmt::format("stopped {} at t = {:.6g}", stops.in_words(), result.time.time);
+    }
+    if (result.time.status == Status::finished && parameters.error_estimate && result.error &&
+        !std::isfinite(result.error->total) && stops.arrived_anywhere(MPI_COMM_SELF))
+    {
+      result.time.status = Status::stopped;
+      result.time.reason = stops.reason();
+      result.time.message =
+        fmt::format("stopped {} after the end of the run, before its error was known", stops.in_words());
     }
     check_identities(result, parameters);
     if (first && !shared && chosen)
-      sweep_error(parameters, input.scene, *chosen, result, keep_going);
+      sweep_error(parameters, input.scene, *chosen, result, continues);
     other_runs.reset();
     if (first && !input.sensitivities.empty())
     {
@@ -272,17 +369,18 @@ namespace crawler
                                               result,
                                               [&]() {
                                                 progress.step();
-                                                return !stop_signal.arrived_anywhere(MPI_COMM_SELF);
+                                                return !stops.arrived_anywhere(MPI_COMM_SELF);
                                               }),
                             folder);
       else
         log.warn("there are no sensitivities, since the run did not end as it should");
-      if (result.time.status == Status::finished && stop_signal.arrived_anywhere(MPI_COMM_SELF) &&
+      if (result.time.status == Status::finished && stops.arrived_anywhere(MPI_COMM_SELF) &&
           std::ranges::any_of(result.sensitivities, [](const auto &one) { return !one.value; }))
       {
-        result.time.status  = Status::stopped;
-        result.time.reason  = "signal";
-        result.time.message = "stopped by a signal after the end of the run, before all sensitivities were known";
+        result.time.status = Status::stopped;
+        result.time.reason = stops.reason();
+        result.time.message =
+          fmt::format("stopped {} after the end of the run, before all sensitivities were known", stops.in_words());
       }
     }
     if (result.time.status == Status::finished && parameters.error_estimate && !std::isfinite(result.error->total))
@@ -290,7 +388,14 @@ namespace crawler
     report_unused_options(log);
 
     on_first_rank(communicator, [&]() {
+      const bool is_for_later = result.time.status == Status::stopped && stops.arrived_anywhere(MPI_COMM_SELF);
+      if (is_for_later || (result.time.status == Status::finished && journal.has_end()))
+        journal.write();
+      else
+        remove_checkpoints(folder);
       write_summary();
+      if (is_for_later && journal.was_written())
+        log.line("The state of the run is in restart.dat: the same command with --resume goes on with it.");
       return "";
     });
     // The first rank speaks for all: a signal may have stopped some only.

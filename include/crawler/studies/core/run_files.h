@@ -18,7 +18,7 @@ namespace crawler
   /// Makes the output folder with the files that a run begins with: parameters, log, and active_stress.csv if the input
   /// asks for it. Throws FileError.
   void
-  begin_files(Log &log, const Input &input, const std::filesystem::path &folder);
+  begin_files(Log &log, const Input &input, const std::filesystem::path &folder, bool goes_on = false);
 
   /// Says how a run ended, where its results are, and that @p animation among them opens in ParaView (empty: there is
   /// none). What it returns to the shell.

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace crawler
+{
+  /**
+   * The state of objects as bytes, exactly: written by an archive without bytes, and read by one with them. One
+   * function says what belongs to a type for both directions,
+   *
+   *     void exchange(Archive &archive) { archive(first_, second_); }
+   *
+   * Bytes are those of this machine, for the same program only. To read what was not written throws FileError; sizes
+   * are looked at before memory is asked for.
+   */
+  class Archive
+  {
+  public:
+    Archive() = default;
+    explicit Archive(std::string bytes)
+      : bytes_(std::move(bytes))
+      , reads_(true)
+    {
+    }
+
+    bool
+    reads() const
+    {
+      return reads_;
+    }
+    /// All that was written.
+    const std::string &
+    bytes() const
+    {
+      return bytes_;
+    }
+    /// Nothing is left to be read.
+    bool
+    is_at_end() const
+    {
+      return place_ == bytes_.size();
+    }
+
+    template <typename... Types>
+    void
+    operator()(Types &...values)
+    {
+      (one(values), ...);
+    }
+
+    /// What must be the same as when it was written: numbers and kinds of things that are not exchanged themselves.
+    template <typename Type>
+    void
+    require_same(Type value, const char *what)
+    {
+      const Type own = value;
+      one(value);
+      if (!(value == own))
+        fail(what);
+    }
+
+  private:
+    template <typename Type>
+    void
+    one(Type &value)
+    {
+      if constexpr (requires { value.exchange(*this); })
+        value.exchange(*this);
+      else
+      {
+        static_assert(std::is_trivially_copyable_v<Type> && !std::is_pointer_v<Type>);
+        raw(&value, sizeof(Type));
+      }
+    }
+    void
+    one(std::string &text)
+    {
+      resize(text, 1);
+      raw(text.data(), text.size());
+    }
+    template <typename Type>
+    void
+    one(std::vector<Type> &list)
+    {
+      list_of(list);
+    }
+    template <typename Type>
+    void
+    one(std::deque<Type> &list)
+    {
+      list_of(list);
+    }
+    template <typename Type, std::size_t n>
+    void
+    one(std::array<Type, n> &list)
+    {
+      for (Type &value : list)
+        one(value);
+    }
+    template <typename First, typename Second>
+    void
+    one(std::pair<First, Second> &pair)
+    {
+      (*this)(pair.first, pair.second);
+    }
+    template <typename Type>
+    void
+    one(std::optional<Type> &value)
+    {
+      bool is_there = value.has_value();
+      raw(&is_there, sizeof(is_there));
+      if (!is_there)
+        value.reset();
+      else if (!value)
+      {
+        if constexpr (std::default_initializable<Type>)
+          value.emplace();
+        else
+          fail("a value");
+      }
+      if (value)
+        one(*value);
+    }
+
+    template <typename List>
+    void
+    list_of(List &list)
+    {
+      using Type = typename List::value_type;
+      resize(list, std::is_trivially_copyable_v<Type> ? sizeof(Type) : 1);
+      if constexpr (requires { list.data(); } && std::is_trivially_copyable_v<Type>)
+        raw(list.data(), list.size() * sizeof(Type));
+      else
+        for (Type &value : list)
+          one(value);
+    }
+    template <typename List>
+    void
+    resize(List &list, const std::size_t least_bytes)
+    {
+      std::size_t n = list.size();
+      raw(&n, sizeof(n));
+      if (reads_ && n > (bytes_.size() - place_) / least_bytes)
+        fail("a list");
+      list.resize(n);
+    }
+
+    void
+    raw(void *data, std::size_t n);
+    [[noreturn]] static void
+    fail(std::string_view what);
+
+    std::string bytes_;
+    std::size_t place_ = 0;
+    bool reads_        = false;
+  };
+
+  /// The bytes of @p value.
+  template <typename Type>
+  std::string
+  archived(Type &value)
+  {
+    Archive archive;
+    archive(value);
+    return archive.bytes();
+  }
+} // namespace crawler

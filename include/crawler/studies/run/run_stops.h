@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/base/stop_signal.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace crawler
+{
+  /// Who touches a file of this name in the output folder asks the run to stop.
+  extern const std::string stop_file_name;
+
+  /// Why a run that could go on is to stop: a signal, its wall time, or a file that asks for it.
+  class RunStops
+  {
+  public:
+    /// @p limit of the wall time [s] since @p start (base/clock.h), if there is one; @p file as above.
+    RunStops(const StopSignal &signal, std::optional<double> limit, double start, std::filesystem::path file);
+
+    /// Is it to stop on any rank? (collective) Once it is, it stays so.
+    bool
+    arrived_anywhere(MPI_Comm communicator);
+
+    /// "signal", "time_limit" or "stop_file"; and in words, "by ...".
+    const char *
+    reason() const;
+    std::string
+    in_words() const;
+
+  private:
+    bool
+    arrived();
+
+    const StopSignal &signal_;
+    const std::optional<double> limit_;
+    const double start_;
+    const std::filesystem::path file_;
+    double next_look_    = 0.; ///< for the file
+    bool is_out_of_time_ = false, is_asked_ = false;
+  };
+} // namespace crawler

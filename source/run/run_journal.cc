@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/archive.h>
+#include <crawler/base/clock.h>
+#include <crawler/run/run_journal.h>
+
+#include <algorithm>
+
+namespace crawler
+{
+  void
+  RunJournal::Entry::exchange(Archive &archive)
+  {
+    archive(identity, result);
+  }
+
+  RunJournal::RunJournal(const double interval, Write write)
+    : interval_(interval)
+    , write_(std::move(write))
+    , begin_(now())
+    , last_(begin_)
+  {
+  }
+
+  void
+  RunJournal::load(std::string bytes)
+  {
+    Archive archive(std::move(bytes));
+    std::string state;
+    archive(ended_, identity_, state, end_, prolongs_);
+    state_       = std::move(state);
+    was_written_ = true;
+  }
+
+  std::optional<SimulationResult>
+  RunJournal::begin(std::string identity)
+  {
+    const std::size_t i = n_begun_++;
+    if (i < ended_.size())
+    {
+      if (ended_[i].identity == identity)
+      {
+        is_main_ = false;
+        return ended_[i].result;
+      }
+      ended_.resize(i);
+      state_.reset();
+    }
+    else if (identity_ != identity)
+      state_.reset();
+    identity_ = std::move(identity);
+    return std::nullopt;
+  }
+
+  bool
+  RunJournal::wants_end() const
+  {
+    return is_main_ && writes() && (was_written_ || now() - begin_ >= interval_);
+  }
+
+  void
+  RunJournal::prolong()
+  {
+    ended_.clear();
+    identity_.clear();
+    state_.reset();
+    prolongs_ = true;
+  }
+
+  bool
+  RunJournal::is_due() const
+  {
+    constexpr double part = 0.05; // of the time, at most
+    return writes() && now() - last_ >= std::max(interval_, cost_ / part);
+  }
+
+  void
+  RunJournal::keep(std::string state)
+  {
+    state_ = std::move(state);
+    write();
+  }
+
+  void
+  RunJournal::end(const SimulationResult &result)
+  {
+    is_main_ = false;
+    if (is_closed_)
+      return;
+    ended_.push_back({std::move(identity_), result});
+    identity_.clear();
+    state_.reset();
+    if (is_due())
+      write();
+  }
+
+  void
+  RunJournal::write()
+  {
+    if (!writes())
+      return;
+    const double begin = now();
+    Archive archive;
+    std::string state = state_.value_or("");
+    archive(ended_, identity_, state, end_, prolongs_);
+    write_(archive.bytes());
+    last_        = now();
+    cost_        = last_ - begin;
+    was_written_ = true;
+  }
+} // namespace crawler

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+//
+// The part of Simulation that writes its state between two steps, and goes on from one.
+#include <crawler/base/archive.h>
+#include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
+#include <crawler/run/simulation.h>
+
+#include <algorithm>
+
+namespace crawler
+{
+  /// All that decides on the run. What is the same in all runs of an answer is not looked at.
+  std::string
+  Simulation::identity(const Options &options, const bool has_pictures) const
+  {
+    Archive archive;
+    Numerics numerics          = numerics_;
+    TimeParameters time        = time_;
+    RecordOptions what         = options;
+    bool is_shown              = has_pictures;
+    unsigned int n_ranks       = size_of(communicator_);
+    double duration            = units_.time;
+    std::optional<double> wish = options.cycles ? std::optional(options.cycles->accuracy) : std::nullopt;
+    archive(numerics, time.integrator, time.engine, time.order, time.step_control, time.max_steps, time.petsc_prefix);
+    archive(what.energy_balance, what.resolution, wish, what.gait, is_shown, n_ranks, duration);
+    return archive.bytes();
+  }
+
+  /// The state of this rank.
+  void
+  Simulation::exchange(Archive &archive, const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    Run &run = *run_;
+    exchange_mesh(archive);
+    archive(segments_, past_.history, *mesh_.velocity, v_);
+    archive(run.recorder, run.output_times, run.limiter, run.accepted, run.stretch, run.integrals, run.quadrature);
+    archive(run.balance_before, run.largest, run.before, run.latest, run.lanes_gave_up, run.indicators);
+    archive(run.tiny_steps, run.part_start);
+    if (archive.reads())
+    {
+      y_ = run.accepted.y;
+      choose_stepper();
+    }
+    run.goes_on = integrators_.present->exchange(archive) && archive.reads();
+    if (archive.reads() && !run.goes_on)
+    {
+      run.before.steps             = run.latest.number;
+      run.before.rejected_steps    = run.latest.rejected;
+      run.before.newton_iterations = run.latest.newton_iterations;
+      run.accepted.next_step       = std::min(run.latest.size, numerics_.initial_step);
+    }
+    for (const auto &observer : observers)
+      observer->exchange(archive);
+  }
+
+  /// Cells are divided until they are those of then.
+  void
+  Simulation::exchange_mesh(Archive &archive)
+  {
+    if (!is_adaptive())
+      return;
+    std::vector<Cell> wanted = mesh_.discretization->cells();
+    archive(wanted);
+    if (!archive.reads())
+      return;
+    std::unique_ptr<Discretization> next;
+    for (bool is_changed = true; is_changed;)
+    {
+      const std::vector<Cell> &cells = (next ? *next : *mesh_.discretization).cells();
+      std::vector<CellChange> changes(cells.size(), CellChange::keep);
+      is_changed = false;
+      for (std::size_t c = 0, w = 0; c < cells.size(); ++c)
+      {
+        while (w < wanted.size() && wanted[w].left < cells[c].left)
+          ++w;
+        if (w < wanted.size() && wanted[w].level > cells[c].level)
+        {
+          changes[c] = CellChange::divide;
+          is_changed = true;
+        }
+      }
+      if (is_changed)
+        next = (next ? *next : *mesh_.discretization).adapted(changes);
+    }
+    const auto is_same = [](const Cell &a, const Cell &b) { return a.left == b.left && a.size == b.size; };
+    if (!std::ranges::equal((next ? *next : *mesh_.discretization).cells(), wanted, is_same))
+      throw FileError("a saved state does not fit to the program: its mesh cannot be made again");
+    if (next)
+      build(std::move(next));
+  }
+
+  /// The end of a run, for a longer one: whatever integrates starts anew there.
+  void
+  Simulation::exchange_end(Archive &archive, const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    Run &run        = *run_;
+    double duration = units_.time;
+    exchange_mesh(archive);
+    archive(duration, past_.history, run.accepted, run.latest);
+    const double ratio = duration / units_.time;
+    run.recorder.exchange_end(archive, ratio);
+    if (archive.reads())
+    {
+      y_                           = run.accepted.y;
+      run.accepted.time            = ratio;
+      run.accepted.next_step       = std::min(ratio * run.latest.size, numerics_.initial_step);
+      run.before.steps             = run.latest.number;
+      run.before.rejected_steps    = run.latest.rejected;
+      run.before.newton_iterations = run.latest.newton_iterations;
+      past_.history.scale_time(ratio);
+      while (!segments_.is_last() && segments_.end() <= ratio)
+        segments_.go_on();
+      while (run.output_times.next() <= ratio + least_time_between_breaks)
+        run.output_times.pass();
+    }
+    for (const auto &observer : observers)
+      observer->exchange(archive);
+  }
+
+  /// The states of all ranks that share the cells, on the first of them.
+  std::string
+  Simulation::together(const Archive &own) const
+  {
+    std::vector<std::string> states = gather(own.bytes(), communicator_);
+    return archived(states);
+  }
+
+  std::string
+  Simulation::own_part(const std::string &together) const
+  {
+    std::vector<std::string> states;
+    Archive all(together);
+    all(states);
+    if (states.size() != size_of(communicator_))
+      throw FileError("a saved state does not fit to the program: it was made by another number of ranks");
+    return states[rank_of(communicator_)];
+  }
+
+  /// Goes on from the state that the journal has.
+  void
+  Simulation::take_up(const RunJournal &journal, const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    if (journal.state() != nullptr)
+    {
+      Archive archive(own_part(*journal.state()));
+      exchange(archive, observers);
+    }
+    else if (journal.start() != nullptr)
+    {
+      Archive archive(own_part(*journal.start()));
+      exchange_end(archive, observers);
+    }
+  }
+
+  /// Gives the journal the state, if it is time for one or if the run @p stops.
+  void
+  Simulation::keep_state(RunJournal &journal,
+                         const bool stops,
+                         const Step &step,
+                         const std::vector<std::unique_ptr<Observer>> &observers)
+  {
+    int is_wanted = stops ? journal.writes() : journal.is_due();
+    if (size_of(communicator_) > 1)
+      MPI_Bcast(&is_wanted, 1, MPI_INT, 0, communicator_);
+    const bool is_between = step.size > 0. && step.time < 1.; // not at the start of a part, nor at the end
+    if (is_wanted != 0 && is_between)
+    {
+      Archive archive;
+      exchange(archive, observers);
+      journal.keep(together(archive));
+    }
+    else if (stops)
+      journal.write();
+    if (stops)
+      journal.close();
+  }
+} // namespace crawler

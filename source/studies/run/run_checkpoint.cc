@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+#include <crawler/base/versions.h>
+#include <crawler/studies/core/form.h>
+#include <crawler/studies/core/output_folder.h>
+#include <crawler/studies/core/study.h>
+#include <crawler/studies/run/run_checkpoint.h>
+
+#include <boost/crc.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+namespace crawler
+{
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    const std::string present_name = "restart.dat", older_name = "restart.old.dat", end_time = "Time/End time";
+    /// These say how a run is made, not what it gives.
+    const std::vector<std::string> free_entries = {"Time/Wall time limit", "Time/Checkpoint interval"};
+
+    std::string
+    this_program()
+    {
+      std::string text;
+      for (const auto &[name, version] : versions())
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, version);
+      return text;
+    }
+
+    std::string
+    heading(const std::string &content)
+    {
+      boost::crc_32_type crc;
+      crc.process_bytes(content.data(), content.size());
+      return fmt::format("crawler state, {} bytes, CRC-32 {:08x}\n", content.size(), crc.checksum());
+    }
+
+    /// Nothing if there is no such file. Throws FileError if it is not whole.
+    std::optional<RunCheckpoint>
+    read(const fs::path &path)
+    {
+      std::error_code error;
+      if (!fs::exists(path, error))
+        return std::nullopt;
+      const std::string text  = read_whole_file(path);
+      const std::size_t first = text.find('\n') + 1;
+      if (first == 0 || text.substr(0, first) != heading(text.substr(first)))
+        throw FileError("\"" + path.string() + "\" is damaged: its checksum is another one");
+      RunCheckpoint checkpoint;
+      Archive archive(text.substr(first));
+      archive(checkpoint.program);
+      if (checkpoint.program != this_program())
+        throw FileError("\"" + path.string() + "\" was written by another version of the program (" +
+                        checkpoint.program + ")");
+      Archive whole(text.substr(first));
+      whole(checkpoint);
+      return checkpoint;
+    }
+
+    /// The newer one that is whole.
+    std::optional<RunCheckpoint>
+    read_newest(const fs::path &folder, std::vector<std::string> &notes)
+    {
+      for (const std::string &name : {present_name, older_name})
+        try
+        {
+          if (auto checkpoint = read(folder / name))
+            return checkpoint;
+        }
+        catch (const FileError &problem)
+        {
+          notes.push_back(problem.what());
+        }
+      return std::nullopt;
+    }
+
+    /// Throws InputError if another command has made what is there, or if nobody knows who has.
+    void
+    require_run(const fs::path &folder)
+    {
+      std::error_code error;
+      const auto has = [&](const char *name) { return fs::exists(folder / name, error); };
+      // A run that was killed while it began has left some of these.
+      const std::set<std::string> early = {study_lock_name,
+                                           report_name,
+                                           "original.prm",
+                                           "original.prm.part",
+                                           "parameters.prm",
+                                           "parameters.prm.part",
+                                           "solution",
+                                           "log.txt"};
+      bool is_begun                     = true;
+      for (const auto &file : fs::directory_iterator(folder))
+        is_begun = is_begun && early.contains(file.path().filename().string());
+      const bool is_study = has("results.h5") || has("atlas.h5") || has("tradeoff.h5") || has("reference.json");
+      if (!is_begun && (is_study || !has("parameters.prm") || !has("log.txt")))
+        throw InputError(fmt::format(
+          "\"{}\" has no run that could be resumed; another folder is expected for --output, or --overwrite",
+          folder.string()));
+    }
+
+    double
+    end_time_of(const std::string &effective)
+    {
+      const Form form(ParameterFile::from_text(effective, "parameters.prm"));
+      return form.parameters.time.end_time;
+    }
+
+    bool
+    has_finished(const fs::path &folder)
+    {
+      std::error_code error;
+      if (!fs::exists(folder / "summary.json", error))
+        return false;
+      const auto summary = nlohmann::json::parse(read_whole_file(folder / "summary.json"), nullptr, false);
+      return summary.is_object() && summary.value("status", "") == "finished";
+    }
+  } // namespace
+
+  RunCheckpoint
+  checkpoint_of(const Input &input, const CommandOptions &options)
+  {
+    RunCheckpoint checkpoint{this_program(), input.effective, options.petsc_options, {}, "", ""};
+    const Form form(input.file);
+    for (unsigned int i = 0; i < form.declarations.entries().size(); ++i)
+    {
+      const std::string name = form.declarations.value(i);
+      std::error_code error;
+      if (form.declarations.entries()[i].names_file && !name.empty() && fs::is_regular_file(name, error))
+        checkpoint.files.emplace_back(name, fingerprint(name));
+    }
+    return checkpoint;
+  }
+
+  void
+  write_checkpoint(const fs::path &folder, RunCheckpoint &checkpoint)
+  {
+    const std::string content = archived(checkpoint);
+    const fs::path next       = folder / (present_name + ".new");
+    write_file(next, heading(content) + content);
+    std::error_code error;
+    if (fs::exists(folder / present_name, error))
+      fs::rename(folder / present_name, folder / older_name, error);
+    fs::rename(next, folder / present_name, error);
+    if (error)
+      throw FileError("cannot write \"" + (folder / present_name).string() + "\": " + error.message());
+  }
+
+  void
+  remove_checkpoints(const fs::path &folder)
+  {
+    std::error_code error;
+    for (const std::string &name : {present_name, older_name})
+      fs::remove(folder / name, error);
+  }
+
+  Resumption
+  resumption_of(const fs::path &folder, const RunCheckpoint &own)
+  {
+    require_run(folder);
+    Resumption result;
+    auto checkpoint = read_newest(folder, result.notes);
+    std::error_code error;
+    std::string before = checkpoint ? checkpoint->effective : "";
+    if (!checkpoint && fs::exists(folder / "parameters.prm", error))
+      before = read_whole_file(folder / "parameters.prm");
+    if (before.empty())
+      return result;
+    std::vector<std::string> changes = differences(before, own.effective, free_entries);
+    if (checkpoint)
+    {
+      if (checkpoint->petsc_options != own.petsc_options)
+        changes.push_back(fmt::format(
+          "the options behind \"--\" were \"{}\" and are \"{}\"", checkpoint->petsc_options, own.petsc_options));
+      if (checkpoint->files != own.files)
+        changes.emplace_back("a file that the parameters name has changed");
+    }
+    std::erase_if(changes, [](const std::string &change) { return change.starts_with(end_time); });
+    if (!changes.empty())
+      throw InputError(fmt::format("the run in \"{}\" was made with other parameters: {}; it can be resumed with the "
+                                   "same ones only (but for {}, and a larger {})",
+                                   folder.string(),
+                                   fmt::join(changes, ", "),
+                                   fmt::join(free_entries, " and "),
+                                   end_time));
+    const double was = end_time_of(before), is = end_time_of(own.effective);
+    if (is < was)
+      throw InputError(
+        fmt::format("the run in \"{}\" has an end time of {}, but a larger one is expected", folder.string(), was),
+        end_time);
+    if (is == was && has_finished(folder))
+      result.kind = Resumption::is_whole;
+    else if (checkpoint)
+    {
+      result.kind    = is == was ? Resumption::goes_on : Resumption::prolongs;
+      result.journal = std::move(checkpoint->journal);
+      result.choice  = std::move(checkpoint->choice);
+    }
+    return result;
+  }
+} // namespace crawler

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
+#include <crawler/base/communication.h>
+#include <crawler/studies/run/run_stops.h>
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace crawler
+{
+  const std::string stop_file_name = "stop";
+
+  namespace
+  {
+    constexpr double between_looks = 0.5; ///< for the file [s]
+  }
+
+  RunStops::RunStops(const StopSignal &signal,
+                     const std::optional<double> limit,
+                     const double start,
+                     std::filesystem::path file)
+    : signal_(signal)
+    , limit_(limit)
+    , start_(start)
+    , file_(std::move(file))
+    , next_look_(start + between_looks)
+  {
+  }
+
+  bool
+  RunStops::arrived()
+  {
+    if (signal_.arrived() || is_out_of_time_ || is_asked_)
+      return true;
+    const double time = now();
+    is_out_of_time_   = limit_ && time - start_ >= *limit_;
+    if (time >= next_look_)
+    {
+      std::error_code error;
+      is_asked_  = std::filesystem::exists(file_, error);
+      next_look_ = time + between_looks;
+    }
+    return is_out_of_time_ || is_asked_;
+  }
+
+  bool
+  RunStops::arrived_anywhere(MPI_Comm communicator)
+  {
+    return is_true_anywhere(arrived(), communicator);
+  }
+
+  const char *
+  RunStops::reason() const
+  {
+    return is_asked_ ? "stop_file" : is_out_of_time_ ? "time_limit" : "signal";
+  }
+
+  std::string
+  RunStops::in_words() const
+  {
+    return is_asked_         ? "by the file \"" + file_.string() + "\""
+           : is_out_of_time_ ? fmt::format("by Time/Wall time limit, {:g} s,", *limit_)
+                             : "by a signal";
+  }
+} // namespace crawler

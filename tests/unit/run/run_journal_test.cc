@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/run/run_journal.h>
+
+#include <gtest/gtest.h>
+
+namespace
+{
+  using namespace crawler;
+
+  SimulationResult
+  a_result(const double displacement)
+  {
+    SimulationResult result;
+    result.time.status  = Status::finished;
+    result.displacement = displacement;
+    return result;
+  }
+
+  /// What is written when the first run has ended and the second one is stopped.
+  std::string
+  left_in_the_second_run()
+  {
+    std::string written;
+    RunJournal journal(1e9, [&](const std::string &bytes) { written = bytes; });
+    EXPECT_FALSE(journal.begin("pilot"));
+    journal.end(a_result(0.25));
+    EXPECT_FALSE(journal.begin("run"));
+    EXPECT_EQ(journal.state(), nullptr);
+    EXPECT_FALSE(journal.is_due());
+    journal.keep("half of it");
+    journal.close();
+    const std::string last = written;
+    journal.end(a_result(0.1)); // what a stopped run gives is no result
+    journal.keep("nothing");
+    journal.write();
+    EXPECT_EQ(written, last);
+    return written;
+  }
+
+  TEST(RunJournal, GoesOnWhereItWasLeft)
+  {
+    RunJournal journal(0., {});
+    journal.load(left_in_the_second_run());
+    const auto pilot = journal.begin("pilot");
+    ASSERT_TRUE(pilot);
+    EXPECT_EQ(pilot->displacement, 0.25);
+    EXPECT_EQ(pilot->time.status, Status::finished);
+    EXPECT_FALSE(journal.begin("run"));
+    ASSERT_NE(journal.state(), nullptr);
+    EXPECT_EQ(*journal.state(), "half of it");
+    journal.end(a_result(0.5));
+    EXPECT_FALSE(journal.begin("next"));
+    EXPECT_EQ(journal.state(), nullptr);
+  }
+
+  TEST(RunJournal, ForgetsWhatBelongsToOtherRuns)
+  {
+    RunJournal first(0., {}), second(0., {});
+    first.load(left_in_the_second_run());
+    EXPECT_FALSE(first.begin("another pilot"));
+    EXPECT_EQ(first.state(), nullptr);
+    first.end(a_result(1.));
+    EXPECT_FALSE(first.begin("run"));
+    EXPECT_EQ(first.state(), nullptr);
+
+    second.load(left_in_the_second_run());
+    EXPECT_TRUE(second.begin("pilot"));
+    EXPECT_FALSE(second.begin("another run"));
+    EXPECT_EQ(second.state(), nullptr);
+  }
+
+  TEST(RunJournal, ProlongsTheMainRunAlone)
+  {
+    std::string written;
+    RunJournal journal(0., [&](const std::string &bytes) { written = bytes; });
+    journal.begins_main();
+    journal.begin("run");
+    ASSERT_TRUE(journal.wants_end());
+    EXPECT_EQ(journal.start(), nullptr);
+    journal.keep_end("its end");
+    journal.end(a_result(0.5));
+    journal.write();
+
+    RunJournal longer(0., {});
+    longer.load(written);
+    ASSERT_TRUE(longer.has_end());
+    longer.prolong();
+    longer.begins_main();
+    EXPECT_FALSE(longer.begin("run"));
+    ASSERT_NE(longer.start(), nullptr);
+    EXPECT_EQ(*longer.start(), "its end");
+    longer.end(a_result(1.));
+    EXPECT_FALSE(longer.begin("run for the error"));
+    EXPECT_EQ(longer.start(), nullptr);
+  }
+
+  TEST(RunJournal, RefusesOtherBytes)
+  {
+    RunJournal journal(0., {});
+    EXPECT_THROW(journal.load(left_in_the_second_run().substr(1)), FileError);
+  }
+} // namespace
