@@ -494,7 +494,10 @@ namespace
       bad_arguments("TradeoffResumedAndOverwritten",
                     {"tradeoff", "good.prm", "--resume", "--overwrite"},
                     {"--resume and --overwrite contradict each other"}),
-      bad_arguments("RunIsNotResumed", {"run", "good.prm", "--resume"}, {"unknown option \"--resume\""}),
+      bad_arguments("CheckIsNotResumed", {"check", "good.prm", "--resume"}, {"unknown option \"--resume\""}),
+      bad_arguments("RunIsResumedOrOverwritten",
+                    {"run", "good.prm", "--resume", "--overwrite"},
+                    {"--resume and --overwrite contradict each other"}),
     };
   }
 
@@ -565,8 +568,8 @@ namespace
                     {"run", "good.prm", "--ouptut", "results"},
                     {"unknown option \"--ouptut\"", "the nearest is \"--output\""}),
       bad_arguments("OptionOfAnotherCommand",
-                    {"run", "good.prm", "--resume"},
-                    {"unknown option \"--resume\" of the command \"run\""}),
+                    {"check", "good.prm", "--resume"},
+                    {"unknown option \"--resume\" of the command \"check\""}),
       bad_arguments(
         "OptionBeforeCommand", {"--quiet", "run", "good.prm"}, {"\"--quiet\" stands before the command \"run\""}),
       bad_arguments("OptionWithoutValue", {"run", "good.prm", "--output"}, {"\"--output\"", "a value is expected"}),

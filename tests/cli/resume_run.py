@@ -163,8 +163,8 @@ class Scene:
 
 
 def plain(summary):
-    """Without times and the command."""
-    return {key: value for key, value in summary.items() if key not in ("seconds", "command_line", "versions")}
+    """Without times, the command and the number of ranks."""
+    return {key: value for key, value in summary.items() if key not in ("seconds", "command_line", "versions", "ranks")}
 
 
 def log_of(folder):
@@ -268,8 +268,11 @@ def harm(scene, chance):
                f"resumed with {change}: {done.returncode}, {done.stderr!r}")
     done = scene.run("harmed", ["--resume", "--overwrite"])
     expect(done.returncode == 2, f"--resume with --overwrite: {done.returncode}")
-    (scene.place / "harmed" / "statistics.csv").unlink()
-    done = scene.run("harmed", ["--resume"])
+    slow = ["--set", "Time/End time=20000", "--set", "Time/Wall time limit=1"]
+    done = scene.run("lost", slow)
+    expect(done.returncode == 5, f"a time limit: {done.returncode}")
+    (scene.place / "lost" / "statistics.csv").unlink()
+    done = scene.run("lost", [*slow, "--resume"])
     expect(done.returncode == 6 and "statistics.csv" in done.stderr, f"lost statistics: {done.returncode}, {done.stderr!r}")
 
 
