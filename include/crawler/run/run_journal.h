@@ -163,7 +163,7 @@ namespace crawler
     bool
     operator()() const
     {
-      return question_();
+      return !question_ || question_();
     }
     RunJournal *
     journal() const

@@ -133,18 +133,18 @@ namespace crawler
       Accepted accepted;
       StretchRange stretch{}; ///< of the state that is looked at
       CellIntegrals integrals{};
-      bool lanes_look = false;      ///< what they see in the stages of steps is taken
+      bool lanes_look    = false; ///< what they see in the stages of steps is taken
+      bool lanes_gave_up = false;
       RateQuadrature quadrature;    ///< of works
       EnergyBalance balance_before; ///< at the start of the latest step
       Resolution largest{};         ///< over time, if looked at
       TimeOutcome before{};         ///< counts of the parts of the run before the last change of mesh
       Step latest{};                ///< that was tried, with the counts of the whole run
-      bool lanes_gave_up = false;
       std::optional<Diagnosis> diagnosis;
-      Request request = Request::none;
+      Request request         = Request::none;
+      unsigned int tiny_steps = 0;
       std::vector<CellChange> changes;
-      std::vector<double> indicators; ///< of all cells, for the present state of an adaptive mesh
-      unsigned int tiny_steps  = 0;
+      std::vector<double> indicators;   ///< of all cells, for the present state of an adaptive mesh
       unsigned long n_failures = 0;     ///< of the active stress before this run
       double part_start        = 0.;    ///< where the present integrator has started
       bool goes_on             = false; ///< within a part that was left
