@@ -101,6 +101,13 @@ namespace std
     CRAWLER_WITH_ORDER(is_sorted)
 #    undef CRAWLER_WITH_ORDER
 
+    template <typename First, typename Second, typename Relation>
+    bool
+    equal(First &&first, Second &&second, Relation relation)
+    {
+      return std::equal(first.begin(), first.end(), second.begin(), second.end(), relation);
+    }
+
     template <typename Range, typename Value, typename Projection = Itself>
     auto
     find(Range &&range, const Value &value, Projection projection = {})
