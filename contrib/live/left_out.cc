@@ -49,6 +49,11 @@ namespace crawler
   {
     refuse(petsc);
   }
+  bool
+  TimeStepper::exchange(Archive &)
+  {
+    refuse(petsc);
+  }
 
   struct Triangulation::Implementation
   {
