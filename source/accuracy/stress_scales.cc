@@ -401,7 +401,7 @@ namespace crawler
             along > 0. ? largest / along : L,
             step_limits(changes, largest, usual, P, T),
             largest,
-            found.is_complete || stress.stride(),
+            found.is_complete || stress.repetition(),
             samples.is_smooth(),
             std::max(change.at_start, change.later) / unit,
             change.later / unit,

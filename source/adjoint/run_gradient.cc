@@ -64,7 +64,7 @@ namespace crawler
     std::optional<double>
     last_stride_of(const Scene &scene)
     {
-      const auto stride = stride_of(*scene.active_stress, scene.body.length, scene.end_time);
+      const auto stride = stride_of(*scene.active_stress, scene.end_time);
       return stride && *stride <= 1. + 1e-9 ? stride : std::nullopt;
     }
 

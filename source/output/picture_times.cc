@@ -70,8 +70,8 @@ namespace crawler
     if (!output.has_snapshots())
       return {};
     const double T       = scene.end_time;
-    const auto stride    = scene.active_stress->stride();
-    const double strides = stride ? T / *stride : strides_if_unknown;
+    const auto gait      = scene.active_stress->repetition();
+    const double strides = gait ? T / gait->period : strides_if_unknown;
     const auto in_all    = [](const double n_strides) {
       return static_cast<unsigned int>(std::ceil(per_stride * n_strides - 1e-6));
     };
@@ -80,7 +80,7 @@ namespace crawler
     if (!output.kymograph)
       return {snapshots, {}, T};
     const bool is_long = strides > most_strides;
-    const double from  = is_long ? T - most_strides * *stride : 0.;
+    const double from  = is_long ? T - most_strides * gait->period : 0.;
     std::vector<double> rows =
       equal_times(std::max(fewest_rows, in_all(std::min(strides, 1. * most_strides))), from, T);
     if (!is_long)

@@ -15,10 +15,11 @@ namespace crawler
     using namespace accuracy_rule::cycles;
     using accuracy_rule::displacement_floor;
 
+    /// Up to the end of the run, in units of its duration.
     double
-    whole_cycles(const double period)
+    whole_cycles(const CycleWish &wish)
     {
-      return std::floor(1. / period * (1. + 1e-9));
+      return std::floor((1. - wish.from) / wish.period * (1. + 1e-9));
     }
   } // namespace
 
@@ -31,22 +32,23 @@ namespace crawler
       return std::nullopt;
     if (!scene.is_alike_everywhere())
       return std::nullopt;
-    const auto period = scene.active_stress->period();
-    if (!period || !CycleStop::fits(*period / scene.end_time))
+    const auto gait = scene.active_stress->repetition();
+    if (!gait)
       return std::nullopt;
-    return CycleWish{*period, parameters.accuracy};
+    const CycleWish wish{gait->period, parameters.accuracy, gait->from};
+    return CycleStop::fits(wish.in_units(scene.end_time)) ? std::optional(wish) : std::nullopt;
   }
 
   bool
-  CycleStop::fits(const double period)
+  CycleStop::fits(const CycleWish &wish)
   {
-    return whole_cycles(period) >= fewest_cycles && whole_cycles(period) < 1e9;
+    return whole_cycles(wish) >= fewest_cycles && whole_cycles(wish) < 1e9;
   }
 
   CycleStop::CycleStop(const CycleWish &wish, const double tolerance)
     : wish_(wish)
     , tolerance_(tolerance)
-    , n_cycles_(static_cast<unsigned int>(whole_cycles(wish.period)))
+    , n_cycles_(static_cast<unsigned int>(whole_cycles(wish)))
   {
     const double P = wish.period;
     start_         = 1. - n_cycles_ * P;

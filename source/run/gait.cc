@@ -81,33 +81,12 @@ namespace crawler
   }
 
   std::optional<double>
-  stride_of(const ActiveStress &stress, const double length, const double duration)
+  stride_of(const ActiveStress &stress, const double duration)
   {
-    const auto period = stress.period(), stride = stress.stride();
-    if (period)
-      return *period / duration;
-    if (!stride || !(*stride <= 0.5 * duration))
+    const auto gait = stress.repetition();
+    if (!gait || (gait->from > 0. && gait->from + 2. * gait->period > duration * (1. + 1e-12)))
       return std::nullopt;
-    // Has the start been over for two strides?
-    constexpr unsigned int n_places = 9, n_times = 16;
-    constexpr double same = 1e-9;
-    std::vector<double> places, now(n_places), before(n_places);
-    for (unsigned int i = 0; i < n_places; ++i)
-      places.push_back(length * (i + 0.37) / n_places);
-    const auto at_places = stress.at(places);
-    double largest = 0., change = 0.;
-    for (unsigned int j = 0; j < n_times; ++j)
-    {
-      const double t = duration - *stride * (j + 0.28) / n_times;
-      at_places->values(t, now);
-      at_places->values(t - *stride, before);
-      for (unsigned int i = 0; i < n_places; ++i)
-      {
-        largest = std::max(largest, std::abs(now[i]));
-        change  = std::max(change, std::abs(now[i] - before[i]));
-      }
-    }
-    return change <= same * largest ? std::optional(*stride / duration) : std::nullopt;
+    return gait->period / duration;
   }
 
   GaitMeter::GaitMeter(const std::optional<double> period, const bool ends_early)

@@ -23,11 +23,12 @@ namespace crawler
   {
     if (options.energy_balance)
       result.energy_balance.emplace();
-    if (options.cycles && CycleStop::fits(options.cycles->period / units.time))
-      cycle_stop_.emplace(CycleWish{options.cycles->period / units.time, options.cycles->accuracy}, tolerance);
+    if (options.cycles)
+      if (const CycleWish wish = options.cycles->in_units(units.time); CycleStop::fits(wish))
+        cycle_stop_.emplace(wish, tolerance);
     if (options.gait == GaitWish::none)
       return;
-    const auto period = stride_of(*scene.active_stress, units.length, units.time);
+    const auto period = stride_of(*scene.active_stress, units.time);
     if (period || (options.gait == GaitWish::any && may_search))
       gait_meter_.emplace(period, cycle_stop_.has_value());
   }

@@ -200,7 +200,7 @@ namespace crawler
   void
   ReducedModel::describe_gait(SimulationResult &result) const
   {
-    const auto period = stride_of(*reduced_scene_.scene().active_stress, 1., 1.);
+    const auto period = stride_of(*reduced_scene_.scene().active_stress, 1.);
     if (result.time.status != Status::finished || !period)
       return;
     GaitMeter meter(*period, false);

@@ -20,21 +20,30 @@ namespace crawler
     constexpr double smooth = 0.2;
     /// Two values are the same if they differ by less than this part of the largest |m|.
     constexpr double same = 1e-10;
+    /// A start that takes a larger part of the duration is not looked behind.
+    constexpr double longest_start = 0.25;
 
     class PeriodSearch
     {
     public:
-      PeriodSearch(const ActiveStress &stress, const double length, const double end_time, const unsigned int n_times)
+      /// From @p begin to @p end_time.
+      PeriodSearch(const ActiveStress &stress,
+                   const double length,
+                   const double begin,
+                   const double end_time,
+                   const unsigned int n_times)
         : owner_(stress)
         , length_(length)
-        , T_(end_time)
+        , begin_(begin)
+        , end_(end_time)
+        , T_(end_time - begin)
         , n_times_(n_times)
         , stress_(stress.at(places(length)))
         , grid_(n_times_ + 1)
       {
         for (unsigned int i = 0; i <= n_times_; ++i)
         {
-          grid_[i] = at(T_ * i / n_times_);
+          grid_[i] = at(begin_ + T_ * i / n_times_);
           for (const double value : grid_[i])
             largest_ = std::max(largest_, std::abs(value));
           if (i > 0)
@@ -83,6 +92,35 @@ namespace crawler
         return std::nullopt;
       }
 
+      /// At random times, at as many equally spaced ones as the grid has, and where m is faster than the grid shows.
+      bool
+      is_period(const double P)
+      {
+        std::mt19937 generator(20220610);
+        const auto is_same_after = [&](const double t) { return difference(at(t), at(t + P)) <= same * largest_; };
+        const double last        = T_ - P;
+        for (unsigned int i = 0; i < n_random; ++i)
+          if (!is_same_after(begin_ + static_cast<double>(generator()) / 4294967296. * last))
+            return false;
+        // Not where pulses may start and end: there round-off decides.
+        for (unsigned int i = 0; i < n_times_; ++i)
+          if (!is_same_after(begin_ + (i + 0.381966) / n_times_ * last))
+            return false;
+        const double known = step_ * n_times_ / T_;
+        double largest     = largest_;
+        for (const FastChange &change :
+             find_fast_changes(
+               owner_, length_, begin_, end_, [known](double, double) { return known; }, largest)
+               .list)
+          for (const double part : {0.27, 0.5, 0.81})
+          {
+            const double t = change.from + part * (change.to - change.from);
+            if ((t + P <= end_ && !is_same_after(t)) || (t >= begin_ + P && !is_same_after(t - P)))
+              return false;
+          }
+        return true;
+      }
+
     private:
       using Values = std::array<double, n_places>;
 
@@ -129,7 +167,7 @@ namespace crawler
       {
         const double near = T_ * j / n_times_, around = T_ / n_times_;
         // A whole part of the duration, or the shortest decimal number; the only ways to find the period of pulses.
-        std::vector<double> list = {T_ / std::round(T_ / near)};
+        std::vector<double> list = {end_ / std::round(end_ / near)};
         for (int digits = 1; digits < 8; ++digits)
         {
           const double decimal = std::stod(fmt::format("{:.{}e}", near, digits - 1));
@@ -156,7 +194,7 @@ namespace crawler
           double r_d = 0., d_d = 0.;
           for (unsigned int i = 0; i < n; ++i)
           {
-            const double t   = (i + 0.37) / n * (T_ - near - around);
+            const double t   = begin_ + (i + 0.37) / n * (T_ - near - around);
             const Values now = at(t), later = at(t + P), before = at(t + P - delta), after = at(t + P + delta);
             for (unsigned int p = 0; p < n_places; ++p)
             {
@@ -176,36 +214,9 @@ namespace crawler
         return P;
       }
 
-      /// At random times, at as many equally spaced ones as the grid has, and where m is faster than the grid shows.
-      bool
-      is_period(const double P)
-      {
-        std::mt19937 generator(20220610);
-        const auto is_same_after = [&](const double t) { return difference(at(t), at(t + P)) <= same * largest_; };
-        for (unsigned int i = 0; i < n_random; ++i)
-          if (!is_same_after(static_cast<double>(generator()) / 4294967296. * (T_ - P)))
-            return false;
-        // Not where pulses may start and end: there round-off decides.
-        for (unsigned int i = 0; i < n_times_; ++i)
-          if (!is_same_after((i + 0.381966) / n_times_ * (T_ - P)))
-            return false;
-        const double known = step_ * n_times_ / T_;
-        double largest     = largest_;
-        for (const FastChange &change : find_fast_changes(
-                                          owner_, length_, 0., T_, [known](double, double) { return known; }, largest)
-                                          .list)
-          for (const double part : {0.27, 0.5, 0.81})
-          {
-            const double t = change.from + part * (change.to - change.from);
-            if ((t + P <= T_ && !is_same_after(t)) || (t >= P && !is_same_after(t - P)))
-              return false;
-          }
-        return true;
-      }
-
       const ActiveStress &owner_;
       const double length_;
-      const double T_;
+      const double begin_, end_, T_; ///< times, and how long it is between them
       const unsigned int n_times_;
       const std::unique_ptr<ActiveStressAtPoints> stress_;
       std::vector<Values> grid_;
@@ -213,15 +224,32 @@ namespace crawler
     };
   } // namespace
 
-  std::optional<double>
-  find_period(const ActiveStress &stress, const double length, const double end_time)
+  namespace
   {
-    const double longest = end_time / 2.;
-    const PeriodSearch coarse(stress, length, end_time, few_times);
-    if (coarse.is_smooth() && (coarse.is_steady() || coarse.candidates(longest).empty()))
+    std::optional<double>
+    find_period(const ActiveStress &stress, const double length, const double begin, const double end_time)
+    {
+      const double longest = (end_time - begin) / 2.;
+      const PeriodSearch coarse(stress, length, begin, end_time, few_times);
+      if (coarse.is_smooth() && (coarse.is_steady() || coarse.candidates(longest).empty()))
+        return std::nullopt;
+      PeriodSearch fine(stress, length, begin, end_time, many_times);
+      return fine.is_steady() ? std::nullopt : fine.smallest(fine.candidates(longest), longest);
+    }
+  } // namespace
+
+  std::optional<ActiveStress::Repetition>
+  find_repetition(const ActiveStress &stress, const double length, const double end_time)
+  {
+    if (const auto P = find_period(stress, length, 0., end_time))
+      return ActiveStress::Repetition{*P, 0.};
+    const auto P = find_period(stress, length, longest_start * end_time, end_time);
+    if (!P)
       return std::nullopt;
-    PeriodSearch fine(stress, length, end_time, many_times);
-    return fine.is_steady() ? std::nullopt : fine.smallest(fine.candidates(longest), longest);
+    double from = longest_start * end_time;
+    while (from / 2. > *P / 2. && PeriodSearch(stress, length, from / 2., end_time, many_times).is_period(*P))
+      from /= 2.;
+    return ActiveStress::Repetition{*P, from};
   }
 
   std::optional<double>
@@ -253,7 +281,7 @@ namespace crawler
   }
 
   double
-  shortest_period(const ActiveStress &stress, const double length, const double period)
+  shortest_period(const ActiveStress &stress, const double length, const double period, const double from)
   {
     constexpr unsigned int n         = 256;
     const std::vector<double> points = {0., 0.1837 * length, 0.4142 * length, 0.7321 * length, length};
@@ -263,7 +291,7 @@ namespace crawler
     const auto repeats_after = [&](const double P) {
       for (unsigned int i = 0; i < n; ++i)
       {
-        const double t = (i + 0.381966) / n * period;
+        const double t = from + (i + 0.381966) / n * period;
         at->values(t, now);
         at->values(t + P, later);
         for (std::size_t p = 0; p < points.size(); ++p)
@@ -274,7 +302,7 @@ namespace crawler
     };
     for (unsigned int i = 0; i < n; ++i)
     {
-      at->values((i + 0.381966) / n * period, now);
+      at->values(from + (i + 0.381966) / n * period, now);
       for (std::size_t p = 0; p < points.size(); ++p)
         largest = std::max(largest, std::abs(now[p]));
     }

@@ -61,11 +61,6 @@ namespace crawler
       }
       ScaledActiveStress(const ScaledActiveStress &) = delete;
 
-      std::optional<double>
-      stride() const override
-      {
-        return in_units(stress_.stride());
-      }
       const StrainHistory *
       prescribed_strain() const override
       {
@@ -127,16 +122,12 @@ namespace crawler
         return (pieces_ != nullptr ? pieces_->inside(t) : t) * units_.time;
       }
 
-      std::optional<double>
-      in_units(const std::optional<double> time) const
+      std::optional<Repetition>
+      search_repetition() const override
       {
-        return time ? std::optional(*time / units_.time) : std::nullopt;
-      }
-
-      std::optional<double>
-      search_period() const override
-      {
-        return in_units(stress_.period());
+        const auto physical = stress_.repetition();
+        return physical ? std::optional(Repetition{physical->period / units_.time, physical->from / units_.time})
+                        : std::nullopt;
       }
 
       const ActiveStress &stress_;

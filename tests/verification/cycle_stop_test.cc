@@ -112,6 +112,42 @@ TEST(CycleStop, PartOfACycle)
   EXPECT_EQ(pair.cycles.cycles->computed + pair.cycles.cycles->extrapolated, 7u);
 }
 
+/// Where a ramp or a window delays the start, cycles begin behind it.
+TEST(CycleStop, BehindAStart)
+{
+  const std::string generator = "Active stress/Generator", sum = "Active stress/Sum/Term ",
+                    segments = "Active stress/Segments/";
+  for (const test::Settings &settings : {test::Settings{{generator, "travelling wave"},
+                                                        {"Active stress/Travelling wave/Amplitude", "0.3"},
+                                                        {"Active stress/Travelling wave/Ramp duration", "2.3"}},
+                                         {{generator, "segments"},
+                                          {segments + "Number of segments", "4"},
+                                          {segments + "Amplitude", "0.3"},
+                                          {segments + "Frequency", "1"},
+                                          {segments + "Rate limit", "1.5"},
+                                          {segments + "Ramp duration", "0.5"}},
+                                         {{generator, "sum"},
+                                          {sum + "1/Generator", "travelling wave"},
+                                          {sum + "1/Travelling wave/Amplitude", "0.25"},
+                                          {sum + "1/Travelling wave/Ramp duration", "0.25"},
+                                          {sum + "2/Combine", "multiply"},
+                                          {sum + "2/Generator", "expression"},
+                                          {sum + "2/Expression/Active stress", "0.5 + s/L"},
+                                          {sum + "3/Generator", "expression"},
+                                          {sum + "3/Window in t", "1.5, 2.5"},
+                                          {sum + "3/Edge width in t", "0.25"},
+                                          {sum + "3/Expression/Active stress", "0.2"}}})
+  {
+    auto all = settings;
+    all.insert(all.end(), {{"Body/Anchoring exponent", "2"}, {"Time/End time", "16"}});
+    const Pair pair = run_both(accurate(all), 1e-6);
+    expect_honest(pair, 1e-6);
+    ASSERT_TRUE(pair.cycles.cycles) << settings.front().second;
+    EXPECT_EQ(pair.cycles.cycles->period, 1.);
+    EXPECT_GT(pair.cycles.cycles->extrapolated, 8u) << settings.front().second;
+  }
+}
+
 TEST(CycleStop, PeriodOfAFormula)
 {
   const Pair pair = run_both(

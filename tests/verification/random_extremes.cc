@@ -8,7 +8,7 @@
 // the cost (processor time of choice, run and error, without files). The exit code is 1 if an answer is wrong, if a
 // single scene has none, or, of 500 scenes or more, if 0.5 % fail, one takes 5 s, or 5 % take 20 ms.
 //
-//     random_extremes FIRST-LAST OUT.csv [seconds that a run of the second method may take]
+//     random_extremes FIRST-LAST OUT.csv [seconds that a run of the second method may take; 0: nothing is compared]
 //     random_extremes NUMBER --prm           prints the parameter file of one scene
 #include "anything.h"
 
@@ -207,7 +207,7 @@ namespace
     else if (has_bound)
       row.bound = result.error->total;
     row.verdict = "not compared";
-    if (own.is_out_of_time || (row.status != "inverted" && !has_bound))
+    if (limit == 0. || own.is_out_of_time || (row.status != "inverted" && !has_bound))
       return;
     const double wanted         = parameters.accuracy * std::abs(result.displacement);
     Parameters other            = parameters;

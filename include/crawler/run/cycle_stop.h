@@ -21,8 +21,16 @@ namespace crawler
   /// The wish to end a run when its cycles repeat.
   struct CycleWish
   {
-    double period;   ///< of the active stress [time]
-    double accuracy; ///< of the displacement, relative; the bound takes a fifth of it at most
+    double period;    ///< of the active stress [time]
+    double accuracy;  ///< of the displacement, relative; the bound takes a fifth of it at most
+    double from = 0.; ///< when the active stress begins to repeat [time]
+
+    /// With times in this unit.
+    CycleWish
+    in_units(const double time) const
+    {
+      return {period / time, accuracy, from / time};
+    }
   };
 
   struct RunParameters;
@@ -47,12 +55,12 @@ namespace crawler
     /// Fewer cycles are not worth the trouble: two must be computed before one can repeat.
     static constexpr unsigned int fewest_cycles = 3;
 
-    /// @p wish: its period is in units of the duration. @p tolerance: of the time integration.
+    /// @p wish: its times are in units of the duration. @p tolerance: of the time integration.
     CycleStop(const CycleWish &wish, double tolerance);
 
-    /// Does the duration hold fewest_cycles?
+    /// Does the duration, which is the unit of times, hold fewest_cycles?
     static bool
-    fits(double period);
+    fits(const CycleWish &wish);
 
     /// When cycles end, where steps have to end, too; ascending, in (0, 1). Not all cycles of a long run are watched.
     const std::vector<double> &

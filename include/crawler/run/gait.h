@@ -59,10 +59,9 @@ namespace crawler
   };
 
   /// The period of the gait that an active stress drives at the end of a run of this @p duration [time], in units of
-  /// that, if the stress says it; what it says for the time after a start is looked at over the last two strides, at
-  /// places on a body of this @p length [length].
+  /// that, if the stress says it and has repeated it twice by then.
   std::optional<double>
-  stride_of(const ActiveStress &stress, double length, double duration);
+  stride_of(const ActiveStress &stress, double duration);
 
   /**
    * Watches a run over (0, 1] and describes its last stride. A period that is known (of the active stress, or of what

@@ -53,11 +53,19 @@ namespace crawler
       return std::nullopt;
     }
 
-    /// The period of what m becomes once its start is over, a ramp for example [time]; that of the gait.
-    virtual std::optional<double>
-    stride() const
+    /// The smallest P > 0 and t_0 >= 0 with m(s, t + P) = m(s, t) for all s and t >= t_0.
+    struct Repetition
     {
-      return period();
+      double period, from; ///< P, t_0 [time]
+    };
+
+    /// That of the gait, once its start is over, a ramp for example; nothing if there is none, or if it is not known.
+    /// By default the period from the beginning.
+    virtual std::optional<Repetition>
+    repetition() const
+    {
+      const auto P = period();
+      return P ? std::optional(Repetition{*P, 0.}) : std::nullopt;
     }
 
     /// The same as at() for the derivative m_t [force/time]; null if the generator does not know it.

@@ -25,14 +25,15 @@ namespace crawler
     std::optional<double>
     period() const override
     {
-      if (!period_)
-        period_ = search_period();
-      return *period_;
+      const auto found = repetition();
+      return found && found->from == 0. ? std::optional(found->period) : std::nullopt;
     }
-    std::optional<double>
-    stride() const override
+    std::optional<Repetition>
+    repetition() const override
     {
-      return facts_.stride ? facts_.stride : period();
+      if (!repetition_)
+        repetition_ = search_repetition();
+      return *repetition_;
     }
     std::vector<double>
     breaks_in_space() const override
@@ -49,32 +50,24 @@ namespace crawler
     /// As the functions of these names say.
     struct Facts
     {
-      std::optional<double> period, stride;                ///< [time]
+      std::optional<Repetition> repetition;
       std::vector<double> breaks_in_space, breaks_in_time; ///< [length], [time]
       bool has_rate = true;
     };
     Facts facts_;
-
-    /// The stride, which is the period too unless the stress @p starts differently, by a ramp for example.
-    void
-    set_stride(const std::optional<double> stride, const bool starts)
-    {
-      facts_.stride = stride;
-      facts_.period = starts ? std::nullopt : stride;
-    }
 
   private:
     /// Of m, or of m_t if @p rate.
     virtual std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const = 0;
 
-    /// For a period that it takes long to find (period.h): called once, and only if it is asked for.
-    virtual std::optional<double>
-    search_period() const
+    /// For a repetition that it takes long to find (period.h): called once, and only if it is asked for.
+    virtual std::optional<Repetition>
+    search_repetition() const
     {
-      return facts_.period;
+      return facts_.repetition;
     }
 
-    mutable std::optional<std::optional<double>> period_; ///< once it was asked for
+    mutable std::optional<std::optional<Repetition>> repetition_; ///< once it was asked for
   };
 } // namespace crawler

@@ -166,6 +166,15 @@ namespace crawler
     return is_everywhere_ ? std::vector<double>() : within({from_, to_}, end_);
   }
 
+  double
+  Window::constant_from() const
+  {
+    if (is_whole())
+      return 0.;
+    const bool lasts = to_ - edge_ >= end_ || (edge_ == 0. && to_ >= end_);
+    return std::clamp(lasts ? from_ + edge_ : to_, 0., end_);
+  }
+
   bool
   Window::is_whole() const
   {

@@ -56,10 +56,10 @@ namespace crawler
     return by(FormulaAtPoints(compiled_, points));
   }
 
-  std::optional<double>
-  Expression::search_period() const
+  std::optional<ActiveStress::Repetition>
+  Expression::search_repetition() const
   {
-    return find_period(*this, length_, end_time_);
+    return find_repetition(*this, length_, end_time_);
   }
 
   std::optional<ActiveStress::Bounds>

@@ -338,8 +338,8 @@ namespace crawler
   {
     const char *asked = "";
     const auto thrown = thrown_by([&]() {
-      asked                  = "period()";
-      facts_.period          = stress_->period();
+      asked                  = "repetition()";
+      facts_.repetition      = stress_->repetition();
       asked                  = "breaks_in_space()";
       facts_.breaks_in_space = stress_->breaks_in_space();
       asked                  = "breaks_in_time()";
@@ -367,8 +367,13 @@ namespace crawler
     };
     if (thrown)
       refuse(fmt::format("threw an exception in {}: {}", asked, *thrown));
-    if (const auto P = facts_.period; P && !(*P > 0. && std::isfinite(*P)))
-      refuse(fmt::format("says that its period is {}; a positive number is expected", *P));
+    if (const auto gait = facts_.repetition)
+    {
+      if (!(gait->period > 0. && std::isfinite(gait->period)))
+        refuse(fmt::format("says that its period is {}; a positive number is expected", gait->period));
+      if (!(gait->from >= 0. && std::isfinite(gait->from)))
+        refuse(fmt::format("says that it repeats from {} on; a number from 0 on is expected", gait->from));
+    }
     const auto require_inside = [&](const std::vector<double> &breaks, const char *name, const double end) {
       for (const double value : breaks)
         if (!(value > 0. && value < end))

@@ -120,9 +120,9 @@ namespace crawler
                        "Active stress/Modes/Coefficients");
     c_.resize(n_space_ * n_time_);
     if (parameters.in_time == "travelling" && parameters.wave_speed != 0.)
-      set_stride(length / std::abs(parameters.wave_speed), /*starts=*/false);
+      facts_.repetition = {length / std::abs(parameters.wave_speed), 0.};
     else if (parameters.in_time == "harmonics")
-      set_stride(parameters.period, /*starts=*/false);
+      facts_.repetition = {parameters.period, 0.};
     else if (parameters.in_time == "splines")
       for (unsigned int i = 1; i < parameters.time_cells; ++i)
         facts_.breaks_in_time.push_back(end_time * i / parameters.time_cells);

@@ -97,7 +97,7 @@ namespace crawler
       if (shape_.power(n) != 0.)
         divisor = std::gcd(divisor, n);
     if (divisor != 0 && chi_ != 0.)
-      facts_.period = body_.length / (std::abs(wave_.speed) * divisor);
+      facts_.repetition = {body_.length / (std::abs(wave_.speed) * divisor), 0.};
   }
 
   void

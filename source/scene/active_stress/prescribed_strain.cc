@@ -171,7 +171,7 @@ namespace crawler
   {
     const double phase_rate = parameters.wave_number * parameters.wave_speed / body.length;
     if (given_by_ == "wave" && parameters.amplitude != 0. && phase_rate != 0.)
-      facts_.period = 1. / std::abs(phase_rate);
+      facts_.repetition = {1. / std::abs(phase_rate), 0.};
     facts_.has_rate = false;
     if (generator_)
     {
@@ -231,16 +231,10 @@ namespace crawler
     }
   }
 
-  std::optional<double>
-  PrescribedStrain::search_period() const
+  std::optional<ActiveStress::Repetition>
+  PrescribedStrain::search_repetition() const
   {
-    return generator_ ? generator_->period() : facts_.period;
-  }
-
-  std::optional<double>
-  PrescribedStrain::stride() const
-  {
-    return generator_ ? generator_->stride() : period();
+    return generator_ ? generator_->repetition() : facts_.repetition;
   }
 
   const StressFailures *

@@ -70,7 +70,7 @@ namespace crawler
   {
     require_reachable_body(end_time);
     if (amplitude_ != 0. && period_ != 0.)
-      set_stride(period_, envelope_.has_ramp());
+      facts_.repetition = {period_, envelope_.ramp_end()};
     facts_.breaks_in_space = envelope_.breaks_in_space();
   }
 

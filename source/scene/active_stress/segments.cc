@@ -99,8 +99,8 @@ namespace crawler
       require_smooth_rate();
     }
 
-    segments_ = create_segments();
-    set_stride(1. / p.frequency, envelope_.has_ramp());
+    segments_         = create_segments();
+    facts_.repetition = {1. / p.frequency, envelope_.ramp_end()};
     for (std::size_t i = 1; i < segments_.size(); ++i)
     {
       facts_.breaks_in_space.push_back(segments_[i].first);
@@ -263,7 +263,7 @@ namespace crawler
       {
         const double x = f * t + segments_[i].phase;
         now[i]         = ramp * (rate ? f * this->rate(segments_[i], x) : value(segments_[i], x));
-        if (rate && envelope_.has_ramp())
+        if (rate && envelope_.ramp_end() > 0.)
           now[i] += envelope_.ramp_rate(t) * value(segments_[i], x);
       }
       for (std::size_t p = 0; p < segment.size(); ++p)

@@ -167,10 +167,10 @@ namespace crawler
     });
   }
 
-  std::optional<double>
-  ShapedWave::search_period() const
+  std::optional<ActiveStress::Repetition>
+  ShapedWave::search_repetition() const
   {
-    return find_period(*this, body_.length, end_time_);
+    return find_repetition(*this, body_.length, end_time_);
   }
 
   ShapedWave::LeadingOrder

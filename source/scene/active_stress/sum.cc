@@ -376,31 +376,26 @@ namespace crawler
     return evaluator(points, /*rate=*/true);
   }
 
-  std::optional<double>
-  Sum::search_period() const
+  std::optional<ActiveStress::Repetition>
+  Sum::search_repetition() const
   {
     std::vector<double> periods;
+    double from = 0.;
     for (const SumTerm &term : terms_)
     {
-      if (!term.in_t.is_whole())
-        return std::nullopt;
-      if (const auto period = term.stress->period())
-        periods.push_back(*period);
+      from = std::max(from, term.in_t.constant_from());
+      if (const auto bounds = term.stress->bounds({0., length_, 0., end_time_}); bounds && bounds->rate == 0.)
+        continue; // steady
+      const auto repeats = term.stress->repetition();
+      if (!repeats)
+        return find_repetition(*this, length_, end_time_);
+      from = std::max(from, repeats->from);
+      periods.push_back(repeats->period);
     }
-    if (periods.size() < terms_.size())
-      return find_period(*this, length_, end_time_);
-    const auto common = common_period(periods);
-    return common ? std::optional(shortest_period(*this, length_, *common)) : std::nullopt;
-  }
-
-  std::optional<double>
-  Sum::stride() const
-  {
-    std::vector<double> strides;
-    for (const SumTerm &term : terms_)
-      if (const auto stride = term.stress->stride())
-        strides.push_back(*stride);
-    return strides.empty() ? period() : common_period(strides);
+    const auto common = periods.empty() ? std::nullopt : common_period(periods);
+    if (!common)
+      return std::nullopt;
+    return Repetition{shortest_period(*this, length_, *common, from), from};
   }
 
   namespace

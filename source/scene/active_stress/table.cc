@@ -198,8 +198,8 @@ namespace crawler
     return Bounds{more * largest_, more * rate};
   }
 
-  std::optional<double>
-  ActiveStressTable::search_period() const
+  std::optional<ActiveStress::Repetition>
+  ActiveStressTable::search_repetition() const
   {
     if (parameters_.outside != "periodic")
       return std::nullopt;
@@ -209,7 +209,7 @@ namespace crawler
     constexpr double same_step = 1e-9, same_value = 1e-10;
     for (std::size_t j = 0; j < n; ++j)
       if (std::abs(grid.t[j + 1] - grid.t[j] - whole / static_cast<double>(n)) > same_step * whole)
-        return whole;
+        return Repetition{whole, 0.};
     const double most        = same_value * largest(grid.values);
     const auto repeats_after = [&](const std::size_t steps) {
       for (std::size_t i = 0; i + steps * n_s < grid.values.size(); ++i)
@@ -219,8 +219,8 @@ namespace crawler
     };
     for (std::size_t steps = 2; steps < n; ++steps) // one step would mean that m is steady
       if (n % steps == 0 && repeats_after(steps))
-        return whole * static_cast<double>(steps) / static_cast<double>(n);
-    return whole;
+        return Repetition{whole * static_cast<double>(steps) / static_cast<double>(n), 0.};
+    return Repetition{whole, 0.};
   }
 
   std::vector<double>

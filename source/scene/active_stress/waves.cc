@@ -68,7 +68,7 @@ namespace crawler
                               profile_.jumps() && wave_number_ == 0.,
                               travelling_section + (parameters.given_by == "frequency" ? "Frequency" : "Wave speed"));
     if (amplitude_ != 0. && phase_rate_ != 0.)
-      set_stride(1. / std::abs(phase_rate_), envelope_.has_ramp());
+      facts_.repetition = {1. / std::abs(phase_rate_), envelope_.ramp_end()};
     facts_.has_rate        = !(profile_.jumps() && phase_rate_ != 0.);
     facts_.breaks_in_space = places_of_jumps(length);
     facts_.breaks_in_time  = times_of_own_jumps(end_time);
@@ -199,7 +199,7 @@ namespace crawler
   {
     require_countable_periods(frequency_, end_time, profile_.jumps(), standing_section + "Frequency");
     if (amplitude_ != 0. && frequency_ != 0.)
-      set_stride(1. / frequency_, envelope_.has_ramp());
+      facts_.repetition = {1. / frequency_, envelope_.ramp_end()};
     facts_.has_rate        = !(profile_.jumps() && frequency_ > 0.);
     facts_.breaks_in_space = envelope_.breaks_in_space();
     facts_.breaks_in_time  = times_of_jumps(profile_, frequency_, start_, end_time);

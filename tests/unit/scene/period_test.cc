@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include <cmath>
 
 using namespace crawler;
@@ -32,6 +34,31 @@ namespace
     return test::parameters_with(settings).create_scene().active_stress->period();
   }
 } // namespace
+
+/// Starts that end, or that die out below 1e-10; not one that takes more than a quarter of the duration.
+TEST(Period, BehindAStart)
+{
+  const auto repetition_of = [](const std::string &start) {
+    return test::parameters_with(
+             {{"Active stress/Generator", "expression"},
+              {"Active stress/Expression/Active stress", "sin(2*pi*(s-t/0.8))*sin(pi*s)*(" + start + ")"},
+              {"Time/End time", "40"}})
+      .create_scene()
+      .active_stress->repetition();
+  };
+  for (const auto &[start, least, most] : std::initializer_list<std::tuple<const char *, double, double>>{
+         {"1-exp(-6*t)", 23.0 / 6., 10.}, {"min(1,t/4)", 4., 5.}, {"1", 0., 0.}})
+  {
+    const auto found = repetition_of(start);
+    ASSERT_TRUE(found) << start;
+    EXPECT_NEAR(found->period, 0.8, 1e-12) << start;
+    EXPECT_GE(found->from, least) << start;
+    EXPECT_LE(found->from, most) << start;
+  }
+  EXPECT_FALSE(repetition_of("min(1,t/11)"));
+  EXPECT_FALSE(repetition_of("1-exp(-t)"));
+  EXPECT_FALSE(repetition_of("1+t"));
+}
 
 TEST(Period, OfWavesIsKnown)
 {

@@ -181,6 +181,19 @@ TEST(Sum, HasThePeriodThatItsTermsHaveInCommon)
   EXPECT_FALSE(sum_of(term(expression("sin(2*pi*t/0.5)"), false, 1., {}, {{1., 2.}, 0.})).period());
 }
 
+/// A term that starts, one that ends, and a steady one: together they repeat when the first two have done so.
+TEST(Sum, RepeatsAfterTheStartOfItsTerms)
+{
+  const auto late = sum_of(term(expression("sin(2*pi*t/0.5)"), false, 1., {}, {{0.3, 99.}, 0.2}),
+                           term(expression("1+s"), true),
+                           term(expression("0.1*s"), false, 1., {}, {{0.1, 0.7}, 0.05}));
+  EXPECT_FALSE(late.period());
+  EXPECT_NEAR(late.repetition()->period, 0.5, 1e-9);
+  EXPECT_DOUBLE_EQ(late.repetition()->from, 0.7);
+  EXPECT_EQ(sum_of(term(expression("sin(2*pi*t/0.5)"))).repetition()->from, 0.);
+  EXPECT_FALSE(sum_of(term(expression("sin(2*pi*t/0.5)")), term(expression("t"))).repetition());
+}
+
 /// Values by the formula, derivatives by differences (exact for a polynomial of degree 2).
 TEST(Sum, CombinesFeedback)
 {

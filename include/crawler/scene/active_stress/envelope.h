@@ -48,10 +48,11 @@ namespace crawler
     double
     largest_ramp_rate(double from, double to) const;
 
-    bool
-    has_ramp() const
+    /// When the ramp is over [time]; 0 without one.
+    double
+    ramp_end() const
     {
-      return ramp_ > 0.;
+      return ramp_;
     }
 
     /// Where the window jumps, in (0, L) [length].
@@ -100,6 +101,10 @@ namespace crawler
     /// Where it begins and ends, in (0, end), with edges or without; between them nothing can be missed.
     std::vector<double>
     ends() const;
+
+    /// From where on it does not change up to the end of the range.
+    double
+    constant_from() const;
 
     /// Is it 1 on the whole range?
     bool

@@ -42,8 +42,8 @@ namespace crawler
   private:
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
-    std::optional<double>
-    search_period() const override;
+    std::optional<Repetition>
+    search_repetition() const override;
 
     const double length_, end_time_;
     const std::shared_ptr<const Formula> compiled_;

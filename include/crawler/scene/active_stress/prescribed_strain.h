@@ -61,8 +61,6 @@ namespace crawler
     }
 
     /// What the generator knows, if the strain is generated.
-    std::optional<double>
-    stride() const override;
     const StressFailures *
     failures() const override;
 
@@ -72,8 +70,8 @@ namespace crawler
   private:
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
-    std::optional<double>
-    search_period() const override;
+    std::optional<Repetition>
+    search_repetition() const override;
 
     void
     require_usable_generator(double end_time) const;

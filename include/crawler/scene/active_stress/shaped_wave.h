@@ -44,8 +44,8 @@ namespace crawler
     evaluator(const std::vector<double> &points, bool rate) const override;
     std::unique_ptr<ActiveStressAtPoints>
     rate_evaluator(const std::vector<double> &points) const;
-    std::optional<double>
-    search_period() const override;
+    std::optional<Repetition>
+    search_repetition() const override;
 
     const double end_time_;
     const std::string shape_name_;

@@ -56,8 +56,6 @@ namespace crawler
     rate_at(const std::vector<double> &points) const override;
 
     /// Windows in t may open and close on the way: whoever uses it looks whether m repeats at the end.
-    std::optional<double>
-    stride() const override;
 
     /// Of terms that cannot tell by samples in the box: what they do is as fast as what others see of them.
     std::optional<Bounds>
@@ -79,8 +77,8 @@ namespace crawler
 
     /// A period that all terms have in common (period.h), or a whole part of it after which the sum repeats; where not
     /// all terms know theirs, the sum's is looked for. Nothing if a window in time opens or closes.
-    std::optional<double>
-    search_period() const override;
+    std::optional<Repetition>
+    search_repetition() const override;
 
     const std::vector<SumTerm> terms_;
     const double length_, end_time_;

@@ -51,8 +51,8 @@ namespace crawler
     evaluator(const std::vector<double> &points, bool rate) const override;
 
     /// If it is periodic, that of the table, or a whole part of it after which equally spaced samples repeat.
-    std::optional<double>
-    search_period() const override;
+    std::optional<Repetition>
+    search_repetition() const override;
 
     /// Linear: the samples, unless there are more than 256 in (0, L). Where a table that is held begins and ends.
     std::vector<double>
