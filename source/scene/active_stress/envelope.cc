@@ -74,10 +74,13 @@ namespace crawler
     return ramp_ > 0. ? smooth_step_rate(t / ramp_) / ramp_ : 0.;
   }
 
-  double
-  Envelope::largest_ramp_rate(const double from, const double to) const
+  ActiveStress::Bounds
+  Envelope::ramped(const ActiveStress::Bounds bounds, const double from, const double to) const
   {
-    return ramp_ > 0. ? largest_smooth_step_rate(from / ramp_, to / ramp_) / ramp_ : 0.;
+    if (!(ramp_ > 0.))
+      return bounds;
+    const double largest = ramp(to), rate = largest_smooth_step_rate(from / ramp_, to / ramp_) / ramp_;
+    return {bounds.value * largest, bounds.rate * largest + bounds.value * rate};
   }
 
   std::vector<double>

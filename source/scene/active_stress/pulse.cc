@@ -141,8 +141,7 @@ namespace crawler
   Pulse::bounds(const Box &box) const
   {
     const double v = velocity_, P = period_, reach = reach_;
-    const double A    = std::abs(amplitude_);
-    const double grow = envelope_.largest_ramp_rate(box.t_from, box.t_to);
+    const double A = std::abs(amplitude_);
     Bounds sum{0., 0.};
     const auto add_pulse = [&](const double start) {
       const double a = start + v * box.t_from, b = start + v * box.t_to;
@@ -154,8 +153,8 @@ namespace crawler
       const double least    = from <= 0. && to >= 0. ? 0. : std::min(std::abs(from), std::abs(to)) / width_;
       const double most     = std::max(std::abs(from), std::abs(to)) / width_;
       const double slope    = std::abs(bump(compact_, std::clamp(steepest, least, most), 0., 1.));
-      sum.value += A;
-      sum.rate += A * (std::abs(v) / width_ * slope + grow);
+      sum.value += A * bump(compact_, least, 1., 0.);
+      sum.rate += A * std::abs(v) / width_ * slope;
     };
     if (!(P > 0.))
       add_pulse(start_);
@@ -177,7 +176,7 @@ namespace crawler
       for (double j = first; j <= last; ++j)
         add_pulse(start_ - j * d);
     }
-    return sum;
+    return envelope_.ramped(sum, box.t_from, box.t_to);
   }
 
   void

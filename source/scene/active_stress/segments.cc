@@ -275,7 +275,7 @@ namespace crawler
   std::optional<ActiveStress::Bounds>
   Segments::bounds(const Box &box) const
   {
-    const double f = parameters_.frequency, ramp = envelope_.largest_ramp_rate(box.t_from, box.t_to);
+    const double f = parameters_.frequency;
     const double n = f * (box.t_to - box.t_from); // periods in the box
     Bounds largest{0., 0.};
     for (const Segment &segment : segments_)
@@ -292,9 +292,9 @@ namespace crawler
             slope = std::max(slope, smooth_ ? largest_smooth_step_rate(from / width, (from + n) / width) : 1.);
       }
       const double rate = slope > 0. ? f * change * slope / width : 0.;
-      largest           = {std::max(largest.value, value), std::max(largest.rate, rate + value * ramp)};
+      largest           = {std::max(largest.value, value), std::max(largest.rate, rate)};
     }
-    return largest;
+    return envelope_.ramped(largest, box.t_from, box.t_to);
   }
 
   void

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/scene/active_stress.h>
+
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,9 +46,9 @@ namespace crawler
     double
     ramp_rate(double t) const;
 
-    /// A bound of that in [from, to].
-    double
-    largest_ramp_rate(double from, double to) const;
+    /// The bounds in [from, to] of the ramp times what has @p bounds.
+    ActiveStress::Bounds
+    ramped(ActiveStress::Bounds bounds, double from, double to) const;
 
     /// When the ramp is over [time]; 0 without one.
     double
