@@ -13,7 +13,8 @@ trap remove_all EXIT
 # step INSTRUCTION WORDS...: one line of the Dockerfile.
 step()
 {
-  local instruction=$1 root=${stages[-1]:-}
+  local instruction=$1 root=
+  [ ${#stages[@]} -eq 0 ] || root=${stages[-1]}
   shift
   case "$instruction $*" in
     "FROM debian:12"*) stages+=("$(mktemp -d)"); make_chroot "${stages[-1]}" ;;
