@@ -6,6 +6,7 @@
 #include <crawler/scene/active_stress/formula_input.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <muParser.h>
 
 #include <algorithm>
