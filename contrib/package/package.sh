@@ -5,6 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 contrib/setup.sh package
+rm -rf build/package
 cpack -G DEB --config build/CPackConfig.cmake -B build/package >build/package.log || { cat build/package.log >&2; exit 1; }
 rm -rf build/package/_CPack_Packages
 ls build/package/*.deb
