@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Installs from Debian what is missing (as root or with sudo), and builds crawler in Release mode into build/.
-# Usage: contrib/setup.sh [tests|python|live]    with "tests": also what the tests need, and the tests themselves;
+# Usage: contrib/setup.sh [tests|python|package|live]    with "tests": also what the tests need, and the tests themselves;
 #                                           with "python": the Python package, in build/python (doc/python.md);
+#                                           with "package": the same, and what makes a Debian package of it;
 #                                           with "live": the live page, in build/live (doc/live_page.md), by
 #                                           emscripten (some 1 GB).
 set -euo pipefail
@@ -11,6 +12,7 @@ cd "$(dirname "$0")/.."
 packages=(g++ cmake ninja-build git libdeal.ii-dev libcli11-dev nlohmann-json3-dev libfmt-dev openmpi-bin)
 python=(python3-dev pybind11-dev python3-numpy)
 [ "${1:-}" = python ] && packages+=("${python[@]}")
+[ "${1:-}" = package ] && packages+=("${python[@]}" dpkg-dev file)
 [ "${1:-}" = live ] && packages+=(emscripten)
 [ "${1:-}" = tests ] && packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev python3-scipy python3-vtk9 python3-h5py python3-pandas python3-matplotlib python3-jsonschema zsh groff-base chromium clang-format clang-tidy doxygen texlive-binaries)
 
@@ -39,7 +41,7 @@ elif [ -f build/CMakeCache.txt ] && grep -q '^CRAWLER_TESTS:BOOL=ON' build/CMake
 fi
 with_python=$with_tests
 targets=(crawler)
-if [ "${1:-}" = python ]; then
+if [ "${1:-}" = python ] || [ "${1:-}" = package ]; then
   with_python=ON
   targets+=(crawler_python)
 elif [ -f build/CMakeCache.txt ] && grep -q '^CRAWLER_PYTHON_PACKAGE:BOOL=ON' build/CMakeCache.txt; then

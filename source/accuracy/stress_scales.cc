@@ -416,7 +416,12 @@ namespace crawler
     const ActiveStress &stress = *scene.active_stress;
     const double L = scene.body.length, T = scene.end_time, P = std::min(stress.period().value_or(T), T);
     if (!stress.bounds({0., L, 0., P})) // what it cannot tell is sampled, if there are events
-      return known.size() > 1 ? stress_scales(scene).step_limits : known;
+    {
+      std::vector<StepLimit> limits = known;
+      if (limits.size() > 1)
+        limits = stress_scales(scene).step_limits;
+      return limits;
+    }
     double longest = 0.;
     for (const StepLimit &limit : known)
       longest = std::max(longest, limit.longest);

@@ -18,6 +18,7 @@
 #include <crawler/studies/tradeoff/tradeoff.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iostream>

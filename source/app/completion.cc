@@ -8,6 +8,7 @@
 #include <crawler/base/nearest_name.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iostream>

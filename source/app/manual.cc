@@ -5,6 +5,7 @@
 #include <crawler/base/versions.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <iostream>
 

@@ -5,6 +5,7 @@
 #include <crawler/studies/core/pictures.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sysexits.h>
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 #include <crawler/base/files.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>

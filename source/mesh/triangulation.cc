@@ -3,7 +3,9 @@
 #include <crawler/mesh/triangulation.h>
 
 #include <deal.II/distributed/shared_tria.h>
+#include <deal.II/grid/tria_description.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace crawler

@@ -4,6 +4,7 @@
 #include <crawler/output/active_stress_table.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -5,6 +5,7 @@
 #include <crawler/output/statistics_writer.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <iterator>

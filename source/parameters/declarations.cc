@@ -5,6 +5,7 @@
 #include <crawler/parameters/entry_store.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

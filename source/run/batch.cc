@@ -17,8 +17,9 @@ namespace crawler
   std::optional<LaneMethod>
   lane_method(const Scene &scene, const TimeParameters &time, const Numerics &numerics)
   {
-    const std::string &name   = time.integrator == "automatic" ? numerics.integrator : time.integrator;
-    const Integrator &method  = integrator(name.empty() ? "automatic" : name);
+    const std::string &chosen = time.integrator == "automatic" ? numerics.integrator : time.integrator;
+    const std::string name    = chosen.empty() ? "automatic" : chosen;
+    const Integrator &method  = integrator(name);
     const bool is_one_of_ours = method.petsc_type == "radau" && time.step_control == StepControl::adaptive;
     const bool is_stretch     = numerics.formulation == Formulation::stretch;
     if (numerics.linear || time.engine != Engine::automatic || !is_one_of_ours || numerics.mesh.tolerance != 0. ||

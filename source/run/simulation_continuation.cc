@@ -70,10 +70,11 @@ namespace crawler
     if (!archive.reads())
       return;
     std::unique_ptr<Discretization> next;
+    std::vector<CellChange> changes;
     for (bool is_changed = true; is_changed;)
     {
       const std::vector<Cell> &cells = (next ? *next : *mesh_.discretization).cells();
-      std::vector<CellChange> changes(cells.size(), CellChange::keep);
+      changes.assign(cells.size(), CellChange::keep);
       is_changed = false;
       for (std::size_t c = 0, w = 0; c < cells.size(); ++c)
       {

@@ -12,13 +12,13 @@ namespace crawler
                            const ActiveStress &stress,
                            const double least_event)
     : limits_(limits)
+    , watch_(least_event > 0. ? std::optional<StressWatch>(std::in_place, stress, 1., least_event)
+                              : std::optional<StressWatch>())
   {
     if (limits_.empty())
       limits_.push_back({0., HUGE_VAL});
     for (StepLimit &limit : limits_)
       limit.longest = std::min(limit.longest, longest);
-    if (least_event > 0.)
-      watch_.emplace(stress, 1., least_event);
   }
 
   double

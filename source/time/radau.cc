@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/petsc_object.h>
+#include <crawler/base/petsc_releases.h>
 #include <crawler/time/radau.h>
 #include <crawler/time/radau_loops.h>
 #include <crawler/time/radau_tableau.h>
@@ -341,7 +342,7 @@ namespace crawler
       *reason      = SNES_CONVERGED_ITERATING;
       if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
       {
-        *reason = SNES_DIVERGED_FNORM_NAN;
+        *reason = newton_not_finite;
         return 0;
       }
       if (it == 0)
@@ -546,7 +547,7 @@ namespace crawler
       Mat mat = nullptr;
       PetscCall(MatCreateShell(comm, n * local, n * local, PETSC_DECIDE, PETSC_DECIDE, ts, &mat));
       radau.jacobian.reset(mat);
-      PetscCall(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
+      PetscCall(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<ShellOperation>(multiply)));
 
       SNES snes = nullptr;
       KSP ksp   = nullptr;
@@ -578,8 +579,10 @@ namespace crawler
       return 0;
     }
 
+    /// @tparam Items PetscOptionItems since PETSc 3.23, a pointer to it before.
+    template <typename Items>
     PetscErrorCode
-    set_from_options(TS ts, PetscOptionItems *)
+    set_from_options(TS ts, Items)
     {
       PetscInt n       = static_cast<PetscInt>(data(ts).tableau->n);
       PetscBool found  = PETSC_FALSE;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/petsc_object.h>
+#include <crawler/base/petsc_releases.h>
 #include <crawler/time/integrators.h>
 #include <crawler/time/radau.h>
 #include <crawler/time/radau_loops.h>
@@ -130,7 +131,7 @@ namespace crawler
     const auto local = static_cast<PetscInt>(system.n_owned());
     petsc(MatCreateShell(communicator, local, local, PETSC_DECIDE, PETSC_DECIDE, this, &mat));
     jacobian.reset(mat);
-    petsc(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
+    petsc(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<ShellOperation>(multiply)));
 
     petsc(register_radau());
     TS stepper = nullptr;
@@ -384,7 +385,7 @@ namespace crawler
     *reason    = SNES_CONVERGED_ITERATING;
     if (!std::isfinite(F_norm) || !std::isfinite(dx_norm))
     {
-      *reason = SNES_DIVERGED_FNORM_NAN;
+      *reason = newton_not_finite;
       return 0;
     }
     if (it == 0)

@@ -6,6 +6,7 @@
 #include <crawler/scene/active_stress/formula_input.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <muParser.h>
 
 #include <algorithm>
@@ -102,7 +103,7 @@ namespace crawler
       {
         const auto equals      = item.find('=');
         const std::string name = trimmed(item.substr(0, equals));
-        const auto value = equals == std::string::npos ? std::nullopt : to_number(trimmed(item.substr(equals + 1)));
+        const auto value = to_number(equals == std::string::npos ? std::string() : trimmed(item.substr(equals + 1)));
         const bool is_name =
           !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) &&
           std::all_of(name.begin(), name.end(), [](const unsigned char c) { return std::isalnum(c) || c == '_'; });

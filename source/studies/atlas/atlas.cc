@@ -16,6 +16,7 @@
 #include <crawler/studies/sweep/point_table.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

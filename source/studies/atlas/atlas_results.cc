@@ -5,6 +5,7 @@
 #include <crawler/studies/atlas/atlas_results.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

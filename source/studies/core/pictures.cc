@@ -11,15 +11,14 @@ namespace crawler
   namespace
   {
     /// The path of a script in contrib/plot.
-    std::string
+    std::filesystem::path
     plot_script(const std::string &name)
     {
-      // Beside an installed program, else in the folder of the source code.
+      // Where it is installed with the program, else in the build folder, which has a link to contrib/plot.
       std::error_code ignored;
-      const auto program   = std::filesystem::read_symlink("/proc/self/exe", ignored);
-      const auto installed = program.parent_path().parent_path() / CRAWLER_INSTALLED_PLOTS / name;
-      return std::filesystem::exists(installed, ignored) ? installed.string()
-                                                         : CRAWLER_SOURCE_DIR "/contrib/plot/" + name;
+      const auto folder    = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+      const auto installed = folder.parent_path() / CRAWLER_INSTALLED_PLOTS / name;
+      return std::filesystem::exists(installed, ignored) ? installed : folder / "plot" / name;
     }
   } // namespace
 
@@ -29,7 +28,7 @@ namespace crawler
     // If this Python lacks a module, the script itself goes on with Debian's (contrib/plot/plotting.py).
     for (const std::string python : {"python3", "/usr/bin/python3"})
     {
-      std::vector<std::string> command = {python, plot_script(name)};
+      std::vector<std::string> command = {python, plot_script(name).string()};
       command.insert(command.end(), arguments.begin(), arguments.end());
       if (const ProgramEnd end = run_program(command, shown); end.started)
         return {end.status, trimmed(end.errors)};

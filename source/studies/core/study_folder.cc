@@ -5,6 +5,7 @@
 #include <crawler/studies/core/study_folder.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>

@@ -18,6 +18,7 @@
 #include <crawler/studies/sweep/sweep_rows.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -7,6 +7,7 @@
 #include <crawler/studies/sweep/sweep_design.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include <crawler/studies/table/unit_factor.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>

@@ -4,6 +4,7 @@
 #include <crawler/studies/tradeoff/tradeoff_results.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

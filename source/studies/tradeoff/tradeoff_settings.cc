@@ -11,6 +11,7 @@
 #include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
