@@ -278,6 +278,22 @@ TEST(HardAnswers, NothingHasHappenedYet)
   EXPECT_LT(std::abs(result.displacement), 1e-15);
 }
 
+TEST(HardAnswers, TheTailOfAPulseHasHardlyCome)
+{
+  // Bounds of its rate that do not become as small as the tail and the ramp made steps of 1e-13 of the duration.
+  const std::string pulse       = "Active stress/Pulse/";
+  const SimulationResult result = answer_to({{"Body/Elastic modulus", "1e7"},
+                                             {"Active stress/Generator", "pulse"},
+                                             {pulse + "Amplitude", "1e6"},
+                                             {pulse + "Width", "0.5"},
+                                             {pulse + "Speed", "1"},
+                                             {pulse + "Ramp duration", "0.3"},
+                                             {"Time/End time", "0.3"}});
+  EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
+  EXPECT_LT(result.time.steps, 1000u);
+  EXPECT_LT(std::abs(result.displacement), result.error->total);
+}
+
 /// The works of a sudden start are less accurate than the displacement, and their balance closes within their bounds.
 TEST(HardAnswers, AStiffBodyMayStartSuddenly)
 {

@@ -91,7 +91,7 @@ TEST(Envelope, WindowAndRamp)
   for (const double s : {0., 1., 2.})
     EXPECT_EQ(all.window(s), 1.);
   EXPECT_EQ(all.ramp(0.), 1.);
-  EXPECT_FALSE(all.has_ramp());
+  EXPECT_EQ(all.ramp_end(), 0.);
   EXPECT_TRUE(all.breaks_in_space().empty());
 
   parameters.window_start  = 0.4;
