@@ -451,6 +451,7 @@ namespace crawler
     const std::string full = path_text(words), section = section_of(words);
     if (!section.empty())
       require_section(section);
+    const std::string top = "at the top level of the file";
     std::vector<std::string> same_section, elsewhere;
     for (const EntryInfo &e : entries_)
     {
@@ -465,14 +466,16 @@ namespace crawler
     std::vector<std::string> near = nearest_names(words.back(), same_section);
     if (near.empty())
       near.assign(elsewhere.begin(), elsewhere.begin() + std::min<std::size_t>(3, elsewhere.size()));
-    throw InputError(
-      fmt::format("unknown entry \"{}\" {}; {}",
-                  words.back(),
-                  section.empty() ? "at the top level of the file" : "in section \"" + section + "\"",
-                  near.empty()
-                    ? "entries there are " + quoted_list(same_section)
-                    : "the nearest " + std::string(near.size() > 1 ? "names are " : "name is ") + quoted_list(near)),
-      full);
+    const bool is_of_top =
+      std::any_of(elsewhere.begin(), elsewhere.end(), [&](const std::string &path) { return path == words.back(); });
+    throw InputError(fmt::format("unknown entry \"{}\" {}; {}",
+                                 words.back(),
+                                 section.empty() ? top : "in section \"" + section + "\"",
+                                 is_of_top          ? "it is expected " + top
+                                 : near.empty()     ? "entries there are " + quoted_list(same_section)
+                                 : near.size() == 1 ? "the nearest name is " + quoted_list(near)
+                                                    : "the nearest names are " + quoted_list(near)),
+                     full);
   }
 
   void
