@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Installs from Debian what is missing (as root or with sudo), and builds crawler in Release mode into build/.
-# Usage: contrib/setup.sh [tests|python|package|live]    with "tests": also what the tests need, and the tests themselves;
+# Usage: contrib/setup.sh [tests|python|package|live|fuzz]   with "tests": also what the tests need, and the tests themselves;
 #                                           with "python": the Python package, in build/python (doc/python.md);
 #                                           with "package": the same, and what makes a Debian package of it;
 #                                           with "live": the live page, in build/live (doc/live_page.md), by
-#                                           emscripten (some 1 GB).
+#                                           emscripten (some 1 GB);
+#                                           with "fuzz": the programs of tests/fuzz, in build-fuzz (contrib/fuzz.sh).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -14,6 +15,7 @@ python=(python3-dev pybind11-dev python3-numpy)
 [ "${1:-}" = python ] && packages+=("${python[@]}")
 [ "${1:-}" = package ] && packages+=("${python[@]}" dpkg-dev file)
 [ "${1:-}" = live ] && packages+=(emscripten)
+[ "${1:-}" = fuzz ] && packages+=(libclang-rt-dev)
 [ "${1:-}" = tests ] && packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev python3-scipy python3-vtk9 python3-h5py python3-pandas python3-matplotlib python3-jsonschema zsh groff-base chromium clang-format clang-tidy doxygen texlive-binaries)
 
 missing=()
@@ -32,6 +34,11 @@ if [ ${#missing[@]} -gt 0 ]; then
 fi
 
 [ "${1:-}" = live ] && exec contrib/live/build.sh
+if [ "${1:-}" = fuzz ]; then
+  cmake --preset fuzz >build-fuzz.log 2>&1 || { cat build-fuzz.log >&2; exit 1; }
+  rm -f build-fuzz.log
+  exec cmake --build --preset fuzz
+fi
 
 with_tests=OFF
 if [ "${1:-}" = tests ]; then

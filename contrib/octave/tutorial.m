@@ -9,6 +9,10 @@
 if ~exist('run_folder', 'var'), run_folder = 'output-fig_s1'; end
 if ~exist('sweep_folder', 'var'), sweep_folder = 'output-sweep'; end
 if ~exist('draw', 'var'), draw = true; end
+if draw && exist('OCTAVE_VERSION', 'builtin') && isempty(available_graphics_toolkits())
+  disp('Octave has nothing to draw with here (no display, or no graphics toolkit): there will be no pictures');
+  draw = false;
+end
 
 %% 1. The numbers of a run, with their bounds: summary.json
 summary = jsondecode(fileread(fullfile(run_folder, 'summary.json')));

@@ -9,7 +9,8 @@ and t comes first.
 
 Reads kymograph.vts, statistics.csv, parameters.prm and summary.json of the folder; needs numpy and matplotlib.
 """
-from plotting import NAMES, Kymograph, Problem, draw_body, draw_field, existing, need, parser, read_rows, run_script, save
+from plotting import (NAMES, Kymograph, Problem, draw_body, draw_field, existing, need, parser, picture_of, read_rows,
+                      run_script, save)
 
 need("numpy", "matplotlib")
 import matplotlib.pyplot as plt
@@ -29,6 +30,8 @@ def draw(options):
     """Reads the files and makes the figure."""
     run = Kymograph(options.folder, "stretch", "displacement", "active_stress")
     times, travelled = read_statistics(options.folder)
+    if run.t[0] > 0:
+        print(f"{options.folder / 'kymograph.vts'} begins at t = {run.t[0]:.6g}: of long runs it has the last strides")
     begin, end = run.keep(options.begin, options.end, options.last_stride)
 
     stress = options.stress
@@ -57,7 +60,7 @@ def main():
     own = parser(__doc__, "kymograph.png", time=True)
     own.add_argument("--stress", action="store_true", help="draws the active stress as well")
     options = own.parse_args()
-    save(draw(options), options.output or options.folder / "kymograph.png", dpi=120, few_colours=True)
+    save(draw(options), picture_of(options, "kymograph.png"), dpi=120, few_colours=True)
 
 
 if __name__ == "__main__":

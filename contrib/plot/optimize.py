@@ -17,8 +17,8 @@ and matplotlib.
 import collections
 import math
 
-from plotting import (COLOURS, NAMES, Kymograph, Parameters, Problem, draw_field, existing, need, number, parser, read_rows,
-                      read_summary, run_script, save)
+from plotting import (COLOURS, NAMES, Kymograph, Parameters, Problem, draw_field, existing, need, number, parser, picture_of,
+                      read_rows, read_summary, run_script, save)
 
 need("numpy", "matplotlib")
 import matplotlib.pyplot as plt
@@ -29,6 +29,22 @@ UNITS = {"displacement": "length", "speed": "length/time", "cost of transport": 
 OBJECTIVES = {"displacement": "displacement $D$", "speed": "speed $U$"}  # with their symbols
 ADMISSIBLE = 1e-5               # violation of a limit, relative to it, or Tolerance
 MOST_NAMES, LONGEST = 7, 32     # in a legend
+
+
+def short(value):
+    """Of an entry."""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def varied(optima):
+    """The entries in which the cases differ, but for variables."""
+    return [name for name in optima[0]["case"] if name not in optima[0]["variables"]
+            and any(one["case"][name] != optima[0]["case"][name] for one in optima)]
+
+
+def in_words(one, names):
+    """These entries of a case."""
+    return ", ".join(f"{name.rsplit('/', 1)[-1]} {short(one['case'][name])}" for name in names)
 
 
 class Optimisation:
@@ -75,11 +91,10 @@ class Optimisation:
         own = next((one for one in self.optima if one["number"] == case), None)
         if own is None:
             return f"case {case}"
-        text = ", ".join(f"{name.rsplit('/', 1)[-1]} {value:.4g}" if isinstance(value, float)
-                         else f"{name.rsplit('/', 1)[-1]} {value}" for name, value in own["case"].items()
-                         if name not in own["variables"] and any(one["case"][name] != value for one in self.optima))
+        differing = [name for name in varied(self.optima) if name not in own["variables"]]
+        text = in_words(own, differing)
         if len(text) > LONGEST:
-            text = f"case {case}: " + ", ".join(map(str, own["case"].values()))
+            text = f"case {case}: " + ", ".join(short(own["case"][name]) for name in differing)
         return text if len(text) <= LONGEST else text[:LONGEST - 3].rstrip(" ,") + "..."
 
     def gait(self, options):
@@ -147,34 +162,45 @@ def draw_gait(figure, panels, gait, title):
 
 
 def axis_of_cases(optima):
-    """What the cases are drawn over: name, values, whether logarithmic. What varies, if that is one number."""
-    varied = [name for name in optima[0]["case"] if any(one["case"][name] != optima[0]["case"][name] for one in optima)
-              and name not in optima[0]["variables"]]
-    for name in varied if len(varied) == 1 else ():
+    """What the cases are drawn over: name, values, whether logarithmic, and the curve to which each belongs (no name: there
+    are none). That is the number with most values, if each case has its own, or if all combinations of these and of what
+    else varies are there."""
+    names = varied(optima)
+
+    def values_of(name):
         values = [one["case"][name] for one in optima]
-        if name == "Optimize/Work":
-            return NAMES["work"], [one["stress_power"] for one in optima], True
-        if all(isinstance(value, (int, float)) for value in values) and len(set(values)) > 1:
-            return name.rsplit("/", 1)[-1], values, min(values) > 0 and max(values) >= 4 * min(values)
-    return "number of the case", [one["number"] for one in optima], False
+        return values if all(isinstance(value, (int, float)) for value in values) else []
+
+    name = max(names, key=lambda one: len(set(values_of(one))), default="")
+    values = values_of(name) if name else []
+    is_own = len(set(values)) == len(optima)
+    others = ["" if is_own else in_words(one, [other for other in names if other != name]) for one in optima]
+    if len(set(values)) < 2 or len(set(zip(values, others))) < len(optima) or \
+            len(set(values)) * len(set(others)) != len(optima):
+        return "number of the case", [one["number"] for one in optima], False, None
+    if name == "Optimize/Work":
+        return NAMES["work"], [one["stress_power"] for one in optima], True, others
+    return name.rsplit("/", 1)[-1], values, min(values) > 0 and max(values) >= 4 * min(values), others
 
 
 def draw_cases(axes, optimisation, shown):
     """The best gaits, the bound, and which part of it they reach."""
     optima = optimisation.optima
-    name, places, is_logarithmic = axis_of_cases(optima)
+    name, places, is_logarithmic, curves = axis_of_cases(optima)
     known = [(x, i, one) for i, (x, one) in enumerate(zip(places, optima)) if x is not None and one.get("objective")]
     if not known:
         raise Problem("no best gait moves the body, so there is nothing to draw over the cases")
     key = "stride_efficiency" if optimisation.objective == "periodic merit" else "efficiency"
-    is_line = len(set(places)) == len(places) and not name.startswith("number of the")
-    bounds = sorted((x, abs(one["objective"] / one[key])) for x, _, one in known if one.get(key))
-    if bounds and optimisation.objective in ("displacement", "merit"):
-        axes.plot(*zip(*bounds), "--" if is_line else "none", color="0.35", linewidth=1, marker="_", markersize=9,
-                  label="no gait with its work\nand its strains\ngoes further")
-    if is_line:
-        axes.plot(*zip(*sorted((x, abs(one["objective"])) for x, _, one in known)), color="black", linewidth=0.9,
-                  zorder=2)
+    has_bound = optimisation.objective in ("displacement", "merit")
+    for which, curve in enumerate(sorted(set(curves or [""]))):
+        own = sorted(((x, one) for x, i, one in known if curves is None or curves[i] == curve), key=lambda pair: pair[0])
+        bounds = [(x, abs(one["objective"] / one[key])) for x, one in own if one.get(key)]
+        if bounds and has_bound:
+            axes.plot(*zip(*bounds), linestyle="--" if curves else "none", color="0.35", linewidth=1, marker="_",
+                      markersize=9, label="no gait with its work\nand its strains\ngoes further" if which == 0 else None)
+        if own and curves:
+            axes.plot([x for x, _ in own], [abs(one["objective"]) for _, one in own], color="black", linewidth=0.9,
+                      linestyle=("-", "-.", ":")[which % 3], zorder=2, label=curve or None)
     for x, i, one in known:
         axes.plot(x, abs(one["objective"]), marker="*" if one["is_admissible"] else "x", zorder=3,
                   color=COLOURS[i % len(COLOURS)], markersize=12, linestyle="none",
@@ -231,7 +257,7 @@ def main():
         figure = draw(options)
     except KeyError as missing:
         raise Problem(f"{options.folder} has no {missing}; the output folder of crawler optimize is expected") from None
-    save(figure, options.output or options.folder / "optimize.png", dpi=100, few_colours=True)
+    save(figure, picture_of(options, "optimize.png"), dpi=100, few_colours=True)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,10 @@ Python has the modules that it needs).
 import argparse
 import array
 import base64
+import contextlib
 import csv
 import importlib
+import io
 import json
 import os
 import pathlib
@@ -105,6 +107,20 @@ def parser(doc, output="", time=False):
         own.add_argument("--to", dest="end", type=float, metavar="TIME", help="draws up to this time")
         own.add_argument("--last-stride", action="store_true", help="draws the last stride only")
     return own
+
+
+def picture_of(options, name):
+    """Where the picture goes: the name asked for, or in the folder this one; a part of the run has a name of its own, so
+    that the picture of the whole stays."""
+    if options.output:
+        return options.output
+    stem, suffix = name.rsplit(".", 1)
+    if options.last_stride:
+        stem += "_last_stride"
+    for word, time in (("from", options.begin), ("to", options.end)):
+        if time is not None:
+            stem += f"_{word}_{time:g}"
+    return options.folder / f"{stem}.{suffix}"
 
 
 def run_script(main):
@@ -283,18 +299,33 @@ def draw_body(axes, kymograph, name="stretch", parts=8):
     return mesh
 
 
+def write_whole(path, content):
+    """Writes a file beside its place first, so that it is whole or not there; a link in its place is not followed."""
+    part = path.with_name(path.name + ".part")
+    try:
+        part.unlink(missing_ok=True)
+        with open(part, "xb") as file:
+            file.write(content)
+        part.replace(path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
+        raise Unwritable(f'cannot write "{path}": {error.strerror or error}') from None
+
+
 def save(figure, *pictures, dpi=160, few_colours=False):
     """Writes a figure under each of the names and says so. With few colours a .png is less than half as large."""
     for picture in map(pathlib.Path, pictures):
         known = figure.canvas.get_supported_filetypes()
         if picture.suffix[1:].lower() not in known:
             raise Problem(f'found the picture "{picture}", but a name that ends in .png, .svg or .pdf is expected')
-        try:
-            figure.savefig(picture, dpi=dpi, metadata={"Date": None} if picture.suffix == ".svg" else None)
-            if few_colours and picture.suffix == ".png":
-                from PIL import Image  # comes with matplotlib
-                Image.open(picture).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=1,
-                                                             dither=Image.Dither.NONE).save(picture, optimize=True)
-        except OSError as error:
-            raise Unwritable(f'cannot write "{picture}": {error.strerror or error}') from None
+        memory = io.BytesIO()
+        figure.savefig(memory, format=picture.suffix[1:].lower(), dpi=dpi,
+                       metadata={"Date": None} if picture.suffix == ".svg" else None)
+        if few_colours and picture.suffix == ".png":
+            from PIL import Image  # comes with matplotlib
+            coloured, memory = memory, io.BytesIO()
+            Image.open(coloured).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=1,
+                                                         dither=Image.Dither.NONE).save(memory, "png", optimize=True)
+        write_whole(picture, memory.getvalue())
         print(f"wrote {picture}")

@@ -10,7 +10,8 @@ The picture is sensitivity.png in the folder, unless --output names another one.
 Reads summary.json, sensitivity_body.csv and sensitivity_stress.csv of the folder, which are there with
 Output/Sensitivities; needs numpy and matplotlib.
 """
-from plotting import COLOURS, NAMES, SIGNED, Kymograph, Problem, need, parser, read_rows, read_summary, run_script, save
+from plotting import (COLOURS, NAMES, SIGNED, Kymograph, Problem, need, parser, picture_of, read_rows,
+                      read_summary, run_script, save)
 
 need("numpy", "matplotlib")
 import matplotlib.pyplot as plt
@@ -76,7 +77,7 @@ def draw(options):
 def main():
     """Command line."""
     options = parser(__doc__, "sensitivity.png", time=True).parse_args()
-    save(draw(options), options.output or options.folder / "sensitivity.png", dpi=100, few_colours=True)
+    save(draw(options), picture_of(options, "sensitivity.png"), dpi=100, few_colours=True)
 
 
 if __name__ == "__main__":

@@ -356,9 +356,9 @@ def lines(axes, x, mine, values, errors, marks, other, look, options, panel):
                 axes.errorbar(at, y, bar, fmt="none", ecolor=colour, elinewidth=0.8, capsize=2.5)
             else:
                 axes.fill_between(at, y - bar, y + bar, color=colour, alpha=0.25, linewidth=0)
-    for i in range(len(marks.names)):  # along the lower edge
+    for i in range(len(marks.names)):  # on the lower edge, where no value is
         at = np.unique(x.at[x.index[mine & (marks.of == i)]])
-        axes.plot(at, np.full(len(at), 0.02 + 0.03 * i), transform=axes.get_xaxis_transform(), linestyle="",
+        axes.plot(at, np.full(len(at), 0.03 * i), transform=axes.get_xaxis_transform(), linestyle="",
                   marker=marks.marker(i), color="0.35", markersize=5, clip_on=False)
     axes.grid(alpha=0.3)
     return laws

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/error_estimate.h>
+#include <crawler/accuracy/extrapolation.h>
 #include <crawler/accuracy/finer_run_errors.h>
 #include <crawler/accuracy/mesh_family.h>
 #include <crawler/run/accuracy_rule.h>
-#include <crawler/run/gait.h>
-#include <crawler/run/gait_efficiency.h>
 
 #include <fmt/format.h>
 
@@ -288,25 +287,18 @@ namespace crawler
       void
       extrapolate(const SimulationResult &coarse)
       {
-        const auto better        = [](const double fine, const double rough) { return (4. * fine - rough) / 3.; };
-        SimulationResult &result = extrapolated_;
-        if (result.inversion)
+        if (latest_.inversion)
         {
-          result.inversion->t = better(result.inversion->t, coarse.inversion->t);
-          return;
+          extrapolated_.inversion->t = (4. * latest_.inversion->t - coarse.inversion->t) / 3.;
+          extrapolated_.time.time    = (4. * latest_.time.time - coarse.time.time) / 3.;
+          extrapolated_.displacement = (4. * latest_.displacement - coarse.displacement) / 3.;
         }
-        result.displacement       = better(result.displacement, coarse.displacement);
-        const auto energy_balance = [&](std::optional<EnergyBalance> &fine, const std::optional<EnergyBalance> &rough) {
-          if (fine && rough)
-            *fine = fine->combined(4. / 3., *rough, -1. / 3.);
-        };
-        energy_balance(result.energy_balance, coarse.energy_balance);
-        if (result.gait && coarse.gait && result.gait->period == coarse.gait->period)
+        else
         {
-          result.gait->displacement = better(result.gait->displacement, coarse.gait->displacement);
-          energy_balance(result.gait->energy_balance, coarse.gait->energy_balance);
+          const SimulationResult *const results[] = {&coarse, &latest_};
+          const double weights[]                  = {-1. / 3., 4. / 3.};
+          extrapolated_                           = combined(scene_, results, weights);
         }
-        set_efficiencies(scene_, result);
       }
 
       bool

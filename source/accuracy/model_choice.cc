@@ -130,13 +130,15 @@ namespace crawler
         "Model");
     if (parameters.model != Model::linear && parameters.model != Model::nonlinear)
     {
-      if (parameters.output.differentiates() && parameters.model == Model::automatic)
-        return {Model::nonlinear, "Model nonlinear: simpler ones have no Sensitivities"};
-      if (parameters.output.differentiates())
-        throw InputError(fmt::format("Sensitivities are wanted, but Model is {}; nonlinear or auto is expected",
+      const bool is_prescribed = scene.active_stress->prescribed_strain() != nullptr;
+      if (parameters.output.differentiates() && parameters.model == Model::automatic && !is_prescribed)
+        return {Model::nonlinear, "Model nonlinear: of simpler ones that are approximate there are no Sensitivities"};
+      if (parameters.output.differentiates() && !is_prescribed)
+        throw InputError(fmt::format("Sensitivities are wanted, but Model is {} and the strain is not prescribed; "
+                                     "nonlinear or auto is expected",
                                      word_of(parameters.model)),
                          parameters.output.sensitivities.empty() ? "Output/Uncertainty" : "Output/Sensitivities");
-      if (!scene.is_plain())
+      if (!scene.is_plain() && !is_prescribed)
         return {Model::nonlinear,
                 "Model nonlinear: simpler ones are for plain bodies and grounds, and here is " +
                   scene.general_features()};

@@ -5,6 +5,7 @@
 #include <crawler/accuracy/stress_scales.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/run/accuracy_rule.h>
+#include <crawler/scene/moving_jumps.h>
 #include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
@@ -105,6 +106,11 @@ namespace crawler
         if (mesh == MeshKind::automatic && scales_.jumps_move && adaptive_steps_ && !user_cells_ && !user_tolerance_ &&
             !choice_.numerics.linear)
         {
+          if (with_fronts(scene_, 1.))
+          {
+            fronts();
+            return choice_;
+          }
           moving_jumps();
           finish(fixed);
           return choice_;
@@ -140,6 +146,13 @@ namespace crawler
         }
         finish(fixed);
         return choice_;
+      }
+
+      /// As the last pilot shows it.
+      double
+      least_size_of_displacement() const
+      {
+        return std::max(displacement_floor * pilot_.largest_u, least_size());
       }
 
     private:
@@ -515,6 +528,21 @@ namespace crawler
             : "stretch form, with cells as set by the user";
       }
 
+      /// Jumps that move and are known to be waves become fronts, each with numerics of its own (moving_fronts.h).
+      /// These here are those of a first look.
+      void
+      fronts()
+      {
+        Numerics &n         = choice_.numerics;
+        n.degree            = parameters_.discretization.degree.value_or(moving_degree);
+        n.n_cells           = first_moving_cells;
+        n.integrator        = "radau 5";
+        n.tolerance         = moving_tolerance * scale_ / n.n_cells;
+        n.jumps_move        = true;
+        choice_.has_fronts  = true;
+        choice_.explanation = fmt::format("for Accuracy {:g}: jumps that move, by ever steeper fronts", accuracy_);
+      }
+
       /**
        * Where jumps of the active stress move through the cells every method is of order 1 in their size: the mesh is
        * doubled until the displacement settles, or until it is clear that too many cells would be needed. The error
@@ -644,19 +672,19 @@ namespace crawler
                                  : n.mesh.tolerance > 0.
                                    ? fmt::format("adaptive mesh, tolerance {:.2g}, ", n.mesh.tolerance)
                                    : "";
-        choice_.explanation =
-          predicts ? fmt::format("for Accuracy {:g}: {}from {} pilot runs in {:.2g} s: displacement about {:.3g}",
-                                 accuracy_,
-                                 kind,
-                                 n_pilots_,
-                                 seconds,
-                                 pilot_.displacement)
-                   : fmt::format("for Accuracy {:g}: {}the last of {} pilot runs, with {} cells, ended early: {}",
-                                 accuracy_,
-                                 kind,
-                                 n_pilots_,
-                                 n.n_cells,
-                                 pilot_.time.message);
+        choice_.explanation    = predicts
+                                   ? fmt::format("for Accuracy {:g}: {}from {} in {:.2g} s: displacement about {:.3g}",
+                                              accuracy_,
+                                              kind,
+                                              counted(n_pilots_, "pilot run"),
+                                              seconds,
+                                              pilot_.displacement)
+                                   : fmt::format("for Accuracy {:g}: {}the last of {}, with {} cells, ended early: {}",
+                                              accuracy_,
+                                              kind,
+                                              counted(n_pilots_, "pilot run"),
+                                              n.n_cells,
+                                              pilot_.time.message);
         if (std::max(choice_.promised_error, choice_.least_error) > 1.5 * choice_.wanted_error)
           choice_.explanation += fmt::format("; Accuracy cannot be met, the error is about {:.2g} of the displacement",
                                              std::max(choice_.promised_error, choice_.least_error) / size_);
@@ -688,6 +716,52 @@ namespace crawler
     };
   } // namespace
 
+  namespace
+  {
+    /// The beginning of a scene, with the same active stress.
+    class Beginning
+    {
+    public:
+      Beginning(const Scene &whole, const double duration)
+        : scene_{whole.body,
+                 whole.friction->scaled(1.),
+                 std::unique_ptr<const ActiveStress>(whole.active_stress.get()), // lent, see below
+                 duration,
+                 whole.profiles,
+                 whole.ground}
+      {
+      }
+      ~Beginning()
+      {
+        static_cast<void>(scene_.active_stress.release());
+      }
+      Beginning(const Beginning &) = delete;
+
+      const Scene &
+      scene() const
+      {
+        return scene_;
+      }
+
+    private:
+      Scene scene_;
+    };
+
+    /// When the first strides of a run end, if it has many more and they are all computed: what these need all need.
+    std::optional<double>
+    end_of_first_strides(const RunParameters &parameters, const Scene &scene)
+    {
+      const auto gait = scene.active_stress->repetition();
+      if (!gait || parameters.time.step_control != StepControl::adaptive || parameters.discretization.n_cells ||
+          parameters.time.tolerance)
+        return std::nullopt;
+      const double softness = scene.body.elastic_modulus / natural_units(scene).force * gait->period / scene.end_time;
+      const bool settles = cycle_wish(parameters, scene, /*has_pictures=*/false) && softness > least_settling_stiffness;
+      const double end   = gait->from + first_strides * gait->period;
+      return !settles && scene.end_time > long_run * end ? std::optional(end) : std::nullopt;
+    }
+  } // namespace
+
   std::optional<NumericsChoice>
   choose_numerics(MPI_Comm communicator,
                   const RunParameters &parameters,
@@ -696,6 +770,23 @@ namespace crawler
   {
     try
     {
+      if (const auto end = end_of_first_strides(parameters, scene))
+      {
+        const Beginning beginning(scene, *end);
+        Chooser chooser(communicator, parameters, beginning.scene(), keep_going);
+        NumericsChoice choice = chooser.choose();
+        if (std::isfinite(choice.wanted_error) || choice.is_of_several_runs())
+        {
+          choice.numerics.step_limits = stress_scales(scene).step_limits;
+          choice.least_error *= scene.end_time / *end;
+          if (!choice.is_of_several_runs())
+            choice.least_size = chooser.least_size_of_displacement();
+          choice.explanation += fmt::format("; the first {:g} of {:.4g} strides chose",
+                                            first_strides,
+                                            scene.end_time / scene.active_stress->repetition()->period);
+          return choice;
+        }
+      }
       return Chooser(communicator, parameters, scene, keep_going).choose();
     }
     catch (const Interrupted &)
@@ -708,7 +799,7 @@ namespace crawler
   prepare_for_pictures(NumericsChoice &choice, const RunParameters &parameters)
   {
     const double largest = accuracy_rule::choice::tolerance_of_pictures * choice.wanted_error;
-    if (parameters.time.tolerance || choice.is_family || !choice.numerics.integrator.starts_with("radau") ||
+    if (parameters.time.tolerance || choice.is_of_several_runs() || !choice.numerics.integrator.starts_with("radau") ||
         !(largest < choice.numerics.tolerance))
       return;
     choice.numerics.tolerance =

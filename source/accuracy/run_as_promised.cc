@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/accuracy/mesh_family.h>
+#include <crawler/accuracy/moving_fronts.h>
 #include <crawler/accuracy/run_as_promised.h>
 #include <crawler/base/communication.h>
 #include <crawler/run/self_check.h>
@@ -80,6 +81,34 @@ namespace crawler
   } // namespace
 
   Answer
+  answer_in_memory(const RunParameters &parameters,
+                   const Scene &scene,
+                   const Simulation::Options &options,
+                   const KeepGoing &keep_going)
+  {
+    const auto choice = choose_numerics(MPI_COMM_SELF, parameters, scene, keep_going);
+    if (!choice)
+    {
+      Answer answer;
+      answer.result.time.status = Status::stopped;
+      return answer;
+    }
+    Simulation::Options own = options;
+    own.cycles              = cycle_wish(parameters, scene, /*has_pictures=*/false);
+    return run_as_promised(
+      MPI_COMM_SELF,
+      parameters,
+      scene,
+      *choice,
+      [&](const NumericsChoice &next) {
+        return Simulation(MPI_COMM_SELF, scene, parameters.time, next.numerics).run({}, own, {}, keep_going);
+      },
+      own,
+      /*writes=*/false,
+      keep_going);
+  }
+
+  Answer
   run_as_promised(MPI_Comm communicator,
                   const RunParameters &parameters,
                   const Scene &scene,
@@ -90,6 +119,14 @@ namespace crawler
                   const KeepGoing &keep_going)
   {
     using Clock = std::chrono::steady_clock;
+    if (choice.has_fronts)
+      return answer_of_fronts(
+        parameters,
+        scene,
+        [&](const RunParameters &its_parameters, const Scene &its_scene) {
+          return answer_in_memory(its_parameters, its_scene, options, keep_going);
+        },
+        writes ? simulate : std::function<SimulationResult(const NumericsChoice &)>());
     if (choice.is_family)
       return answer_of_family(parameters,
                               scene,
@@ -98,14 +135,16 @@ namespace crawler
                               writes ? simulate : std::function<SimulationResult(const NumericsChoice &)>(),
                               keep_going);
     Answer answer;
-    answer.choice       = choice;
-    const double wanted = choice.wanted_error;
-    // What has been measured on one mesh after the other is not tried again.
-    const bool may_refine = !choice.is_measured && choice.least_error <= wanted;
-    answer.result         = simulate(choice);
+    answer.choice = choice;
+    answer.result = simulate(choice);
     for (;;)
     {
       SimulationResult &result = answer.result;
+      if (result.time.status == Status::finished)
+        answer.choice.set_size(result.displacement, parameters.accuracy);
+      const double wanted = answer.choice.wanted_error;
+      // What has been measured on one mesh after the other is not tried again.
+      const bool may_refine = !choice.is_measured && choice.least_error <= wanted;
       if (result.time.status == Status::inverted && result.time.reason == "inverted_inside" && choice.is_users)
         confirm_inversion(communicator, parameters, scene, choice, result, keep_going);
       const bool retries = std::isfinite(choice.promised_error) && !choice.is_measured &&

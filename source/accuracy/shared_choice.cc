@@ -20,7 +20,7 @@ namespace crawler
     bool
     may_share(const NumericsChoice &choice, const SceneToCompute &one)
     {
-      return !choice.is_measured && !choice.is_family && std::isfinite(choice.promised_error) &&
+      return !choice.is_measured && !choice.is_of_several_runs() && std::isfinite(choice.promised_error) &&
              batch_method(*one.scene, one.parameters->time, choice.numerics);
     }
 

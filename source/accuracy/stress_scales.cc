@@ -3,6 +3,7 @@
 #include <crawler/scene/fast_changes.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -16,6 +17,23 @@ namespace crawler
     /// Places or times between samples, where they are close; and how many of them apart smoothness shows, not
     /// round-off.
     constexpr unsigned int fine = 512, near = 4;
+
+    /// The largest |x_i|, i < @p n, of what @p x gives; several of them grow side by side, so that none waits for
+    /// itself.
+    template <typename Numbers>
+    double
+    largest_size(const std::size_t n, const Numbers &x)
+    {
+      constexpr std::size_t together = 8;
+      std::array<double, together> largest{};
+      std::size_t i = 0;
+      for (; i + together <= n; i += together)
+        for (std::size_t j = 0; j < together; ++j)
+          largest[j] = std::max(largest[j], std::abs(x(i + j)));
+      for (; i < n; ++i)
+        largest[0] = std::max(largest[0], std::abs(x(i)));
+      return *std::ranges::max_element(largest);
+    }
 
     /// Is one of @p breaks (ascending) between @p from and @p to?
     bool
@@ -131,11 +149,15 @@ namespace crawler
       usual_rate() const
       {
         constexpr double rare = 0.1, far = 4.;
-        std::vector<double> sorted = rates_;
-        std::sort(sorted.begin(), sorted.end());
-        const double usual =
-          sorted[static_cast<std::size_t>(std::floor((1. - rare) * static_cast<double>(sorted.size() - 1)))];
-        return *std::prev(std::upper_bound(sorted.begin(), sorted.end(), far * usual));
+        std::vector<double> rates = rates_;
+        const auto usual =
+          rates.begin() + static_cast<std::ptrdiff_t>(std::floor((1. - rare) * static_cast<double>(rates.size() - 1)));
+        std::nth_element(rates.begin(), usual, rates.end());
+        double largest = *usual;
+        for (const double rate : rates)
+          if (rate <= far * *usual)
+            largest = std::max(largest, rate);
+        return largest;
       }
 
       /// The rare times.
@@ -163,22 +185,23 @@ namespace crawler
       double along   = 0.; ///< |m_s| between the breaks
 
     private:
-      /// The largest sixth difference of neighbours that are @p apart samples from each other, beginning every
-      /// few samples.
+      /// The largest sixth difference of neighbours that are @p apart near samples from each other.
       double
-      sixth_difference(const unsigned int n_points, const unsigned int apart) const
+      sixth_difference(const std::vector<double> &m, const std::size_t apart) const
       {
-        const double L = scene_.body.length;
+        const std::size_t n   = m.size() - 6 * apart;
+        const auto difference = [&](const std::size_t i) {
+          const double *x = m.data() + i;
+          return x[0] + x[6 * apart] - 6. * (x[apart] + x[5 * apart]) + 15. * (x[2 * apart] + x[4 * apart]) -
+                 20. * x[3 * apart];
+        };
+        if (in_space_.empty())
+          return largest_size(n, difference);
+        const double h = scene_.body.length / static_cast<double>(m.size() - 1);
         double found   = 0.;
-        for (unsigned int i = 0; i + 6 * apart <= n_points; i += near)
-        {
-          const double *m         = m_.data() + i;
-          const double difference = m[0] + m[6 * apart] - 6. * (m[apart] + m[5 * apart]) +
-                                    15. * (m[2 * apart] + m[4 * apart]) - 20. * m[3 * apart];
-          if (std::abs(difference) > found &&
-              (in_space_.empty() || !any_between(in_space_, L * i / n_points, L * (i + 6 * apart) / n_points)))
-            found = std::abs(difference);
-        }
+        for (std::size_t i = 0; i < n; ++i)
+          if (!any_between(in_space_, h * static_cast<double>(i), h * static_cast<double>(i + 6 * apart)))
+            found = std::max(found, std::abs(difference(i)));
         return found;
       }
 
@@ -197,17 +220,22 @@ namespace crawler
         const double L = scene_.body.length;
         m_.resize(n_points + 1);
         stress->values(t, m_);
-        for (unsigned int i = 0; i <= n_points; ++i)
-        {
-          largest = std::max(largest, std::abs(m_[i]));
-          if (i > 0 && (in_space_.empty() || !any_between(in_space_, L * (i - 1) / n_points, L * i / n_points)))
-            along = std::max(along, std::abs(m_[i] - m_[i - 1]) * n_points / L);
-        }
-        if (n_points == fine)
-        {
-          fine_difference_   = std::max(fine_difference_, sixth_difference(n_points, near));
-          coarse_difference_ = std::max(coarse_difference_, sixth_difference(n_points, 2 * near));
-        }
+        largest       = std::max(largest, largest_size(m_.size(), [this](const std::size_t i) { return m_[i]; }));
+        double change = 0.;
+        if (in_space_.empty())
+          change = largest_size(n_points, [this](const std::size_t i) { return m_[i + 1] - m_[i]; });
+        else
+          for (unsigned int i = 1; i <= n_points; ++i)
+            if (!any_between(in_space_, L * (i - 1) / n_points, L * i / n_points))
+              change = std::max(change, std::abs(m_[i] - m_[i - 1]));
+        along = std::max(along, change * n_points / L);
+        if (n_points != fine)
+          return;
+        std::vector<double> near_samples;
+        for (unsigned int i = 0; i <= n_points; i += near)
+          near_samples.push_back(m_[i]);
+        fine_difference_   = std::max(fine_difference_, sixth_difference(near_samples, 1));
+        coarse_difference_ = std::max(coarse_difference_, sixth_difference(near_samples, 2));
       }
 
       void
@@ -217,11 +245,11 @@ namespace crawler
         std::vector<double> before, rates(n_times, 0.);
         for (unsigned int j = 0; j <= n_times; ++j)
         {
-          before = m_;
+          before.swap(m_);
           sample(stress.get(), n_points, T_ * j / n_times);
           if (j > 0 && !any_between(in_time_, (j - 1.) / n_times, 1. * j / n_times))
-            for (unsigned int i = 0; i <= n_points; ++i)
-              rates[j - 1] = std::max(rates[j - 1], std::abs(m_[i] - before[i]) * n_times / T_);
+            rates[j - 1] =
+              largest_size(m_.size(), [&](const std::size_t i) { return m_[i] - before[i]; }) * n_times / T_;
         }
         rates_.swap(rates); // finer than those before
       }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/adjoint/forces_at_points.h>
 #include <crawler/adjoint/run_gradient.h>
+#include <crawler/mesh/reference_element.h>
 #include <crawler/run/gait.h>
 
 #include <algorithm>
@@ -48,13 +49,26 @@ namespace crawler
       std::array<std::unique_ptr<ForcesOfScene>, 4> forces;
       std::array<double, 4> strides = {}; ///< the last ones, if they are known
       bool has_strides              = true;
-      std::array<Change, all_quantities.size()> changes;
+      std::vector<Change> changes; ///< [slot of an Adjoint]
+    };
+
+    /// Where a stretch is in the run: w = 1 + sum slopes[j] u[first + j] in a stage.
+    struct StretchInRun
+    {
+      StretchPlace place;
+      std::size_t step;
+      unsigned int stage;
+      std::size_t cell           = 0;
+      std::vector<double> slopes = {};
+      double strain              = 0.;
     };
 
     /// What is asked for: its adjoint in all steps, and its value.
     struct Adjoint
     {
-      Quantity quantity;
+      std::size_t slot;                      ///< of all_quantities, and behind them the stretches
+      Quantity quantity;                     ///< if it is none of these the displacement
+      StretchInRun *stretch;                 ///< if it is one
       std::vector<double> mu;                ///< [step][stage][unknown]
       std::vector<std::vector<double>> zeta; ///< [step], mostly empty
       double value = 0.;                     ///< in natural units
@@ -75,6 +89,7 @@ namespace crawler
       Sweep(const RecordedRun &run,
             const std::span<const Variation> variations,
             const std::span<const Quantity> quantities,
+            const std::span<const StretchPlace> stretches,
             LocalSensitivity &local)
         : run_(run)
         , local_(local)
@@ -94,6 +109,7 @@ namespace crawler
         for (const Variation &variation : variations)
         {
           Direction &direction = directions_.emplace_back();
+          direction.changes.resize(all_quantities.size() + stretches.size());
           for (std::size_t k = 0; k < 4; ++k)
             direction.forces[k] = std::make_unique<ForcesOfScene>(*variation.scenes[k], run.scene, cells_.points());
         }
@@ -102,7 +118,11 @@ namespace crawler
           if (quantity == Quantity::stride         ? stride_.has_value() // the speed is the same in other units
               : quantity == Quantity::paper_energy ? run.scene.active_stress->feedback() == nullptr
                                                    : quantity != Quantity::speed)
-            adjoints_.push_back({quantity, {}, std::vector<std::vector<double>>(run.steps.n_steps())});
+            add_adjoint(static_cast<std::size_t>(quantity), quantity);
+        for (const StretchPlace &place : stretches)
+          stretches_.push_back(nearest_stage(place));
+        for (std::size_t i = 0; i < stretches_.size(); ++i)
+          add_adjoint(all_quantities.size() + i, Quantity::displacement, &stretches_[i]);
         constexpr std::size_t most_samples = 4000000;
         keeps_stress_                      = run.steps.n_steps() * tableau_.n * cells_.size() <= most_samples;
         local_ = {cells_.points(), std::vector<double>(cells_.size()), std::vector<double>(cells_.size()), {}, {}};
@@ -132,8 +152,10 @@ namespace crawler
         Derivatives result;
         for (const Adjoint &adjoint : adjoints_)
         {
+          if (adjoint.stretch != nullptr)
+            continue;
           const auto put = [&](const Quantity quantity, const double own, const std::array<double, 4> &units) {
-            const Direction::Change &change = direction.changes[static_cast<std::size_t>(adjoint.quantity)];
+            const Direction::Change &change = direction.changes[adjoint.slot];
             std::array<double, 4> all;
             for (std::size_t k = 0; k < 4; ++k)
               all[k] = own * change.sums[k] + adjoint.value * (units[k] - own);
@@ -163,7 +185,78 @@ namespace crawler
         return result;
       }
 
+      /// Of the stretches.
+      std::vector<std::optional<double>>
+      of_stretches(const std::size_t number, const Variation &variation) const
+      {
+        constexpr double rough = 1e-7;
+        std::vector<std::optional<double>> result;
+        for (const Adjoint &adjoint : adjoints_)
+          if (adjoint.stretch != nullptr)
+          {
+            const Direction::Change &change = directions_[number].changes[adjoint.slot];
+            const bool is_smooth            = change.at_breaks == 0. && !has_kink(change.sums, variation, rough);
+            result.push_back(is_smooth ? std::optional(derivative_of(change.sums, variation)) : std::nullopt);
+          }
+        return result;
+      }
+
     private:
+      void
+      add_adjoint(const std::size_t slot, const Quantity quantity, StretchInRun *const stretch = nullptr)
+      {
+        adjoints_.push_back({slot, quantity, stretch, {}, std::vector<std::vector<double>>(run_.steps.n_steps())});
+      }
+
+      StretchInRun
+      nearest_stage(const StretchPlace &place) const
+      {
+        StretchInRun nearest{place, 0, 0};
+        double distance = HUGE_VAL;
+        for (std::size_t step = 0; step < run_.steps.n_steps(); ++step)
+          for (unsigned int i = 0; i < tableau_.n; ++i)
+          {
+            const double t = run_.steps.time(step) - (1. - tableau_.c[i]) * run_.steps.size(step);
+            if (std::abs(t - place.t) < distance)
+            {
+              distance      = std::abs(t - place.t);
+              nearest.step  = step;
+              nearest.stage = i;
+            }
+          }
+        return nearest;
+      }
+
+      /// The stretch as a sum over nodes, with the displacements @p u of its stage. At an end of a cell that side
+      /// counts whose stretch is nearer to what is known.
+      void
+      look_up(StretchInRun &stretch, const std::vector<double> &u) const
+      {
+        constexpr double round_off = 1e-12;
+        double left = 0., nearest = HUGE_VAL;
+        for (std::size_t c = 0; c < setup_.n_cells; left += setup_.sizes[c++])
+        {
+          const double x = (stretch.place.s - left) / setup_.sizes[c];
+          if (x < -round_off || x > 1. + round_off)
+            continue;
+          std::vector<double> slopes =
+            interpolation_matrix(reference_element(setup_.degree).nodes, {std::clamp(x, 0., 1.)}, 1);
+          double strain = 0.;
+          for (std::size_t j = 0; j < slopes.size(); ++j)
+          {
+            slopes[j] /= setup_.sizes[c];
+            strain += slopes[j] * u[c * setup_.degree + j];
+          }
+          if (const double distance = std::abs(1. + strain - stretch.place.value); distance < nearest)
+          {
+            nearest        = distance;
+            stretch.cell   = c;
+            stretch.slopes = std::move(slopes);
+            stretch.strain = strain;
+          }
+        }
+      }
+
       void
       go_to_stage(BackwardStages &stages, const unsigned int stage)
       {
@@ -178,7 +271,7 @@ namespace crawler
       {
         const std::vector<double> mean = adjoint_.gradient_of_displacement();
         std::vector<double> gradient   = mean;
-        if (is_work(adjoint.quantity))
+        if (is_work(adjoint.quantity) || adjoint.stretch != nullptr)
           std::ranges::fill(gradient, 0.);
         else
           adjoint.value = run_.displacement / run_.units.length;
@@ -193,6 +286,23 @@ namespace crawler
           };
         LaneAdjoint::Source source = [&](const std::size_t step, const LaneSources &sources) {
           stages.go_back(step);
+          if (adjoint.stretch != nullptr)
+          {
+            StretchInRun &stretch = *adjoint.stretch;
+            if (step != stretch.step)
+              return;
+            go_to_stage(stages, stretch.stage);
+            look_up(stretch, stages.u());
+            for (std::size_t j = 0; j < stretch.slopes.size(); ++j)
+              sources.by_u[stretch.stage * n + stretch.cell * setup_.degree + j] += stretch.slopes[j];
+            // Parts of a body that is longer there are strained less.
+            for (Direction &direction : directions_)
+              for (std::size_t k = 0; k < 4; ++k)
+                direction.changes[adjoint.slot].sums[k] +=
+                  stretch.strain / direction.forces[k]->inside.longer(stretch.cell * cells_.per_cell()) -
+                  stretch.strain;
+            return;
+          }
           if (!is_work(adjoint.quantity))
           {
             if (step != before_stride_)
@@ -216,7 +326,7 @@ namespace crawler
               adjoint.quantity, weight, own_, slopes, at_, n, sources.by_u + i * n, sources.by_velocity + i * n);
           }
         };
-        if (adjoint.quantity == Quantity::displacement)
+        if (adjoint.quantity == Quantity::displacement && adjoint.stretch == nullptr)
           source = {};
         if (!adjoint_.solve(run_.steps, gradient, see, source))
           throw std::runtime_error("the adjoint of a step did not converge");
@@ -305,13 +415,13 @@ namespace crawler
             cells_.evaluate(adjoint.mu.data() + (step * tableau_.n + i) * n, mu_, mu_s_);
             if (i + 1 == tableau_.n && !adjoint.zeta[step].empty())
               cells_.evaluate(adjoint.zeta[step].data(), zeta_, zeta_s_);
-            if (adjoint.quantity == Quantity::displacement)
+            if (adjoint.slot == static_cast<std::size_t>(Quantity::displacement))
               add_local(stages.time(), weight);
             for (Direction &direction : directions_)
               for (std::size_t k = 0; k < 4; ++k)
               {
                 ForcesAtPoints &forces    = direction.forces[k]->inside;
-                Direction::Change &change = change_of(direction, adjoint.quantity);
+                Direction::Change &change = direction.changes[adjoint.slot];
                 add_forces(forces, change.sums[k]);
                 if (is_work(adjoint.quantity))
                   change.sums[k] += weight * (works_.rate(adjoint.quantity, *direction.forces[k], at_, at_ends_) -
@@ -382,6 +492,7 @@ namespace crawler
       ForcesOfScene own_;
       WorkRates works_;
       std::vector<Direction> directions_;
+      std::vector<StretchInRun> stretches_;
       std::vector<Adjoint> adjoints_;
       bool keeps_stress_ = true;
       std::optional<double> stride_;  ///< of the run, if it is known
@@ -404,13 +515,19 @@ namespace crawler
   }
 
   std::vector<Derivatives>
-  RunGradient::derivatives(const std::span<const Variation> variations, const std::span<const Quantity> quantities)
+  RunGradient::derivatives(const std::span<const Variation> variations,
+                           const std::span<const Quantity> quantities,
+                           const std::span<const StretchPlace> stretches)
   {
-    Sweep sweep(run_, variations, quantities, local_);
+    Sweep sweep(run_, variations, quantities, stretches, local_);
     sweep.make();
     std::vector<Derivatives> result;
+    of_stretches_.clear();
     for (std::size_t i = 0; i < variations.size(); ++i)
+    {
       result.push_back(sweep.derivatives(i, variations[i]));
+      of_stretches_.push_back(sweep.of_stretches(i, variations[i]));
+    }
     return result;
   }
 } // namespace crawler

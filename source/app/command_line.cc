@@ -2,9 +2,11 @@
 #include <crawler/app/command_line.h>
 #include <crawler/app/commands.h>
 #include <crawler/base/communication.h>
+#include <crawler/base/files.h>
 #include <crawler/base/petsc_object.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/base/standard_output.h>
+#include <crawler/lanes/forced_instruction_set.h>
 #include <crawler/time/failure.h>
 
 #include <deal.II/base/mpi.h>
@@ -27,7 +29,8 @@ namespace crawler
     int
     say(const ExitCode code, const std::string &message)
     {
-      std::cerr << "crawler: " << without_controls(with_short_quotes(with_plain_numbers(message))) << std::endl;
+      std::cerr << "crawler: " << without_controls(with_short_quotes(with_plain_numbers(message)), /*keep_lines=*/false)
+                << std::endl;
       return static_cast<int>(code);
     }
 
@@ -59,7 +62,10 @@ namespace crawler
         if (!commands.parse(arguments, petsc_options))
           return 0;
         if (commands.needs_mpi())
+        {
+          forced_instruction_set(); // or it says why not
           return std::nullopt;
+        }
         if (first)
           commands.run_alone();
         return 0;
@@ -74,7 +80,7 @@ namespace crawler
       }
       catch (const std::filesystem::filesystem_error &error)
       {
-        return fail(ExitCode::file_error, error.what());
+        return fail(ExitCode::file_error, in_words(error));
       }
     }
 
@@ -96,7 +102,7 @@ namespace crawler
       }
       catch (const std::filesystem::filesystem_error &error)
       {
-        return report_error(communicator, ExitCode::file_error, error.what(), /*on_all_ranks=*/false);
+        return report_error(communicator, ExitCode::file_error, in_words(error), /*on_all_ranks=*/false);
       }
       catch (...)
       {
@@ -144,6 +150,7 @@ namespace crawler
   run_command_line(int argc, char **argv)
   {
     std::signal(SIGPIPE, SIG_IGN); // a run goes on when the reader of its output has ended
+    std::signal(SIGXFSZ, SIG_IGN); // a file that becomes too large (ulimit -f) is a file that cannot be written
     // What stands behind "--" is for PETSc, everything before it for us.
     char **end       = argv + argc;
     char **separator = std::find_if(argv, end, [](const char *text) { return std::strcmp(text, "--") == 0; });

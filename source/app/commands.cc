@@ -21,6 +21,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <iostream>
 
 namespace crawler
@@ -178,6 +180,24 @@ namespace crawler
     app_.add_subcommand("man", "Prints the manual page: crawler man | man -l -");
   }
 
+  namespace
+  {
+    /// A word as a shell would take it.
+    std::string
+    quoted(const std::string &word)
+    {
+      const auto is_plain = [](const unsigned char c) {
+        return std::isalnum(c) || c > 127 || std::strchr("_@%+=:,./-", c);
+      };
+      if (!word.empty() && std::ranges::all_of(word, is_plain))
+        return word;
+      std::string result = "'";
+      for (const char c : word)
+        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+      return result + "'";
+    }
+  } // namespace
+
   const std::string &
   Commands::chosen() const
   {
@@ -187,10 +207,17 @@ namespace crawler
   bool
   Commands::parse(const std::vector<std::string> &arguments, const std::vector<std::string> &petsc_options)
   {
-    options_.command_line  = fmt::format("crawler {}", fmt::join(arguments, " "));
+    options_.command_line = "crawler";
+    for (const std::string &word : arguments)
+      options_.command_line += " " + quoted(word);
     options_.petsc_options = fmt::format("{}", fmt::join(petsc_options, " "));
     if (!petsc_options.empty())
       options_.command_line += " -- " + options_.petsc_options;
+    // They would be lines of their own in the files and messages that repeat them.
+    for (const std::string &word : arguments)
+      if (std::any_of(
+            word.begin(), word.end(), [](const char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
+        throw InputError(fmt::format("the command line has a control character in \"{}\", but text is expected", word));
     require_command(app_, arguments);
     if (!petsc_options.empty() && !petsc_options[0].starts_with("-"))
       throw InputError("behind \"--\" stands \"" + petsc_options[0] +

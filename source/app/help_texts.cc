@@ -29,6 +29,8 @@ namespace crawler
       {"crawler atlas map.prm", "a map over two entries, every answer cross-checked"},
       {"crawler tradeoff scene.prm", "what accuracy costs on this scene"},
       {"crawler plot output-worm", "a picture into the folder"},
+      {"crawler plot output-worm --last-stride", "of the last stride; or of --from TIME --to TIME"},
+      {"crawler plot output-worm --help", "all options of this picture"},
       {"crawler report output-worm", "a page for browsers into the folder"},
       {"crawler parameters Body", "one section of the parameter file, every entry explained"},
       {"crawler parameters --format schema", "types, ranges and defaults for other programs"},

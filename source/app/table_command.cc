@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <type_traits>
+
 namespace crawler
 {
   TableCommand::TableCommand(CLI::App &app)
@@ -13,7 +15,8 @@ namespace crawler
     SampleSettings &samples  = options_.samples;
     PreparationSettings &how = options_.preparation;
     const auto number        = [&](const char *name, auto &value, const char *description) {
-      command_->add_option(name, value, description)->type_name("NUMBER");
+      command_->add_option(name, value, description)
+        ->type_name(std::is_integral_v<std::remove_cvref_t<decltype(value)>> ? "WHOLE NUMBER" : "NUMBER");
     };
     const auto text = [&](const char *name, std::string &value, const char *description) {
       command_->add_option(name, value, description)->type_name("TEXT");

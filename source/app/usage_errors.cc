@@ -105,6 +105,12 @@ namespace crawler
         return fmt::format("found \"{}\", but \"{}\" without a value is expected", arguments[i], name);
       if (has_value && name == arguments[i] && ++i == arguments.size())
         return fmt::format("\"{}\" is the last word, but a value is expected behind it", name);
+      if (has_value && dynamic_cast<const CLI::ConversionError *>(&error) != nullptr &&
+          std::string(error.what()).find(": " + name + " = ") != std::string::npos)
+        return fmt::format("\"{}\" is \"{}\", but a {} is expected",
+                           name,
+                           arguments[i].starts_with(name + "=") ? arguments[i].substr(name.size() + 1) : arguments[i],
+                           option->get_type_name() == "NUMBER" ? "number" : "whole number of 0 or more");
       if (has_value && name != "--set" && option->count() > 1)
         return fmt::format("\"{}\" is there {} times, but once is expected", name, option->count());
     }

@@ -65,28 +65,34 @@ namespace crawler
     return std::isfinite(value) ? std::optional(value) : std::nullopt;
   }
 
-  void
-  Mistakes::add_row(const std::size_t row)
+  bool
+  Mistakes::is_first(const std::size_t row)
   {
-    constexpr std::size_t most = 4;
-    if (rows_.size() < most)
-      rows_.push_back(row);
+    if (sentence_.empty())
+    {
+      first_ = row;
+      return true;
+    }
+    if (row != first_)
+      others_.insert(row);
+    return false;
   }
 
   void
   Mistakes::refuse(const std::string &entry) const
   {
-    if (n_ == 0)
+    constexpr std::ptrdiff_t most = 4;
+    if (sentence_.empty())
       return;
-    const std::size_t others = n_ - 1, unnamed = others - rows_.size();
-    if (others == 0)
+    if (others_.empty())
       throw InputError(sentence_, entry);
+    const auto n = static_cast<std::ptrdiff_t>(others_.size());
     throw InputError(fmt::format("{}; {} more {} like it: {}{}",
                                  sentence_,
-                                 others,
-                                 others == 1 ? "row is" : "rows are",
-                                 fmt::join(rows_, ", "),
-                                 unnamed > 0 ? ", ..." : ""),
+                                 n,
+                                 n == 1 ? "row is" : "rows are",
+                                 fmt::join(others_.begin(), std::next(others_.begin(), std::min(n, most)), ", "),
+                                 n > most ? ", ..." : ""),
                      entry);
   }
 
@@ -131,7 +137,7 @@ namespace crawler
           numbers.columns[i].push_back(*row[i]);
         numbers.rows.push_back(number);
       }
-      else if (mistakes.is_first())
+      else if (mistakes.is_first(number))
         mistakes.say(fmt::format("row {} of \"{}\" is \"{}\", but {} numbers {} are expected{}",
                                  number,
                                  file,
@@ -139,8 +145,6 @@ namespace crawler
                                  names.size() == 2 ? "two" : "three",
                                  header,
                                  hint(line, names.size())));
-      else
-        mistakes.add_row(number);
     }
     mistakes.refuse(entry);
     return numbers;
@@ -152,6 +156,8 @@ namespace crawler
                    const std::string &expected,
                    const std::string &entry)
   {
+    if (const std::string reason = unreadable(file); !reason.empty())
+      throw InputError("\"" + file + "\" " + reason + "; " + expected + " is expected", entry);
     std::ifstream in(file, std::ios::binary);
     std::ostringstream text;
     if (!in || !(text << in.rdbuf()))

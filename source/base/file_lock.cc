@@ -28,7 +28,7 @@ namespace crawler
   {
     if (file_ >= 0)
       ::close(file_);
-    file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (file_ < 0)
       throw FileError("cannot write \"" + path_.string() + "\": " + std::strerror(errno));
   }
@@ -46,10 +46,7 @@ namespace crawler
           state_ = State::not_offered;
         break;
       }
-      // Is it still the file of this name?
-      struct stat mine, present;
-      if (::fstat(file_, &mine) == 0 && ::stat(path_.c_str(), &present) == 0 && mine.st_ino == present.st_ino &&
-          mine.st_dev == present.st_dev)
+      if (is_in_place())
         state_ = State::mine;
       else
         open();
@@ -57,10 +54,27 @@ namespace crawler
     return state_;
   }
 
+  bool
+  FileLock::is_in_place() const
+  {
+    struct stat mine, present;
+    return ::fstat(file_, &mine) == 0 && ::lstat(path_.c_str(), &present) == 0 && mine.st_ino == present.st_ino &&
+           mine.st_dev == present.st_dev;
+  }
+
+  void
+  FileLock::require_in_place() const
+  {
+    if (!is_in_place())
+      throw FileError("\"" + path_.parent_path().string() +
+                      "\" was removed or replaced by another program while this one wrote to it: its \"" +
+                      path_.filename().string() + "\" is not there any more");
+  }
+
   void
   FileLock::remove()
   {
-    if (state_ != State::of_another_process)
+    if (state_ != State::of_another_process && is_in_place())
       ::unlink(path_.c_str());
   }
 } // namespace crawler

@@ -44,9 +44,19 @@ namespace crawler
         std::filesystem::remove(temporary, error);
       throw FileError("cannot write \"" + path.string() + "\": " + std::strerror(reason));
     }
+    rename_whole(temporary, path);
+  }
+
+  void
+  rename_whole(const std::filesystem::path &temporary, const std::filesystem::path &path)
+  {
+    std::error_code error;
     std::filesystem::rename(temporary, path, error);
-    if (error)
-      throw FileError("cannot write \"" + path.string() + "\": " + error.message());
+    if (!error)
+      return;
+    const std::string reason = error.message();
+    std::filesystem::remove(temporary, error);
+    throw FileError("cannot write \"" + path.string() + "\": " + reason);
   }
 
   void
@@ -66,8 +76,29 @@ namespace crawler
   }
 
   std::string
+  unreadable(const std::filesystem::path &path)
+  {
+    constexpr std::uintmax_t most = std::uintmax_t(1) << 32;
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
+      return "is a device";
+    if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) > most && !error)
+      return "is larger than 4 GiB";
+    return "";
+  }
+
+  std::string
+  in_words(const std::filesystem::filesystem_error &error)
+  {
+    return fmt::format("cannot use \"{}\": {}", error.path1().string(), error.code().message());
+  }
+
+  std::string
   read_whole_file(const std::filesystem::path &path)
   {
+    if (const std::string reason = unreadable(path); !reason.empty())
+      throw FileError("cannot read \"" + path.string() + "\": it " + reason);
     std::ifstream in(path, std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     if (!in)

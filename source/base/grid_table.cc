@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/csv_numbers.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/base/grid_table.h>
 #include <crawler/base/hdf5_handle.h>
+#include <crawler/base/hdf5_trial.h>
 
 #include <fmt/format.h>
 
@@ -89,15 +91,13 @@ namespace crawler
           seen[point]        = numbers.rows[r];
           grid.values[point] = values[r];
         }
-        else if (repetitions.is_first())
+        else if (repetitions.is_first(numbers.rows[r]))
           repetitions.say(fmt::format("row {} of \"{}\" gives s = {:g}, t = {:g} a second time, after row {}",
                                       numbers.rows[r],
                                       source.file,
                                       s[r],
                                       t[r],
                                       seen[point]));
-        else
-          repetitions.add_row(numbers.rows[r]);
       }
       repetitions.refuse(source.entry);
       const auto n_gaps = std::count(seen.begin(), seen.end(), 0u);
@@ -193,13 +193,22 @@ namespace crawler
     read_hdf5(const Source &source)
     {
       H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
-      const Hdf5Handle file(H5Fopen(source.file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-      if (file < 0)
-        source.refuse("\"{}\" begins as an HDF5 file does, but HDF5 cannot open it", source.file);
+      Dataset s, t, value;
+      const auto read = [&]() {
+        const Hdf5Handle file(H5Fopen(source.file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+        if (file < 0)
+          source.refuse("\"{}\" begins as an HDF5 file does, but HDF5 cannot open it", source.file);
+        s     = read_dataset(file, "s", "ns", source);
+        t     = read_dataset(file, "t", "nt", source);
+        value = read_dataset(file, source.name, "nt,ns", source);
+      };
+      if (!hdf5::is_harmless(source.file, source.name, read))
+        source.refuse("\"{}\" begins as an HDF5 file does, but it is damaged: HDF5 crashes or never ends on it",
+                      source.file);
+      read();
       GridTable grid;
-      grid.s                = read_dataset(file, "s", "ns", source).values;
-      grid.t                = read_dataset(file, "t", "nt", source).values;
-      const Dataset value   = read_dataset(file, source.name, "nt,ns", source);
+      grid.s                = std::move(s.values);
+      grid.t                = std::move(t.values);
       const std::size_t n_s = grid.s.size(), n_t = grid.t.size();
       if (value.extents != std::vector<hsize_t>{n_t, n_s})
         source.refuse("{0}[{1},{2}] in \"{3}\" does not fit to s[{4}] and t[{5}]; {0}[{5},{4}] is expected",
@@ -230,6 +239,8 @@ namespace crawler
   read_grid_table(const std::string &file, const std::string &name, const std::string &entry)
   {
     const Source source{file, name, entry};
+    if (const std::string reason = unreadable(file); !reason.empty())
+      source.refuse("\"{}\" {}; a CSV or HDF5 file is expected", file, reason);
     std::ostringstream content;
     std::ifstream in(file, std::ios::binary);
     if (!in || in.peek() == std::ifstream::traits_type::eof() || !(content << in.rdbuf()))

@@ -34,8 +34,16 @@ namespace crawler
   {
     out_.close();
     write_file(path_, begin_ + text + end_);
-    out_.open(path_, std::ios::binary | std::ios::in | std::ios::out); // "in" keeps what is there
+    open();
     last_lines_ = static_cast<std::streamoff>(begin_.size() + text.size());
+  }
+
+  void
+  GrowingText::open()
+  {
+    out_.open(path_, std::ios::binary | std::ios::in | std::ios::out); // "in" keeps what is there
+    if (!out_)
+      throw FileError("cannot write \"" + path_.string() + "\": " + std::strerror(errno));
   }
 
   void
@@ -45,7 +53,7 @@ namespace crawler
     if (!archive.reads() || last_lines_ == 0)
       return;
     cut_file(path_, static_cast<std::uintmax_t>(last_lines_));
-    out_.open(path_, std::ios::binary | std::ios::in | std::ios::out);
+    open();
     add("");
   }
 } // namespace crawler

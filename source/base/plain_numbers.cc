@@ -46,17 +46,29 @@ namespace crawler
   }
 
   std::string
-  without_controls(const std::string &text)
+  without_controls(const std::string &text, const bool keep_lines)
   {
     constexpr char digits[] = "0123456789abcdef";
     std::string result;
-    for (const char c : text)
+    unsigned int n_following = 0; // bytes of a character of UTF-8 that has begun
+    for (std::size_t i = 0; i < text.size(); ++i)
     {
-      const auto byte = static_cast<unsigned char>(c);
-      if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f)
+      const auto byte    = static_cast<unsigned char>(text[i]);
+      const auto next    = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+      const bool goes_on = n_following > 0 && (byte & 0xc0) == 0x80;
+      // Those of ASCII, those behind it (U+0080 to U+009F), and the latter as single bytes.
+      const bool is_control     = byte < 0x20 || byte == 0x7f || (byte >= 0x80 && byte < 0xa0 && !goes_on);
+      const bool begins_control = byte == 0xc2 && next >= 0x80 && next < 0xa0;
+      n_following               = goes_on                 ? n_following - 1
+                                  : begins_control        ? 0
+                                  : (byte & 0xe0) == 0xc0 ? 1
+                                  : (byte & 0xf0) == 0xe0 ? 2
+                                  : (byte & 0xf8) == 0xf0 ? 3
+                                                          : 0;
+      if ((is_control && !(keep_lines && (byte == '\n' || byte == '\t'))) || begins_control)
         result += {'\\', 'x', digits[byte / 16], digits[byte % 16]};
       else
-        result += c;
+        result += text[i];
     }
     return result;
   }

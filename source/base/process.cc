@@ -3,11 +3,13 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 
 namespace crawler
 {
@@ -64,5 +66,37 @@ namespace crawler
     if (WIFEXITED(status))
       end.status = WEXITSTATUS(status);
     return end;
+  }
+
+  bool
+  comes_to_an_end(const std::function<void()> &work, const unsigned int seconds)
+  {
+    const pid_t id = fork();
+    if (id < 0)
+      return true; // there is no copy to be had, so the original must try
+    if (id == 0)
+    {
+      for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU})
+        std::signal(number, SIG_DFL);
+      const rlimit time = {seconds, seconds}, no_core = {0, 0};
+      setrlimit(RLIMIT_CPU, &time);
+      setrlimit(RLIMIT_CORE, &no_core);
+      const int nowhere = open("/dev/null", O_WRONLY);
+      dup2(nowhere, STDOUT_FILENO);
+      dup2(nowhere, STDERR_FILENO);
+      try
+      {
+        work();
+      }
+      catch (...)
+      {
+      }
+      _exit(0);
+    }
+    int status = 0;
+    while (waitpid(id, &status, 0) < 0)
+      if (errno != EINTR)
+        return false;
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
   }
 } // namespace crawler

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+#include <crawler/base/hdf5_trial.h>
 #include <crawler/base/hdf5_writing.h>
 #include <crawler/base/row_file.h>
 
@@ -71,16 +74,19 @@ namespace crawler
       const bool is_text =
         H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && H5Sget_simple_extent_npoints(space) == 1;
       found(is_text ? 0 : -1, path, "has an attribute \"" + name + "\" that is no text");
+      constexpr std::size_t most = 1 << 28;
+      found(H5Tget_size(type) <= most ? 0 : -1, path, "has an attribute \"" + name + "\" that is too long");
       std::string text(H5Tget_size(type), '\0');
       found(H5Aread(attribute, type, text.data()), path, "has an attribute \"" + name + "\" that cannot be read");
       return text.substr(0, text.find('\0'));
     }
 
-    Hdf5Handle
-    open_to_read(const std::filesystem::path &path)
+    /// Throws InputError if HDF5 does not survive what @p read does with the file.
+    void
+    require_harmless(const std::filesystem::path &path, const std::string &purpose, const std::function<void()> &read)
     {
-      H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
-      return {opened(path, H5P_DEFAULT), H5Fclose};
+      H5Eset_auto(H5E_DEFAULT, nullptr, nullptr); // our own sentence instead of HDF5's stack
+      found(hdf5::is_harmless(path, purpose, read) ? 0 : -1, path, "crashes HDF5, or never ends");
     }
 
     /// Rows @p first to @p first + @p n - 1 of a column; @p value gives the value of row @p first + i.
@@ -121,11 +127,14 @@ namespace crawler
       const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
       const bool is_column = (H5Tget_class(type) == H5T_FLOAT && H5Tget_size(type) == sizeof(double)) ||
                              (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0);
-      if (!is_column || H5Sget_simple_extent_ndims(space) != 1)
+      const Hdf5Handle creation(H5Dget_create_plist(dataset), H5Pclose);
+      if (!is_column || H5Sget_simple_extent_ndims(space) != 1 || H5Pget_layout(creation) != H5D_CONTIGUOUS)
         found(-1, path, fmt::format("has a dataset \"{}\" that is no column of a table", name));
       hsize_t n = 0;
       H5Sget_simple_extent_dims(space, &n, nullptr);
-      if (H5Dget_storage_size(dataset) / H5Tget_size(type) < n)
+      std::error_code error;
+      const hsize_t bytes = std::min<hsize_t>(H5Dget_storage_size(dataset), std::filesystem::file_size(path, error));
+      if (error || bytes / H5Tget_size(type) < n)
         found(-1, path, fmt::format("has a dataset \"{}\" without a place for all its values", name));
       return n;
     }
@@ -193,7 +202,8 @@ namespace crawler
     for (const auto &[name, text] : attributes)
       bytes += static_cast<double>(text.size());
     hdf5::require_space(path, bytes);
-    const std::filesystem::path temporary = path.string() + ".part";
+    const std::filesystem::path temporary = temporary_file(path);
+    try
     {
       const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
       H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18); // attributes may be larger than 64 KB
@@ -250,10 +260,13 @@ namespace crawler
       }
       hdf5::checked(H5Fflush(file, H5F_SCOPE_GLOBAL), path, "write");
     }
-    std::error_code error;
-    std::filesystem::rename(temporary, path, error);
-    if (error)
-      throw FileError("cannot write \"" + path.string() + "\": " + error.message());
+    catch (...)
+    {
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+      throw;
+    }
+    rename_whole(temporary, path);
   }
 
   void
@@ -353,9 +366,25 @@ namespace crawler
   RowReader::RowReader(MPI_Comm communicator, const std::filesystem::path &path, const std::string &group_name)
     : path_(path)
   {
+    on_first_rank(communicator, [&]() {
+      require_harmless(path, "table", [&]() { RowReader(path).open(H5P_DEFAULT, group_name); });
+      return "";
+    });
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
+    open(access, group_name);
+  }
+
+  RowReader::RowReader(std::filesystem::path path)
+    : path_(std::move(path))
+  {
+  }
+
+  void
+  RowReader::open(const hid_t access, const std::string &group_name)
+  {
+    const std::filesystem::path &path = path_;
     handles_.reset(new Handles{{opened(path, access), H5Fclose}});
     const hid_t group =
       found(H5Gopen(handles_->file, group_name.c_str(), H5P_DEFAULT), path, "has no group \"" + group_name + "\"");
@@ -475,9 +504,13 @@ namespace crawler
   std::string
   read_attribute(const std::filesystem::path &path, const std::string &group_name, const std::string &name)
   {
-    const Hdf5Handle file = open_to_read(path);
-    const Hdf5Handle group(
-      found(H5Gopen(file, group_name.c_str(), H5P_DEFAULT), path, "has no group \"" + group_name + "\""), H5Gclose);
-    return read_attribute_of(group, name, path);
+    const auto read = [&]() {
+      const Hdf5Handle file(opened(path, H5P_DEFAULT), H5Fclose);
+      const Hdf5Handle group(
+        found(H5Gopen(file, group_name.c_str(), H5P_DEFAULT), path, "has no group \"" + group_name + "\""), H5Gclose);
+      return read_attribute_of(group, name, path);
+    };
+    require_harmless(path, name, read);
+    return read();
   }
 } // namespace crawler

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace crawler
 {
   namespace
   {
-    constexpr std::size_t width_of_band = 4;
+    constexpr std::size_t width_of_band     = 4;
+    constexpr std::size_t least_polynomials = 4; ///< cubics are reproduced
 
     /// Legendre polynomials of degree 0 to n - 1 at x in [-1, 1], and their second derivatives.
     struct Polynomials
@@ -35,7 +37,7 @@ namespace crawler
     std::size_t
     number_of_polynomials(const std::size_t n_knots, const double length, const double width)
     {
-      constexpr double least = 4., most = 10.;
+      constexpr double least = least_polynomials, most = 10.;
       const double wanted = 2. + std::round(length / width), bearable = 2. * std::sqrt(static_cast<double>(n_knots));
       return static_cast<std::size_t>(std::clamp(std::floor(std::min(wanted, bearable)), least, most));
     }
@@ -70,6 +72,29 @@ namespace crawler
       for (std::size_t i = 0; i < n; ++i)
         result[i] = a[i][n] / a[i][i];
       return result;
+    }
+
+    /// f'' at the end where @p x begins: that of the cubic nearest to the first @p n values.
+    double
+    end_curvature(const std::vector<double> &x,
+                  const std::vector<double> &y,
+                  const std::vector<double> &weights,
+                  const std::size_t n)
+    {
+      const double half = 0.5 * (x[n - 1] - x[0]);
+      std::vector<double> scaled(n);
+      for (std::size_t i = 0; i < n; ++i)
+        scaled[i] = (x[i] - x[0]) / half - 1.;
+      const std::vector<double> nearest = nearest_polynomial(scaled, y, weights, least_polynomials);
+      const Polynomials at_end(-1., least_polynomials);
+      return std::inner_product(nearest.begin(), nearest.end(), at_end.curvatures.begin(), 0.) / (half * half);
+    }
+
+    std::vector<double>
+    reversed(std::vector<double> list)
+    {
+      std::ranges::reverse(list);
+      return list;
     }
   } // namespace
 
@@ -204,9 +229,19 @@ namespace crawler
     const double centre = 0.5 * (knots_.front() + knots_.back()), half = 0.5 * (knots_.back() - knots_.front());
     std::vector<Polynomials> polynomials;
     std::vector<double> trend;
+    double first = 0., last = 0.;            // f'' at the ends of what is left
+    const auto cubic = [&](const double x) { // with these
+      const double d = x - knots_.front();
+      return d * d * (0.5 * first + (last - first) / (12. * half) * d);
+    };
     if (!is_periodic_)
     {
-      const std::size_t n_polynomials = number_of_polynomials(n, 2. * half, width_);
+      const auto begin   = std::ranges::upper_bound(knots_, knots_.front() + width_) - knots_.begin();
+      const auto end     = knots_.end() - std::ranges::lower_bound(knots_, knots_.back() - width_);
+      const auto n_first = static_cast<std::size_t>(begin), n_last = static_cast<std::size_t>(end);
+      // Without many samples in a width the spline through the samples, which keeps cubics, knows the ends better.
+      const bool is_narrow            = std::max(n_first, n_last) <= least_polynomials;
+      const std::size_t n_polynomials = is_narrow ? least_polynomials : number_of_polynomials(n, 2. * half, width_);
       std::vector<double> x(n);
       for (std::size_t i = 0; i < n; ++i)
       {
@@ -217,6 +252,12 @@ namespace crawler
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n_polynomials; ++j)
           y[i] -= trend[j] * polynomials[i].values[j];
+      const std::vector<double> unsmoothed = spline_->curvatures(y);
+      first = n_first > least_polynomials ? end_curvature(knots_, y, weights_, n_first) : unsmoothed.front();
+      last  = n_last > least_polynomials ? end_curvature(reversed(knots_), reversed(y), reversed(weights_), n_last)
+                                         : unsmoothed.back();
+      for (std::size_t i = 0; i < n; ++i)
+        y[i] -= cubic(knots_[i]);
     }
     std::vector<double> unknowns(n_unknowns_, 0.);
     const std::size_t n_rows = is_periodic_ ? n_unknowns_ : n;
@@ -236,11 +277,15 @@ namespace crawler
     }
     else
       for (std::size_t i = 0; i < n; ++i)
+      {
+        y[i] += cubic(knots_[i]);
+        M[i] += first + (last - first) * (knots_[i] - knots_.front()) / (2. * half);
         for (std::size_t j = 0; j < trend.size(); ++j)
         {
           y[i] += trend[j] * polynomials[i].values[j];
           M[i] += trend[j] * polynomials[i].curvatures[j] / (half * half);
         }
+      }
     return {spline_, std::move(y), std::move(M)};
   }
 } // namespace crawler

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/plain_numbers.h>
 #include <crawler/base/table.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
+#include <string_view>
 
 namespace crawler
 {
@@ -14,10 +17,20 @@ namespace crawler
     using Numbers = std::vector<double>;
     using Texts   = std::vector<std::string>;
 
-    void
-    append(const std::string &text, fmt::memory_buffer &out)
+    /// A spreadsheet takes what begins like this for a formula, which may call programs.
+    bool
+    is_like_formula(const std::string &text)
     {
-      if (text.find_first_of(",\"\r\n") == std::string::npos)
+      char *end = nullptr;
+      std::strtod(text.c_str(), &end);
+      return !text.empty() && std::string_view("=+-@").find(text[0]) != std::string_view::npos && *end != '\0';
+    }
+
+    void
+    append(const std::string &raw, fmt::memory_buffer &out)
+    {
+      const std::string text = (is_like_formula(raw) ? "'" : "") + without_controls(raw, /*keep_lines=*/false);
+      if (text.find_first_of(",\"") == std::string::npos)
       {
         out.append(text);
         return;

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/lanes/forced_instruction_set.h>
 #include <crawler/lanes/lane_engine.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <span>
+#include <string>
 
 namespace crawler
 {
@@ -48,23 +54,46 @@ namespace crawler
       return list;
     }
 
+    /// The best one, or the one that is forced.
     const Compiled &
-    best()
+    chosen()
     {
-      return *std::ranges::find_if(compiled(), &Compiled::usable);
+      static const Compiled &result =
+        *std::ranges::find_if(compiled(), [forced = forced_instruction_set()](const Compiled &engine) {
+          return engine.usable && (forced == nullptr || std::strcmp(engine.batch.instruction_set, forced) == 0);
+        });
+      return result;
     }
   } // namespace
+
+  const char *
+  forced_instruction_set()
+  {
+    const char *const name = std::getenv("CRAWLER_INSTRUCTION_SET");
+    if (name == nullptr || *name == '\0' || batch_engine(name) != nullptr)
+      return name == nullptr || *name == '\0' ? nullptr : name;
+    std::string usable, is_known = "there is no such instruction set";
+    for (const Compiled &engine : compiled())
+    {
+      if (engine.usable)
+        usable += fmt::format("{}{}", usable.empty() ? "" : ", ", engine.batch.instruction_set);
+      if (std::strcmp(engine.batch.instruction_set, name) == 0)
+        is_known = "this processor does not have it";
+    }
+    throw InputError(
+      fmt::format("CRAWLER_INSTRUCTION_SET is \"{}\", but {}; possible here are {}", name, is_known, usable));
+  }
 
   const LaneEngine &
   batch_engine()
   {
-    return best().batch;
+    return chosen().batch;
   }
 
   const LaneEngine &
   single_engine()
   {
-    return best().single;
+    return chosen().single;
   }
 
   const LaneEngine *

@@ -12,7 +12,7 @@ namespace crawler
     // Fractions of the length of the body.
     constexpr double rest_thickness = 0.1, largest_thickness = 1.;
     constexpr double margin = 0.15, strip = 0.015, tick_end = 0.035, tick_width = 0.008, finest_tick = 0.1;
-    constexpr double arrow_y = -0.07, arrow_width = 0.035, arrow_length = 0.15;
+    constexpr double arrow_y = -0.07, arrow_width = 0.035, arrow_length = 0.15, longest_arrow = 1.5;
     constexpr double scale_top = -0.13, scale_bottom = -0.16, scale_length = 0.5;
 
     constexpr double infinity           = std::numeric_limits<double>::infinity();
@@ -117,7 +117,10 @@ namespace crawler
       if (field_names[f].values == &Fields::position)
         seen_path_ = {seen_[f].first - margin * length_, seen_[f].second + margin * length_};
       if (field_names[f].values == &Fields::friction_force)
-        largest_force_ = std::max(-seen_[f].first, seen_[f].second);
+      {
+        const double force = std::max(-*smallest, *largest);
+        frame_forces_.insert(std::ranges::upper_bound(frame_forces_, force), force);
+      }
     }
     return grow(path_, seen_path_, seen_path_.second - seen_path_.first) || changed;
   }
@@ -158,10 +161,14 @@ namespace crawler
   {
     Corners corners;
     const double y = arrow_y * length_, half = arrow_width * length_ / 2.;
+    double typical = frame_forces_.empty() ? 0. : frame_forces_[3 * (frame_forces_.size() - 1) / 4];
+    if (typical == 0. && !frame_forces_.empty())
+      typical = frame_forces_.back();
     for (const Grip &grip : grips)
     {
-      const double size = largest_force_ > 0. ? -arrow_length * length_ * grip.friction_force / largest_force_ : 0.;
-      const double x    = grip.position;
+      const double share = typical > 0. ? std::clamp(grip.friction_force / typical, -longest_arrow, longest_arrow) : 0.,
+                   size  = -arrow_length * length_ * share;
+      const double x     = grip.position;
       corners.insert(corners.end(), {x, y - half, 0., x + size, y, 0., x, y + half, 0.});
     }
     return corners;

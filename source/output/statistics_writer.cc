@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 
 namespace crawler
@@ -94,8 +96,14 @@ namespace crawler
   {
     out_.open(path_);
     out_ << fmt::format("{}\n", fmt::join(column_names(), ","));
+    require_written();
+  }
+
+  void
+  StatisticsWriter::require_written() const
+  {
     if (!out_)
-      throw FileError("cannot write \"" + path_.string() + "\"");
+      throw FileError("cannot write \"" + path_.string() + "\": " + std::strerror(errno));
   }
 
   void
@@ -106,6 +114,7 @@ namespace crawler
     Statistics::observe(snapshot);
     if (snapshot.pictures.is_snapshot)
       out_.flush();
+    require_written();
   }
 
   void
@@ -121,8 +130,7 @@ namespace crawler
         line += fmt::format(fmt::runtime(columns[i].format), value);
     }
     out_ << with_plain_numbers(line) << '\n';
-    if (!out_)
-      throw FileError("cannot write \"" + path_.string() + "\" (is the disk full?)");
+    require_written();
   }
 
   void
@@ -130,18 +138,24 @@ namespace crawler
   {
     if (writes_)
       out_.flush();
+    require_written();
   }
 
   void
   StatisticsWriter::exchange(Archive &archive)
   {
-    std::uintmax_t size = out_.is_open() ? static_cast<std::uintmax_t>(out_.flush().tellp()) : 0;
+    std::uintmax_t size = 0;
+    if (out_.is_open())
+    {
+      out_.flush();
+      require_written();
+      size = static_cast<std::uintmax_t>(out_.tellp());
+    }
     archive(size);
     if (!archive.reads() || size == 0 || !writes_)
       return;
     cut_file(path_, size);
     out_.open(path_, std::ios::in | std::ios::out | std::ios::ate);
-    if (!out_)
-      throw FileError("cannot write \"" + path_.string() + "\"");
+    require_written();
   }
 } // namespace crawler

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/output/snapshot_hdf5.h>
 #include <crawler/output/xdmf_files.h>
 
@@ -199,10 +200,11 @@ namespace crawler
   void
   XdmfFiles::resize(const std::size_t n_frames, const std::size_t n)
   {
-    const std::filesystem::path part = path_.string() + ".part";
-    SnapshotHdf5::create(part, n_frames, n);
-    const std::size_t common = std::min(n, most_points_);
+    const std::filesystem::path part = temporary_file(path_);
+    const std::size_t common         = std::min(n, most_points_);
+    try
     {
+      SnapshotHdf5::create(part, n_frames, n);
       const SnapshotHdf5 larger(part);
       constexpr std::size_t together = 64;
       for (std::size_t row = 0; row < frames_.size(); row += together)
@@ -218,11 +220,14 @@ namespace crawler
       larger.write(ground + "cells", numbers_to(4 * strips));
       larger.write(scale + "cells", numbers_to(4));
     }
+    catch (...)
+    {
+      std::error_code ignored;
+      std::filesystem::remove(part, ignored);
+      throw;
+    }
     file_.reset();
-    std::error_code error;
-    std::filesystem::rename(part, path_, error);
-    if (error)
-      throw FileError("cannot write \"" + path_.string() + "\": " + error.message());
+    rename_whole(part, path_);
     file_        = std::make_unique<SnapshotHdf5>(path_);
     most_frames_ = n_frames;
     most_points_ = n;

@@ -18,27 +18,38 @@ namespace crawler
   {
     constexpr std::size_t deepest_section = 100;
     constexpr unsigned int most_included  = 1000;
+    constexpr std::size_t most_bytes      = 1 << 26; // with all included files
+
+    /// All, or somewhat more than is admissible.
+    std::string
+    read_bytes(std::istream &in)
+    {
+      std::string text;
+      for (std::vector<char> part(1 << 16); in && text.size() <= most_bytes;)
+      {
+        in.read(part.data(), static_cast<std::streamsize>(part.size()));
+        text.append(part.data(), static_cast<std::size_t>(in.gcount()));
+      }
+      return text;
+    }
 
     std::string
     read_whole(const std::string &file_name)
     {
-      std::ostringstream content;
       if (file_name == "-")
-      {
-        content << std::cin.rdbuf();
-        return content.str();
-      }
+        return read_bytes(std::cin);
       std::error_code ignored;
       if (std::filesystem::is_directory(file_name, ignored))
         throw FileError(fmt::format("\"{}\" is a folder; the name of a parameter file is expected", file_name));
+      if (const std::string reason = unreadable(file_name); !reason.empty())
+        throw FileError(fmt::format("\"{}\" {}; the name of a parameter file is expected", file_name, reason));
       std::ifstream in(file_name, std::ios::binary);
       if (!in)
         throw FileError(
           fmt::format("cannot read \"{}\": {}",
                       file_name,
                       std::filesystem::exists(file_name, ignored) ? "permission denied" : "there is no such file"));
-      content << in.rdbuf();
-      return content.str();
+      return read_bytes(in);
     }
 
     /// The first word of a line, and the rest.
@@ -106,6 +117,10 @@ namespace crawler
   void
   ParameterFile::parse(const std::string &text, const std::string &name, const unsigned int depth)
   {
+    n_bytes_ += text.size();
+    if (n_bytes_ > most_bytes)
+      throw InputError(
+        fmt::format("{}: at most {} MB of parameters are expected, with all included files", name, most_bytes >> 20));
     if (const std::string found = foreign_format(text); !found.empty())
       throw InputError(fmt::format("{}: this is {}, but a text file of parameters in UTF-8 is expected", name, found));
     if (std::any_of(text.begin(), text.end(), [](const char c) { return static_cast<unsigned char>(c) < 9; }))
@@ -181,7 +196,7 @@ namespace crawler
         "{}: this is the included file number {}, but at most {} are expected", place, n_included_, most_included));
     if (file_name.empty())
       throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
-    const auto file = (folder / file_name).string();
+    const auto file = (folder / (file_name == "-" ? "./-" : file_name)).string(); // standard input is no part of a file
     std::string included;
     try
     {

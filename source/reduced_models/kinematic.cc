@@ -88,12 +88,13 @@ namespace crawler
                                const StrainHistory &strain,
                                const unsigned int n_panels,
                                const std::vector<double> &points)
-    : scene_(scene)
-    , panels_(0., 1., n_panels)
+    : panels_(0., 1., n_panels)
     , points_(points)
     , inside_(with_ends(panels_.points()))
     , strain_(strain.at(inside_))
     , strain_at_points_(strain.at(points))
+    , body_(scene, inside_)
+    , body_at_points_(scene, points)
     , places_(panels_, points)
     , e_(inside_.size())
     , e_t_(inside_.size())
@@ -120,23 +121,23 @@ namespace crawler
       integrals_.sums.velocity = integrals_.sums.dissipation = integrals_.sums.stress_power = unknown;
       return integrals_;
     }
-    motion_.find(panels_, {e_.data(), n}, {e_t_.data(), n}, *scene_.friction);
+    motion_.find(panels_, {e_.data(), n}, {e_t_.data(), n}, body_);
     panels_.running_integral(motion_.gv, m_);
     double end_B_t = 0.;
     for (std::size_t i = 0; i < n; ++i)
       end_B_t += weights[i] * e_t_[i];
-    const double k = scene_.body.elastic_modulus;
+    const std::vector<double> &k = body_.elastic_modulus;
     for (std::size_t i = 0; i < n; ++i)
     {
-      const double m = equation::active_stress(m_[i], e_[i], k);
+      const double m = equation::active_stress(m_[i], e_[i], k[i]);
       add_densities<double>(weights[i],
-                            {equation::elastic_energy(e_[i], k), equation::stress_power(m, e_t_[i]), motion_.gv[i]},
+                            {equation::elastic_energy(e_[i], k[i]), equation::stress_power(m, e_t_[i]), motion_.gv[i]},
                             motion_.v[i],
                             integrals_.sums);
     }
     integrals_.sums.velocity = motion_.velocity; // without the round-off of the sum
     // m = -k e at the ends, where no force acts.
-    integrals_.end_power = -k * (e_[n + 1] * (end_B_t + motion_.drift) - e_[n] * motion_.drift);
+    integrals_.end_power = -(k[n + 1] * e_[n + 1] * (end_B_t + motion_.drift) - k[n] * e_[n] * motion_.drift);
     return integrals_;
   }
 
@@ -160,7 +161,7 @@ namespace crawler
       fields.displacement[i] += displacement - B_mean;
       fields.velocity[i] += motion_.drift;
       fields.active_stress[i] =
-        equation::active_stress(fields.active_stress[i], fields.strain[i], scene_.body.elastic_modulus);
+        equation::active_stress(fields.active_stress[i], fields.strain[i], body_at_points_.elastic_modulus[i]);
     }
     return fields;
   }
@@ -191,8 +192,8 @@ namespace crawler
     constexpr unsigned int most_space = 1024, most_time = 1u << 17, most_in_all = 1u << 20;
     KinematicResult result;
     constexpr unsigned int most_at_start = 128; // panels that end where the strain is not smooth
-    unsigned int n_space = GaussPanels::number_ending_at(scene.active_stress->breaks_in_space(), 2, most_at_start),
-                 n_time  = GaussPanels::number_ending_at(scene.active_stress->breaks_in_time(), 4, most_at_start);
+    unsigned int n_space                 = GaussPanels::number_ending_at(scene.breaks_in_space(), 2, most_at_start),
+                 n_time = GaussPanels::number_ending_at(scene.active_stress->breaks_in_time(), 4, most_at_start);
     for (;;)
     {
       const Sums coarse  = integrate(scene, strain, n_space, n_time, keep_going);
@@ -208,10 +209,17 @@ namespace crawler
         result.stopped = true;
         return result;
       }
-      result.space_error    = std::abs(in_space.displacement - coarse.displacement);
-      result.time_error     = std::abs(in_time.displacement - coarse.displacement);
-      const double allowed  = share * std::max(tolerance * std::abs(in_time.displacement), floor);
-      const bool space_fits = result.space_error <= allowed, time_fits = result.time_error <= allowed;
+      result.space_error   = std::abs(in_space.displacement - coarse.displacement);
+      result.time_error    = std::abs(in_time.displacement - coarse.displacement);
+      const double allowed = share * std::max(tolerance * std::abs(in_time.displacement), floor);
+      // At a = 0 nothing moves: what the works need decides there, and otherwise hardly ever.
+      const auto settled = [&](const Sums &finer) {
+        const double works = share * std::max(tolerance, floor) * coarse.energies.exchanged_work;
+        return std::abs(finer.displacement - coarse.displacement) <= allowed &&
+               std::abs(finer.energies.stress_work - coarse.energies.stress_work) <= works &&
+               std::abs(finer.energies.dissipation - coarse.energies.dissipation) <= works;
+      };
+      const bool space_fits = settled(in_space), time_fits = settled(in_time);
       const bool at_limit = (!space_fits && 4 * n_space > most_space) || (!time_fits && 4 * n_time > most_time) ||
                             std::size_t{16} * n_space * n_time > most_in_all;
       if (!inverts && !(space_fits && time_fits) && !at_limit)

@@ -52,59 +52,57 @@ namespace crawler
   void
   StrainFunctional::evaluate(const std::size_t time,
                              const StrainSamples &samples,
-                             const FrictionLaw &friction,
-                             const double k,
+                             const BodyAtPoints &body,
                              State &state) const
   {
     const double *const e = &samples.strain[time * points_.size()], *const e_t = &samples.rate[time * points_.size()];
     state.is_possible = std::all_of(e, e + points_.size(), [](const double one) { return 1. + one > 0.; });
     if (!state.is_possible)
       return;
-    state.motion.find(space_, {e, n_}, {e_t, n_}, friction, /*with_slopes=*/true);
+    state.motion.find(space_, {e, n_}, {e_t, n_}, body, /*with_slopes=*/true);
     space_.running_integral(state.motion.gv, state.m);
     for (std::size_t i = 0; i < n_; ++i)
-      state.m[i] -= k * e[i];
+      state.m[i] -= body.elastic_modulus[i] * e[i];
   }
 
   std::optional<StrainFunctional::Values>
-  StrainFunctional::values(const StrainSamples &samples, const FrictionLaw &friction, const double k) const
+  StrainFunctional::values(const StrainSamples &samples, const BodyAtPoints &body) const
   {
     const auto &weights = space_.weights();
     State state(n_);
     Values values{};
     for (std::size_t time = 0; time < times_.size(); ++time)
     {
-      evaluate(time, samples, friction, k, state);
+      evaluate(time, samples, body, state);
       if (!state.is_possible)
         return std::nullopt;
       const double *const e = &samples.strain[time * points_.size()], *const e_t = &samples.rate[time * points_.size()];
-      double dissipation_rate = 0., positive_power = 0., square = 0.;
+      double dissipation_rate = 0., positive_power = 0., square = 0., elastic_energy = 0.;
       for (std::size_t i = 0; i < n_; ++i)
       {
         dissipation_rate += weights[i] * state.motion.gv[i] * state.motion.v[i];
         positive_power += weights[i] * std::max(-state.m[i] * e_t[i], 0.);
         square += weights[i] * e[i] * e[i];
+        elastic_energy += 0.5 * weights[i] * body.elastic_modulus[i] * e[i] * e[i];
       }
       values[displacement] += time_weights_[time] * state.motion.velocity;
       values[dissipation] += time_weights_[time] * dissipation_rate;
       values[positive_work] += time_weights_[time] * positive_power;
       values[mean_square] += time_weights_[time] * square;
       if (time + 2 == times_.size()) // the start
-        values[stress_work] -= 0.5 * k * square;
+        values[stress_work] -= elastic_energy;
       if (time + 1 == times_.size())
-        values[stress_work] += 0.5 * k * square;
+        values[stress_work] += elastic_energy;
     }
     values[stress_work] += values[dissipation];
     return values;
   }
 
   StrainSamples
-  StrainFunctional::weights(const Number number,
-                            const StrainSamples &samples,
-                            const FrictionLaw &friction,
-                            const double k) const
+  StrainFunctional::weights(const Number number, const StrainSamples &samples, const BodyAtPoints &body) const
   {
-    const auto &w = space_.weights();
+    const auto &w                = space_.weights();
+    const std::vector<double> &k = body.elastic_modulus;
     State state(n_);
     StrainSamples result;
     result.resize(samples.strain.size());
@@ -116,7 +114,7 @@ namespace crawler
       const double weight = time_weights_[time];
       if (number == stress_work && weight == 0.) // its energies at start and end
         for (std::size_t i = 0; i < n_; ++i)
-          by_e[i] = (time + 1 == times_.size() ? 1. : -1.) * k * w[i] * e[i];
+          by_e[i] = (time + 1 == times_.size() ? 1. : -1.) * k[i] * w[i] * e[i];
       if (weight == 0.)
         continue;
       if (number == mean_square)
@@ -125,7 +123,7 @@ namespace crawler
           by_e[i] = 2. * weight * w[i] * e[i];
         continue;
       }
-      evaluate(time, samples, friction, k, state);
+      evaluate(time, samples, body, state);
       const auto dg = [&](const std::size_t i) { return state.motion.w_dg[i] / state.motion.w[i]; };
       if (number == displacement)
         for (std::size_t i = 0; i < n_; ++i)
@@ -151,7 +149,7 @@ namespace crawler
         for (std::size_t i = 0; i < n_; ++i)
         {
           const double of_force = by_force[i] - by_drift * w[i] / state.motion.g_mean;
-          by_e[i]               = of_force * dg(i) * state.motion.v[i] - k * by_m[i];
+          by_e[i]               = of_force * dg(i) * state.motion.v[i] - k[i] * by_m[i];
           state.by_B[i]         = of_force * state.motion.g[i];
         }
       }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/run/gait_efficiency.h>
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace crawler
 {
@@ -30,22 +28,11 @@ namespace crawler
                   const double energy,
                   const double duration)
     {
-      constexpr double smallest_range = 1e-8; // what is below it is round-off of the stretches
       const double from = result.min_stretch.value, to = result.max_stretch.value;
       if (scene.profiles.friction || !scene.ground.is_plain() || !(from > 0.))
         return std::nullopt;
-      // The power law is monotone; others may have their extremes anywhere.
-      const std::size_t n = scene.has_power_law() ? 2 : 1025;
-      std::vector<double> w(n), g(n);
-      for (std::size_t i = 0; i < n; ++i)
-        w[i] = from + (to - from) * static_cast<double>(i) / static_cast<double>(n - 1);
-      scene.friction->values(w, g);
-      const auto [least, most] = std::minmax_element(g.begin(), g.end());
-      const double largest = 1. / std::sqrt(*least), F = largest - 1. / std::sqrt(*most);
-      const double bound = F * std::sqrt(energy * duration / scene.body.length);
-      return F > smallest_range * largest && bound > 0. && std::isfinite(bound)
-               ? std::optional(std::abs(displacement) / bound)
-               : std::nullopt;
+      const double bound = largest_merit(*scene.friction, from, to) * std::sqrt(energy * duration / scene.body.length);
+      return bound > 0. && std::isfinite(bound) ? std::optional(std::abs(displacement) / bound) : std::nullopt;
     }
   } // namespace
 

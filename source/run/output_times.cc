@@ -51,6 +51,7 @@ namespace crawler
   const PictureTimes::Time *
   OutputTimes::passed_at(const double time) const
   {
-    return next_ > 0 && is_same(pictures_.natural(next_ - 1), time) ? &pictures_.all()[next_ - 1] : nullptr;
+    const bool has_passed = next_ > 0 && next_ <= pictures_.all().size();
+    return has_passed && is_same(pictures_.natural(next_ - 1), time) ? &pictures_.all()[next_ - 1] : nullptr;
   }
 } // namespace crawler

@@ -95,19 +95,22 @@ namespace crawler
     require_general(const RunParameters &p, const Scene &scene)
     {
       const std::string features = scene.general_features();
-      if (p.model != Model::automatic && p.model != Model::nonlinear)
+      const bool is_prescribed   = scene.active_stress->prescribed_strain() != nullptr;
+      if (p.model != Model::automatic && p.model != Model::nonlinear && !(p.model == Model::kinematic && is_prescribed))
         throw InputError(
-          fmt::format("Model is {}, which is for plain bodies and grounds, but the scene has {}; nonlinear or "
+          fmt::format("Model is {}, which is for plain bodies and grounds{}, but the scene has {}; nonlinear or "
                       "auto is expected",
                       word_of(p.model),
+                      p.model == Model::kinematic ? " unless the strain is prescribed" : "",
                       features),
           "Model");
-      if (scene.active_stress->prescribed_strain() != nullptr)
-        throw InputError(fmt::format("Generator is {}, which is for plain bodies and grounds, but the scene has {}; "
-                                     "another one is expected",
-                                     p.active_stress.generator,
-                                     features),
-                         "Active stress/Generator");
+      if (const std::string beyond = scene.features_beyond_strain(); is_prescribed && !beyond.empty())
+        throw InputError(
+          fmt::format("Generator is {}, which is for bodies whose motion follows from their strain alone, "
+                      "but the scene has {}; another one is expected",
+                      p.active_stress.generator,
+                      beyond),
+          "Active stress/Generator");
       if (p.time.cycle_stop == CycleStopMode::on && !scene.is_alike_everywhere())
         throw InputError(fmt::format("Cycle stop is on, but what the body does depends on its place or its past, since "
                                      "the scene has {}; automatic or off is expected",
@@ -200,7 +203,7 @@ namespace crawler
     scene.friction = create_friction_law(ground, body, time.end_time);
     if (ground.friction_law != "power") // the power law that touches it where the stretch is 1
       scene.body.anchoring_exponent = 1. - scene.friction->exponent(1.);
-    scene.active_stress = create_active_stress(active_stress, scene.body, time.end_time);
+    scene.active_stress = create_active_stress(active_stress, scene);
     require_computable_stress(scene);
     require_table_fits(output.active_stress_table, *scene.active_stress);
     if (!scene.is_plain())

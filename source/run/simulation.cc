@@ -207,6 +207,8 @@ namespace crawler
       result.time.status  = run_->diagnosis->status;
       result.time.reason  = run_->diagnosis->reason;
       result.time.message = run_->diagnosis->message;
+      if (run_->accepted.is_there)
+        result.time.time = run_->accepted.time; // not that of the state that was lost
     }
     else if (!run_->options.energy_balance && observers.empty())
       result.displacement = mesh_.assembler->integrals(run_->accepted.time, y_, v_).displacement;

@@ -74,6 +74,8 @@ namespace crawler
     for (bool is_changed = true; is_changed;)
     {
       const std::vector<Cell> &cells = (next ? *next : *mesh_.discretization).cells();
+      if (cells.size() > wanted.size()) // a damaged state: levels without end
+        break;
       changes.assign(cells.size(), CellChange::keep);
       is_changed = false;
       for (std::size_t c = 0, w = 0; c < cells.size(); ++c)

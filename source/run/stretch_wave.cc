@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace crawler
 {
@@ -26,6 +27,48 @@ namespace crawler
     struct Complex
     {
       Harmonics re{}, im{};
+    };
+
+    /// So many pieces of the body are looked at side by side; their number is filled up with pieces that do not move.
+    constexpr std::size_t together = 4;
+
+    /// The harmonics of all pieces.
+    class Pieces
+    {
+    public:
+      explicit Pieces(const std::size_t n_pieces)
+        : n(n_pieces)
+        , filled((n + together - 1) / together * together)
+        , numbers_(2 * n_harmonics * filled, 0.)
+      {
+      }
+
+      /// [filled] of harmonic @p h.
+      double *
+      re(const unsigned int h)
+      {
+        return &numbers_[2 * h * filled];
+      }
+      const double *
+      re(const unsigned int h) const
+      {
+        return &numbers_[2 * h * filled];
+      }
+      double *
+      im(const unsigned int h)
+      {
+        return re(h) + filled;
+      }
+      const double *
+      im(const unsigned int h) const
+      {
+        return re(h) + filled;
+      }
+
+      std::size_t n, filled;
+
+    private:
+      std::vector<double> numbers_;
     };
 
     double
@@ -62,39 +105,40 @@ namespace crawler
 
     /// The number of waves by the mean phase of the fundamental from piece to piece.
     double
-    from_phases(const std::vector<Complex> &E)
+    from_phases(const Pieces &E)
     {
+      const double *const x = E.re(0), *const y = E.im(0);
       double re = 0., im = 0.;
-      for (std::size_t i = 0; i + 1 < E.size(); ++i)
+      for (std::size_t i = 0; i + 1 < E.n; ++i)
       {
-        re += E[i].re[0] * E[i + 1].re[0] + E[i].im[0] * E[i + 1].im[0];
-        im += E[i].re[0] * E[i + 1].im[0] - E[i].im[0] * E[i + 1].re[0];
+        re += x[i] * x[i + 1] + y[i] * y[i + 1];
+        im += x[i] * y[i + 1] - y[i] * x[i + 1];
       }
-      return -std::atan2(im, re) / (2. * std::numbers::pi) * static_cast<double>(E.size());
+      return -std::atan2(im, re) / (2. * std::numbers::pi) * static_cast<double>(E.n);
     }
 
     /// The number of waves of the largest S, to a sixteenth, among those that the pieces tell apart: each harmonic
     /// gives |int E_n e^(iks) ds|^2 as a table over k.
     double
-    search(const std::vector<Complex> &E)
+    search(const Pieces &E)
     {
-      const std::size_t half = E.size() / 2, n_table = steps_per_wave * half + 1;
+      const std::size_t half = E.n / 2, n_table = steps_per_wave * half + 1;
       // The body is folded about its middle: cosines see what is even, sines what is odd, and both directions are one.
       std::vector<Complex> even(half), odd(half);
       std::vector<double> cosines(half, 1.), sines(half, 0.);
       std::vector<std::array<double, 2>> step(half);
       for (std::size_t i = 0; i < half; ++i)
       {
-        const Complex &left = E[half - 1 - i], &right = E[half + i];
+        const std::size_t left = half - 1 - i, right = half + i;
         for (unsigned int n = 0; n < n_harmonics; ++n)
         {
-          even[i].re[n] = right.re[n] + left.re[n];
-          even[i].im[n] = right.im[n] + left.im[n];
-          odd[i].re[n]  = right.re[n] - left.re[n];
-          odd[i].im[n]  = right.im[n] - left.im[n];
+          even[i].re[n] = E.re(n)[right] + E.re(n)[left];
+          even[i].im[n] = E.im(n)[right] + E.im(n)[left];
+          odd[i].re[n]  = E.re(n)[right] - E.re(n)[left];
+          odd[i].im[n]  = E.im(n)[right] - E.im(n)[left];
         }
         const double angle =
-          2. * std::numbers::pi / steps_per_wave * (static_cast<double>(i) + 0.5) / static_cast<double>(E.size());
+          2. * std::numbers::pi / steps_per_wave * (static_cast<double>(i) + 0.5) / static_cast<double>(E.n);
         step[i] = {{std::cos(angle), std::sin(angle)}};
       }
       std::vector<std::array<Harmonics, 2>> power(n_table); // of both directions
@@ -136,12 +180,12 @@ namespace crawler
 
     /// sum_n sum_i |E_n|^2
     double
-    power(const std::vector<Complex> &E)
+    power(const Pieces &E)
     {
       double sum = 0.;
-      for (const Complex &here : E)
-        for (unsigned int n = 0; n < n_harmonics; ++n)
-          sum += square(here.re[n]) + square(here.im[n]);
+      for (unsigned int n = 0; n < n_harmonics; ++n)
+        for (std::size_t i = 0; i < E.n; ++i)
+          sum += square(E.re(n)[i]) + square(E.im(n)[i]);
       return sum;
     }
 
@@ -149,10 +193,9 @@ namespace crawler
     class Beam
     {
     public:
-      /// @p E: [piece] of the body.
-      explicit Beam(std::vector<Complex> E)
+      explicit Beam(Pieces E)
         : E_(std::move(E))
-        , all_(static_cast<double>(E_.size()) * power(E_))
+        , all_(static_cast<double>(E_.n) * power(E_))
       {
       }
 
@@ -163,74 +206,91 @@ namespace crawler
       Value
       at(double nu) const;
 
-      /// The number of waves of the largest S near @p nu, to round-off.
-      double
+      struct Peak
+      {
+        double nu, S;
+      };
+      /// The largest S near @p nu, its number of waves to round-off.
+      Peak
       best(double nu) const;
 
     private:
-      std::vector<Complex> E_;
+      Pieces E_;
       double all_;
     };
 
     Beam::Value
     Beam::at(const double nu) const
     {
-      const double per_piece = 2. * std::numbers::pi * nu / static_cast<double>(E_.size());
-      const double middle    = 0.5 * (static_cast<double>(E_.size()) - 1.);
-      Complex f, f_s, f_ss; // int E_n e^(i n w q s), with powers of s in pieces from the middle
+      const double n_pieces  = static_cast<double>(E_.n);
+      const double per_piece = 2. * std::numbers::pi * nu / n_pieces, middle = 0.5 * (n_pieces - 1.);
+      // e^(i w q s) at all pieces, s from the middle; and its powers.
+      const std::size_t filled = E_.filled;
+      std::vector<double> s(filled), re(filled), im(filled), turn_re(filled, 1.), turn_im(filled, 0.);
       const double step_re = std::cos(per_piece), step_im = std::sin(per_piece);
-      double re = std::cos(per_piece * middle), im = -std::sin(per_piece * middle);
-      for (std::size_t i = 0; i < E_.size(); ++i)
+      re[0] = std::cos(per_piece * middle);
+      im[0] = -std::sin(per_piece * middle);
+      for (std::size_t i = 0; i < filled; ++i)
       {
-        const double s = static_cast<double>(i) - middle;
-        double turn_re = 1., turn_im = 0.;
-        for (unsigned int n = 0; n < n_harmonics; ++n)
-        {
-          const double next_re = turn_re * re - turn_im * im;
-          turn_im              = turn_re * im + turn_im * re;
-          turn_re              = next_re;
-          const double x       = E_[i].re[n] * turn_re - E_[i].im[n] * turn_im,
-                       y       = E_[i].re[n] * turn_im + E_[i].im[n] * turn_re;
-          f.re[n] += x;
-          f.im[n] += y;
-          f_s.re[n] += s * x;
-          f_s.im[n] += s * y;
-          f_ss.re[n] += s * s * x;
-          f_ss.im[n] += s * s * y;
-        }
-        const double next_re = re * step_re - im * step_im;
-        im                   = re * step_im + im * step_re;
-        re                   = next_re;
+        s[i] = static_cast<double>(i) - middle;
+        if (i == 0)
+          continue;
+        re[i] = re[i - 1] * step_re - im[i - 1] * step_im;
+        im[i] = re[i - 1] * step_im + im[i - 1] * step_re;
       }
       Value value;
       for (unsigned int n = 0; n < n_harmonics; ++n)
       {
-        const double k = 2. * std::numbers::pi * (n + 1.) / static_cast<double>(E_.size());
-        value.S += (square(f.re[n]) + square(f.im[n])) / all_;
-        value.slope += 2. * k * (f.im[n] * f_s.re[n] - f.re[n] * f_s.im[n]) / all_;
-        value.curvature +=
-          2. * k * k * (square(f_s.re[n]) + square(f_s.im[n]) - f.re[n] * f_ss.re[n] - f.im[n] * f_ss.im[n]) / all_;
+        // int E_n e^(i n w q s), with powers of s in pieces.
+        std::array<double, together> f_re{}, f_im{}, s_re{}, s_im{}, ss_re{}, ss_im{};
+        const double *const E_re = E_.re(n), *const E_im = E_.im(n);
+        for (std::size_t first = 0; first < filled; first += together)
+          for (std::size_t l = 0; l < together; ++l)
+          {
+            const std::size_t i = first + l;
+            const double c = turn_re[i] * re[i] - turn_im[i] * im[i], d = turn_re[i] * im[i] + turn_im[i] * re[i];
+            turn_re[i]     = c;
+            turn_im[i]     = d;
+            const double x = E_re[i] * c - E_im[i] * d, y = E_re[i] * d + E_im[i] * c;
+            const double sx = s[i] * x, sy = s[i] * y;
+            f_re[l] += x;
+            f_im[l] += y;
+            s_re[l] += sx;
+            s_im[l] += sy;
+            ss_re[l] += s[i] * sx;
+            ss_im[l] += s[i] * sy;
+          }
+        const auto sum = [](const std::array<double, together> &parts) {
+          return std::accumulate(parts.begin(), parts.end(), 0.);
+        };
+        const double k = 2. * std::numbers::pi * (n + 1.) / n_pieces;
+        const double a = sum(f_re), b = sum(f_im), a_s = sum(s_re), b_s = sum(s_im);
+        value.S += (square(a) + square(b)) / all_;
+        value.slope += 2. * k * (b * a_s - a * b_s) / all_;
+        value.curvature += 2. * k * k * (square(a_s) + square(b_s) - a * sum(ss_re) - b * sum(ss_im)) / all_;
       }
       return value;
     }
 
-    double
+    Beam::Peak
     Beam::best(double nu) const
     {
       constexpr unsigned int most_corrections = 30;
       constexpr double most = 0.5 / search_steps_per_wave, last = 1e-7;
       // Newton's method for a slope of 0, which goes uphill where S is not concave. Digits double, so that this last
       // correction leaves round-off.
+      double S = 0.;
       for (unsigned int i = 0; i < most_corrections; ++i)
       {
         const Value here = at(nu);
         const double correction =
           here.curvature < 0. ? std::clamp(-here.slope / here.curvature, -most, most) : std::copysign(most, here.slope);
         nu += correction;
+        S = here.S + correction * (here.slope + 0.5 * correction * here.curvature);
         if (std::abs(correction) < last)
           break;
       }
-      return nu;
+      return {nu, S};
     }
   } // namespace
 
@@ -247,30 +307,30 @@ namespace crawler
       for (std::size_t i = 0; i < n_s; ++i)
         mean[i] += per_phase * w[i];
     const auto turns = circle(n_t);
-    std::vector<Complex> E(n_s);
+    Pieces E(n_s);
     double largest = 0., squares = 0.;
     // Half a period later odd harmonics have the other sign.
     const std::size_t half = n_t / 2;
+    std::vector<double> odd(n_s), even(n_s);
     for (std::size_t j = 0; j < half; ++j)
     {
-      Complex turn;
-      for (unsigned int n = 0; n < n_harmonics; ++n)
-      {
-        turn.re[n] = per_phase * turns[(n + 1) * j % n_t][0];
-        turn.im[n] = -per_phase * turns[(n + 1) * j % n_t][1];
-      }
       for (std::size_t i = 0; i < n_s; ++i)
       {
         const double e = stretch[j][i] - mean[i], later = stretch[j + half][i] - mean[i];
         largest = std::max({largest, std::abs(e), std::abs(later)});
         squares += per_phase * (e * e + later * later);
-        const double odd = e - later, even = e + later;
-        for (unsigned int n = 0; n < n_harmonics; n += 2)
+        odd[i]  = e - later;
+        even[i] = e + later;
+      }
+      for (unsigned int n = 0; n < n_harmonics; ++n)
+      {
+        const double re = per_phase * turns[(n + 1) * j % n_t][0], im = -per_phase * turns[(n + 1) * j % n_t][1];
+        const double *const x = n % 2 == 0 ? odd.data() : even.data();
+        double *const E_re = E.re(n), *const E_im = E.im(n);
+        for (std::size_t i = 0; i < n_s; ++i)
         {
-          E[i].re[n] += odd * turn.re[n];
-          E[i].im[n] += odd * turn.im[n];
-          E[i].re[n + 1] += even * turn.re[n + 1];
-          E[i].im[n + 1] += even * turn.im[n + 1];
+          E_re[i] += x[i] * re;
+          E_im[i] += x[i] * im;
         }
       }
     }
@@ -281,27 +341,33 @@ namespace crawler
     // numbers are orthogonal: so near the phase from piece to piece, else among all. If pairs of pieces find nearly all
     // they see as much as the whole.
     constexpr double half_of_all = 0.5, nearly_all = 0.9;
-    std::vector<Complex> pairs(n_s / 2);
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      for (unsigned int n = 0; n < n_harmonics; ++n)
+    Pieces pairs(n_s / 2);
+    for (unsigned int n = 0; n < n_harmonics; ++n)
+      for (std::size_t i = 0; i < pairs.n; ++i)
       {
-        pairs[i].re[n] = E[2 * i].re[n] + E[2 * i + 1].re[n];
-        pairs[i].im[n] = E[2 * i].im[n] + E[2 * i + 1].im[n];
+        pairs.re(n)[i] = E.re(n)[2 * i] + E.re(n)[2 * i + 1];
+        pairs.im(n)[i] = E.im(n)[2 * i] + E.im(n)[2 * i + 1];
       }
-    const double of_pairs = static_cast<double>(pairs.size()) * power(pairs) / (static_cast<double>(n_s) * power(E));
+    const double of_pairs = static_cast<double>(pairs.n) * power(pairs) / (static_cast<double>(n_s) * power(E));
     Beam beam(pairs);
-    double nu    = beam.best(from_phases(pairs));
-    double found = beam.at(nu).S * of_pairs;
+    Beam::Peak peak = beam.best(from_phases(pairs));
+    bool is_best    = true;
+    double found    = peak.S * of_pairs;
     if (found < half_of_all)
     {
-      nu    = search(pairs);
-      found = beam.at(nu).S * of_pairs;
+      peak.nu = search(pairs);
+      found   = beam.at(peak.nu).S * of_pairs;
+      is_best = false;
       if (found < half_of_all)
-        nu = search(E);
+        peak.nu = search(E);
     }
     if (found < nearly_all)
-      beam = Beam(std::move(E));
-    nu = beam.best(nu);
-    return StretchWave{length / (period * nu), std::max(beam.at(nu).S - beam.at(-nu).S, 0.)};
+    {
+      beam    = Beam(std::move(E));
+      is_best = false;
+    }
+    if (!is_best)
+      peak = beam.best(peak.nu);
+    return StretchWave{length / (period * peak.nu), std::max(peak.S - beam.at(-peak.nu).S, 0.)};
   }
 } // namespace crawler

@@ -4,6 +4,7 @@
 #include <crawler/scene/active_stress/none.h>
 #include <crawler/scene/active_stress/shaped_wave.h>
 #include <crawler/scene/active_stress_library.h>
+#include <crawler/scene/scene.h>
 
 #include <fmt/format.h>
 
@@ -22,18 +23,18 @@ namespace crawler
     }
 
     SumTerm
-    create_term(const TermParameters &parameters, const std::size_t number, const Body &body, const double end_time)
+    create_term(const TermParameters &parameters, const std::size_t number, const Scene &scene)
     {
       const SumTermParameters &own = parameters.combination;
       const std::string entries    = section_of_term(number);
       try
       {
         return {parameters.stress.generator,
-                create_active_stress(parameters.stress, body, end_time),
+                create_active_stress(parameters.stress, scene),
                 own.combine == "multiply",
                 own.factor,
-                Window(own.in_s, 's', entries, body.length),
-                Window(own.in_t, 't', entries, end_time)};
+                Window(own.in_s, 's', entries, scene.body.length),
+                Window(own.in_t, 't', entries, scene.end_time)};
       }
       catch (const InputError &error) // the generator believes that it stands alone
       {
@@ -44,25 +45,25 @@ namespace crawler
     }
 
     std::unique_ptr<ActiveStress>
-    create_sum(const ActiveStressParameters &parameters, const Body &body, const double end_time)
+    create_sum(const ActiveStressParameters &parameters, const Scene &scene)
     {
       std::vector<SumTerm> terms;
       for (const TermParameters &term : parameters.sum.terms)
-        terms.push_back(create_term(term, terms.size() + 1, body, end_time));
-      return std::make_unique<Sum>(std::move(terms), body.length, end_time);
+        terms.push_back(create_term(term, terms.size() + 1, scene));
+      return std::make_unique<Sum>(std::move(terms), scene.body.length, scene.end_time);
     }
 
     /// By Fourier coefficients or of any shape.
     std::unique_ptr<ActiveStress>
-    create_any_optimal_wave(const ActiveStressParameters &parameters, const Body &body, const double end_time)
+    create_any_optimal_wave(const ActiveStressParameters &parameters, const Scene &scene)
     {
       if (parameters.optimal_wave.shape == "Fourier")
-        return std::make_unique<OptimalWave>(parameters.optimal_wave, body, end_time);
-      return std::make_unique<ShapedWave>(parameters.optimal_wave, body, end_time);
+        return std::make_unique<OptimalWave>(parameters.optimal_wave, scene.body, scene.end_time);
+      return std::make_unique<ShapedWave>(parameters.optimal_wave, scene.body, scene.end_time);
     }
 
     std::unique_ptr<ActiveStress>
-    create_prescribed_strain(const ActiveStressParameters &parameters, const Body &body, const double end_time)
+    create_prescribed_strain(const ActiveStressParameters &parameters, const Scene &scene)
     {
       const PrescribedStrainParameters &own = parameters.prescribed_strain;
       std::unique_ptr<ActiveStress> generator;
@@ -70,27 +71,29 @@ namespace crawler
       {
         ActiveStressParameters of_strain = parameters;
         of_strain.generator              = own.given_by;
-        generator                        = create_active_stress(of_strain, body, end_time);
+        generator                        = create_active_stress(of_strain, scene);
       }
-      return std::make_unique<PrescribedStrain>(own, body, end_time, std::move(generator));
+      return std::make_unique<PrescribedStrain>(own, scene, std::move(generator));
     }
 
     /// A generator with the parameters of its own section.
     template <typename Stress, auto section>
     std::unique_ptr<ActiveStress>
-    create(const ActiveStressParameters &parameters, const Body &body, const double end_time)
+    create(const ActiveStressParameters &parameters, const Scene &scene)
     {
       const auto &own = parameters.*section;
-      if constexpr (std::is_constructible_v<Stress, decltype(own), const Body &, double>)
-        return std::make_unique<Stress>(own, body, end_time);
+      if constexpr (std::is_constructible_v<Stress, decltype(own), const Scene &>)
+        return std::make_unique<Stress>(own, scene);
+      else if constexpr (std::is_constructible_v<Stress, decltype(own), const Body &, double>)
+        return std::make_unique<Stress>(own, scene.body, scene.end_time);
       else
-        return std::make_unique<Stress>(own, body.length, end_time);
+        return std::make_unique<Stress>(own, scene.body.length, scene.end_time);
     }
 
     struct Generator
     {
       std::string name, description;
-      std::unique_ptr<ActiveStress> (*create)(const ActiveStressParameters &, const Body &, double);
+      std::unique_ptr<ActiveStress> (*create)(const ActiveStressParameters &, const Scene &);
     };
 
     /// The one list of all generators.
@@ -101,9 +104,7 @@ namespace crawler
       static const std::vector<Generator> list = {
         {"none",
          NoActiveStress::description,
-         [](const P &, const Body &, double) -> std::unique_ptr<ActiveStress> {
-           return std::make_unique<NoActiveStress>();
-         }},
+         [](const P &, const Scene &) -> std::unique_ptr<ActiveStress> { return std::make_unique<NoActiveStress>(); }},
         {"optimal wave", OptimalWave::description, create_any_optimal_wave},
         {"travelling wave", TravellingWave::description, create<TravellingWave, &P::travelling_wave>},
         {"standing wave", StandingWave::description, create<StandingWave, &P::standing_wave>},
@@ -170,11 +171,11 @@ namespace crawler
   }
 
   std::unique_ptr<ActiveStress>
-  create_active_stress(const ActiveStressParameters &parameters, const Body &body, const double end_time)
+  create_active_stress(const ActiveStressParameters &parameters, const Scene &scene)
   {
     for (const Generator &entry : generators())
       if (entry.name == parameters.generator)
-        return entry.create(parameters, body, end_time);
+        return entry.create(parameters, scene);
     throw std::logic_error("the parameters name a generator that is not in the list");
   }
 

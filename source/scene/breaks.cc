@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/scene/active_stress.h>
 #include <crawler/scene/breaks.h>
 
@@ -70,6 +71,8 @@ namespace crawler
   void
   TimeSegments::set_limits()
   {
+    if (piece_ > breaks_.size())
+      throw FileError("a saved state does not fit to the program: its piece of time is not there");
     if (!clamps_)
       return;
     from_ = (piece_ == 0 ? 0. : breaks_[piece_ - 1]) + 2. * least_time_between_breaks;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/scene/friction_law.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace crawler
 {
@@ -16,6 +18,17 @@ namespace crawler
         if (n & 1)
           result *= w;
       return result;
+    }
+
+    /// Where to look for the extremes of g from one stretch to another: at both, where it is monotone.
+    std::vector<double>
+    stretches(const FrictionLaw &friction, const double from, const double to)
+    {
+      const std::size_t n = dynamic_cast<const PowerFriction *>(&friction) != nullptr ? 2 : 1025;
+      std::vector<double> w(n);
+      for (std::size_t i = 0; i < n; ++i)
+        w[i] = from + (to - from) * static_cast<double>(i) / static_cast<double>(n - 1);
+      return w;
     }
   } // namespace
 
@@ -62,5 +75,29 @@ namespace crawler
   PowerFriction::scaled(const double factor) const
   {
     return std::make_unique<PowerFriction>(gamma_ * factor, a_);
+  }
+
+  double
+  largest_merit(const FrictionLaw &friction, const double from, const double to)
+  {
+    constexpr double smallest_range = 1e-8; // what is below it is round-off of the stretches
+    const std::vector<double> w     = stretches(friction, from, to);
+    std::vector<double> g(w.size());
+    friction.values(w, g);
+    const auto [least, most] = std::minmax_element(g.begin(), g.end());
+    const double largest = 1. / std::sqrt(*least), F = largest - 1. / std::sqrt(*most);
+    return F > smallest_range * largest ? F : 0.;
+  }
+
+  std::optional<double>
+  stretch_without_friction(const FrictionLaw &friction, const double from, const double to)
+  {
+    const std::vector<double> w = stretches(friction, from, to);
+    std::vector<double> g(w.size());
+    friction.values(w, g);
+    for (std::size_t i = 0; i < w.size(); ++i)
+      if (!(g[i] > 0.) || !std::isfinite(g[i]))
+        return w[i];
+    return std::nullopt;
   }
 } // namespace crawler

@@ -3,6 +3,15 @@
 
 namespace crawler
 {
+  BodyAtPoints::BodyAtPoints(const Scene &scene, const std::vector<double> &points)
+    : friction(*scene.friction)
+    , friction_profile(profile_at(scene.profiles.friction, points))
+    , elastic_modulus(profile_at(scene.profiles.elastic_modulus, points))
+  {
+    for (double &k : elastic_modulus)
+      k *= scene.body.elastic_modulus;
+  }
+
   GivenMotion::GivenMotion(const std::size_t n)
     : w(n)
     , g(n)
@@ -17,7 +26,7 @@ namespace crawler
   GivenMotion::find(const GaussPanels &panels,
                     const std::span<const double> strain,
                     const std::span<const double> rate,
-                    const FrictionLaw &friction,
+                    const BodyAtPoints &body,
                     const bool with_slopes)
   {
     const auto &weights = panels.weights();
@@ -25,9 +34,14 @@ namespace crawler
     for (std::size_t i = 0; i < w.size(); ++i)
       w[i] = 1. + strain[i];
     if (with_slopes)
-      friction.values_and_log_derivatives(w, g, w_dg);
+      body.friction.values_and_log_derivatives(w, g, w_dg);
     else
-      friction.values(w, g);
+      body.friction.values(w, g);
+    for (std::size_t i = 0; i < w.size(); ++i)
+    {
+      g[i] *= body.friction_profile[i];
+      w_dg[i] *= body.friction_profile[i];
+    }
     double length = 0., g_sum = 0., B_t_sum = 0.;
     for (std::size_t i = 0; i < w.size(); ++i)
     {

@@ -173,6 +173,17 @@ namespace crawler
       }
       return largest;
     }
+
+    /// The names of what is there.
+    std::string
+    listed(const std::vector<std::pair<bool, std::string>> &features)
+    {
+      std::string names;
+      for (const auto &[is_there, name] : features)
+        if (is_there && !name.empty())
+          names += (names.empty() ? "" : ", ") + name;
+      return names;
+    }
   } // namespace
 
   /// Asked for in every residual, and a comparison of types is faster than dynamic_cast.
@@ -199,19 +210,19 @@ namespace crawler
   std::string
   Scene::general_features() const
   {
-    std::string names;
-    const auto add = [&names](const bool present, const char *name) {
-      if (present)
-        names += (names.empty() ? "" : ", ") + std::string(name);
-    };
-    add(profiles.elastic_modulus != nullptr, "Body/Elastic modulus profile");
-    add(profiles.friction != nullptr, "Body/Friction profile");
-    add(profiles.initial_stretch != nullptr, "Body/Initial stretch");
-    add(ground.profile != nullptr, "Ground/Profile");
-    add(!has_power_law(), "Ground/Friction law");
-    add(ground.direction.ratio != 1., "Ground/Backward ratio");
-    add(active_stress && active_stress->feedback() != nullptr, "an active stress with feedback");
-    return names;
+    return listed({{profiles.elastic_modulus != nullptr, "Body/Elastic modulus profile"},
+                   {profiles.friction != nullptr, "Body/Friction profile"},
+                   {!has_power_law(), "Ground/Friction law"},
+                   {true, features_beyond_strain()}});
+  }
+
+  std::string
+  Scene::features_beyond_strain() const
+  {
+    return listed({{profiles.initial_stretch != nullptr, "Body/Initial stretch"},
+                   {ground.profile != nullptr, "Ground/Profile"},
+                   {ground.direction.ratio != 1., "Ground/Backward ratio"},
+                   {active_stress && active_stress->feedback() != nullptr, "an active stress with feedback"}});
   }
 
   double

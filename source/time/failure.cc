@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
 #include <crawler/base/petsc_failure.h>
 #include <crawler/time/failure.h>
 
@@ -31,7 +32,7 @@ namespace crawler
     }
     catch (const std::filesystem::filesystem_error &problem)
     {
-      throw FileError(problem.what());
+      throw FileError(in_words(problem));
     }
     catch (const NonfiniteStress &problem)
     {

@@ -293,6 +293,13 @@ def full_disk(folder):
         check(process.wait(timeout=60) == 0 and problem == "", f"the reader of {arguments[0]} may leave {problem}")
 
 
+def without_scratch(folder):
+    """Programs that start and end at the same time share no scratch folder: none is needed."""
+    (folder / "file").write_text("")
+    done = crawler("check", str(PRM / "examples/small_wave.prm"), environment={"TMPDIR": str(folder / "file")})
+    check(done.returncode == 0 and done.stderr == "", f"no scratch folder is needed: {done.stderr[:200]}")
+
+
 def main():
     """All of it; the exit status says whether something failed."""
     with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
@@ -305,6 +312,7 @@ def main():
         helps()
         without_mpi()
         full_disk(pathlib.Path(first))
+        without_scratch(pathlib.Path(first))
     sys.exit("\n".join(failures) or 0)
 
 

@@ -5,9 +5,13 @@ nothing outside of the output folder is touched.
 
     python3 faults.py PATH_TO_CRAWLER PATH_TO_PRM
 """
+import csv
+import json
 import os
 import pathlib
 import random
+import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -116,6 +120,21 @@ def links(place, scene):
             (folder / name).symlink_to(outside / "file")
             crawler(command, scene, "--output", folder, "--overwrite")
             expect((outside / "file").read_text() == "mine", f"{command} writes through the link {name}")
+    for name in ("study.lock", "summary.json", "results.csv", "results.h5", "log.txt", "statistics.csv"):
+        folder = place / f"link_{name}"
+        folder.mkdir()
+        (folder / name).symlink_to(outside / "file")
+        for command in ("run", "sweep"):
+            for option in ("--overwrite", "--resume"):
+                done = crawler(command, scene, "--output", folder, option)
+                expect(done.returncode in (2, 6) and (outside / "file").read_text() == "mine" and
+                       (folder / name).is_symlink(), f"{command} {option} follows the link {name}: {done.stderr!r}")
+    folder = place / "link_picture"
+    expect(crawler("run", scene, "--output", folder).returncode == 0, "the run of a picture")
+    for name in ("kymograph.png", "report.html"):
+        (folder / name).symlink_to(outside / "file")
+    expect(crawler("plot", folder).returncode == 0 and crawler("report", folder).returncode == 0 and
+           (outside / "file").read_text() == "mine", "a picture or report is written through a link")
     for name in ("solution", "points", "best"):
         folder = place / f"link_{name}"
         folder.mkdir()
@@ -148,6 +167,126 @@ def texts(place):
     expect(done.returncode == 2 and "\x1b" not in done.stderr and "\\x1b[31m" in done.stderr, f"escapes: {done.stderr!r}")
 
 
+def endless(place):
+    """Files without an end, or with too much in them."""
+    for name in ("/dev/zero", "/dev/urandom"):
+        refused(crawler("check", name, seconds=20), 6, "is a device", name)
+        (place / "endless.prm").write_text(f"include {name}\n")
+        refused(crawler("check", place / "endless.prm", seconds=20), 6, "is a device", f"include {name}")
+        refused(crawler("table", name, place / "out.csv", seconds=20), 6, "is a device", f"table {name}")
+        for generator, section in (("table", "Table"), ("prescribed strain", "Prescribed strain")):
+            done = crawler("check", "-", "--set", f"Active stress/Generator={generator}", "--set",
+                           f"Active stress/{section}/File={name}", "--set", "Active stress/Prescribed strain/Given by=table",
+                           seconds=20, input="set Accuracy = 1e-3\n")
+            refused(done, 2, "is a device", f"{generator} {name}")
+    (place / "dash.prm").write_text("include -\n")
+    refused(crawler("check", "dash.prm", seconds=20, cwd=place, input="set Accuracy = 1\n"), 6, "no such file", "include -")
+    with open(place / "big.prm", "wb") as file:
+        file.truncate(1 << 40)
+    refused(crawler("check", place / "big.prm", seconds=20), 6, "4 GiB", "a file of 1 TiB")
+    (place / "part.prm").write_text(("#" * 99 + "\n") * 200000)
+    (place / "whole.prm").write_text("include part.prm\n" * 900)
+    refused(crawler("check", place / "whole.prm", seconds=20), 2, "at most 64 MB", "900 includes of 20 MB")
+
+
+def counts(scene):
+    """Whole numbers that nobody has memory for."""
+    def limit():
+        resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
+
+    entries = json.loads(crawler("parameters", "--format", "schema").stdout)
+    names = []
+
+    def walk(node, path):
+        for key, value in node.get("properties", {}).items():
+            if value.get("type") == "integer" or "integer" in str(value.get("anyOf", "")):
+                names.append("/".join([*path, key]))
+            walk(value, [*path, key])
+
+    walk(entries, [])
+    expect(len(names) > 10, f"only {len(names)} entries are whole numbers")
+    for name in names:
+        for value in ("1e18", "2147483648"):
+            try:
+                done = crawler("check", scene, "--set", f"{name}={value}", seconds=30, preexec_fn=limit)
+                expect(done.returncode in (0, 2) and done.stderr.count("\n") <= 1,
+                       f"{name} = {value}: exit code {done.returncode}, {done.stderr[:300]!r}")
+            except subprocess.TimeoutExpired:
+                failures.append(f"{name} = {value}: no answer")
+    for axes in ("Body/Length : linspace(1, 2, 1e18)", "Body/Length : linspace(1, 2, 1e5); Body/Elastic modulus : "
+                 "linspace(1, 2, 1e5); Body/Anchoring exponent : linspace(1, 2, 1e5)"):
+        done = crawler("check", scene, "--set", f"Sweep/Axes={axes}", seconds=30, preexec_fn=limit)
+        refused(done, 2, "Sweep/Axes", axes)
+
+
+def names_and_cells(place, scene):
+    """Names that steer terminals or shells, and cells that spreadsheets would compute."""
+    for word in ("a\nb", "a\x1b[2Jb", "a\rb", "a\tb"):
+        refused(crawler("run", scene, "--output", place / word), 2, "control character", repr(word))
+        expect(not (place / word).exists(), f"a folder {word!r} is there")
+        refused(crawler("run", place / f"{word}.prm"), 2, "control character", repr(word))
+    done = crawler("run", place / "a\xc2\x9b31mb.prm".encode("latin-1").decode("utf-8"))
+    refused(done, 6, "\\xc2\\x9b31m", "a control character behind ASCII")
+    for name in ("$(touch pwned)", "`touch pwned`", "; touch pwned;", "a b' \" &"):
+        folder = place / "names" / name
+        for words in (["run", scene, "--output", folder], ["plot", folder], ["report", folder]):
+            done = crawler(*words, cwd=place)
+            expect(done.returncode == 0, f"{words[0]} in {name}: {done.returncode}, {done.stderr!r}")
+    expect(not list(place.rglob("pwned")), "a name was given to a shell")
+    # A sweep over words: texts of the user in cells.
+    words = ["-0.1*sin(2*pi*(s+t))", "+0.1*sin(2*pi*(s+t))", "0.1*sin(2*pi*(s+t))"]
+    (place / "cells.prm").write_text("subsection Active stress\n set Generator = expression\nend\nsubsection Sweep\n "
+                                     f"set Axes = Active stress/Expression/Active stress : {', '.join(words)}\nend\n")
+    done = crawler("sweep", place / "cells.prm", "--output", place / "cells")
+    with open(place / "cells" / "results.csv", newline="", encoding="utf-8") as file:
+        header, *rows = csv.reader(file)
+        cells = [row[next(i for i, name in enumerate(header) if "Active stress" in name)] for row in rows]
+    expect(done.returncode == 0 and cells == ["'" + words[0], "'" + words[1], words[2]], f"cells of a table: {cells}")
+
+
+def no_shell():
+    """No source file starts a shell: programs are started with lists of words."""
+    root = pathlib.Path(__file__).resolve().parents[2]
+    call = re.compile(r"::system\s*\(|\bsystem\s*\(\s*\"|\bpopen\s*\(|\bexecl[pe]?\s*\(|shell\s*=\s*True|os\.(?:system|popen)")
+    n_files = 0
+    for folder in ("source", "include", "contrib/plot", "contrib/python"):
+        for path in (root / folder).rglob("*"):
+            if path.suffix in (".cc", ".h", ".py", ".in"):
+                n_files += 1
+                found = call.search(path.read_text(encoding="utf-8"))
+                expect(found is None, f"{path.relative_to(root)} starts a shell: {found and found.group()}")
+    expect(n_files > 300, f"only {n_files} source files were looked at")
+
+
+def plugins(place):
+    """Shared objects are loaded from the path given alone, not from where the system looks for libraries."""
+    for name in ("libm.so.6", "libdeal.ii.so"):
+        done = crawler("check", "-", "--set", "Active stress/Generator=library", "--set",
+                       f"Active stress/Library/File={name}", cwd=place, input="set Accuracy = 1e-3\n")
+        refused(done, 2, "there is no file", f"plug-in {name}")
+
+
+def damaged_input(place):
+    """HDF5 tables with damaged headers."""
+    table, chance = place / "table.h5", random.Random(3)
+    with h5py.File(table, "w") as file:
+        file["s"], file["t"] = np.linspace(0, 1, 5), np.linspace(0, 1, 5)
+        file.create_dataset("m", data=np.zeros((5, 5)), chunks=(2, 2), compression="gzip")
+    whole = table.read_bytes()
+    codes = set()
+    for number in range(60):
+        data = bytearray(whole)
+        for _ in range(chance.randrange(1, 6)):
+            data[chance.randrange(len(data))] = chance.choice((0, 1, 0x7f, 0x80, 0xff, chance.randrange(256)))
+        (place / "damaged.h5").write_bytes(data[:chance.randrange(len(data))] if number % 5 == 0 else data)
+        done = crawler("check", "-", "--set", "Active stress/Generator=table", "--set", "Active stress/Table/File=damaged.h5",
+                       cwd=place, input="set Accuracy = 1e-3\n", seconds=20)
+        codes.add(done.returncode)
+        expect(done.returncode in (0, 2) and done.stderr.count("\n") <= 1,
+               f"damaged table {number}: {done.returncode}, {done.stderr[:300]!r}")
+    expect(2 in codes, "no damage of a table was seen")
+
+
 def two_at_once(place):
     """Two runs in one folder: one of them is refused."""
     folder, scene = place / "both", PRM / "paper" / "fig_2.prm"
@@ -173,6 +312,12 @@ with tempfile.TemporaryDirectory() as directory:
     damaged_tables(directory, quick)
     links(directory, quick)
     texts(directory)
+    endless(directory)
+    counts(quick)
+    names_and_cells(directory, quick)
+    no_shell()
+    plugins(directory)
+    damaged_input(directory)
     two_at_once(directory)
 
 sys.exit("\n".join(failures) or 0)

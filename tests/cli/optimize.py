@@ -73,6 +73,9 @@ with tempfile.TemporaryDirectory() as place:
         merit = best["displacement"] / math.sqrt(best["stress_power"])
         expect(abs(merit - optimum["objective"]) < 1e-6, f"{name} harmonics: the run gives the merit {merit}")
         expect(max(merits(place / name)) <= 1, f"{name} harmonics: an evaluation is better than any gait can be")
+        parts = [float(row["efficiency"]) for row in rows(place / name) if row["efficiency"]]
+        expect(len(parts) > 100 and max(parts) <= 1 and abs(max(parts) - best["gait"]["efficiency"]) < 0.05,
+               f"{name} harmonics: efficiencies up to {max(parts)}")
 
     # The optimum is a parameter file that runs.
     again = subprocess.run([CRAWLER, "run", str(place / "two" / "optimum.prm"), "--output", str(place / "again")],
@@ -173,10 +176,24 @@ with tempfile.TemporaryDirectory() as place:
     for study, settings in [("optimize_harmonics", []), ("optimize_harmonics", ["Optimize/Work=0.01",
                             "Optimize/Mean-square strain=0.01", "Optimize/Largest stress=1"]),
                             ("optimize_theorem", []), ("optimize_robot", []), ("optimize_uneven", ["Sweep/Axes="]),
-                            ("optimize_segments", [])]:
+                            ("optimize_segments", []), ("optimize_actuators", ["Sweep/Axes=Active stress/Segments/Number of segments : 2",
+                                                                           "Active stress/Segments/Phase lag=0.25",
+                                                                           "Optimize/Smallest strain=-0.2"]),
+                            ("optimize_harmonics", ["Body/Friction profile=0.5+s", "Body/Elastic modulus profile=1.5-s",
+                                                    "Ground/Friction law=Newtonian", "Optimize/Positive work=1"])]:
         done = run(study, place / "nothing", *settings, options=["--check-gradient"])
         expect(done.returncode == 0, f"gradient of {study}: {done.stdout}{done.stderr}")
+        expect(done.stdout.count("is allowed") >= (3 if study == "optimize_actuators" else 1),
+               f"gradient of {study}: too little was compared: {done.stdout}")
     expect(not (place / "nothing").exists(), "--check-gradient writes files")
+
+    # On a body that is not the same everywhere, the strain being given: the run agrees, and there is no bound.
+    uneven = run("optimize_harmonics", place / "uneven", "Body/Friction profile=1.5-s", "Body/Elastic modulus profile=1+s")
+    best = summary(place / "uneven")
+    merit = best["displacement"] / math.sqrt(best["stress_power"])
+    expect(uneven.returncode == 0 and abs(merit - best["optimize"]["optima"][0]["objective"]) < 1e-6 and merit > 0.2
+           and best["gait"]["efficiency"] is None and "efficiency" not in rows(place / "uneven")[0],
+           f"a body with profiles: merit {merit}, {uneven.stdout}{uneven.stderr}")
 
     # The range says little of how large a variable is; and what has no adjoint is not compared with itself.
     lag, robot = "Active stress/Segments/Phase lag", "Active stress/Segments/Amplitude"
@@ -194,11 +211,41 @@ with tempfile.TemporaryDirectory() as place:
                  "Active stress/Segments/Switching=smooth", "Active stress/Segments/Rate limit=automatic")
     expect("Optimize/Smallest strain sets one" in strong.stdout, f"near inversion: {strong.stdout}{strong.stderr}")
 
+    # Beside inversion the optimiser cannot go on, which is no optimum; from rest with a limit on work alone it can.
+    brink = run("optimize_robot", place / "brink", f"{robot}=1.5", f"Optimize/Variables={lag} : 0.02 to 0.45; "
+                "Active stress/Segments/Duty cycle : 0.2 to 0.8", "Active stress/Segments/Rate limit=1.5")
+    expect(brink.returncode == 3 and "better gaits are impossible: inverted" in brink.stdout,
+           f"beside inversion: {brink.returncode}, {brink.stdout}{brink.stderr}")
+    free = run("optimize_tradeoff", place / "free", "Optimize/Smallest strain=automatic", "Sweep/Axes=", "Optimize/Work=0.01",
+               "Optimize/Largest strain=automatic", "Optimize/Starts=1")
+    expect(free.returncode == 0 and summary(place / "free")["displacement"] > 0.022,
+           f"work alone: {free.returncode}, {free.stdout}{free.stderr}")
+
+    # Words and numbers that go together; a limit that is exceeded has a name; a start without work; a damaged file.
+    pairs = run("optimize_harmonics", place / "pairs", "Sweep/Design=zip", f"Sweep/Axes={MODES}Harmonics : 1, 2; {MODES}"
+                'Coefficients : "0, 0.2, 0.001", "0, 0.2, 0.001, 0.01, 0.02"')
+    found = [o["objective"] for o in summary(place / "pairs")["optimize"]["optima"]] if pairs.returncode == 0 else []
+    expect(len(found) == 2 and abs(found[0] - 0.21462) < 1e-4 and abs(found[1] - 0.22618) < 1e-4,
+           f"pairs: {found}, {pairs.stderr}")
+    against = run("optimize_robot", place / "against", "Optimize/Largest stress rate=1e-3", "Optimize/Most iterations=2",
+                  f"Optimize/Variables={lag} : 0.1 to 0.2")
+    expect(against.returncode == 3 and "Largest stress rate is EXCEEDED" in against.stdout
+           and summary(place / "against")["optimize"]["optima"][0]["exceeded_limit"] == "Largest stress rate",
+           f"an empty set: {against.stdout}{against.stderr}")
+    nothing = run("optimize_harmonics", place / "zero", MODES + "Coefficients=0, 0, 0, 0, 0")
+    expect(nothing.returncode == 3 and "its work is 0" in nothing.stderr and "nan" not in nothing.stdout,
+           f"a start without work: {nothing.stdout}{nothing.stderr}")
+    (place / "pairs" / "starts" / "2-0.json").write_text('{"case": ')
+    damaged = run("optimize_harmonics", place / "pairs", "Sweep/Design=zip", f"Sweep/Axes={MODES}Harmonics : 1, 2; {MODES}"
+                  'Coefficients : "0, 0.2, 0.001", "0, 0.2, 0.001, 0.01, 0.02"', options=["--resume"])
+    expect(damaged.returncode == 2 and "2-0.json" in damaged.stderr and damaged.stderr.count("\n") == 1,
+           f"a damaged file: {damaged.returncode}, {damaged.stderr}")
+
     # Bad input.
     no_limit = ["Optimize/Smallest strain=automatic", "Optimize/Largest strain=automatic"]
     for settings, words in [(["Optimize/Variables="], "Variables is empty"),
                             (["Optimize/Variables=Body/Lenght : 1 to 2"], "nearest name is \"Body/Length\""),
-                            (["Optimize/Variables=Active stress/Modes/Harmonics : 1 to 2"], "are numbers are expected"),
+                            (["Optimize/Variables=Active stress/Modes/Harmonics : 1 to 2"], "is a whole number"),
                             (["Optimize/Variables=Body/Length : 2 to 3"], "in its range, from 2 to 3"),
                             (["Optimize/Variables=Body/Length : 1 to 1"], "increasing numbers"),
                             (["Optimize/Variables=Body/Length : -1 to 2"], "positive number"),

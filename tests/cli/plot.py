@@ -142,6 +142,17 @@ def test_times():
                 check(not any(number in texts for number in away), f"{kind} {' '.join(options)} has not the times {away}")
 
 
+def test_part_of_its_own():
+    """The picture of a part leaves that of the whole as it is."""
+    crawler("plot", "run")
+    before = pathlib.Path("run/kymograph.png").read_bytes()
+    for options, name in ((["--last-stride"], "kymograph_last_stride.png"),
+                          (["--from", "0.5", "--to", "1.5"], "kymograph_from_0.5_to_1.5.png")):
+        end = crawler("plot", "run", *options)
+        check(end.returncode == 0 and pathlib.Path("run", name).is_file(), f"{' '.join(options)} is {name}: {end.stderr}")
+    check(pathlib.Path("run/kymograph.png").read_bytes() == before, "the picture of the whole run stays")
+
+
 def test_bad_input():
     """One sentence, and nothing is drawn."""
     for arguments, code, word in REFUSED:
@@ -182,6 +193,7 @@ def main():
         make_folders()
         test_pictures()
         test_times()
+        test_part_of_its_own()
         test_bad_input()
         test_python(folder)
         os.chdir("/")

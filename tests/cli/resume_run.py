@@ -214,8 +214,12 @@ def stops(scene):
         expect(scene.run("stopped", [*options, *resume]).returncode == 0, f"{scene.name}: resumed after {how.name}")
         scene.compare("stopped")
     shutil.rmtree(scene.place / "stopped")
-    limit = ["--set", f"Time/Wall time limit={0.4 * scene.seconds + 0.1}"]
-    codes = [scene.run("stopped", limit).returncode]
+    for part in (0.4, 0.1, 0.03):  # the machine may have been busier when the run was timed
+        shutil.rmtree(scene.place / "stopped", ignore_errors=True)
+        limit = ["--set", f"Time/Wall time limit={part * scene.seconds + 0.1}"]
+        codes = [scene.run("stopped", limit).returncode]
+        if codes[0] != 0:
+            break
     reason = json.loads((scene.place / "stopped" / "summary.json").read_text())["reason"]
     while codes[-1] == 5 and len(codes) < 40:
         codes.append(scene.run("stopped", [*limit, "--resume"]).returncode)

@@ -45,6 +45,19 @@ subsection Output
   set Number of snapshots = 0
 end
 """
+STRAIN = """
+set Model = auto
+set Accuracy = 1e-6
+subsection Active stress
+  set Generator = prescribed strain
+  subsection Prescribed strain
+    set Given by = wave
+  end
+end
+subsection Output
+  set Number of snapshots = 0
+end
+"""
 K, P, CHI = "Body/Elastic modulus", "Body/Anchoring exponent", "Active stress/Optimal wave/Perturbation parameter"
 failures = []
 
@@ -114,6 +127,19 @@ def answers_without_adjoint(folder):
            f"stopped while sensitivities are computed: {run.returncode}, {summary['status']}")
 
 
+def with_a_given_strain(folder):
+    """At the kinematic level: D = 1 - sqrt(1 - A^2) for a = -1 and the strain A sin 2 pi(s+t), whatever k is."""
+    amplitude = "Active stress/Prescribed strain/Amplitude"
+    result, summary = crawler(folder, STRAIN, f"Output/Uncertainty={amplitude} : 0.01; {K} : 5 %")
+    expect(result.returncode == 0 and summary["model"] == "kinematic", f"a given strain: {result.stderr}")
+    by_amplitude, by_k = (summary["sensitivities"][entry] for entry in (amplitude, K))
+    exact = 0.3 / (1 - 0.3 ** 2) ** 0.5
+    expect(abs(by_amplitude["value"] - exact) <= by_amplitude["error"] < 1e-3 * exact,
+           f"displacement by the amplitude: {by_amplitude}, exact {exact}")
+    expect(abs(by_k["value"]) <= by_k["error"] < 1e-5, f"displacement by k: {by_k}")
+    expect(abs(summary["uncertainty"]["displacement"] - 0.01 * exact) < 1e-5, f"uncertainty: {summary['uncertainty']}")
+
+
 def main():
     """All of it."""
     with tempfile.TemporaryDirectory() as name:
@@ -172,6 +198,7 @@ def main():
             expect(result.returncode == 2 and words in result.stderr, f"Sensitivities = {wrong}: {result.stderr}")
         result, _ = crawler(folder, WAVE, "Model=kinematic", "Output/Sensitivities=all")
         expect(result.returncode == 2 and "nonlinear" in result.stderr, f"the kinematic level: {result.stderr}")
+        with_a_given_strain(folder)
         in_sweeps(folder)
     sys.exit("\n".join(failures) or 0)
 

@@ -18,7 +18,7 @@ import numpy as np
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SAMPLES = [sys.executable, ROOT / "contrib/measured_samples.py"]
-LARVA = ["--unit-of-t", "s", "--shift-t", "first", "--period", "find", "--smooth-t", "0.15", "--smooth-s", "0.6"]
+LARVA = ["--unit-of-t", "s", "--shift-t", "first", "--period", "find", "--smooth-t", "0.15", "--smooth-s", "0.4"]
 TRACKS = ["--columns", "t=frame time", "--first-marker", "0.2", "--length", "4", "--smooth-t", "0.15", "--smooth-s", "0.8"]
 KINEMATIC = """set Model = kinematic
 subsection Body
@@ -124,7 +124,7 @@ def tracks():
     ramp = np.minimum(t / 0.5, 1)
     truth = 0.2 * ramp**2 * (3 - 2 * ramp) * np.sin(2 * np.pi * (s / 4 + t))
     error = np.sqrt(np.mean((e - truth)**2))
-    check(error < 0.02, f"the strain is known to {error:.4f}")
+    check(error < 0.03, f"the strain is known to {error:.4f}")
     check((e[t == t.min()] == 0).all(), "the body begins at rest")
     check("the strain is held" in made.stdout and "copies" in made.stdout, "the report tells what is beyond the markers")
     check(abs(displacement("kinematic.prm", "tracks_run")) > 0.01, "the body moves by the strain")

@@ -72,7 +72,9 @@ def check_errors(folder):
     refused(lambda: crawler.run(FILE, output="/proc/x"), crawler.FileError, "/proc/x")
     refused(lambda: crawler.sweep(FILE), crawler.InputError, "Sweep/Axes")
     refused(lambda: crawler.sweep(FILE, {"Body/Lenght": [1]}), crawler.InputError, "Lenght")
+    refused(lambda: crawler.sweep(FILE, {"Body/Friction profile": ['"']}), crawler.InputError, "double quotes")
     refused(lambda: crawler.batch([FILE, {"Body/Length": -1}]), crawler.InputError, "Body/Length")
+    refused(lambda: crawler.batch({"Body/Length": 1}), crawler.InputError, "a list of scenes is expected")
     refused(lambda: crawler.check(FILE, set={"Model": "linear"}), crawler.InputError, "linear")
     refused(lambda: crawler.read(folder), crawler.FileError, "summary.json")
     refused(lambda: crawler.run(FILE, fields=False).gait.spede, AttributeError, "spede", "speed")
@@ -87,10 +89,20 @@ def check_errors(folder):
            f"warnings {[str(one) for one in caught]}")
 
 
+def check_axes():
+    """An element of a list is a value of the axis, whatever is in it."""
+    for values in (["1, 0.05", "0.9, 0.02"], [[1, 0.05], [0.9, 0.02]]):
+        table = crawler.sweep(FILE, {"Active stress/Optimal wave/Sine coefficients": values})
+        expect(len(table["displacement"]) == 2, f"{len(table['displacement'])} points of {values}")
+    table = crawler.sweep(FILE, {"Body/Friction profile": ["max(1, 2*s)", "1"], "Body/Elastic modulus": "linspace(1, 2, 3)"})
+    expect(len(table["displacement"]) == 6, f"{len(table['displacement'])} points")
+
+
 def check_ends():
     """A body that inverts is a result; with check=True it is an error with that result."""
     result = crawler.run(INVERTS)
     expect(result.status == "inverted" and result.inversion.t > 0 and result.reason and result.message, f"{result!r}")
+    expect(result.end_time <= result.inversion.t, f"displacement of t = {result.end_time}, inverted at {result.inversion.t}")
     error = refused(lambda: crawler.run(INVERTS, check=True), crawler.RunFailed, result.reason, "t = ")
     expect(error.result == result or error.result.status == "inverted", "RunFailed has no result")
     expect([one.status for one in crawler.batch([FILE, INVERTS])] == ["finished", "inverted"], "a batch of both")
@@ -199,6 +211,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         os.chdir(name)
         check_errors(pathlib.Path(name))
+        check_axes()
         check_ends()
         check_signals(pathlib.Path(name))
         check_threads()

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/accuracy/mesh_family.h>
 #include <crawler/accuracy/numerics_choice.h>
+#include <crawler/accuracy/run_as_promised.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/run/simulation.h>
 #include <crawler/studies/core/input.h>
@@ -53,9 +53,9 @@ namespace crawler::test
   {
     Outcome outcome;
     outcome.choice = *choose_numerics(MPI_COMM_WORLD, parameters, scene);
-    if (outcome.choice.is_family)
+    if (outcome.choice.is_of_several_runs())
     {
-      Answer answer = answer_of_family(parameters, scene, outcome.choice, options, {}, {});
+      Answer answer = run_as_promised(MPI_COMM_SELF, parameters, scene, outcome.choice, {}, options, /*writes=*/false);
       return {std::move(answer.result), std::move(answer.choice)};
     }
     const bool stretch = outcome.choice.numerics.formulation == Formulation::stretch; // its cells are not shared

@@ -401,3 +401,27 @@ TEST(HardAnswers, StepsThatOnlyTheirLimitMakes)
   settings.emplace_back("Accuracy", "1e-6");
   expect_within(answer_to(settings), 0.013195775551215, 1e-6, "a wave");
 }
+
+/// Sixty strides that all have to be computed, since the ground varies or the body is too soft to settle: the first
+/// three choose mesh and tolerance, and the bounds are about all sixty.
+TEST(HardAnswers, FirstStridesChooseForLongRuns)
+{
+  const auto settings = [](const bool on_ground, const std::string &accuracy) {
+    test::Settings all = test::wave(-1., 0.3, 1., 60., on_ground ? 1. : 0.01);
+    all.emplace_back("Accuracy", accuracy);
+    if (on_ground)
+      all.emplace_back("Ground/Profile", "1+0.2*sin(x)");
+    return all;
+  };
+  for (const bool on_ground : {false, true})
+  {
+    const std::string what      = on_ground ? "ground" : "soft body";
+    const Parameters parameters = test::parameters_with(settings(on_ground, "1e-5"));
+    const NumericsChoice choice = *choose_numerics(MPI_COMM_SELF, parameters, parameters.create_scene());
+    EXPECT_TRUE(std::isfinite(choice.least_size)) << what << ": " << choice.explanation;
+    const SimulationResult exact = answer_to(settings(on_ground, "1e-8"));
+    ASSERT_EQ(exact.time.status, Status::finished) << what << ": " << exact.time.message;
+    for (const std::string accuracy : {"1e-3", "1e-5"})
+      expect_within(answer_to(settings(on_ground, accuracy)), exact.displacement, std::stod(accuracy), what);
+  }
+}

@@ -58,19 +58,25 @@ namespace
 /// extremes are those of the kinematic level.
 TEST(Ladder, NonlinearFollowsAPrescribedStrain)
 {
-  for (const double a : {-2.5, -1., 1.5})
+  const test::Settings prescribed = {
+    {"Body/Elastic modulus", "0.7"},
+    {"Accuracy", "1e-8"},
+    {"Active stress/Generator", "prescribed strain"},
+    {"Active stress/Prescribed strain/Strain", "0.25*(sin(2*pi*(s+t)) - sin(2*pi*s)) + 0.1*s*t^2"}};
+  const std::vector<test::Settings> bodies = {
+    {{"Body/Anchoring exponent", "3.5"}},
+    {{"Body/Anchoring exponent", "2"}},
+    {{"Body/Anchoring exponent", "-0.5"}},
+    {{"Body/Friction profile", "1.5-s"}, {"Body/Elastic modulus profile", "0.5+s"}, {"Body/Friction coefficient", "2"}},
+    {{"Ground/Friction law", "expression"}, {"Ground/Expression", "1/(0.2+w^2)"}, {"Body/Length", "1.5"}}};
+  for (const test::Settings &body : bodies)
   {
-    const test::Settings settings = {
-      {"Body/Anchoring exponent", test::text(1. - a)},
-      {"Body/Elastic modulus", "0.7"},
-      {"Accuracy", "1e-8"},
-      {"Active stress/Generator", "prescribed strain"},
-      {"Active stress/Prescribed strain/Strain", "0.25*(sin(2*pi*(s+t)) - sin(2*pi*s)) + 0.1*s*t^2"}};
-    const auto full   = test::run_with(settings).result;
-    const auto motion = on_level(settings, Model::kinematic, 1e-10);
+    const test::Settings settings = with(prescribed, body);
+    const auto full               = test::run_with(settings).result;
+    const auto motion             = on_level(settings, Model::kinematic, 1e-10);
     ASSERT_EQ(full.time.status, Status::finished);
     ASSERT_EQ(motion.time.status, Status::finished);
-    EXPECT_NEAR(full.displacement / motion.displacement, 1., 1e-8) << "a = " << a;
+    EXPECT_NEAR(full.displacement / motion.displacement, 1., 1e-8) << body.front().first << " " << body.front().second;
     EXPECT_NEAR(full.energy_balance->stress_work / motion.energy_balance->stress_work, 1., 1e-7);
     EXPECT_NEAR(full.energy_balance->dissipation / motion.energy_balance->dissipation, 1., 1e-7);
     EXPECT_NEAR(full.energy_balance->paper_energy() / motion.energy_balance->paper_energy(), 1., 1e-7);
@@ -111,7 +117,9 @@ TEST(Ladder, AutomaticChoice)
   EXPECT_EQ(model(test::wave(-1., 0.05), 1e-6), Model::nonlinear);
   EXPECT_EQ(model(test::wave(-1., 0.4), 1e-2), Model::nonlinear);
   EXPECT_EQ(model(test::wave(0., 0.4), 1e-6), Model::linear);
-  EXPECT_EQ(model({{"Active stress/Generator", "prescribed strain"}}, 1e-10), Model::kinematic);
+  const test::Settings prescribed = {{"Active stress/Generator", "prescribed strain"}};
+  EXPECT_EQ(model(prescribed, 1e-10), Model::kinematic);
+  EXPECT_EQ(model(with(prescribed, {{"Body/Friction profile", "1+s"}}), 1e-10), Model::kinematic);
   // A stiff body follows its active stress.
   const test::Settings stiff = {{"Active stress/Generator", "expression"},
                                 {"Active stress/Expression/Active stress", "2e4*(sin(2*pi*(s+t)) - sin(2*pi*s))"},
@@ -131,6 +139,18 @@ TEST(Ladder, ScenesThatDoNotFitAreRefused)
             "Model is linear, but a = 1 - p is -1; a = 0 is expected (Anchoring exponent p = 1)");
   EXPECT_EQ(complaint(with(test::wave(0., 0.1), {{"Model", "linear"}})), "nothing");
   EXPECT_EQ(complaint(with(expression, {{"Model", "kinematic"}})), "nothing");
+  EXPECT_EQ(
+    complaint(with(expression, {{"Model", "kinematic"}, {"Body/Friction profile", "1+s"}})),
+    "Model is kinematic, which is for plain bodies and grounds unless the strain is prescribed, but the scene has "
+    "Body/Friction profile; nonlinear or auto is expected");
+  const test::Settings prescribed = {{"Active stress/Generator", "prescribed strain"},
+                                     {"Body/Friction profile", "1+s"}};
+  EXPECT_EQ(complaint(with(prescribed, {{"Ground/Backward ratio", "2"}, {"Ground/Switching velocity", "0.1"}})),
+            "Generator is prescribed strain, which is for bodies whose motion follows from their strain alone, but the "
+            "scene has Ground/Backward ratio; another one is expected");
+  EXPECT_EQ(complaint(with(prescribed, {{"Ground/Friction law", "expression"}, {"Ground/Expression", "1.2-w"}}))
+              .find("the friction law has no positive value at the stretch 1.2"),
+            0u);
 }
 
 /// A level that was asked for gives its answer and its error, also if that is too large.

@@ -108,6 +108,8 @@ def batch(scenes, *, set=None, check=False, **keywords):
     Displacements agree with those of run() within their error bounds, and do not depend on the neighbours. set and
     keywords hold for all scenes. Scenes that are alike but for some numbers are faster in sweep().
     """
+    if isinstance(scenes, (Mapping, str, os.PathLike)):
+        raise InputError("this is one scene, but a list of scenes is expected; run() computes one")
     overrides = _overrides(set, keywords)
     answers = _compiled().batch([_source(scene, overrides) for scene in scenes])
     return [_checked(_result(answer), check) for answer in answers]
@@ -122,7 +124,7 @@ def sweep(scene, axes=None, *, design=None, set=None, output=None, overwrite=Fal
     """
     overrides = _overrides(set, keywords)
     if axes is not None:
-        overrides.append("Sweep/Axes=" + "; ".join(f"{_full_name(name)} : {_text(values, name)}"
+        overrides.append("Sweep/Axes=" + "; ".join(f"{_full_name(name)} : {_axis(values, name)}"
                                                    for name, values in axes.items()))
     if design is not None:
         overrides.append(f"Sweep/Design={design}")
@@ -180,6 +182,17 @@ def _text(value, name):
     if isinstance(value, (list, tuple, range, np.ndarray)):
         return ", ".join(_text(one, name) for one in value)
     raise InputError(f'"{name}" is {value!r}, but a number, a text, True, False or a list is expected')
+
+
+def _axis(values, name):
+    """The values of an axis in words; those with a comma, a colon or a semicolon of their own stand in quotes."""
+    if isinstance(values, (str, numbers.Number)) or not hasattr(values, "__iter__"):
+        return _text(values, name)
+    texts = [_text(one, name) for one in values]
+    for text in texts:
+        if '"' in text:
+            raise InputError(f"\"{name}\" is {text}, but a value of an axis has no double quotes")
+    return ", ".join(f'"{text}"' if re.search("[,;:]", text) else text for text in texts)
 
 
 def _full_name(name):

@@ -4,6 +4,8 @@
 #include <crawler/run/run_parameters.h>
 #include <crawler/run/simulation.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -34,14 +36,36 @@ namespace crawler
     /// whose time tolerance is meant for this strain [1].
     bool is_family = false;
     double strain  = 0.;
+    /// Jumps of the active stress move and become fronts (moving_fronts.h): a run alone has fronts so wide, relative to
+    /// the widest that fit; 0: the jumps themselves.
+    bool has_fronts   = false;
+    double front_part = 0.;
+    /// The first strides of many chose: the size of the displacement is known after the run, but it counts as no less
+    /// than this [length]; not a number otherwise.
+    double least_size = std::numeric_limits<double>::quiet_NaN();
     /// What helps if Accuracy is not met; empty if nothing special does.
     std::string advice;
+
+    /// Is the answer made of several runs, of which none is the answer?
+    bool
+    is_of_several_runs() const
+    {
+      return is_family || has_fronts;
+    }
+
+    /// The run is there: what Accuracy stands for, if only first strides have told up to now.
+    void
+    set_size(const double displacement, const double accuracy)
+    {
+      if (std::isfinite(least_size))
+        wanted_error = promised_error = accuracy * std::max(std::abs(displacement), least_size);
+    }
 
     void
     exchange(Archive &archive)
     {
       archive(numerics, explanation, promised_error, wanted_error, space_share, least_error, is_rough, is_users);
-      archive(is_measured, is_family, strain, advice);
+      archive(is_measured, is_family, strain, has_fronts, front_part, least_size, advice);
     }
   };
 

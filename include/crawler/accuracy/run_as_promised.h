@@ -24,4 +24,11 @@ namespace crawler
                   const Simulation::Options &options,
                   bool writes,
                   const KeepGoing &keep_going = {});
+
+  /// The same of one rank without files, with numerics chosen for it.
+  Answer
+  answer_in_memory(const RunParameters &parameters,
+                   const Scene &scene,
+                   const Simulation::Options &options,
+                   const KeepGoing &keep_going);
 } // namespace crawler

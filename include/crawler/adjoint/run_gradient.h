@@ -32,6 +32,13 @@ namespace crawler
     std::vector<double> stress;
   };
 
+  /// A stretch of the body in a run: an extreme, say.
+  struct StretchPlace
+  {
+    double s, t;  ///< over length and duration
+    double value; ///< which tells the sides of a jump apart
+  };
+
   /// Derivatives by one number; there may be none, see RunGradient.
   using Derivatives = std::array<std::optional<double>, all_quantities.size()>;
 
@@ -52,7 +59,17 @@ namespace crawler
     /// the displacement has a kink there, and none of works where jumps come together in time. The paper's energy has
     /// none with feedback. Throws std::runtime_error if the adjoint cannot be found.
     std::vector<Derivatives>
-    derivatives(std::span<const Variation> variations, std::span<const Quantity> quantities);
+    derivatives(std::span<const Variation> variations,
+                std::span<const Quantity> quantities,
+                std::span<const StretchPlace> stretches = {});
+
+    /// Of the last derivatives(): those of the stretches where they were wanted, each in the nearest stage of a step,
+    /// [variation][stretch]. Where it is an extreme this is the derivative of the extreme, too.
+    const std::vector<std::vector<std::optional<double>>> &
+    of_stretches() const
+    {
+      return of_stretches_;
+    }
 
     /// Of the last derivatives(), if they were of the displacement, too.
     const LocalSensitivity &
@@ -64,6 +81,7 @@ namespace crawler
   private:
     const RecordedRun &run_;
     LocalSensitivity local_;
+    std::vector<std::vector<std::optional<double>>> of_stretches_;
   };
 
   /// Do the breaks of another scene, which differs a little, lie near those of a scene? As many in space; in time

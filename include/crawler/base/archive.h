@@ -82,6 +82,16 @@ namespace crawler
         raw(&value, sizeof(Type));
       }
     }
+    /// A byte that is neither 0 nor 1 is no truth value, and using it as one is undefined.
+    void
+    one(bool &value)
+    {
+      unsigned char byte = value ? 1 : 0;
+      raw(&byte, sizeof(byte));
+      if (byte > 1)
+        fail("a truth value");
+      value = byte == 1;
+    }
     void
     one(std::string &text)
     {
@@ -118,7 +128,7 @@ namespace crawler
     one(std::optional<Type> &value)
     {
       bool is_there = value.has_value();
-      raw(&is_there, sizeof(is_there));
+      one(is_there);
       if (!is_there)
         value.reset();
       else if (!value)

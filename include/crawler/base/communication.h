@@ -46,7 +46,7 @@ namespace crawler
   /**
    * Open MPI in a process that no launcher has started runs a daemon and looks for networks, which takes longer than
    * most runs. While this object lives, when MPI is initialized, it does neither; what the user has set in the
-   * environment stays. Where a launcher is seen nothing is changed.
+   * environment stays. Where a launcher is seen, only the slow access to counters is excluded.
    */
   class QuickStart
   {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,26 +17,22 @@ namespace crawler
   class Mistakes
   {
   public:
+    /// Notes a row; is it the first mistake? Then say() is to be called.
     bool
-    is_first()
-    {
-      return n_++ == 0;
-    }
+    is_first(std::size_t row);
     void
     say(const std::string &sentence)
     {
       sentence_ = sentence;
     }
-    void
-    add_row(std::size_t row);
     /// Throws InputError for @p entry if there are any.
     void
     refuse(const std::string &entry) const;
 
   private:
-    std::size_t n_ = 0;
-    std::string sentence_;
-    std::vector<std::size_t> rows_;
+    std::string sentence_; ///< about the first
+    std::size_t first_ = 0;
+    std::set<std::size_t> others_;
   };
 
   /// A finite number if the whole text is one, apart from blanks.

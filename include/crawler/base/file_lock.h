@@ -26,6 +26,10 @@ namespace crawler
     State
     lock();
 
+    /// Throws FileError if the file is not that of its name any more: its folder was removed or replaced.
+    void
+    require_in_place() const;
+
     /// Removes the file of a lock that is mine; to be called when nothing is written any more.
     void
     remove();
@@ -33,6 +37,8 @@ namespace crawler
   private:
     void
     open();
+    bool
+    is_in_place() const;
 
     const std::filesystem::path path_;
     int file_    = -1;

@@ -13,6 +13,10 @@ namespace crawler
   std::filesystem::path
   temporary_file(const std::filesystem::path &path);
 
+  /// Gives a temporary file that is complete its name; it is removed if that fails. Throws FileError.
+  void
+  rename_whole(const std::filesystem::path &temporary, const std::filesystem::path &path);
+
   /// Writes a whole file: first beside it under another name, then renamed, so that a file under its own name is always
   /// complete. Throws FileError.
   void
@@ -21,6 +25,14 @@ namespace crawler
   /// Cuts a file that may be longer to @p size bytes. Throws FileError, also if it is shorter.
   void
   cut_file(const std::filesystem::path &path, std::uintmax_t size);
+
+  /// Why a file that users name is not to be read, in words: devices may have no end. Empty if it may be read.
+  std::string
+  unreadable(const std::filesystem::path &path);
+
+  /// What the file system says, in a sentence.
+  std::string
+  in_words(const std::filesystem::filesystem_error &error);
 
   /// The whole text of a file. Throws FileError.
   std::string

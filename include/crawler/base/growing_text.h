@@ -29,6 +29,9 @@ namespace crawler
     exchange(Archive &archive);
 
   private:
+    void
+    open();
+
     const std::filesystem::path path_;
     const std::string begin_, end_;
     std::ofstream out_;

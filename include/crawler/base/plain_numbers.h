@@ -11,10 +11,10 @@ namespace crawler
   std::string
   with_plain_numbers(std::string text);
 
-  /// The text with every control character but line ends and tabs in words (\\x1b), so that texts of others (names of
-  /// files, formulas) cannot steer a terminal.
+  /// The text with every control character in words (\\x1b), so that texts of others (names of files, formulas) cannot
+  /// steer a terminal; ends of lines and tabs stay as they are if @p keep_lines.
   std::string
-  without_controls(const std::string &text);
+  without_controls(const std::string &text, bool keep_lines = true);
 
   /// The text with every part between double quotes that is longer than @p most bytes cut in its middle.
   std::string

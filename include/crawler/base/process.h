@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,4 +19,10 @@ namespace crawler
   /// standard output is shown if @p shown.
   ProgramEnd
   run_program(const std::vector<std::string> &command, bool shown);
+
+  /// Does @p work in a copy of this process, and waits for its end. Returns whether it came to one, with or without an
+  /// exception: false if it crashed or took more than so many @p seconds of processor time. Nothing else is left of it:
+  /// for libraries that damaged files can crash. MPI must not be called in it.
+  bool
+  comes_to_an_end(const std::function<void()> &work, unsigned int seconds);
 } // namespace crawler

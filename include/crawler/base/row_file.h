@@ -124,6 +124,11 @@ namespace crawler
 
   private:
     struct Handles;
+
+    explicit RowReader(std::filesystem::path path);
+    void
+    open(hid_t access, const std::string &group);
+
     const std::filesystem::path path_;
     std::unique_ptr<Handles> handles_;
     Table columns_; ///< without values

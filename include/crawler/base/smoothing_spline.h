@@ -51,7 +51,11 @@ namespace crawler
    * are halved. With width 0 f goes through the samples (CubicSpline).
    *  - not-a-knot: the polynomial that is next to the samples is taken away before and added again, so that cubic
    *    polynomials are reproduced at any width, and f'' = 0, which the functional asks for at the ends, is asked of the
-   *    rest only. Its degree is 1 + length/width, from 3 to 9, and at most 2 sqrt(number of knots) - 1;
+   *    rest only. Its degree is 1 + length/width, from 3 to 9, and at most 2 sqrt(number of knots) - 1; 3 if no more
+   *    than four samples are within a width of the ends. Of the rest a cubic is taken away in the same way, whose f''
+   * at each end is that of the cubic nearest to the samples within a width of it, or of the spline through the samples
+   *    if these are no more than four: else the slope there would be wrong by a third where waves are thrice as long as
+   *    the width;
    *  - periodic: as in CubicSpline, the last knot is the first one of the next period.
    */
   class SmoothingSpline

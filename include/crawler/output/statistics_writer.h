@@ -71,6 +71,8 @@ namespace crawler
   private:
     void
     open();
+    void
+    require_written() const;
 
     const bool writes_;
     const std::filesystem::path path_;

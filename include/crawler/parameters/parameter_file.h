@@ -104,6 +104,7 @@ namespace crawler
     std::vector<Assignment> assignments_;
     std::unordered_map<std::string, std::size_t> latest_; ///< assignment of each path
     unsigned int n_included_ = 0;
+    std::size_t n_bytes_     = 0; ///< of all files
     std::vector<Section> sections_;
   };
 } // namespace crawler

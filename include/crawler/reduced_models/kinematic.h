@@ -15,7 +15,7 @@ namespace crawler
 {
   /**
    * A body whose strain e(s,t) is given (the level "kinematic"; doc/theory.md, "Prescribed strain"), in natural units.
-   * With g = g(1+e) and <.> the mean over the body:
+   * With g = b(s) g(1+e) and <.> the mean over the body:
    *
    *   v = B_t - <g B_t>/<g>,   B = int_0^s e ds,   <v> = -<(g - <g>)(B_t - <B_t>)>/<g>,   m = int_0^s g v ds - k e.
    *
@@ -53,11 +53,11 @@ namespace crawler
     fields(double displacement);
 
   private:
-    const Scene &scene_;
     const GaussPanels panels_;
     const std::vector<double> points_;
     std::vector<double> inside_; ///< the Gauss points, then both ends
     const std::unique_ptr<StrainAtPoints> strain_, strain_at_points_;
+    const BodyAtPoints body_, body_at_points_;
     const GaussPanels::Places places_;
     double time_ = 0.;
     std::vector<double> e_, e_t_;

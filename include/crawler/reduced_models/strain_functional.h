@@ -64,18 +64,18 @@ namespace crawler
     StrainSamples
     sample(const StrainHistory &history) const;
 
-    /// Nothing if a stretch is not positive. @p k: elastic modulus.
+    /// Nothing if a stretch is not positive. @p body: at points().
     std::optional<Values>
-    values(const StrainSamples &samples, const FrictionLaw &friction, double k) const;
+    values(const StrainSamples &samples, const BodyAtPoints &body) const;
 
     /// The weights of one number.
     StrainSamples
-    weights(Number number, const StrainSamples &samples, const FrictionLaw &friction, double k) const;
+    weights(Number number, const StrainSamples &samples, const BodyAtPoints &body) const;
 
   private:
     struct State;
     void
-    evaluate(std::size_t time, const StrainSamples &samples, const FrictionLaw &friction, double k, State &state) const;
+    evaluate(std::size_t time, const StrainSamples &samples, const BodyAtPoints &body, State &state) const;
 
     const GaussPanels space_, time_;
     const std::size_t n_; ///< points of the quadrature over the body

@@ -22,7 +22,7 @@ namespace crawler::accuracy_rule
     /// A pilot that breaks off with a smaller stretch than this has lost it.
     inline constexpr double emptied = 0.1;
     /// Meshes that would need more cells than this are adaptive, with this degree.
-    inline constexpr unsigned int most_uniform_cells = 256, adaptive_degree = 4;
+    inline constexpr unsigned int most_uniform_cells = 1024, adaptive_degree = 4;
     /// The error of the displacement, relative, is below this times the sum of the error indicators over the strain.
     inline constexpr double indicator_factor = 8.;
     /// The coarsest mesh of the stretch form, cells for each length in which the active stress changes, and the part of
@@ -74,6 +74,9 @@ namespace crawler::accuracy_rule
     inline constexpr double moving_factor = 1.5, moving_factor_of_first = 4.;
     /// First steps, relative to the duration: methods that start with order 1 need small ones.
     inline constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
+    /// A run that is so many times as long as its first strides, and does not end when cycles repeat, has its numerics
+    /// chosen by these. Strides do not repeat soon where the stiffness in natural units of a stride is below that.
+    inline constexpr double first_strides = 3., long_run = 4., least_settling_stiffness = 0.02;
     /// On adaptive meshes the error of bodies softer than this, in natural units, may be as large as soft_error,
     /// relative, whatever Accuracy is: their layers are not seen by the indicators, and not at all on uniform meshes.
     inline constexpr double very_soft = 2e-5, soft_error = 3e-3;
@@ -161,6 +164,24 @@ namespace crawler::accuracy_rule
     /// That is believed where the order is as near to 2 as this.
     inline constexpr double clean = 0.25;
   } // namespace family
+
+  // Jumps that move, as the limit of fronts (moving_fronts.cc; doc/numerics.md, "Jumps that move"). Measured by
+  // tests/verification/front_study.cc.
+  namespace fronts
+  {
+    /// Widths of fronts, relative to the widest that fit: the first, each next one half of it, and the last.
+    inline constexpr double first_part = 0.32, last_part = 0.0025;
+    /// So many widths, at most, make an answer.
+    inline constexpr unsigned int most_levels = 5;
+    /// Its error is at most so many times the change by one width less, and that since the answer before.
+    inline constexpr double factor = 2., factor_of_change = 0.5;
+    /// Accuracy of the runs, relative to the wanted one, and its limits.
+    inline constexpr double part_of_runs = 0.1, least_accuracy = 1e-9, largest_accuracy = 1e-3;
+    /// No steeper fronts after so many steps in all.
+    inline constexpr unsigned long most_steps = 100000;
+    /// The time of an inversion is known if it changes by less than this, relative, from fronts to fronts.
+    inline constexpr double settled_inversion = 1e-2;
+  } // namespace fronts
 
   // The finer run that measures errors (error_estimate.cc; doc/numerics.md, "Error bounds"). Calibrated by
   // tests/verification/calibration.cc.

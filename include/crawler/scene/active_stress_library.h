@@ -17,6 +17,7 @@
 
 namespace crawler
 {
+  struct Scene;
   struct TermParameters;
 
   /// Section "Active stress/Sum": a subsection for each term, "Term 1", "Term 2", ... There are as many as the file has
@@ -64,7 +65,8 @@ namespace crawler
   std::vector<std::string>
   generator_names();
 
-  /// The generator that the parameters name. Throws InputError if its own parameters do not make sense.
+  /// The generator that the parameters name, for the body, the ground and the duration of @p scene, which has no active
+  /// stress yet. Throws InputError if its own parameters do not make sense.
   std::unique_ptr<ActiveStress>
-  create_active_stress(const ActiveStressParameters &parameters, const Body &body, double end_time);
+  create_active_stress(const ActiveStressParameters &parameters, const Scene &scene);
 } // namespace crawler

@@ -42,6 +42,10 @@ namespace crawler
     std::string
     general_features() const;
 
+    /// Of these, with what a given strain does not say how the body moves (given_motion.h).
+    std::string
+    features_beyond_strain() const;
+
     /// w g'/g of the friction law where the stretch is small, which decides what is lost there: a of the power law.
     double
     friction_exponent() const;

@@ -64,26 +64,35 @@ namespace crawler
     /// The stress from the balance of forces, see the class.
     std::unique_ptr<ActiveStressAtPoints>
     balancing_stress(const StrainHistory &history,
-                     const Body &body,
+                     const std::shared_ptr<const Scene> &scene,
                      const unsigned int n_panels,
                      const std::vector<double> &points)
     {
-      const auto panels   = std::make_shared<const GaussPanels>(0., body.length, n_panels);
+      const auto panels   = std::make_shared<const GaussPanels>(0., scene->body.length, n_panels);
       const std::size_t n = panels->points().size();
-      const PowerFriction friction(1., body.friction_exponent());
+      const BodyAtPoints body(*scene, panels->points());
+      const std::vector<double> k = BodyAtPoints(*scene, points).elastic_modulus;
       const GaussPanels::Places places(*panels, points);
       GivenMotion motion(n);
       std::vector<double> e(n), e_t(n), elastic(points.size());
+      // The scene is kept, since the body refers to its friction law.
       return stress_at_points([=, inside = history.at(panels->points()), at_points = history.at(points)](
                                 const double t, const std::span<double> m) mutable {
         inside->strain(t, e);
         inside->rate(t, e_t);
-        motion.find(*panels, e, e_t, friction);
+        motion.find(*panels, e, e_t, body);
         places.running_integral(motion.gv, m);
         at_points->strain(t, elastic);
         for (std::size_t i = 0; i < m.size(); ++i)
-          m[i] = body.friction_coefficient * m[i] - body.elastic_modulus * elastic[i];
+          m[i] -= k[i] * elastic[i];
       });
+    }
+
+    std::shared_ptr<const Scene>
+    without_stress(const Scene &scene)
+    {
+      return std::make_shared<const Scene>(
+        Scene{scene.body, scene.friction->scaled(1.), nullptr, scene.end_time, scene.profiles, scene.ground});
     }
 
     std::unique_ptr<const StrainHistory>
@@ -161,15 +170,14 @@ namespace crawler
   }
 
   PrescribedStrain::PrescribedStrain(const PrescribedStrainParameters &parameters,
-                                     const Body &body,
-                                     const double end_time,
+                                     const Scene &scene,
                                      std::unique_ptr<const ActiveStress> generator)
-    : body_(body)
+    : scene_(without_stress(scene))
     , given_by_(parameters.given_by)
     , generator_(std::move(generator))
-    , history_(create_history(parameters, body.length, end_time, generator_.get()))
+    , history_(create_history(parameters, scene.body.length, scene.end_time, generator_.get()))
   {
-    const double phase_rate = parameters.wave_number * parameters.wave_speed / body.length;
+    const double phase_rate = parameters.wave_number * parameters.wave_speed / scene.body.length;
     if (given_by_ == "wave" && parameters.amplitude != 0. && phase_rate != 0.)
       facts_.repetition = {1. / std::abs(phase_rate), 0.};
     facts_.has_rate = false;
@@ -177,10 +185,10 @@ namespace crawler
     {
       facts_.breaks_in_space = generator_->breaks_in_space();
       facts_.breaks_in_time  = generator_->breaks_in_time();
-      require_usable_generator(end_time);
+      require_usable_generator(scene.end_time);
     }
-    require_admissible_strain(end_time);
-    choose_panels(end_time);
+    require_admissible_strain(scene.end_time);
+    choose_panels(scene.end_time);
   }
 
   /// No jumps where it says that there may be some.
@@ -189,7 +197,7 @@ namespace crawler
   {
     constexpr unsigned int n = 33;
     constexpr double beside = 1e-9, jump = 1e-6;
-    const double L = body_.length;
+    const double L = scene_->body.length;
     std::vector<double> points(n), e(n), after(n);
     double size = 0.;
     for (unsigned int i = 0; i < n; ++i)
@@ -247,7 +255,7 @@ namespace crawler
   PrescribedStrain::require_admissible_strain(const double end_time)
   {
     constexpr unsigned int n = 161;
-    extremes_                = find_extremes(*history_, body_.length, end_time, n, n);
+    extremes_                = find_extremes(*history_, scene_->body.length, end_time, n, n);
     const auto &[e, s, t]    = extremes_.smallest;
     const std::string entry  = section + (given_by_ == "wave"    ? "Amplitude"
                                           : given_by_ == "table" ? "File"
@@ -272,7 +280,12 @@ namespace crawler
                                    largest.s,
                                    largest.t),
                        entry);
-    if (const auto jump = find_jump(*history_, body_.length, end_time))
+    if (const auto stretch = stretch_without_friction(*scene_->friction, 1. + e, 1. + largest.strain))
+      throw InputError(fmt::format("the friction law has no positive value at the stretch {:.6g}, which this strain "
+                                   "reaches; smaller strains, or another law, are expected",
+                                   *stretch),
+                       entry);
+    if (const auto jump = find_jump(*history_, scene_->body.length, end_time))
       throw InputError(
         fmt::format("the strain at s = {:.6g} changes by {:.6g} from t = {:.6g} to {:.6g}, but the integral "
                     "of its rate is {:.6g}; a strain without jumps in time is expected",
@@ -292,13 +305,13 @@ namespace crawler
     constexpr double tolerance  = 1e-13;
     std::vector<double> points, coarse, fine;
     for (unsigned int i = 0; i <= 16; ++i)
-      points.push_back(body_.length * i / 16);
+      points.push_back(scene_->body.length * i / 16);
     coarse.resize(points.size());
     fine.resize(points.size());
     for (n_panels_ = 2; n_panels_ < most; n_panels_ *= 2)
     {
-      const auto now  = balancing_stress(*history_, body_, n_panels_, points),
-                 next = balancing_stress(*history_, body_, 2 * n_panels_, points);
+      const auto now  = balancing_stress(*history_, scene_, n_panels_, points),
+                 next = balancing_stress(*history_, scene_, 2 * n_panels_, points);
       double change = 0., largest = 0.;
       for (const double part : {0.03, 0.21, 0.47, 0.71, 0.95})
       {
@@ -318,7 +331,7 @@ namespace crawler
   std::unique_ptr<ActiveStressAtPoints>
   PrescribedStrain::evaluator(const std::vector<double> &points, bool) const
   {
-    return balancing_stress(*history_, body_, n_panels_, points);
+    return balancing_stress(*history_, scene_, n_panels_, points);
   }
 
   void

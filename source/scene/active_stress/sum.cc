@@ -460,6 +460,21 @@ namespace crawler
     return Bounds{sum.value * product.value, rate};
   }
 
+  std::unique_ptr<const ActiveStress>
+  Sum::with_fronts(const double part) const
+  {
+    std::vector<SumTerm> terms = terms_;
+    bool any                   = false;
+    for (SumTerm &term : terms)
+      if (const auto *const jumping = dynamic_cast<const MovingJumps *>(term.stress.get()))
+        if (std::shared_ptr<const ActiveStress> smooth = jumping->with_fronts(part))
+        {
+          term.stress = std::move(smooth);
+          any         = true;
+        }
+    return any ? std::make_unique<Sum>(std::move(terms), length_, end_time_) : nullptr;
+  }
+
   const StressFailures *
   Sum::failures() const
   {

@@ -3,6 +3,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/two_level_wave.h>
 #include <crawler/scene/active_stress/waves.h>
+#include <crawler/scene/scene.h>
 
 #include <fmt/format.h>
 
@@ -17,8 +18,13 @@ namespace crawler
 
     /// The frequency of the wave that does the work W = gamma c^2 L T X [1/time].
     double
-    frequency_by_work(const TwoLevelWaveParameters &p, const Body &body, const double end_time, const double X)
+    frequency_by_work(const TwoLevelWaveParameters &p, const Scene &scene, const double X)
     {
+      if (!scene.profiles.is_plain())
+        throw InputError(
+          "the body is not the same everywhere, but no profile is expected where the work is given, since "
+          "that of others depends on the phase",
+          section + "Given by");
       if (p.wave_number != std::round(p.wave_number))
         throw InputError(fmt::format("the wave number is {:g}, but a whole one is expected where the work is given, "
                                      "since that of others depends on the phase",
@@ -28,24 +34,36 @@ namespace crawler
         throw InputError("there is a ramp, but Ramp duration = 0 is expected where the work is given, since the work "
                          "of the ramp depends on the phase",
                          section + "Given by");
-      const double L = body.length, c = std::sqrt(p.work / (body.friction_coefficient * L * end_time * X));
+      const double L = scene.body.length,
+                   c = std::sqrt(p.work / (scene.body.friction_coefficient * L * scene.end_time * X));
       return p.wave_number * c / L;
     }
 
     /// For a wave of speed c, D = c T (<e> - <g e>/<g>) and W = gamma c^2 L T X, X = <g e^2> - <g e>^2/<g>, with the
-    /// means over a period; both are the same if a constant is added to the factor e.
+    /// means over a period; both are the same if a constant is added to the factor e. Here g is that of gamma = 1.
     TwoLevelWave::Numbers
-    numbers_of(const TwoLevelWaveParameters &p, const Body &body, const double end_time)
+    numbers_of(const TwoLevelWaveParameters &p, const Scene &scene)
     {
-      const double low = p.smallest_strain, high = p.largest_strain, a = body.friction_exponent();
+      const Body &body = scene.body;
+      const double low = p.smallest_strain, high = p.largest_strain;
+      if (const auto stretch = stretch_without_friction(*scene.friction, 1. + low, 1. + high))
+        throw InputError(fmt::format("the friction law has no positive value at the stretch {:.6g}, which is between "
+                                     "both strains; smaller ones, or another law, are expected",
+                                     *stretch),
+                         section + "Largest strain");
+      const auto friction = [&](const double w) {
+        double g = 0.;
+        scene.friction->values({&w, 1}, {&g, 1});
+        return g / body.friction_coefficient;
+      };
       if (!(low < high))
         throw InputError(
           fmt::format("the largest strain is {:g}, but one above the smallest, {:g}, is expected", high, low),
           section + "Largest strain");
-      const double share = p.share.value_or(1. / (1. + std::pow((1. + high) / (1. + low), 0.5 * a)));
+      const double share = p.share.value_or(1. / (1. + std::sqrt(friction(1. + high) / friction(1. + low))));
       double mean = 0., g_sum = 0., ge = 0., gee = 0.;
       const auto add = [&](const double weight, const double level) { // from -1/2, emin, to 1/2, emax
-        const double e = (high - low) * level, g = weight * std::pow(1. + 0.5 * (low + high) + e, a);
+        const double e = (high - low) * level, g = weight * friction(1. + 0.5 * (low + high) + e);
         mean += weight * e;
         g_sum += g;
         ge += g * e;
@@ -60,15 +78,15 @@ namespace crawler
       return {share,
               p.given_by == "frequency"    ? p.frequency
               : p.given_by == "wave speed" ? p.wave_number * p.wave_speed / body.length
-                                           : frequency_by_work(p, body, end_time, X),
+                                           : frequency_by_work(p, scene, X),
               std::abs(mean - ge / g_sum) / std::sqrt(X),
-              std::abs(std::pow(1. + low, -0.5 * a) - std::pow(1. + high, -0.5 * a))};
+              largest_merit(*scene.friction, 1. + low, 1. + high) * std::sqrt(body.friction_coefficient)};
     }
 
     std::unique_ptr<const ActiveStress>
-    strain_of(const TwoLevelWaveParameters &p, const Body &body, const double end_time)
+    strain_of(const TwoLevelWaveParameters &p, const Scene &scene)
     {
-      const auto numbers = numbers_of(p, body, end_time);
+      const auto numbers = numbers_of(p, scene);
       TravellingWaveParameters wave;
       wave.amplitude              = 0.5 * (p.largest_strain - p.smallest_strain);
       wave.offset                 = 0.5 * (p.largest_strain + p.smallest_strain);
@@ -78,7 +96,7 @@ namespace crawler
       wave.phase                  = p.phase;
       wave.profile                = {"smoothed square", numbers.share, p.front_width};
       wave.envelope.ramp_duration = p.ramp_duration;
-      return std::make_unique<TravellingWave>(wave, body.length, end_time);
+      return std::make_unique<TravellingWave>(wave, scene.body.length, scene.end_time);
     }
   } // namespace
 
@@ -116,9 +134,9 @@ namespace crawler
     declarations.leave();
   }
 
-  TwoLevelWave::TwoLevelWave(const TwoLevelWaveParameters &parameters, const Body &body, const double end_time)
-  try : PrescribedStrain({.given_by = "two-level wave"}, body, end_time, strain_of(parameters, body, end_time)),
-    parameters_(parameters), length_(body.length), numbers_(numbers_of(parameters, body, end_time))
+  TwoLevelWave::TwoLevelWave(const TwoLevelWaveParameters &parameters, const Scene &scene)
+  try : PrescribedStrain({.given_by = "two-level wave"}, scene, strain_of(parameters, scene)), parameters_(parameters),
+    length_(scene.body.length), is_uniform_(scene.profiles.is_plain()), numbers_(numbers_of(parameters, scene))
   {
   }
   catch (const InputError &error) // the wave believes that it stands alone
@@ -136,18 +154,19 @@ namespace crawler
   TwoLevelWave::report(std::ostream &out) const
   {
     const auto &[share, frequency, merit, bound] = numbers_;
-    out << fmt::format(
-      "Two-level wave: strain {:g} on the share {:.6g} of each period and {:g} on the rest, frequency "
-      "{:.8g}, speed {:.8g}\n"
-      "Displacement/sqrt(work * duration/(friction coefficient * length)) is {:.6g} for whole waves at "
-      "full strain; no gait with these strains is above {:.6g}\n",
-      parameters_.largest_strain,
-      share,
-      parameters_.smallest_strain,
-      frequency,
-      frequency * length_ / parameters_.wave_number,
-      merit,
-      bound);
+    out << fmt::format("Two-level wave: strain {:g} on the share {:.6g} of each period and {:g} on the rest, frequency "
+                       "{:.8g}, speed {:.8g}\n",
+                       parameters_.largest_strain,
+                       share,
+                       parameters_.smallest_strain,
+                       frequency,
+                       frequency * length_ / parameters_.wave_number);
+    if (is_uniform_)
+      out << fmt::format(
+        "Displacement/sqrt(work * duration/(friction coefficient * length)) is {:.6g} for whole waves at "
+        "full strain; no gait with these strains is above {:.6g}\n",
+        merit,
+        bound);
     PrescribedStrain::report(out);
   }
 } // namespace crawler

@@ -55,7 +55,10 @@ namespace crawler
   }
 
   TravellingWave::TravellingWave(const TravellingWaveParameters &parameters, const double length, const double end_time)
-    : amplitude_(parameters.amplitude)
+    : parameters_(parameters)
+    , length_(length)
+    , end_time_(end_time)
+    , amplitude_(parameters.amplitude)
     , offset_(parameters.offset)
     , wave_number_(parameters.wave_number / length)
     , phase_rate_(-sign_of(parameters.direction) * frequency_of(parameters, length))
@@ -152,12 +155,29 @@ namespace crawler
     return within(std::move(times), end_time);
   }
 
+  bool
+  TravellingWave::has_moving_jumps() const
+  {
+    return profile_.jumps() && phase_rate_ != 0. && wave_number_ > 0. && amplitude_ != 0.;
+  }
+
+  std::unique_ptr<const ActiveStress>
+  TravellingWave::with_fronts(const double part) const
+  {
+    if (!has_moving_jumps())
+      return nullptr;
+    TravellingWaveParameters smooth = parameters_;
+    smooth.profile.profile          = "smoothed square";
+    smooth.profile.front_width      = part * std::min(smooth.profile.duty_cycle, 1. - smooth.profile.duty_cycle);
+    return std::make_unique<TravellingWave>(smooth, length_, end_time_);
+  }
+
   void
   TravellingWave::report(std::ostream &out) const
   {
-    if (profile_.jumps() && phase_rate_ != 0. && wave_number_ > 0. && amplitude_ != 0.)
-      out << "Travelling wave: the jumps of a square wave move through the cells of the mesh, which costs orders of "
-             "convergence; Profile = smoothed square is recommended\n";
+    if (has_moving_jumps())
+      out << "Travelling wave: the jumps of a square wave move through the cells of the mesh; its answer is that of "
+             "waves with ever steeper fronts, which costs more than Profile = smoothed square\n";
   }
 
   namespace

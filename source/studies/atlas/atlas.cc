@@ -160,6 +160,10 @@ namespace crawler
 
     const bool is_whole = compute_rows(
       communicator, path, points, table, done, [&]() { return stop_signal.arrived_anywhere(MPI_COMM_SELF); }, log);
+    on_first_rank(communicator, [&]() {
+      folder.require_in_place();
+      return "";
+    });
     write_table_csv(communicator, path / table.file, table.group, path / "atlas.csv", [](const Table &) {});
     on_first_rank(communicator, [&]() {
       const AtlasSummary summary = summarize(path, axes);

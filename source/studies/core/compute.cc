@@ -123,7 +123,7 @@ namespace crawler
     bool
     may_share_lanes(const Task &task, const NumericsChoice &choice)
     {
-      return !choice.is_family && batch_method(*task.scene, task.parameters.time, choice.numerics);
+      return !choice.is_of_several_runs() && batch_method(*task.scene, task.parameters.time, choice.numerics);
     }
 
     /// A task in the lanes, and what its run and the finer one take.
@@ -161,6 +161,7 @@ namespace crawler
       NumericsChoice choice = member.choice;
       if (member.is_shared)
         choice.promised_error = choice.wanted_error = task.parameters.accuracy * std::abs(result.displacement);
+      choice.set_size(result.displacement, task.parameters.accuracy);
       set_errors(choice, result, &finer, task.parameters, *task.scene);
       check_identities(result, task.parameters);
       if (result.time.status == Status::finished && result.error->total <= choice.wanted_error)

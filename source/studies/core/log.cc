@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
 #include <iostream>
 #include <utility>
 
@@ -119,10 +121,22 @@ namespace crawler
   void
   Log::keep(const std::string &text)
   {
-    if (file_.is_open())
-      file_ << text << std::endl;
-    else
+    if (!file_.is_open())
+    {
       earlier_ += text + '\n';
+      return;
+    }
+    file_ << text << std::endl;
+    if (!file_ && problem_.empty())
+      problem_ = std::strerror(errno);
+    file_.clear();
+  }
+
+  void
+  Log::require_written() const
+  {
+    if (!problem_.empty())
+      throw FileError("cannot write \"" + path_.string() + "\": " + problem_);
   }
 
   void
@@ -130,9 +144,10 @@ namespace crawler
   {
     if (!active_)
       return;
+    path_ = file;
     file_.open(file, append ? std::ios::app : std::ios::trunc);
     file_ << earlier_ << std::flush;
     if (!file_)
-      throw FileError("cannot write \"" + file.string() + "\"");
+      throw FileError("cannot write \"" + file.string() + "\": " + std::strerror(errno));
   }
 } // namespace crawler

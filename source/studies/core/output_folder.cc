@@ -3,10 +3,14 @@
 #include <crawler/base/file_lock.h>
 #include <crawler/studies/core/output_folder.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <string>
 #include <unistd.h>
+#include <vector>
 
 namespace crawler
 {
@@ -16,18 +20,70 @@ namespace crawler
 
   namespace
   {
+    /// The files of runs and studies, but for what a run writes while it goes on.
+    const std::vector<std::string> own_names = {"original.prm",
+                                                "parameters.prm",
+                                                "log.txt",
+                                                "summary.json",
+                                                "restart.dat",
+                                                "restart.dat.new",
+                                                "restart.old.dat",
+                                                "stop",
+                                                "kymograph.png",
+                                                "sensitivity_body.csv",
+                                                "sensitivity_stress.csv",
+                                                "sensitivity.png",
+                                                "results.csv",
+                                                "results.h5",
+                                                "results.h5.part",
+                                                "results.png",
+                                                "results.svg",
+                                                "atlas.csv",
+                                                "atlas.h5",
+                                                "atlas.h5.part",
+                                                "atlas.png",
+                                                "atlas.svg",
+                                                "tradeoff.csv",
+                                                "tradeoff.h5",
+                                                "tradeoff.png",
+                                                "tradeoff.svg",
+                                                "recommendations.prm",
+                                                "scaling.png",
+                                                "starts.csv",
+                                                "optimum.prm",
+                                                "optima.csv",
+                                                "optimize.png",
+                                                "reference.json",
+                                                report_name};
+    /// What a run writes while it goes on: the fields and the statistics.
+    const std::vector<std::string> names_of_fields = {"statistics.csv",
+                                                      "solution.pvd",
+                                                      "line.pvd",
+                                                      "solution.xdmf",
+                                                      "line.xdmf",
+                                                      "solution.h5",
+                                                      "solution.h5.part",
+                                                      "kymograph.vts"};
+
     /// A link would lead what is written or removed to places outside.
     void
-    require_own_folders(const fs::path &folder)
+    require_no_links(const fs::path &folder)
     {
       std::error_code error;
       for (const auto &entry : fs::directory_iterator(folder, error))
       {
+        if (!entry.is_symlink(error))
+          continue;
         const std::string name = entry.path().filename().string();
-        const bool is_own =
+        const bool is_folder =
           name == "solution" || name == "points" || name == "starts" || name == "rows" || name.starts_with("best");
-        if (is_own && entry.is_symlink(error))
-          throw FileError("\"" + entry.path().string() + "\" is a link, but a folder of the program's own is expected");
+        const auto has_it = [&](const auto &names) {
+          return std::find(names.begin(), names.end(), name) != names.end();
+        };
+        if (is_folder || name == study_lock_name || has_it(own_names) || has_it(names_of_fields))
+          throw FileError(fmt::format("\"{}\" is a link, but a {} of the program's own is expected",
+                                      entry.path().string(),
+                                      is_folder ? "folder" : "file"));
       }
     }
 
@@ -73,7 +129,7 @@ namespace crawler
     if (fs::exists(folder / "solution", error) && !fs::is_directory(folder / "solution", error))
       throw FileError("\"" + (folder / "solution").string() +
                       "\" is not a folder, but one for the snapshots is expected");
-    require_own_folders(folder);
+    require_no_links(folder);
     if (!overwrite && !fs::is_empty(folder, error))
       throw InputError("the output folder \"" + folder.string() +
                        "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
@@ -112,40 +168,7 @@ namespace crawler
     fs::create_directories(folder, error);
     if (error)
       throw FileError("cannot make the output folder \"" + folder.string() + "\": " + error.message());
-    for (const char *name : {"original.prm",
-                             "parameters.prm",
-                             "log.txt",
-                             "summary.json",
-                             "restart.dat",
-                             "restart.dat.new",
-                             "restart.old.dat",
-                             "stop",
-                             "kymograph.png",
-                             "sensitivity_body.csv",
-                             "sensitivity_stress.csv",
-                             "sensitivity.png",
-                             "results.csv",
-                             "results.h5",
-                             "results.h5.part",
-                             "results.png",
-                             "results.svg",
-                             "atlas.csv",
-                             "atlas.h5",
-                             "atlas.h5.part",
-                             "atlas.png",
-                             "atlas.svg",
-                             "tradeoff.csv",
-                             "tradeoff.h5",
-                             "tradeoff.png",
-                             "tradeoff.svg",
-                             "recommendations.prm",
-                             "scaling.png",
-                             "starts.csv",
-                             "optimum.prm",
-                             "optima.csv",
-                             "optimize.png",
-                             "reference.json",
-                             report_name.c_str()})
+    for (const std::string &name : own_names)
       fs::remove(folder / name, error);
     remove_fields(folder);
   }
@@ -154,14 +177,7 @@ namespace crawler
   remove_fields(const fs::path &folder)
   {
     std::error_code error;
-    for (const char *name : {"statistics.csv",
-                             "solution.pvd",
-                             "line.pvd",
-                             "solution.xdmf",
-                             "line.xdmf",
-                             "solution.h5",
-                             "solution.h5.part",
-                             "kymograph.vts"})
+    for (const std::string &name : names_of_fields)
       fs::remove(folder / name, error);
     if (fs::is_directory(folder / "solution", error))
       for (const auto &file : fs::directory_iterator(folder / "solution"))

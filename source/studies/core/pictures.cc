@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/base/process.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/pictures.h>
@@ -40,6 +41,8 @@ namespace crawler
   draw(const std::string &script, const std::filesystem::path &folder, Log &log)
   {
     const PictureEnd end = call_plot_script(script, {folder.string()}, /*shown=*/false);
+    if (end.status == static_cast<int>(ExitCode::file_error))
+      throw FileError(end.problem);
     if (end.status != 0)
       log.line(
         fmt::format("There is no picture: {}. Draw it later with: crawler plot {}", end.problem, folder.string()));

@@ -76,6 +76,7 @@ namespace crawler
     log.line(fmt::format("Results are in {}/{}.",
                          folder.string(),
                          animation.empty() ? "" : fmt::format("; open {} in ParaView", (folder / animation).string())));
+    log.require_written();
     if (outcome.status == Status::finished)
       return ExitCode::finished;
     if (outcome.status == Status::inverted)

@@ -143,7 +143,8 @@ namespace crawler
     };
     LocalSensitivity local;
     std::vector<Varied> varied;
-    bool has_adjoint = RecordedRun::is_possible(scene, parameters.time, choice.numerics);
+    bool has_adjoint =
+      result.model != Model::kinematic && RecordedRun::is_possible(scene, parameters.time, choice.numerics);
     if (has_adjoint)
       try
       {

@@ -139,5 +139,6 @@ namespace crawler
     if (lock_)
       lock_->remove();
     lock_.reset();
+    log_.require_written();
   }
 } // namespace crawler

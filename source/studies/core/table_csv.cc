@@ -118,7 +118,7 @@ namespace crawler
         fs::remove(temporary, error);
         throw FileError("cannot write \"" + path.string() + "\" (is the disk full?)");
       }
-      fs::rename(temporary, path);
+      rename_whole(temporary, path);
       return "";
     });
   }

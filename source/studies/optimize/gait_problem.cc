@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
 #include <crawler/studies/optimize/gait_problem.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +95,13 @@ namespace crawler
       upper_.insert(upper_.end(), block_sizes_.back(), limit.upper / limit.scale);
     }
     const double first = std::abs(objective(values, nullptr));
-    if (std::isfinite(first) && first > 0.)
+    if (!std::isfinite(first))
+      throw InputError(fmt::format("the start has no {}, since its work is {:g}; one that takes work is expected",
+                                   parameters.objective,
+                                   values.number(parameters.objective == "periodic merit" ? GaitNumber::dissipation
+                                                                                          : GaitNumber::work)),
+                       "Optimize/Variables");
+    if (first > 0.)
       scale_ = first;
     // A start that hardly moves says little of what can be reached.
     const Point &point = at(to_y(start), true);
@@ -176,6 +185,15 @@ namespace crawler
     const bool is_possible = values.problem.empty();
     const double f         = is_possible ? objective(values, with_gradients ? &gradient : nullptr) : NAN;
     double violation       = 0.;
+    std::string worst_limit;
+    const auto see = [&](const double excess, const std::string &name) {
+      if (excess > violation)
+      {
+        violation   = excess;
+        worst_limit = name;
+      }
+    };
+    latest_.problem = !is_possible ? values.problem : with_gradients ? values.problem_of_gradients : "";
     if (!std::isfinite(f))
       latest_.objective = refused;
     else
@@ -189,7 +207,7 @@ namespace crawler
       for (const NumberLimit &limit : number_limits_)
       {
         latest_.constraints[next] = values.number(limit.number) / limit.value;
-        violation                 = std::max(violation, latest_.constraints[next] - 1.);
+        see(latest_.constraints[next] - 1., limit.name);
         ++next;
         if (!with_gradients)
           continue;
@@ -203,7 +221,8 @@ namespace crawler
         for (const double value : own.values)
         {
           latest_.constraints[next++] = value / limit.scale;
-          violation = std::max({violation, (value - limit.upper) / limit.scale, (limit.lower - value) / limit.scale});
+          see((value - limit.upper) / limit.scale, limit.upper_name);
+          see((limit.lower - value) / limit.scale, limit.lower_name);
         }
         latest_.blocks.push_back(own.jacobian);
       }
@@ -211,7 +230,7 @@ namespace crawler
     if (is_new)
     {
       const double shown = parameters_.objective == "cost of transport" ? 1. / f : sign_of_direction(parameters_) * f;
-      records_.push_back({x, shown, values.numbers, violation, values.problem});
+      records_.push_back({x, shown, values.numbers, violation, values.problem, worst_limit});
     }
     return latest_;
   }
@@ -275,19 +294,30 @@ namespace crawler
   }
 
   const GaitRecord &
-  GaitProblem::best() const
+  GaitProblem::latest_beside(const std::vector<double> &y) const
   {
-    const bool is_cost = parameters_.objective == "cost of transport";
-    const double sign  = sign_of_direction(parameters_);
+    const std::vector<double> x = to_x(y);
+    const auto latest =
+      std::find_if(records_.rbegin(), records_.rend(), [&](const auto &record) { return record.x != x; });
+    return latest != records_.rend() ? *latest : records_.back();
+  }
+
+  const GaitRecord &
+  GaitProblem::best_of(const std::span<const GaitRecord> records,
+                       const OptimizeParameters &parameters,
+                       const double admissible)
+  {
+    const bool is_cost = parameters.objective == "cost of transport";
+    const double sign  = sign_of_direction(parameters);
     const auto rank    = [&](const GaitRecord &record) {
       return is_cost ? 1. / record.objective : sign * record.objective;
     };
-    const GaitRecord *best = &records_.front();
-    for (const GaitRecord &record : records_)
+    const GaitRecord *best = &records.front();
+    for (const GaitRecord &record : records)
     {
       if (!record.problem.empty() || !std::isfinite(record.objective))
         continue;
-      const bool is_good = record.violation <= admissible(), best_is_good = best->violation <= admissible();
+      const bool is_good = record.violation <= admissible, best_is_good = best->violation <= admissible;
       const bool is_first = !best->problem.empty() || !std::isfinite(best->objective);
       if (is_first || (is_good && !best_is_good) || (is_good && rank(record) > rank(*best)) ||
           (!is_good && !best_is_good && record.violation < best->violation))

@@ -11,8 +11,14 @@ namespace crawler
 {
   namespace
   {
-    constexpr std::array<const char *, n_gait_numbers> names = {
-      {"displacement", "work", "positive work", "mean-square strain", "speed", "T/(gamma L)", "dissipation"}};
+    constexpr std::array<const char *, n_gait_numbers> names = {{"displacement",
+                                                                 "work",
+                                                                 "positive work",
+                                                                 "mean-square strain",
+                                                                 "speed",
+                                                                 "T/(gamma L)",
+                                                                 "dissipation",
+                                                                 "efficiency"}};
 
     /// A number that is checked: its value, and its derivative by a variable.
     struct Checked
@@ -42,7 +48,7 @@ namespace crawler
     }
   } // namespace
 
-  bool
+  std::optional<bool>
   check_gradient(
     GaitModel &model, const SceneFamily &family, const GaitWishes &wishes, const std::vector<double> &x, Log &log)
   {
@@ -56,7 +62,7 @@ namespace crawler
         list.push_back({names[k],
                         [k](const GaitValues &there) { return there.numbers[k]; },
                         [k](const GaitValues &there, const std::size_t i) { return there.gradients[k][i]; }});
-    if (wishes.strain && noise == 0.) // in simulations they are such differences
+    if (wishes.strain && std::ranges::find(here.strain_by_differences, true) == here.strain_by_differences.end())
       add_extremes("strain", here, &GaitValues::strain, x.size(), list);
     if (wishes.stress)
       add_extremes("stress", here, &GaitValues::stress, x.size(), list);
@@ -72,7 +78,7 @@ namespace crawler
                              "there is nothing to compare",
                              family.variables()[i].path));
     if (checked.empty())
-      return true;
+      return std::nullopt;
 
     std::vector<std::vector<double>> differences(list.size(), std::vector<double>(x.size()));
     for (const std::size_t i : checked)

@@ -51,15 +51,10 @@ namespace crawler
           "Model");
     }
 
-    const FrictionLaw &
-    friction() const
+    BodyAtPoints
+    body(const StrainFunctional &grid) const
     {
-      return *reduced.scene().friction;
-    }
-    double
-    k() const
-    {
-      return reduced.scene().body.elastic_modulus;
+      return {reduced.scene(), grid.points()};
     }
 
     /// Are body, ground, units and time those of another one, so that only the strain may differ?
@@ -67,10 +62,11 @@ namespace crawler
     is_like(const State &other) const
     {
       std::array<double, 3> w = {{0.5, 1., 1.7}}, own{}, others{};
-      friction().values(w, own);
-      other.friction().values(w, others);
+      reduced.scene().friction->values(w, own);
+      other.reduced.scene().friction->values(w, others);
       const Units &a = reduced.units(), &b = other.reduced.units();
-      return own == others && k() == other.k() && a.length == b.length && a.time == b.time && a.force == b.force;
+      return own == others && reduced.scene().body.elastic_modulus == other.reduced.scene().body.elastic_modulus &&
+             a.length == b.length && a.time == b.time && a.force == b.force;
     }
 
     const Scene physical;
@@ -98,13 +94,14 @@ namespace crawler
   KinematicGait::KinematicGait(SceneFamily &family, const GaitWishes wishes, const std::vector<double> &start)
     : family_(family)
     , wishes_(wishes)
+    , start_(start)
     , n_space_(1)
     , n_time_(1)
   {
     constexpr unsigned int most = 128;
     const State state(family.parameters(start));
     const ActiveStress &stress = *state.reduced.scene().active_stress;
-    n_space_                   = GaussPanels::number_ending_at(stress.breaks_in_space(), 1, most);
+    n_space_                   = GaussPanels::number_ending_at(state.reduced.scene().breaks_in_space(), 1, most);
     n_time_                    = GaussPanels::number_ending_at(stress.breaks_in_time(), 1, most);
     grid_.emplace(n_space_, n_time_);
     while (refine(start))
@@ -253,18 +250,24 @@ namespace crawler
   }
 
   std::array<double, n_gait_numbers>
-  KinematicGait::numbers(const State &state, const StrainFunctional::Values &values) const
+  KinematicGait::numbers(const State &state, const Samples &samples, const StrainFunctional::Values &values) const
   {
     const Units &units  = state.reduced.units();
     const Scene &scene  = state.physical;
     const double energy = units.energy(), D = units.length * values[StrainFunctional::displacement];
+    // The bound holds for the sums of the quadrature, too, whose strains are these.
+    const auto [least, most] = std::ranges::minmax(samples.on_grid.strain);
+    const double bound       = largest_merit(*state.reduced.scene().friction, 1. + least, 1. + most) *
+                         std::sqrt(values[StrainFunctional::dissipation]),
+                 part = std::abs(values[StrainFunctional::displacement]) / bound;
     return {{D,
              energy * values[StrainFunctional::stress_work],
              energy * values[StrainFunctional::positive_work],
              values[StrainFunctional::mean_square],
              D / scene.end_time,
              scene.end_time / (scene.body.friction_coefficient * scene.body.length),
-             energy * values[StrainFunctional::dissipation]}};
+             energy * values[StrainFunctional::dissipation],
+             bound > 0. && !scene.profiles.friction ? part : NAN}};
   }
 
   GaitValues
@@ -277,13 +280,19 @@ namespace crawler
     {
       state             = linear_ ? linear_->state : std::make_shared<const State>(family_.parameters(x));
       samples           = linear_ ? linear_samples(x) : sample(*state);
-      const auto values = grid_->values(samples.on_grid, state->friction(), state->k());
+      const auto values = grid_->values(samples.on_grid, state->body(*grid_));
       if (!values)
       {
         result.problem = "the body inverts: the strain reaches -1";
         return result;
       }
-      result.numbers = numbers(*state, *values);
+      result.numbers = numbers(*state, samples, *values);
+      if (const double efficiency = result.number(GaitNumber::efficiency); efficiency > 1. + accurate_enough)
+      {
+        result.problem =
+          fmt::format("gait_efficiency: the gait efficiency is {:.8g}, but no gait has more than 1", efficiency);
+        return result;
+      }
       if (wishes_.strain)
         result.strain.values = samples.limited;
       if (wishes_.stress)
@@ -325,9 +334,9 @@ namespace crawler
           const Samples its = sample(there);
           slopes_[i].add(around.weights[k], its);
           only_strain[i] = only_strain[i] && there.is_like(state);
-          if (const auto its_values = grid_->values(its.on_grid, there.friction(), there.k()))
+          if (const auto its_values = grid_->values(its.on_grid, there.body(*grid_)))
           {
-            const auto its_numbers = numbers(there, *its_values);
+            const auto its_numbers = numbers(there, its, *its_values);
             for (std::size_t j = 0; j < n_gait_numbers; ++j)
               derivatives[j] += around.weights[k] * its_numbers[j];
           }
@@ -340,7 +349,7 @@ namespace crawler
     const std::vector<Samples> &slopes = linear_ ? linear_->slopes : slopes_;
     const Units &units                 = state.reduced.units();
     const auto put = [&](const StrainFunctional::Number number, const GaitNumber what, const double unit) {
-      const StrainSamples weights = grid_->weights(number, samples.on_grid, state.friction(), state.k());
+      const StrainSamples weights = grid_->weights(number, samples.on_grid, state.body(*grid_));
       for (std::size_t i = 0; i < x.size(); ++i)
         if (only_strain[i])
           values.gradients[static_cast<std::size_t>(what)][i] =
@@ -385,10 +394,32 @@ namespace crawler
   KinematicGait::refine(const std::vector<double> &x)
   {
     constexpr std::size_t most = 400000;
-    const State state(family_.parameters(x));
-    const auto with = [&](const unsigned int n_space, const unsigned int n_time) {
+    const bool is_large        = grid_->points().size() * grid_->times().size() > most;
+    const auto refine_in       = [&](const bool space, const bool time, const std::vector<double> &somewhere) {
+      n_space_ *= space ? 2 : 1;
+      n_time_ *= time ? 2 : 1;
+      grid_.emplace(n_space_, n_time_);
+      if (linear_)
+        look_for_linearity(somewhere);
+      else
+        choose_limited_places(/*many=*/false);
+      return true;
+    };
+    std::optional<State> possible;
+    try
+    {
+      possible.emplace(family_.parameters(x));
+    }
+    catch (const InputError &) // the body would be inverted between the points of the grid
+    {
+      if (is_large || x == start_)
+        throw;
+      return refine_in(true, true, start_);
+    }
+    const State &state = *possible;
+    const auto with    = [&](const unsigned int n_space, const unsigned int n_time) {
       const StrainFunctional grid(n_space, n_time);
-      return grid.values(grid.sample(*state.reduced.strain()), state.friction(), state.k());
+      return grid.values(grid.sample(*state.reduced.strain()), state.body(grid));
     };
     const auto own = with(n_space_, n_time_);
     if (!own)
@@ -400,15 +431,6 @@ namespace crawler
       return false;
     };
     const bool in_space = differs(with(2 * n_space_, n_time_)), in_time = differs(with(n_space_, 2 * n_time_));
-    if ((!in_space && !in_time) || grid_->points().size() * grid_->times().size() > most)
-      return false;
-    n_space_ *= in_space ? 2 : 1;
-    n_time_ *= in_time ? 2 : 1;
-    grid_.emplace(n_space_, n_time_);
-    if (linear_)
-      look_for_linearity(x);
-    else
-      choose_limited_places(/*many=*/false);
-    return true;
+    return (in_space || in_time) && !is_large && refine_in(in_space, in_time, x);
   }
 } // namespace crawler

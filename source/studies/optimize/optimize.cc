@@ -18,9 +18,11 @@
 #include <crawler/studies/run/run.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace crawler
@@ -53,12 +55,31 @@ namespace crawler
       return parts;
     }
 
-    /// What is in the folder already, of @p parts.
+    /// What is in the folder already of a part. Throws InputError if its file is damaged.
+    std::optional<StartResult>
+    earlier(const Part &part, const fs::path &folder)
+    {
+      const fs::path file = part.file(folder);
+      if (!fs::exists(file))
+        return std::nullopt;
+      try
+      {
+        return unpack_start(read_whole_file(file));
+      }
+      catch (const nlohmann::json::exception &)
+      {
+        throw InputError(
+          fmt::format("\"{}\" is damaged, or of another version; without this file --resume computes its "
+                      "start again",
+                      file.string()));
+      }
+    }
+
     bool
     is_done(const Part &part, const fs::path &folder)
     {
-      const fs::path file = part.file(folder);
-      return fs::exists(file) && !unpack_start(read_whole_file(file)).was_interrupted;
+      const auto found = earlier(part, folder);
+      return found && !found->was_interrupted;
     }
 
     /// The parameter files and runs of an earlier study, but for files that are not the program's.
@@ -150,6 +171,25 @@ namespace crawler
       return {fs::exists(place / "summary.json") ? read_whole_file(place / "summary.json") : "{}", is_good};
     }
 
+    std::string
+    first_problem(const OptimizeResults &results)
+    {
+      for (const StartResult &start : results.starts)
+        if (!start.best.problem.empty())
+          return start.best.problem;
+      return "its objective is not known";
+    }
+
+    /// Is an evaluation better than any gait can be?
+    bool
+    exceeds_bound(const OptimizeResults &results)
+    {
+      return std::ranges::any_of(results.starts, [](const StartResult &start) {
+        return std::ranges::any_of(
+          start.records, [](const GaitRecord &record) { return record.problem.starts_with("gait_efficiency"); });
+      });
+    }
+
     /// Tables, the optima with their runs, and the summary, by rank 0. Returns the exit code.
     ExitCode
     write_results(OptimizeCases &cases,
@@ -164,8 +204,8 @@ namespace crawler
     {
       std::vector<StartResult> starts;
       for (const Part &part : parts)
-        if (fs::exists(part.file(folder)))
-          starts.push_back(unpack_start(read_whole_file(part.file(folder))));
+        if (auto start = earlier(part, folder))
+          starts.push_back(std::move(*start));
       const OptimizeResults results(cases, std::move(starts));
       const Table evaluations = evaluation_table(results);
       write_file(folder / "results.csv", csv(evaluations));
@@ -183,38 +223,86 @@ namespace crawler
         runs = runs && is_good;
       }
       write_file(folder / "optima.csv", csv(optimum_table(results, summaries)));
-      const std::string status = !is_whole ? "stopped" : is_admissible && has_converged && runs ? "finished" : "failed";
-      const std::string why    = !is_whole        ? reason
+      const bool is_wrong      = exceeds_bound(results);
+      const bool is_good       = is_admissible && has_converged && runs && !is_wrong;
+      const std::string status = !is_whole ? "stopped" : is_good ? "finished" : "failed";
+      const std::string why    = is_wrong         ? "gait_efficiency"
+                                 : !is_whole      ? reason
                                  : !is_admissible ? "limits_exceeded"
                                  : !has_converged ? "optimiser_not_converged"
                                  : !runs          ? "best_run_failed"
                                                   : "";
+      const double seconds     = now() - begin; // pictures are no part of it
       write_file(folder / "summary.json",
-                 optimize_json(results, summaries, status, why, now() - begin, options.command_line));
+                 optimize_json(results, summaries, status, why, seconds, options.command_line));
       for (const std::string &line : in_words(results, summaries))
         log.line(line);
       if (!results.best.empty())
         draw("optimize.py", folder, log);
+      if (is_wrong)
+        log.warn("an evaluation is better than any gait can be (column problem of results.csv), so it is wrong");
       if (!is_whole)
         log.warn(
           fmt::format("stopped by {}; --resume goes on", reason == "signal" ? "a signal" : "Optimize/Time limit"));
-      else if (status == "failed")
+      else if (status == "failed" && !is_wrong)
         log.warn(
-          why == "limits_exceeded"
+          results.best.empty() ? "no start makes a gait: " + first_problem(results)
+          : why == "limits_exceeded"
             ? "no gait that keeps to all limits was found; the limits may contradict each other, or the start is "
               "far from them"
           : why == "best_run_failed" ? "the run of a best gait did not end as it should; its log.txt says why"
                                      : "the optimiser did not converge; the lines above say why");
-      log.line(fmt::format("{} evaluations from {}, {:.1f} s. The best gait is in {}/optimum{}.prm, its run in "
-                           "{}/best{}/.",
+      const std::string number = !cases.axes().empty() ? "-N" : "";
+      log.line(fmt::format("{} evaluations from {}, {:.1f} s. {}",
                            std::get<std::vector<double>>(evaluations.front().values).size(),
                            counted(results.starts.size(), "start"),
-                           now() - begin,
-                           folder.string(),
-                           !cases.axes().empty() ? "-N" : "",
-                           folder.string(),
-                           !cases.axes().empty() ? "-N" : ""));
-      return !is_whole ? ExitCode::stopped : status == "finished" ? ExitCode::finished : ExitCode::numerical_failure;
+                           seconds,
+                           results.best.empty() ? fmt::format("Tables are in {}/.", folder.string())
+                                                : fmt::format("The best gait is in {0}/optimum{1}.prm, its run in "
+                                                              "{0}/best{1}/.",
+                                                              folder.string(),
+                                                              number)));
+      return is_wrong    ? ExitCode::self_check_failed
+             : !is_whole ? ExitCode::stopped
+             : is_good   ? ExitCode::finished
+                         : ExitCode::numerical_failure;
+    }
+
+    /// --check-gradient: of each case at the start; where that is special (a jump at the end of the run, say), so that
+    /// nothing can be compared, beside it.
+    ExitCode
+    check_gradients(OptimizeCases &cases, Log &log)
+    {
+      constexpr double beside = 0.0137;
+      bool agrees             = true;
+      for (unsigned long number = 0; number < cases.size(); ++number)
+      {
+        const auto family = cases.family(number);
+        // Differences of rough simulations say little.
+        family->form().declarations.set("Accuracy", to_text(std::min(cases.parameters().accuracy, accuracy_of_check)));
+        auto x               = start_values(cases.parameters().optimize, family->variables(), 0);
+        const auto model     = make_gait_model(*family, x, []() { return false; });
+        const auto wishes    = GaitProblem::wishes(family->form().parameters.optimize);
+        const bool has_cases = !cases.axes().empty();
+        if (number == 0)
+          log.line(in_words(cases, *model));
+        if (has_cases)
+          log.line("Case " + cases.in_words(number));
+        auto result = check_gradient(*model, *family, wishes, x, log);
+        if (!result)
+        {
+          for (std::size_t i = 0; i < x.size(); ++i)
+          {
+            const double shift = beside * family->scale(x, i);
+            x[i] += x[i] + shift <= family->variables()[i].to ? shift : -shift;
+          }
+          log.line(fmt::format("Beside the start, all variables being {:g} % of their size away:", 100. * beside));
+          result = check_gradient(*model, *family, wishes, x, log);
+        }
+        agrees = agrees && result.value_or(true);
+        family->form().declarations.set("Accuracy", to_text(cases.parameters().accuracy));
+      }
+      return agrees ? ExitCode::finished : ExitCode::self_check_failed;
     }
   } // namespace
 
@@ -229,16 +317,12 @@ namespace crawler
     const OptimizeParameters own = cases.parameters().optimize;
     try
     {
-      const auto family = cases.family(0);
-      if (options.check_gradient) // differences of rough simulations say little
-        family->form().declarations.set("Accuracy", to_text(std::min(cases.parameters().accuracy, accuracy_of_check)));
-      const auto start = start_values(own, family->variables(), 0);
-      const auto model = make_gait_model(*family, start, []() { return false; });
-      log.line(in_words(cases, *model));
       if (options.check_gradient)
-        return check_gradient(*model, *family, GaitProblem::wishes(family->form().parameters.optimize), start, log)
-                 ? ExitCode::finished
-                 : ExitCode::self_check_failed;
+        return check_gradients(cases, log);
+      const auto family = cases.family(0);
+      const auto start  = start_values(own, family->variables(), 0);
+      const auto model  = make_gait_model(*family, start, []() { return false; });
+      log.line(in_words(cases, *model));
       model->evaluate(start, /*with_gradients=*/false).require_start();
     }
     catch (const InputError &error)
@@ -274,6 +358,7 @@ namespace crawler
                                      log);
     const std::string reason = is_whole ? "" : stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
     const std::string code   = on_first_rank(communicator, [&]() {
+      folder.require_in_place();
       const ExitCode end = write_results(cases, parts, options, effective, is_whole, reason, begin, path, log);
       folder.leave();
       return fmt::format("{}", static_cast<int>(end));

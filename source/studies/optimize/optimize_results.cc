@@ -22,9 +22,10 @@ namespace crawler
                                                                             "mean_square_strain",
                                                                             "speed",
                                                                             "friction_time",
-                                                                            "dissipation"}};
+                                                                            "dissipation",
+                                                                            "efficiency"}};
     constexpr std::array<const char *, n_gait_numbers> units_of_numbers = {
-      {"length", "energy", "energy", "1", "length/time", "time^2/(force length)", "energy"}};
+      {"length", "energy", "energy", "1", "length/time", "time^2/(force length)", "energy", "1"}};
 
     Json
     json_number(const double value)
@@ -134,7 +135,7 @@ namespace crawler
     };
     for (std::size_t i = 0; i < starts.size(); ++i)
     {
-      if (starts[i].best.x.empty() || !starts[i].best.problem.empty())
+      if (starts[i].best.x.empty() || !starts[i].best.problem.empty() || !std::isfinite(starts[i].best.objective))
         continue;
       if (best.empty() || starts[i].number_of_case != starts[best.back()].number_of_case)
         best.push_back(i);
@@ -206,6 +207,7 @@ namespace crawler
     }
     Table table;
     records.put(table);
+    std::erase_if(table, [](const auto &column) { return column.name == "efficiency"; }); // that of the run is better
     table.push_back({"displacement_error", "length", "bound of its error, by the run of the optimum", error});
     table.push_back({"efficiency", "1", "part of what any gait with this work and these strains could", efficiency});
     table.push_back({"stride_efficiency", "1", "the same of the last stride, with its dissipation", of_stride});
@@ -245,6 +247,7 @@ namespace crawler
                                           {"message", start.message.empty() ? Json() : Json(start.message)},
                                           {"objective", json_number(start.best.objective)},
                                           {"violation", json_number(start.best.violation)},
+                                          {"exceeded_limit", start.is_admissible() ? Json() : Json(start.best.worst_limit)},
                                           {"is_admissible", start.is_admissible()},
                                           {"variables", Json::object()},
                                           {"limits", Json::object()}};
@@ -278,13 +281,17 @@ namespace crawler
     {
       const StartResult &start         = results.starts[results.best[i]];
       const OptimizeResults::Case &its = results.cases[start.number_of_case];
-      lines.push_back(
-        fmt::format("Best {}{}: {:.8g}{}{}",
-                    results.objective,
-                    its.words.empty() ? "" : fmt::format(" with {}", its.words),
-                    start.best.objective,
-                    start.is_admissible() ? "" : " (a limit is EXCEEDED: no gait that keeps to all limits was found)",
-                    start.has_converged ? "" : fmt::format(" (the optimiser did not converge: {})", start.message)));
+      lines.push_back(fmt::format(
+        "Best {}{}: {:.8g}{}{}",
+        results.objective,
+        its.words.empty() ? "" : fmt::format(" with {}", its.words),
+        start.best.objective,
+        start.is_admissible() ? ""
+                              : fmt::format(" ({} is EXCEEDED, by {:.2g} %: no gait that keeps to all limits "
+                                            "was found)",
+                                            start.best.worst_limit,
+                                            100. * start.best.violation),
+        start.has_converged ? "" : fmt::format(" (the optimiser did not converge: {})", start.message)));
       if (i < summaries.size())
       {
         const bool is_stride = results.objective == "periodic merit";
@@ -296,7 +303,8 @@ namespace crawler
                                       is_stride ? "dissipation" : "work",
                                       is_stride ? ", in the last stride" : ""));
         const double stretch = number_at(Json::parse(summaries[i]), "/min_stretch/value");
-        if (stretch < near_inversion)
+        const bool has_own = std::ranges::find(start.limits, "Smallest strain", &GaitLimit::name) != start.limits.end();
+        if (stretch < near_inversion && !has_own)
           lines.push_back(
             fmt::format("  Here the body is pressed together to a stretch of {:.2g}: inversion holds the gait "
                         "back, not a limit that was set. Optimize/Smallest strain sets one",

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace crawler
 {
@@ -29,15 +30,15 @@ namespace crawler
     Json
     json_of(const GaitRecord &record)
     {
-      return {record.x, record.objective, record.numbers, record.violation, record.problem};
+      return {record.x, record.objective, record.numbers, record.violation, record.problem, record.worst_limit};
     }
 
     GaitRecord
     record_of(const Json &json)
     {
-      GaitRecord record{json[0], number_of(json[1]), {}, number_of(json[3]), json[4]};
+      GaitRecord record{json.at(0), number_of(json.at(1)), {}, number_of(json.at(3)), json.at(4), json.at(5)};
       for (std::size_t i = 0; i < n_gait_numbers; ++i)
-        record.numbers[i] = number_of(json[2][i]);
+        record.numbers[i] = number_of(json.at(2).at(i));
       return record;
     }
 
@@ -87,8 +88,14 @@ namespace crawler
         }
         catch (const InputError &error) // this start makes no gait
         {
-          result_.best          = {x_, NAN, {}, NAN, error.what()};
-          result_.records       = {result_.best};
+          const bool may_invert = !result_.records.empty() && !wanted_.smallest_strain;
+          result_.best          = {
+                     x_,
+                     NAN,
+                     {},
+                     NAN,
+                     error.what() + std::string(may_invert ? "; Optimize/Smallest strain keeps gaits away from inversion" : "")};
+          result_.records.push_back(result_.best);
           result_.has_converged = false;
           result_.message       = "no gait";
         }
@@ -113,15 +120,26 @@ namespace crawler
         wanted_.tolerance                  = std::max(wanted_.tolerance, above_noise * model->noise());
         parameters_                        = wanted_;
         bool is_rough                      = model->noise() == 0.; // of simulations all is known after the first round
+        bool is_fine                       = false;
         for (unsigned int round = 0; round < most_rounds; ++round)
         {
           improve(*model, is_rough);
           if (!result_.best.problem.empty())
             return;
-          x_                 = result_.best.x;
-          const bool is_fine = !model->refine(x_);
+          x_      = result_.best.x;
+          is_fine = !model->refine(x_);
           if (!is_fine) // the limits are looked at in other places
+          {
             parameters_ = wanted_;
+            comparable_ = result_.records.size();
+            if (!model->evaluate(x_, /*with_gradients=*/false).problem.empty()) // between the former places
+            {
+              x_ = start_values(wanted_, family_.variables(), result_.start);
+              multipliers_.clear();
+            }
+          }
+          if (is_fine && !is_rough && !result_.is_admissible())
+            return; // closer limits would not help
           const bool exceeds = is_fine && !is_rough && (wanted_.smallest_strain || wanted_.largest_strain) &&
                                tighten(parameters_, wanted_, model->extreme_strains(x_));
           if (is_fine && !exceeds && !is_rough)
@@ -129,7 +147,8 @@ namespace crawler
           is_rough = is_rough && !is_fine;
         }
         result_.has_converged = false;
-        result_.message       = "the grid became finer and finer, or the strain exceeds its limits between its points";
+        result_.message       = is_fine ? "the strain exceeds its limits between the points where it is looked at"
+                                        : "the grid became finer and finer";
       }
 
       /// From x on; @p is_rough: the grid may be too coarse, so that a rough optimum will do.
@@ -138,9 +157,12 @@ namespace crawler
       {
         constexpr double roughly = 1e-3, most_unused = 0.01;
         GaitProblem problem(model, parameters_, family_.variables(), x_, stops_);
-        const auto keep = [&](const GaitRecord &best) {
-          result_.best = best;
+        const auto keep = [&](const GaitRecord *const optimum) {
           result_.records.insert(result_.records.end(), problem.records().begin(), problem.records().end());
+          result_.best =
+            optimum != nullptr
+              ? *optimum
+              : GaitProblem::best_of(std::span(result_.records).subspan(comparable_), wanted_, problem.admissible());
         };
         if (multipliers_.size() != problem.lower().size())
           multipliers_.clear();
@@ -150,17 +172,17 @@ namespace crawler
         result_.admissible     = problem.admissible();
         try
         {
-          const OptimizerEnd end = minimise(problem,
+          const OptimizerEnd end   = minimise(problem,
                                             problem.to_y(x_),
                                             multipliers_,
                                             is_rough ? std::max(roughly, tolerance) : tolerance,
                                             parameters_.most_iterations);
-          multipliers_           = end.multipliers;
-          scale_                 = problem.scale();
-          const bool is_gait     = problem.record(end.y).problem.empty();
-          keep(end.has_converged && is_gait ? problem.record(end.y) : problem.best());
-          result_.has_converged = end.has_converged && is_gait;
-          result_.message       = end.message;
+          multipliers_             = end.multipliers;
+          scale_                   = problem.scale();
+          const std::string at_end = end.has_converged ? problem.at(end.y, /*with_gradients=*/true).problem : "";
+          result_.has_converged    = end.has_converged && at_end.empty();
+          result_.message          = at_end.empty() ? end.message : "what it ends at has no derivatives, " + at_end;
+          keep(result_.has_converged ? &problem.record(end.y) : nullptr);
           if (result_.has_converged && problem.unused_limits(end.y, end.multipliers) > most_unused)
           {
             result_.has_converged = false;
@@ -173,7 +195,7 @@ namespace crawler
         catch (const GaitModel::Interrupted &)
         {
           if (!problem.records().empty())
-            keep(problem.best());
+            keep(nullptr);
           throw;
         }
       }
@@ -222,7 +244,8 @@ namespace crawler
       OptimizeParameters wanted_;
       OptimizeParameters parameters_; ///< with limits of strain that may be tightened
       std::vector<double> x_, multipliers_;
-      double scale_ = 1.; ///< of the objective, for the multipliers
+      double scale_           = 1.; ///< of the objective, for the multipliers
+      std::size_t comparable_ = 0;  ///< the first record whose limits were looked at where they are now
       StartResult result_;
     };
   } // namespace
@@ -253,18 +276,18 @@ namespace crawler
   {
     const Json json = Json::parse(text);
     StartResult result;
-    result.number_of_case = json["case"];
-    result.start          = json["start"];
-    result.best           = record_of(json["best"]);
-    for (const Json &limit : json["limits"])
-      result.limits.push_back({limit[0], number_of(limit[1]), number_of(limit[2])});
-    result.has_converged   = json["has_converged"];
-    result.was_interrupted = json["was_interrupted"];
-    result.message         = json["message"];
-    result.iterations      = json["iterations"];
-    result.admissible      = json["admissible"];
-    result.seconds         = json["seconds"];
-    for (const Json &record : json["records"])
+    result.number_of_case = json.at("case");
+    result.start          = json.at("start");
+    result.best           = record_of(json.at("best"));
+    for (const Json &limit : json.at("limits"))
+      result.limits.push_back({limit.at(0), number_of(limit.at(1)), number_of(limit.at(2))});
+    result.has_converged   = json.at("has_converged");
+    result.was_interrupted = json.at("was_interrupted");
+    result.message         = json.at("message");
+    result.iterations      = json.at("iterations");
+    result.admissible      = json.at("admissible");
+    result.seconds         = json.at("seconds");
+    for (const Json &record : json.at("records"))
       result.records.push_back(record_of(record));
     return result;
   }

@@ -195,20 +195,27 @@ namespace crawler
       ROL::Solver<double> solver(rol, list);
       solver.solve(unread);
       const ROL::EExitStatus end = solver.getAlgorithmState()->statusFlag;
-      const bool is_good         = end == ROL::EXITSTATUS_CONVERGED || end == ROL::EXITSTATUS_STEPTOL;
-      const List c               = problem.at(*unknowns->getVector(), false).constraints;
-      const double now           = violation(problem, c);
-      lagrangian->mu             = lagrangian->forces(c);
+      // Steps that became small since gaits there are impossible are no sign of an optimum.
+      std::string impossible;
+      if (end == ROL::EXITSTATUS_STEPTOL && solver.getAlgorithmState()->gnorm > inner)
+        impossible = problem.latest_beside(*unknowns->getVector()).problem;
+      const bool is_good = (end == ROL::EXITSTATUS_CONVERGED || end == ROL::EXITSTATUS_STEPTOL) && impossible.empty();
+      if (!impossible.empty())
+        impossible = "better gaits are impossible: " + impossible;
+      const List c     = problem.at(*unknowns->getVector(), false).constraints;
+      const double now = violation(problem, c);
+      lagrangian->mu   = lagrangian->forces(c);
       if (is_good && inner <= tolerance && now <= tolerance)
         return {*unknowns->getVector(), true, "", i, lagrangian->mu};
       if (!has_limits && !is_good)
-        return {*unknowns->getVector(), false, ROL::EExitStatusToString(end), i, {}};
+        return {*unknowns->getVector(), false, impossible.empty() ? ROL::EExitStatusToString(end) : impossible, i, {}};
       n_idle = (is_good && now <= tolerance) || now < 0.9 * before ? 0 : n_idle + 1;
       if (n_idle == most_idle)
         return {*unknowns->getVector(),
                 false,
-                now > tolerance ? "the limits seem to contradict each other, or the start is too far from them"
-                                : "the optimiser makes no progress",
+                !impossible.empty() ? impossible
+                : now > tolerance   ? "the limits seem to contradict each other, or the start is too far from them"
+                                    : "the optimiser makes no progress",
                 i,
                 lagrangian->mu};
       if (now > less * before && now > tolerance)

@@ -18,7 +18,8 @@ namespace crawler
                                                                                  std::nullopt,
                                                                                  Quantity::speed,
                                                                                  std::nullopt,
-                                                                                 Quantity::dissipation}};
+                                                                                 Quantity::dissipation,
+                                                                                 std::nullopt}};
 
     std::string
     problem_of(const Task &task)
@@ -96,6 +97,7 @@ namespace crawler
     }
     if (result.gait)
       list[static_cast<std::size_t>(GaitNumber::speed)] = result.gait->speed();
+    list[static_cast<std::size_t>(GaitNumber::efficiency)] = result.gait_efficiency.value_or(NAN);
     list[static_cast<std::size_t>(GaitNumber::friction_time)] =
       scene.end_time / (scene.body.friction_coefficient * scene.body.length);
     return list;
@@ -133,15 +135,20 @@ namespace crawler
       {
         for (auto &gradient : values.gradients)
           gradient.assign(x.size(), 0.);
-        const std::vector<bool> is_known                                      = add_adjoint_gradients(x, task, values);
+        values.by_differences.assign(x.size(), true);
+        values.strain_by_differences.assign(x.size(), wishes_.strain);
+        if (wishes_.strain)
+          strain_jacobian_.assign(2 * x.size(), 0.);
+        add_adjoint_gradients(x, task, values);
         values.gradients[static_cast<std::size_t>(GaitNumber::friction_time)] = family_.differences(
           x,
           [](const Parameters &there) {
             return std::vector<double>(1, there.time.end_time / (there.body.friction_coefficient * there.body.length));
           },
           1e-3);
-        if (wishes_.strain || std::ranges::find(is_known, false) != is_known.end())
-          add_differences(x, is_known, values);
+        add_differences(x, values);
+        if (wishes_.strain)
+          values.strain.jacobian = std::make_shared<const std::vector<double>>(strain_jacobian_);
       }
     }
     catch (const InputError &error)
@@ -151,17 +158,16 @@ namespace crawler
     return values;
   }
 
-  /// Returns for which variables all wanted numbers have their derivatives.
-  std::vector<bool>
+  /// For the variables for which all wanted numbers have their derivatives.
+  void
   SimulatedGait::add_adjoint_gradients(const std::vector<double> &x, const Task &task, GaitValues &values)
   {
-    constexpr double step = 1e-3;
-    std::vector<bool> is_known(x.size(), false);
+    constexpr double step        = 1e-3;
     const Parameters &parameters = task.parameters;
     const NumericsChoice &choice = task.computed.choice;
-    if (task.computed.result.model == Model::kinematic || choice.is_family ||
+    if (task.computed.result.model == Model::kinematic || choice.is_of_several_runs() ||
         !RecordedRun::is_possible(*task.scene, parameters.time, choice.numerics))
-      return is_known;
+      return;
     std::vector<Quantity> wanted;
     for (std::size_t k = 0; k < n_gait_numbers; ++k)
       if (wishes_.numbers[k] && quantities[k] && *quantities[k] != Quantity::speed)
@@ -194,37 +200,49 @@ namespace crawler
     try
     {
       const RecordedRun run(*task.scene, parameters.time, choice.numerics, [&]() { return !interrupted_(); });
-      const auto derivatives = RunGradient(run).derivatives(variations, wanted);
+      std::vector<StretchPlace> extremes;
+      if (wishes_.strain)
+        for (const Extreme &one : {task.computed.result.min_stretch, task.computed.result.max_stretch})
+          extremes.push_back({one.s / task.scene->body.length, one.t / task.scene->end_time, one.value});
+      RunGradient gradient(run);
+      const auto derivatives = gradient.derivatives(variations, wanted, extremes);
       for (std::size_t v = 0; v < own.size(); ++v)
       {
         const std::size_t i = own[v];
-        is_known[i]         = true;
+        bool is_known       = true;
         for (std::size_t k = 0; k < n_gait_numbers; ++k)
           if (wishes_.numbers[k] && quantities[k])
           {
             const auto &value      = derivatives[v][static_cast<std::size_t>(*quantities[k])];
-            is_known[i]            = is_known[i] && value.has_value();
+            is_known               = is_known && value.has_value();
             values.gradients[k][i] = value.value_or(0.);
           }
+        values.by_differences[i] = !is_known;
+        const auto &strains      = gradient.of_stretches()[v];
+        if (!wishes_.strain || !std::ranges::all_of(strains, [](const auto &one) { return one.has_value(); }))
+          continue;
+        for (std::size_t e = 0; e < strains.size(); ++e)
+          strain_jacobian_[e * x.size() + i] = *strains[e];
+        values.strain_by_differences[i] = false;
       }
     }
     catch (const std::exception &) // the engine gave up a step, say
     {
       if (interrupted_())
         throw Interrupted();
-      is_known.assign(x.size(), false);
+      values.by_differences.assign(x.size(), true);
+      values.strain_by_differences.assign(x.size(), wishes_.strain);
     }
-    return is_known;
   }
 
   void
-  SimulatedGait::add_differences(const std::vector<double> &x, const std::vector<bool> &is_known, GaitValues &values)
+  SimulatedGait::add_differences(const std::vector<double> &x, GaitValues &values)
   {
     const double step = step_of_differences(latest_.front().parameters.accuracy);
     std::vector<std::vector<double>> places;
     std::vector<std::pair<std::size_t, double>> weights; // variable and weight of each place
     for (std::size_t i = 0; i < x.size(); ++i)
-      if (!is_known[i] || wishes_.strain)
+      if (values.by_differences[i] || values.strain_by_differences[i])
       {
         const auto around = family_.stencil(x, i, step);
         for (std::size_t k = 0; k < around.places.size(); ++k)
@@ -234,30 +252,51 @@ namespace crawler
           weights.emplace_back(i, around.weights[k]);
         }
       }
-    values.by_differences = is_known;
-    values.by_differences.flip();
-    std::vector<double> extremes(2 * x.size()); // [smallest, largest][variable]
+    if (places.empty())
+      return;
     const std::vector<Task> tasks = answers(places);
-    for (std::size_t i = 0; i < x.size(); ++i)
-      if (!is_known[i])
-        for (auto &gradient : values.gradients)
-          gradient[i] = 0.;
+    const std::size_t n           = x.size();
+    // Near inversion, say, a gait beside may be impossible: one on the other side gives a derivative of first order.
+    std::vector<std::size_t> nearest(n, tasks.size());
+    std::vector<std::string> problems(n);
+    const auto distance = [&](const std::size_t j) {
+      return std::abs(places[j][weights[j].first] - x[weights[j].first]);
+    };
     for (std::size_t j = 0; j < tasks.size(); ++j)
     {
-      const auto [i, weight] = weights[j];
+      const std::size_t i = weights[j].first;
       if (const std::string problem = problem_of(tasks[j]); !problem.empty())
-      {
-        values.problem = "beside it: " + problem;
-        return;
-      }
-      const auto there = numbers(tasks[j]);
-      if (!is_known[i])
-        for (std::size_t k = 0; k < n_gait_numbers; ++k)
-          values.gradients[k][i] += weight * there[k];
-      extremes[i] += weight * tasks[j].computed.result.min_stretch.value;
-      extremes[x.size() + i] += weight * tasks[j].computed.result.max_stretch.value;
+        problems[i] = problem;
+      else if (distance(j) > 0. && (nearest[i] == tasks.size() || distance(j) < distance(nearest[i])))
+        nearest[i] = j;
     }
-    if (wishes_.strain)
-      values.strain.jacobian = std::make_shared<const std::vector<double>>(std::move(extremes));
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      if (values.by_differences[i])
+        for (auto &gradient : values.gradients)
+          gradient[i] = 0.;
+      if (!problems[i].empty() && nearest[i] == tasks.size())
+        values.problem_of_gradients = "beside it: " + problems[i];
+    }
+    const SimulationResult &here = latest_.front().computed.result;
+    for (std::size_t j = 0; j < tasks.size(); ++j)
+    {
+      const std::size_t i     = weights[j].first;
+      const bool is_one_sided = !problems[i].empty();
+      if (is_one_sided && j != nearest[i])
+        continue;
+      const double weight = is_one_sided ? 1. / (places[j][i] - x[i]) : weights[j].second;
+      const auto there    = numbers(tasks[j]);
+      const auto change   = [&](const double value, const double at_x) {
+        return weight * (is_one_sided ? value - at_x : value);
+      };
+      if (values.by_differences[i])
+        for (std::size_t k = 0; k < n_gait_numbers; ++k)
+          values.gradients[k][i] += change(there[k], values.numbers[k]);
+      if (!values.strain_by_differences[i])
+        continue;
+      strain_jacobian_[i] += change(tasks[j].computed.result.min_stretch.value, here.min_stretch.value);
+      strain_jacobian_[n + i] += change(tasks[j].computed.result.max_stretch.value, here.max_stretch.value);
+    }
   }
 } // namespace crawler

@@ -117,25 +117,24 @@ const series = i => ink('c' + (i % 7 + 1));
 // Cividis, which looks the same to colour-blind readers.
 const CIVIDIS = ['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838'];
 
-/** 256 colours through the given ones. */
-function palette(colours) {
+/** 256 colours of a part of the way through the given ones. */
+function palette(colours, begin = 0, end = 1) {
   const stops = colours.map(rgb);
   return Array.from({length: 256}, (_, i) => {
-    const x = i / 255 * (stops.length - 1), k = Math.min(Math.floor(x), stops.length - 2);
+    const x = (begin + i / 255 * (end - begin)) * (stops.length - 1), k = Math.min(Math.floor(x), stops.length - 2);
     return stops[k].map((from, c) => Math.round(from + (x - k) * (stops[k + 1][c] - from)));
   });
 }
 
-/** Colours of the numbers from low to high; those that lie on both sides of a middle have two hues. */
+/** Colours of the numbers from low to high; those that lie on both sides of a middle have two hues, as
+ * strong on one side as on the other. */
 function colourScale(low, high, {middle = 0, log = false} = {}) {
   const diverges = middle !== null && low < middle && high > middle;
-  if (diverges) {
-    const reach = Math.max(middle - low, high - middle);
-    [low, high] = [middle - reach, middle + reach];
-  }
+  const reach = Math.max(middle - low, high - middle), part = x => (1 + (x - middle) / reach) / 2;
   if (!(high > low)) [low, high] = [low - (Math.abs(low) || 1) / 2, high + (Math.abs(high) || 1) / 2];
   const of = log ? Math.log : x => x;
-  const list = palette(diverges ? [ink('low'), ink('middle'), ink('high')] : CIVIDIS), unknown = rgb(ink('unknown'));
+  const list = diverges ? palette([ink('low'), ink('middle'), ink('high')], part(low), part(high)) : palette(CIVIDIS);
+  const unknown = rgb(ink('unknown'));
   const from = of(low), scale = 255 / (of(high) - from);
   const index = x => Math.max(0, Math.min(255, Math.round((of(x) - from) * scale)));
   const colour = x => isFinite(x) ? list[index(x)] : unknown;

@@ -94,7 +94,9 @@ class BodyPicture {
     this.middle = (low + high) / 2;
     this.least = range(fields.fields.stretch)[0];
     this.centres = fields.centres(this.clock.pace);
-    this.reach = Math.max(...range(fields.fields.friction_force ?? []).map(Math.abs));
+    // A sudden start must not make all other arrows invisible.
+    const sizes = Float32Array.from(fields.fields.friction_force ?? [], Math.abs).filter(isFinite).sort();
+    this.reach = sizes.length ? sizes[Math.floor(0.98 * (sizes.length - 1))] || sizes[sizes.length - 1] : 0;
     if (run.ground) this.ground = {x: new Column(run.ground.places).numbers(), c: new Column(run.ground.factor).numbers()};
   }
   paint({context: c, width}) {
@@ -170,7 +172,7 @@ class BodyPicture {
     c.strokeStyle = c.fillStyle = ink('accent');
     c.lineWidth = 1.6;
     for (let i = 0, step = Math.max(1, Math.round(px.length / 20)); i < px.length; i += step) {
-      const size = -f[i] / this.reach * 34, head = Math.sign(size) * Math.min(5, Math.abs(size));
+      const size = -Math.max(-1.5, Math.min(1.5, f[i] / this.reach)) * 34, head = Math.sign(size) * Math.min(5, Math.abs(size));
       if (Math.abs(size) < 1) continue;
       c.beginPath(); c.moveTo(px[i], y); c.lineTo(px[i] + size, y); c.stroke();
       c.beginPath(); c.moveTo(px[i] + size + head, y); c.lineTo(px[i] + size, y - 3.5); c.lineTo(px[i] + size, y + 3.5); c.fill();

@@ -112,10 +112,12 @@ class Explorer {
       legend(this.legendBox, column.texts.map((text, i) => [`${text} (${counts[i]})`, colour(i)]).filter((_, i) => counts[i] > 0));
       return;
     }
-    const values = this.list.map(row => column.number(row)), [low, high] = range(values);
+    // What points that did not finish have reached is no result, and must not spread the scale.
+    const ended = this.list.filter(row => !this.isOpen(row)), values = (ended.length ? ended : this.list).map(row => column.number(row)), [low, high] = range(values);
     const log = low > 0 && high / low > 1000, scale = colourScale(low, high, {log});
-    this.css = row => scale.css(column.number(row));
-    this.bar.set(scale, withUnit(column.title, column.unit) + (values.some(value => !isFinite(value)) ? ' (grey: not known)' : ''));
+    this.css = row => ended.length && this.isOpen(row) ? ink('unknown') : scale.css(column.number(row));
+    const grey = [values.some(value => !isFinite(value)) && 'not known', ended.length < this.list.length && 'not finished'].filter(Boolean);
+    this.bar.set(scale, withUnit(column.title, column.unit) + (grey.length ? ` (grey: ${grey.join(' or ')})` : ''));
   }
   axesOf() {
     const axis = key => {
@@ -151,7 +153,9 @@ class Explorer {
       for (const row of this.list.filter(this.isOpen)) this.cross(chart, chart.x(this.column('x').number(row)), chart.y(this.column('y').number(row)));
     } else {
       const x = this.column('x').numbers(), y = this.column('y').numbers(), size = this.list.length > 5000 ? 2 : this.list.length > 300 ? 5 : 7;
-      for (const rows of this.lines ?? []) {
+      for (const all of this.lines ?? []) {
+        const rows = all.filter(row => !this.isOpen(row));
+        if (!rows.length) continue;
         chart.polyline(rows.map(row => x[row]), rows.map(row => y[row]), this.css(rows[0]));
         this.errorBars(chart, rows, x, y);
       }

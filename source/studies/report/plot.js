@@ -79,9 +79,15 @@ class Chart {
     this.width = this.box.clientWidth;
     if (this.width < 60) return;
     this.context = this.size(this.below);
-    const m = this.margin, inner = [m.left, this.width - m.right, this.height - m.bottom, m.top];
-    if (this.axes) {
-      const {x, y} = this.axes();
+    const m = this.margin, axes = this.axes?.();
+    if (axes) { // words need more room than numbers
+      this.least ??= m.left;
+      const widest = Math.max(0, ...(axes.y.texts ?? []).map(text => this.context.measureText(text).width));
+      m.left = Math.max(this.least, Math.min(widest + 28, 0.35 * this.width));
+    }
+    const inner = [m.left, this.width - m.right, this.height - m.bottom, m.top];
+    if (axes) {
+      const {x, y} = axes;
       this.x = scaleOf(x.low, x.high, inner[0], inner[1], x.log);
       this.y = scaleOf(y.low, y.high, inner[2], inner[3], y.log);
       if (!this.axesAbove) this.drawAxes(x, y);

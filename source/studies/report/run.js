@@ -125,7 +125,7 @@ function showRun(parent, run) {
     const period = at(summary, 'gait.period');
     clock = new Clock(fields.end, known(period) && period < fields.end ? period : fields.end);
     curves = showBody(parent, run, clock, fields).right;
-  } else parent.append(el('p', {class: 'soft small'}, 'There is no moving body here: kymograph.vts is missing (snapshots and Output/Kymograph = true make it).'));
+  } else parent.append(el('p', {class: 'soft small'}, 'There is no moving body here: ' + (summary?.status === 'stopped' ? 'the run was stopped, and kymograph.vts is written at its end; the same command with --resume goes on.' : 'kymograph.vts is missing (snapshots and Output/Kymograph = true make it).')));
   showCurves(curves, run, clock, fields);
   showSensitivities(parent, run);
 }

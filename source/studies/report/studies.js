@@ -113,6 +113,7 @@ function pointDetails(panel, row, explorer) {
     showTiles(panel, one);
     panel.append(el('p', {}, gaitInWords(one).join(' ')));
   }
+  if (explorer.columns.get('reason')?.value(row) === 'refused') return; // there is nothing to compute
   panel.append(page.more_runs.includes(name) ? el('p', {}, 'The files of this point are in ', el('a', {href: `${name}/`}, name), '; crawler report makes a page of them.')
     : el('p', {class: 'soft small'}, 'Body and kymograph of this point were not kept. This computes them; the next crawler report shows them here:'));
   if (!page.more_runs.includes(name)) panel.append(el('pre', {tabindex: 0}, pointCommand(explorer, row)));

@@ -15,6 +15,7 @@
 #include <crawler/run/self_check.h>
 #include <crawler/run/simulation.h>
 #include <crawler/run/summary.h>
+#include <crawler/scene/moving_jumps.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
@@ -99,6 +100,34 @@ namespace crawler
       }
     }
 
+    /// The sensitivities of a run that has ended, into its result and its folder. Returns false if a stop came before
+    /// all were known.
+    bool
+    differentiate(Log &log,
+                  const Input &input,
+                  const NumericsChoice &choice,
+                  const std::filesystem::path &folder,
+                  const std::function<bool()> &is_stopped,
+                  SimulationResult &result)
+    {
+      WaitProgress progress(log, "runs for the sensitivities");
+      if (result.time.status != Status::finished)
+      {
+        log.warn("there are no sensitivities, since the run did not end as it should");
+        return true;
+      }
+      write_sensitivities(add_sensitivities(input,
+                                            choice,
+                                            result,
+                                            [&]() {
+                                              progress.step();
+                                              return !is_stopped();
+                                            }),
+                          folder);
+      return !is_stopped() ||
+             std::ranges::all_of(result.sensitivities, [](const auto &one) { return one.value.has_value(); });
+    }
+
     /// PETSc options that were not read are most likely misspelt.
     void
     report_unused_options(Log &log)
@@ -167,6 +196,7 @@ namespace crawler
       parameters.time.checkpoint_interval, !first ? RunJournal::Write() : [&](const std::string &all) {
         if (!has_files)
           return;
+        lock->require_in_place();
         checkpoint.journal = all;
         write_checkpoint(folder, checkpoint);
       });
@@ -254,10 +284,15 @@ namespace crawler
     };
     const KeepGoing keep_going(continues, &journal);
     std::unique_ptr<Simulation> simulation;
-    const auto build = [&](const Numerics &numerics) {
-      simulation = std::make_unique<Simulation>(computing, input.scene, parameters.time, numerics);
+    std::optional<Scene> scene_with_fronts;
+    const auto build = [&](const NumericsChoice &choice) {
+      simulation.reset();
+      if (choice.front_part > 0.)
+        scene_with_fronts = with_fronts(input.scene, choice.front_part);
+      simulation = std::make_unique<Simulation>(
+        computing, scene_with_fronts ? *scene_with_fronts : input.scene, parameters.time, choice.numerics);
     };
-    guarded([&]() { build(chosen->numerics); });
+    guarded([&]() { build(*chosen); });
 
     // Everything is in order, or as good as it will be: from here on there are files.
     on_first_rank(communicator, [&]() {
@@ -304,14 +339,14 @@ namespace crawler
                                              .cycles = cycle_wish(parameters, input.scene, output.has_snapshots()),
                                              .gait   = Simulation::GaitWish::any};
     const auto simulate                   = [&](const NumericsChoice &choice) {
-      if (choice.is_family)
-        build(choice.numerics);
+      if (choice.is_of_several_runs())
+        build(choice);
       else if (++n_runs > 1)
       {
         log.line((latest.status == Status::failed ? latest.reason + ": " + latest.message
                                                                     : "The error is larger than Accuracy asks for") +
                  ": once more, finer.");
-        build(choice.numerics);
+        build(choice);
         if (writes)
           on_first_rank(computing, [&]() {
             if (journal.was_written()) // older states need the files that are removed
@@ -336,7 +371,7 @@ namespace crawler
       Answer answer = run_as_promised(
         computing, parameters, input.scene, *chosen, simulate, run_options, /*writes=*/true, keep_going);
       result = std::move(answer.result);
-      if (answer.choice.is_family)
+      if (answer.choice.is_of_several_runs())
         log.line("  (" + answer.choice.explanation + ")");
       chosen                  = answer.choice;
       result.estimate_seconds = answer.estimate_seconds;
@@ -362,20 +397,8 @@ namespace crawler
     other_runs.reset();
     if (first && !input.sensitivities.empty())
     {
-      WaitProgress progress(log, "runs for the sensitivities");
-      if (result.time.status == Status::finished) // by this rank alone
-        write_sensitivities(add_sensitivities(input,
-                                              *chosen,
-                                              result,
-                                              [&]() {
-                                                progress.step();
-                                                return !stops.arrived_anywhere(MPI_COMM_SELF);
-                                              }),
-                            folder);
-      else
-        log.warn("there are no sensitivities, since the run did not end as it should");
-      if (result.time.status == Status::finished && stops.arrived_anywhere(MPI_COMM_SELF) &&
-          std::ranges::any_of(result.sensitivities, [](const auto &one) { return !one.value; }))
+      const auto is_stopped = [&]() { return stops.arrived_anywhere(MPI_COMM_SELF); }; // by this rank alone
+      if (!differentiate(log, input, chosen.value_or(NumericsChoice()), folder, is_stopped, result))
       {
         result.time.status = Status::stopped;
         result.time.reason = stops.reason();
@@ -388,6 +411,7 @@ namespace crawler
     report_unused_options(log);
 
     on_first_rank(communicator, [&]() {
+      lock->require_in_place();
       const bool is_for_later = result.time.status == Status::stopped && stops.arrived_anywhere(MPI_COMM_SELF);
       if (is_for_later || (result.time.status == Status::finished && journal.has_end()))
         journal.write();
@@ -482,6 +506,9 @@ namespace crawler
         if (std::isfinite(result.net_friction)) // the series has no balance to check
           check_identities(result, parameters);
         log.line(level.description());
+        const auto is_stopped = [&]() { return stop_signal.arrived_anywhere(MPI_COMM_SELF); };
+        if (!input.sensitivities.empty() && !differentiate(log, input, {}, folder, is_stopped, result))
+          result.time.status = Status::stopped;
 
         const auto before = Clock::now();
         if (result.error && (output.has_snapshots() || output.statistics) &&
@@ -498,6 +525,7 @@ namespace crawler
         result.time.reason  = "signal";
         result.time.message = "stopped by a signal";
       }
+      lock.require_in_place();
       write_file(folder / "summary.json", summary_json(result, size_of(communicator), options.command_line));
       code = static_cast<int>(report_end(
         log, result, folder, output.has_snapshots() && result.error ? animation_file(output.snapshot_format) : ""));

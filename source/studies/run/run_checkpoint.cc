@@ -149,9 +149,7 @@ namespace crawler
     std::error_code error;
     if (fs::exists(folder / present_name, error))
       fs::rename(folder / present_name, folder / older_name, error);
-    fs::rename(next, folder / present_name, error);
-    if (error)
-      throw FileError("cannot write \"" + (folder / present_name).string() + "\": " + error.message());
+    rename_whole(next, folder / present_name);
   }
 
   void

@@ -50,6 +50,7 @@ namespace crawler
                          const std::optional<PictureTimes> &wanted,
                          const bool has_kymograph,
                          const std::function<bool()> &keep_going,
+                         const Afterwards &afterwards,
                          RunInMemory &run)
     {
       const OutputParameters &output = input.parameters.output;
@@ -58,6 +59,8 @@ namespace crawler
       level.describe_gait(run.result);
       if (std::isfinite(run.result.net_friction)) // the series has no balance to check
         check_identities(run.result, input.parameters);
+      if (afterwards && run.result.time.status == Status::finished)
+        afterwards(input, {}, run.result);
       if (!run.result.error || !(has_kymograph || output.statistics))
         return;
       begin_tables(output, input.scene, has_kymograph, run);
@@ -130,7 +133,7 @@ namespace crawler
         compute_on_mesh(
           input, wanted ? *wanted : picture_times(output, input.scene), has_kymograph, keep_going, afterwards, run);
       else
-        compute_without_mesh(input, wanted, has_kymograph, keep_going, run);
+        compute_without_mesh(input, wanted, has_kymograph, keep_going, afterwards, run);
     }
     catch (...)
     {

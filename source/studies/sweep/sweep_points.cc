@@ -122,7 +122,8 @@ namespace crawler
         {
           if (to_number(word))
             continue;
-          Form &form = this->form(0);
+          const auto place = std::ranges::find(axis.values, word) - axis.values.begin();
+          Form &form       = this->form(design_->is_zip() ? static_cast<unsigned long>(place) : 0);
           form.declarations.set(axis.entry, word, design_->folder());
           try
           {

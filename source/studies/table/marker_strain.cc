@@ -71,7 +71,10 @@ namespace crawler
   Samples
   strain_of_tracks(const Samples &measured, const PreparationSettings &settings, std::vector<std::string> &words)
   {
-    const Samples tracks        = from_tail_to_head(measured, settings);
+    const Samples tracks = from_tail_to_head(measured, settings);
+    if (tracks.at(0, 0) != measured.at(0, 0))
+      words.push_back(
+        "the last marker lies at the smallest x, so it is the first from the tail: the order is turned round");
     const std::vector<double> s = material_coordinates(tracks, settings);
     const std::size_t n         = s.size();
     for (std::size_t i = 1; i < n; ++i)

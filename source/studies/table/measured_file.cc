@@ -151,6 +151,27 @@ namespace crawler
       file.units.push_back(slash == cell.npos ? "" : trimmed(std::string_view(cell).substr(slash + 1)));
     }
 
+    /// The sentence about the first cell of a row that is no number.
+    std::string
+    wrong_cell(const std::vector<std::string> &columns,
+               const std::string &file,
+               const Line &line,
+               const std::vector<std::string> &cells,
+               const Style &style)
+    {
+      const auto wrong = static_cast<std::size_t>(
+        std::ranges::find_if(cells, [&](const std::string &cell) { return !style.number(cell); }) - cells.begin());
+      if (wrong == cells.size())
+        return fmt::format("row {} of \"{}\" has no number, but one at least is expected", line.number, file);
+      return fmt::format(
+        "row {} of \"{}\" has \"{}\" under {}, but a number{} (or nothing or NaN for a gap) is expected",
+        line.number,
+        file,
+        cells[wrong],
+        columns[wrong],
+        style.has_decimal_commas ? " with a decimal comma" : "");
+    }
+
     /// Names and units from the lines above the first row of numbers; without a line of names a comment may have them.
     void
     read_head(MeasuredFile &file,
@@ -162,7 +183,13 @@ namespace crawler
       std::vector<std::vector<std::string>> found;
       for (const Line &line : head)
         if (auto cells = style.cells(line.text); cells.size() == n)
+        {
+          // Names may be places, but units have no numbers among them: this is a row of samples.
+          const auto is_number = [&](const std::string &cell) { return !is_gap(cell) && style.number(cell); };
+          if (!found.empty() && std::ranges::any_of(cells, is_number))
+            throw InputError(wrong_cell(found[0], file.name, line, cells, style));
           found.push_back(std::move(cells));
+        }
       const std::size_t n_titles = head.size() - found.size();
       if (found.empty())
         if (auto cells = style.cells(last_comment.text); cells.size() == n)
@@ -236,8 +263,8 @@ namespace crawler
           file.values.back().push_back(*style.number(cell));
         file.lines.push_back(line->number);
       }
-      else if (!mistakes.is_first())
-        mistakes.add_row(line->number);
+      else if (!mistakes.is_first(line->number))
+        continue;
       else if (cells.size() != n)
         mistakes.say(fmt::format("row {} of \"{}\" has {} cells, but {} are expected, as in row {}",
                                  line->number,
@@ -246,18 +273,7 @@ namespace crawler
                                  n,
                                  first->number));
       else
-      {
-        const auto wrong = static_cast<std::size_t>(
-          std::find_if(cells.begin(), cells.end(), [&](const std::string &cell) { return !style.number(cell); }) -
-          cells.begin());
-        mistakes.say(
-          fmt::format("row {} of \"{}\" has \"{}\" under {}, but a number{} (or nothing or NaN for a gap) is expected",
-                      line->number,
-                      name,
-                      cells[wrong],
-                      file.columns[wrong],
-                      style.has_decimal_commas ? " with a decimal comma" : ""));
-      }
+        mistakes.say(wrong_cell(file.columns, name, *line, cells, style));
     }
     mistakes.refuse("");
     const auto separator = style.separator == ';'    ? "semicolons"

@@ -2,6 +2,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/studies/core/log.h>
+#include <crawler/studies/core/progress.h>
 #include <crawler/studies/table/measured_table.h>
 #include <crawler/studies/table/noisy_copies.h>
 
@@ -68,13 +69,14 @@ namespace crawler
     }
 
     std::string
-    uncertainty(const TableOptions &options, const Samples &samples, const PreparedTable &table)
+    uncertainty(const TableOptions &options, const Samples &samples, const PreparedTable &table, Log &log)
     {
       ParameterFile scene = ParameterFile::read(options.scene);
       for (const std::string &assignment : options.overrides)
         scene.add_override(assignment);
-      const NoisyDisplacement found =
-        noisy_displacement(samples, options.preparation, table, scene, options.n_copies, options.seed);
+      WaitProgress progress(log, fmt::format("{} noisy copies are computed", options.n_copies));
+      const NoisyDisplacement found = noisy_displacement(
+        samples, options.preparation, table, scene, options.n_copies, options.seed, [&]() { progress.step(); });
       return fmt::format(
         "displacement {:.8g} +- {} (numerical bound) +- {:.2g} (standard deviation by noise of {:.3g}, {} "
         "copies, known to {:.0f} %; their mean is {:.8g})",
@@ -102,7 +104,7 @@ namespace crawler
       words.push_back(
         fmt::format("noise of a sample, as estimated from third differences in time: {:.3g}", table.noise));
     if (!options.scene.empty())
-      words.push_back(uncertainty(options, samples, table));
+      words.push_back(uncertainty(options, samples, table, log));
     const GridTable &grid = table.grid;
     words.push_back(fmt::format("table of {} at {} places, s = {:g} to {:g}, and {} times, t = {:g} to {:.10g}",
                                 column_of(table.quantity),

@@ -91,7 +91,8 @@ namespace crawler
                      const PreparedTable &prepared,
                      const ParameterFile &scene,
                      const unsigned int n_copies,
-                     const std::uint64_t seed)
+                     const std::uint64_t seed,
+                     const std::function<void()> &progress)
   {
     const TemporaryFolder folder;
     const Form form(scene);
@@ -107,12 +108,16 @@ namespace crawler
       if (k > 0)
         for (double &value : copy.values)
           value += prepared.noise * normal(generator); // gaps stay gaps
+      progress();
       const fs::path file = folder.path / fmt::format("{}.csv", k);
       write_file(file, table_text(k == 0 ? prepared : prepare_table(copy, settings)));
       tasks[k].parameters                                              = form.parameters;
       file_entry(tasks[k].parameters, prepared.quantity, scene.name()) = file.string();
     }
-    compute_all(tasks, HUGE_VAL, []() { return false; });
+    compute_all(tasks, HUGE_VAL, [&]() {
+      progress();
+      return false;
+    });
     if (const std::string problem = problem_of(tasks[0]); !problem.empty())
       throw InputError(fmt::format("\"{}\" with the new table: {}", scene.name(), problem));
     NoisyDisplacement result{tasks[0].computed.result.displacement, std::nullopt, 0., 0., 0};

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace crawler
 {
@@ -54,6 +55,8 @@ namespace crawler
     struct Filled
     {
       std::size_t n = 0, longest = 0;
+      std::size_t n_along_body = 0, n_at_worst = 0; ///< filled from the places beside; at the place with most of them
+      double worst_place    = 0.;
       double square         = 0.; ///< of what the smoothing takes away
       std::size_t n_samples = 0;
     };
@@ -285,11 +288,23 @@ namespace crawler
         --from;
       while (to + 1 < samples.t.size() && std::isnan(samples.at(to + 1, i)))
         ++to;
+      const char *const place = samples.quantity == MeasuredQuantity::marker ? "marker" : "s";
+      if (from == 0 || to + 1 == samples.t.size())
+        throw InputError(
+          fmt::format("{} is missing at {} = {:g} from t = {:g} to {:g}, the {} of the samples, but only "
+                      "what lies between measured ones is filled; without these times, or without this "
+                      "place, the rest can be read",
+                      column_of(samples.quantity),
+                      place,
+                      samples.s[i],
+                      samples.t[from],
+                      samples.t[to],
+                      from == 0 ? "beginning" : "end"));
       throw InputError(
         fmt::format("{} is missing at {} = {:g} from t = {:g} to {:g}, {} in a row, but at most {} between "
                     "measured ones are filled (\"--gap\"), in time or else along the body",
                     column_of(samples.quantity),
-                    samples.quantity == MeasuredQuantity::marker ? "marker" : "s",
+                    place,
                     samples.s[i],
                     samples.t[from],
                     samples.t[to],
@@ -344,9 +359,12 @@ namespace crawler
           for (std::size_t j = 0; j < samples.t.size(); ++j)
             if (is_smoothed || std::isnan(full.at(j, i)))
               full.at(j, i) = series->value(samples.t[j]);
+      std::vector<std::size_t> missing(samples.s.size());
       for (std::size_t j = 0; j < samples.t.size(); ++j)
       {
         std::vector<double> y = full.over_body(j);
+        for (std::size_t i = 0; i < y.size(); ++i)
+          missing[i] += std::isnan(y[i]) ? 1 : 0;
         if (samples.quantity != MeasuredQuantity::marker)
           fill_along_body(samples.s, y, most, filled);
         for (std::size_t i = 0; i < y.size(); ++i)
@@ -356,6 +374,10 @@ namespace crawler
           full.at(j, i) = y[i];
         }
       }
+      const auto worst    = std::ranges::max_element(missing);
+      filled.n_along_body = std::accumulate(missing.begin(), missing.end(), std::size_t{0});
+      filled.n_at_worst   = *worst;
+      filled.worst_place  = samples.s[static_cast<std::size_t>(worst - missing.begin())];
       return full;
     }
 
@@ -500,6 +522,13 @@ namespace crawler
     {
       if (filled.n > 0)
         words.push_back(fmt::format("{} filled, up to {} in a row", counted(filled.n, "gap"), filled.longest));
+      if (filled.n_along_body > 0)
+        words.push_back(
+          fmt::format("of these {} along the body, from the places beside them, {} at s = {:g}: what was "
+                      "there is a guess",
+                      filled.n_along_body,
+                      filled.n_at_worst == filled.n_along_body ? "all" : fmt::format("{}", filled.n_at_worst),
+                      filled.worst_place));
       if (settings.width_s > 0. || settings.width_t > 0.)
       {
         std::string widths;

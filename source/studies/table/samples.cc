@@ -211,7 +211,7 @@ namespace crawler
                           point = j * samples.s.size() + i;
         if (seen[point] == 0)
           samples.values[point] = columns.values[r];
-        else if (mistakes.is_first())
+        else if (mistakes.is_first(columns.lines[r]))
           mistakes.say(fmt::format("row {} of \"{}\" gives {} = {:g}, t = {:g} a second time, after row {}",
                                    columns.lines[r],
                                    name,
@@ -219,8 +219,6 @@ namespace crawler
                                    columns.s[r],
                                    columns.t[r],
                                    seen[point]));
-        else
-          mistakes.add_row(columns.lines[r]);
         seen[point] = columns.lines[r];
       }
       mistakes.refuse("");

@@ -234,13 +234,13 @@ namespace crawler
       write_hdf5(folder / "tradeoff.h5", "tradeoff", table, provenance(effective, course.command_line));
       write_file(folder / "recommendations.prm", recommendations_prm(results));
       write_file(folder / "summary.json", tradeoff_json(results, course));
-      if (course.status == "finished")
-        fs::remove_all(folder / "rows");
       log.line(in_words(results, course));
       for (const std::string &line : recommendation_lines(results))
         log.line(line);
       if (std::count(results.on_front.begin(), results.on_front.end(), true) > 0) // there is something to draw
         draw("tradeoff.py", folder, log);
+      if (course.status == "finished") // all files are there: nothing is left to do
+        fs::remove_all(folder / "rows");
       log.line(fmt::format("Results are in {0}/; {0}/recommendations.prm has the blocks to paste.", folder.string()));
     }
   } // namespace
@@ -320,6 +320,7 @@ namespace crawler
       course.seconds      = now() - start;
     }
     on_first_rank(communicator, [&]() {
+      study_folder.require_in_place();
       std::vector<TradeoffRow> tried;
       for (const auto &[index, row] : rows)
         tried.push_back(row);

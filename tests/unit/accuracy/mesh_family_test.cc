@@ -4,6 +4,7 @@
 #include "../../support/lane_runs.h"
 #include "../../support/observed_order.h"
 
+#include <crawler/accuracy/mesh_family.h>
 #include <crawler/run/result_json.h>
 
 #include <gtest/gtest.h>

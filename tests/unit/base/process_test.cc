@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <stdexcept>
+#include <thread>
+
 using namespace crawler;
 
 TEST(Process, ItsStatusAndErrorsComeBack)
@@ -24,4 +28,20 @@ TEST(Process, ASignalOrAMissingProgramIsNoStatus)
 {
   EXPECT_EQ(run_program({"sh", "-c", "kill -9 $$"}, false).status, -1);
   EXPECT_FALSE(run_program({"no-such-program-here"}, false).started);
+}
+
+TEST(Process, ACopyTriesWhatMayCrashOrNeverEnd)
+{
+  EXPECT_TRUE(comes_to_an_end([]() {}, 1));
+  EXPECT_TRUE(comes_to_an_end([]() { throw std::runtime_error("in order"); }, 1));
+  EXPECT_FALSE(comes_to_an_end([]() { std::abort(); }, 1));
+  EXPECT_FALSE(comes_to_an_end(
+    []() {
+      for (;;)
+        std::this_thread::yield();
+    },
+    1));
+  bool is_changed = false;
+  comes_to_an_end([&]() { is_changed = true; }, 1);
+  EXPECT_FALSE(is_changed) << "the copy has memory of its own";
 }

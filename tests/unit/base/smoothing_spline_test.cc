@@ -101,6 +101,26 @@ TEST(SmoothingSpline, is_the_minimum)
   EXPECT_GT(change, 0.1 * lambda);
 }
 
+/// At the ends, too, waves that are three times as long as the width keep their slope, and a width of nearly nothing
+/// does nothing.
+TEST(SmoothingSpline, keeps_slopes_at_the_ends)
+{
+  for (const unsigned int n : {10u, 19u, 40u})
+    for (const double width : {1e-3, 0.3})
+    {
+      const std::vector<double> x = equal(n, 0., 0.9);
+      double largest              = 0.;
+      for (double phase = 0.; phase < 1.; phase += 1. / 16.)
+      {
+        const auto curve =
+          SmoothingSpline(x, width).curve(at(x, [&](const double s) { return std::sin(2. * pi * (s + phase)); }));
+        for (const double s : {0., 0.9})
+          largest = std::max(largest, std::abs(curve.derivative(s) / (2. * pi) - std::cos(2. * pi * (s + phase))));
+      }
+      EXPECT_LT(largest, n == 10 ? 0.1 : width < 0.1 ? 0.01 : 0.08) << n << " knots, width " << width;
+    }
+}
+
 /// What smoothing takes away from a smooth function is of order width^4 far from the ends.
 TEST(SmoothingSpline, has_a_bias_of_fourth_order)
 {

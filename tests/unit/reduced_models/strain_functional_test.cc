@@ -14,6 +14,15 @@ namespace
 {
   constexpr double pi = std::numbers::pi;
 
+  Scene
+  body(const double k, const double a)
+  {
+    return {.body          = {.elastic_modulus = k},
+            .friction      = std::make_unique<PowerFriction>(1., a),
+            .active_stress = nullptr,
+            .end_time      = 1.};
+  }
+
   /// A strain that is no wave, and from rest.
   StrainByEvaluators
   strain()
@@ -46,7 +55,8 @@ TEST(StrainFunctional, OfASineWaveIsExact)
             })};
   });
   const StrainFunctional grid(4, 2);
-  const auto values = grid.values(grid.sample(wave), PowerFriction(1., -1.), 1.);
+  const Scene scene = body(1., -1.);
+  const auto values = grid.values(grid.sample(wave), {scene, grid.points()});
   ASSERT_TRUE(values);
   const double exact = 1. - std::sqrt(1. - 0.09);
   EXPECT_NEAR((*values)[StrainFunctional::displacement], exact, 1e-10);
@@ -55,22 +65,26 @@ TEST(StrainFunctional, OfASineWaveIsExact)
   EXPECT_NEAR((*values)[StrainFunctional::mean_square], 0.045, 1e-10);
 }
 
-/// The weights are exact derivatives of the quadrature: against differences in some direction.
+/// The weights are exact derivatives of the quadrature: against differences in some direction, for bodies that are the
+/// same everywhere and for one whose friction and stiffness vary.
 TEST(StrainFunctional, WeightsAreDerivatives)
 {
-  constexpr double step = 1e-5, k = 0.7;
+  constexpr double step = 1e-5;
   const StrainFunctional grid(3, 3);
   const StrainSamples samples = grid.sample(strain());
-  for (const double a : {-3., -1., 0.5, 2.})
+  for (const double a : {-3., -1., 0.5, 2., 3.})
   {
-    const PowerFriction friction(1., a);
+    Scene scene = body(0.7, a);
+    if (a == 3.)
+      scene.profiles = read_profiles({.elastic_modulus_profile = "0.5+s", .friction_profile = "1.5-s"}, 1.);
+    const BodyAtPoints at_points(scene, grid.points());
     for (const auto number : {StrainFunctional::displacement,
                               StrainFunctional::dissipation,
                               StrainFunctional::stress_work,
                               StrainFunctional::positive_work,
                               StrainFunctional::mean_square})
     {
-      const StrainSamples weights = grid.weights(number, samples, friction, k);
+      const StrainSamples weights = grid.weights(number, samples, at_points);
       double derivative           = 0.;
       StrainSamples before = samples, after = samples;
       for (std::size_t i = 0; i < samples.strain.size(); ++i)
@@ -83,7 +97,7 @@ TEST(StrainFunctional, WeightsAreDerivatives)
         after.rate[i] += step * y;
       }
       const double difference =
-        ((*grid.values(after, friction, k))[number] - (*grid.values(before, friction, k))[number]) / (2. * step);
+        ((*grid.values(after, at_points))[number] - (*grid.values(before, at_points))[number]) / (2. * step);
       // The positive part of the power changes its sign somewhere.
       const double tolerance = number == StrainFunctional::positive_work ? 1e-4 : 1e-8;
       EXPECT_NEAR(derivative, difference, tolerance * std::max(std::abs(difference), 0.01))
@@ -97,7 +111,8 @@ TEST(StrainFunctional, RefusesABodyThatInverts)
   const StrainFunctional grid(1, 1);
   StrainSamples samples = grid.sample(strain());
   samples.strain[5]     = -1.;
-  EXPECT_FALSE(grid.values(samples, PowerFriction(1., -1.), 1.));
+  const Scene scene     = body(1., -1.);
+  EXPECT_FALSE(grid.values(samples, {scene, grid.points()}));
 }
 
 /// The transpose of running integrals: x . (R f) = (R^T x) . f

@@ -64,6 +64,21 @@ TEST(Kinematic, OptimisedGaits)
   EXPECT_NEAR(prograde.energy_balance->dissipation, 0.045139762, 1e-9);
 }
 
+/// Where nothing moves, the works say how fine the quadrature must be: they are continuous in a.
+TEST(Kinematic, WorksWhereNothingMoves)
+{
+  const auto two_levels = [](const double a) {
+    return compute({{"Body/Anchoring exponent", test::text(1. - a)}, {"Active stress/Generator", "two-level wave"}},
+                   Model::kinematic,
+                   1e-6);
+  };
+  const auto still = two_levels(0.), near = two_levels(1e-5);
+  ASSERT_EQ(still.time.status, Status::finished);
+  EXPECT_NEAR(still.displacement, 0., 1e-14);
+  EXPECT_NEAR(still.energy_balance->dissipation / near.energy_balance->dissipation, 1., 1e-4);
+  EXPECT_NEAR(still.energy_balance->stress_work / near.energy_balance->stress_work, 1., 1e-4);
+}
+
 /// A standing wave of strain, which has no travelling part: the body ends where it started.
 TEST(Kinematic, ReciprocalMotionLeadsNowhere)
 {

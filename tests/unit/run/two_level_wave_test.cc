@@ -44,11 +44,11 @@ namespace
   }
 
   void
-  expect_complaint(const Settings &own, const std::string &entry, const std::string &part)
+  expect_complaint(const Settings &own, const std::string &entry, const std::string &part, const Settings &others = {})
   {
     try
     {
-      test::parameters_with(wave(-1., own)).create_scene();
+      test::parameters_with(wave(-1., own, others)).create_scene();
       ADD_FAILURE() << entry << ": nothing is refused";
     }
     catch (const InputError &error)
@@ -107,6 +107,29 @@ TEST(TwoLevelWave, NearlyReachesTheBound)
       }
 }
 
+/// Friction in proportion to the velocity on the ground, g = w, is a = 1; and the best share of a law that is no power.
+TEST(TwoLevelWave, OnOtherGrounds)
+{
+  const Settings newtonian = {{"Ground/Friction law", "Newtonian"}}, power = {{"Body/Anchoring exponent", "0"}};
+  EXPECT_NEAR(numbers(wave(1., {}, newtonian)).share, numbers(wave(1., {}, power)).share, 1e-14);
+  EXPECT_NEAR(numbers(wave(1., {}, newtonian)).merit, numbers(wave(1., {}, power)).merit, 1e-14);
+  const auto on_expression = [](Settings own) {
+    own.emplace_back("Front width", "0.02");
+    return wave(-1.,
+                own,
+                {{"Ground/Friction law", "expression"},
+                 {"Ground/Expression", "0.7/(0.2+w^2)"},
+                 {"Body/Friction coefficient", "2"}});
+  };
+  const auto result = kinematic(on_expression({}), 1e-6);
+  const auto own    = numbers(on_expression({}));
+  EXPECT_GT(*result.gait_efficiency, 0.98);
+  EXPECT_LT(*result.gait_efficiency, 1.);
+  EXPECT_NEAR(*result.gait_efficiency, own.merit / own.bound, 1e-6);
+  for (const double other : {0.9 * own.share, 1.1 * own.share})
+    EXPECT_LT(numbers(on_expression({{"Share", test::text(other)}})).merit, own.merit) << other;
+}
+
 TEST(TwoLevelWave, DoesTheWorkThatIsGiven)
 {
   const Settings body = {{"Body/Length", "3"},
@@ -146,4 +169,5 @@ TEST(TwoLevelWave, SaysWhatDoesNotFit)
   const Settings work = {{"Given by", "work"}};
   expect_complaint(test::with(work, {{"Wave number", "1.5"}}), "Given by", "a whole one is expected");
   expect_complaint(test::with(work, {{"Ramp duration", "0.5"}}), "Given by", "Ramp duration = 0 is expected");
+  expect_complaint(work, "Given by", "no profile is expected", {{"Body/Elastic modulus profile", "1+s"}});
 }

@@ -227,9 +227,33 @@ TEST(TravellingWave, SaysThatJumpsMove)
     stress_with(travelling(entries))->report(out);
     return out.str();
   };
-  EXPECT_NE(said({{"Profile", "square"}}).find("smoothed square is recommended"), std::string::npos);
+  EXPECT_NE(said({{"Profile", "square"}}).find("Profile = smoothed square"), std::string::npos);
   EXPECT_EQ(said({{"Profile", "square"}, {"Wave number", "0"}}), "");
   EXPECT_EQ(said({{"Profile", "smoothed square"}}), "");
+}
+
+/// Fronts in the place of jumps that move, and only of these: the same but within half a front of the jumps.
+TEST(TravellingWave, HasFrontsInsteadOfMovingJumps)
+{
+  const auto fronts = [](const ActiveStress &stress, const double part) {
+    return dynamic_cast<const MovingJumps &>(stress).with_fronts(part);
+  };
+  const auto square = stress_with(travelling({{"Profile", "square"}, {"Duty cycle", "0.3"}}));
+  const auto smooth = fronts(*square, 0.1);
+  ASSERT_TRUE(smooth);
+  std::vector<double> places;
+  for (int i = 0; i <= 1000; ++i)
+    places.push_back(1e-3 * i);
+  const auto jumping = values(*square, places, 0.37), with_fronts = values(*smooth, places, 0.37);
+  std::size_t n_other = 0;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    n_other += std::abs(jumping[i] - with_fronts[i]) > 1e-12;
+  EXPECT_GT(n_other, 0u);
+  EXPECT_LT(n_other, 150u); // a front takes 0.03 of a wave
+  for (const Settings &still : {Settings{{"Profile", "smoothed square"}},
+                                Settings{{"Profile", "square"}, {"Frequency", "0"}},
+                                Settings{{"Profile", "square"}, {"Wave number", "0"}}})
+    EXPECT_FALSE(fronts(*stress_with(travelling(still)), 0.5));
 }
 
 TEST(StandingWave, IsTheFormula)

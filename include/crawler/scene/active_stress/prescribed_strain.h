@@ -11,6 +11,7 @@
 namespace crawler
 {
   class Declarations;
+  struct Scene;
 
   /// Section "Active stress/Prescribed strain".
   struct PrescribedStrainParameters
@@ -35,9 +36,9 @@ namespace crawler
 
   /**
    * A strain e(s,t) = zeta_s - 1 that the body is made to follow. As an active stress it is what the balance of forces
-   * asks for (doc/theory.md, "Prescribed strain"): with g = (1+e)^a and <.> the mean over the body,
+   * asks for (doc/theory.md, "Prescribed strain"): with the friction g of each point and <.> the mean over the body,
    *
-   *   v = B_t - <g B_t>/<g>,   B_t = int_0^s e_t ds,   m = gamma int_0^s g v ds - k e.
+   *   v = B_t - <g B_t>/<g>,   B_t = int_0^s e_t ds,   m = int_0^s g v ds - k e.
    *
    * The integrals over s are Gauss quadrature on panels, which are doubled until m does not change any more.
    */
@@ -46,12 +47,12 @@ namespace crawler
   public:
     static constexpr const char *description = "the stress that brings about a given strain";
 
-    /// @p generator, if the strain is generated: its values are read as strain [1]. Throws InputError if formula, file
+    /// @p scene has all but the active stress. @p generator, if the strain is generated: its values are read as strain
+    /// [1]. Throws InputError if formula, file
     /// or numbers do not make sense, if 1 + e is not positive somewhere, if the strain jumps, or if the generator does
     /// not know its rate or depends on the stretch.
     PrescribedStrain(const PrescribedStrainParameters &parameters,
-                     const Body &body,
-                     double end_time,
+                     const Scene &scene,
                      std::unique_ptr<const ActiveStress> generator = nullptr);
 
     const StrainHistory *
@@ -80,7 +81,7 @@ namespace crawler
     void
     choose_panels(double end_time);
 
-    const Body body_;
+    const std::shared_ptr<const Scene> scene_; ///< without active stress
     const std::string given_by_;
     const std::unique_ptr<const ActiveStress> generator_; ///< of the strain, if it is generated
     std::unique_ptr<const StrainHistory> history_;

@@ -3,6 +3,7 @@
 
 #include <crawler/scene/active_stress/envelope.h>
 #include <crawler/scene/known_stress.h>
+#include <crawler/scene/moving_jumps.h>
 
 #include <memory>
 #include <optional>
@@ -28,7 +29,7 @@ namespace crawler
   struct SumTerm
   {
     std::string name; ///< of the generator
-    std::unique_ptr<const ActiveStress> stress;
+    std::shared_ptr<const ActiveStress> stress;
     bool multiplies;
     double factor;
     Window in_s, in_t;
@@ -43,7 +44,7 @@ namespace crawler
    * evaluated where a window is closed. Rates and derivatives with respect to the stretch follow from the sum and the
    * product rule.
    */
-  class Sum : public KnownStress
+  class Sum : public KnownStress, public MovingJumps
   {
   public:
     static constexpr const char *description = "a sum and product of generators, each with a window in s and t";
@@ -60,6 +61,9 @@ namespace crawler
     /// Of terms that cannot tell by samples in the box: what they do is as fast as what others see of them.
     std::optional<Bounds>
     bounds(const Box &box) const override;
+
+    std::unique_ptr<const ActiveStress>
+    with_fronts(double part) const override;
 
     const StretchFeedback *
     feedback() const override

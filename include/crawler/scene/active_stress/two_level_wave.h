@@ -33,7 +33,7 @@ namespace crawler
    * The gait that goes farthest of all with its work and its extreme strains (doc/theory.md, "Gait efficiency"): a wave
    * of strain that runs at constant speed and has two levels, e = emax on the share p of each period and emin on the
    * rest, with smooth fronts. It is a TravellingWave that is read as strain. The best share is
-   * p = 1/(1 + ((1+emax)/(1+emin))^(a/2)); the shorter its fronts, the closer the wave comes to the bound.
+   * p = 1/(1 + sqrt(g(1+emax)/g(1+emin))); the shorter its fronts, the closer the wave comes to the bound.
    */
   class TwoLevelWave : public PrescribedStrain
   {
@@ -42,8 +42,8 @@ namespace crawler
       "the strain with two levels that goes farthest of all for its work, and the stress that brings it about";
 
     /// Throws InputError if the strains are not in order, if the fronts do not fit, if there are too many periods, or
-    /// if the work is given, but the wave number is not whole or there is a ramp.
-    TwoLevelWave(const TwoLevelWaveParameters &parameters, const Body &body, double end_time);
+    /// if the work is given, but the wave number is not whole, there is a ramp, or the body varies.
+    TwoLevelWave(const TwoLevelWaveParameters &parameters, const Scene &scene);
 
     /// What was chosen and what it could reach.
     void
@@ -54,7 +54,7 @@ namespace crawler
     {
       double share;     ///< p [1]
       double frequency; ///< [1/time]
-      double merit;     ///< of whole waves with these fronts at full strain [1]
+      double merit;     ///< of whole waves with these fronts at full strain on a uniform body [1]
       double bound;     ///< F, above which no gait with these strains has its merit [1]
     };
     const Numbers &
@@ -66,6 +66,7 @@ namespace crawler
   private:
     const TwoLevelWaveParameters parameters_;
     const double length_;
+    const bool is_uniform_; ///< the body
     const Numbers numbers_;
   };
 } // namespace crawler

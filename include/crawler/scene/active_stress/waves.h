@@ -4,6 +4,7 @@
 #include <crawler/scene/active_stress/envelope.h>
 #include <crawler/scene/active_stress/wave_entries.h>
 #include <crawler/scene/known_stress.h>
+#include <crawler/scene/moving_jumps.h>
 
 #include <string>
 
@@ -37,7 +38,7 @@ namespace crawler
    * it has none. A square wave of frequency 0 jumps at some places, one of wave number 0 at some times; the jumps of
    * others move, so that no list holds them. Those that change have no rate.
    */
-  class TravellingWave : public KnownStress
+  class TravellingWave : public KnownStress, public MovingJumps
   {
   public:
     static constexpr const char *description = "a sine or square wave that runs along the body";
@@ -50,7 +51,13 @@ namespace crawler
     void
     report(std::ostream &out) const override;
 
+    std::unique_ptr<const ActiveStress>
+    with_fronts(double part) const override;
+
   private:
+    bool
+    has_moving_jumps() const;
+
     std::unique_ptr<ActiveStressAtPoints>
     evaluator(const std::vector<double> &points, bool rate) const override;
     std::unique_ptr<ActiveStressAtPoints>
@@ -63,6 +70,8 @@ namespace crawler
     std::vector<double>
     times_of_own_jumps(double end_time) const;
 
+    const TravellingWaveParameters parameters_;
+    const double length_, end_time_;
     const double amplitude_, offset_;
     const double wave_number_; ///< per length: n/L
     const double phase_rate_;  ///< -sigma f [periods/time]

@@ -55,6 +55,10 @@ namespace crawler
     void
     open(const std::filesystem::path &file, bool append = false);
 
+    /// To be called at the end. Throws FileError if a line did not get into the file; the work went on meanwhile.
+    void
+    require_written() const;
+
   private:
     void
     write(const std::string &raw, bool on_screen);
@@ -69,5 +73,7 @@ namespace crawler
     std::string first_line_;      ///< still to be written
     std::string earlier_;
     std::ofstream file_;
+    std::filesystem::path path_;
+    std::string problem_; ///< with the first line that was lost
   };
 } // namespace crawler

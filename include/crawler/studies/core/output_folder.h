@@ -33,6 +33,13 @@ namespace crawler
     ~FolderLock();
     FolderLock(const FolderLock &) = delete;
 
+    /// Throws FileError if the folder is not the one that was locked any more.
+    void
+    require_in_place() const
+    {
+      lock_->require_in_place();
+    }
+
   private:
     std::optional<FileLock> lock_;
   };

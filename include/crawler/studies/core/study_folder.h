@@ -41,7 +41,14 @@ namespace crawler
     void
     resume(const std::function<std::vector<std::string>()> &changes);
 
-    /// Nothing is written any more.
+    /// Throws FileError if the folder is not the one in which the study began any more.
+    void
+    require_in_place() const
+    {
+      lock_->require_in_place();
+    }
+
+    /// Nothing is written any more. Throws FileError if the log is not whole.
     void
     leave();
 

@@ -20,9 +20,10 @@ namespace crawler
     mean_square,   ///< of the strain
     speed,
     friction_time, ///< T/(gamma L): the merit is D/sqrt(W T/(gamma L))
-    dissipation
+    dissipation,
+    efficiency ///< part of what any gait with its energy and strains could; not differentiated
   };
-  inline constexpr std::size_t n_gait_numbers = 7;
+  inline constexpr std::size_t n_gait_numbers = 8;
 
   /// Numbers that are limited at many places, and their derivatives by the variables: [place][variable].
   struct LimitedValues
@@ -34,10 +35,12 @@ namespace crawler
   /// What a gait gives.
   struct GaitValues
   {
-    std::string problem; ///< in words; empty if all is well
+    std::string problem;              ///< in words; empty if all is well
+    std::string problem_of_gradients; ///< the same, of the derivatives alone
     std::array<double, n_gait_numbers> numbers{};
     std::array<std::vector<double>, n_gait_numbers> gradients; ///< by the variables, if they were asked for
     std::vector<bool> by_differences; ///< for which variables the gradients are differences of gaits; empty: for none
+    std::vector<bool> strain_by_differences;   ///< the same of the extreme strains
     LimitedValues strain, stress, stress_rate; ///< of what is limited
 
     /// Throws InputError if the start has a problem.
@@ -46,6 +49,8 @@ namespace crawler
     {
       if (!problem.empty())
         throw InputError("the start cannot be computed: " + problem, "Optimize/Variables");
+      if (!problem_of_gradients.empty())
+        throw InputError("the start has no derivatives: " + problem_of_gradients, "Optimize/Variables");
     }
 
     double

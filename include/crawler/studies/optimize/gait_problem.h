@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ namespace crawler
     std::array<double, n_gait_numbers> numbers;
     double violation; ///< of the limit that is violated most, relative to it
     std::string problem;
+    std::string worst_limit{}; ///< its name; empty: all limits are kept
   };
 
   /**
@@ -56,6 +58,7 @@ namespace crawler
       std::vector<double> gradient, constraints;
       std::vector<std::vector<double>> rows;                          ///< of the Jacobian: those of limited works
       std::vector<std::shared_ptr<const std::vector<double>>> blocks; ///< the others, unscaled
+      std::string problem; ///< of gait or derivatives, in words: what is here is no optimum
     };
     const Point &
     at(const std::vector<double> &y, bool with_gradients);
@@ -94,12 +97,16 @@ namespace crawler
     std::vector<double>
     to_y(const std::vector<double> &x) const;
 
-    /// The best admissible point so far; if there is none, the one that violates the limits least.
-    const GaitRecord &
-    best() const;
+    /// The best of some evaluations: of those that keep to all limits, or else the one that exceeds them least.
+    static const GaitRecord &
+    best_of(std::span<const GaitRecord> records, const OptimizeParameters &parameters, double admissible);
+
     /// The latest evaluation at @p y, or a new one.
     const GaitRecord &
     record(const std::vector<double> &y);
+    /// The latest evaluation elsewhere than at @p y; at y if there is none.
+    const GaitRecord &
+    latest_beside(const std::vector<double> &y) const;
     const std::vector<GaitRecord> &
     records() const
     {

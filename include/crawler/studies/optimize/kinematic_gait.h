@@ -55,12 +55,13 @@ namespace crawler
     Samples
     linear_samples(const std::vector<double> &x) const;
     std::array<double, n_gait_numbers>
-    numbers(const State &state, const StrainFunctional::Values &values) const;
+    numbers(const State &state, const Samples &samples, const StrainFunctional::Values &values) const;
     void
     add_gradients(const std::vector<double> &x, const State &state, const Samples &samples, GaitValues &values);
 
     SceneFamily &family_;
     const GaitWishes wishes_;
+    const std::vector<double> start_;
     unsigned int n_space_, n_time_; ///< panels
     std::optional<StrainFunctional> grid_;
     unsigned int n_limited_s_ = 1,

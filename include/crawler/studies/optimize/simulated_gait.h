@@ -11,8 +11,8 @@ namespace crawler
 {
   /**
    * Gaits of the levels that are simulated: an answer for the values of the variables as of `crawler run`, and
-   * derivatives by the adjoint of a run with the same numerics (adjoint/run_gradient.h). Where there is none, and for
-   * extreme strains, they are differences of answers, which are computed together.
+   * derivatives by the adjoint of a run with the same numerics (adjoint/run_gradient.h). Where there is none they are
+   * differences of answers, which are computed together.
    */
   class SimulatedGait : public GaitModel
   {
@@ -42,15 +42,16 @@ namespace crawler
     answers(const std::vector<std::vector<double>> &places);
     std::array<double, n_gait_numbers>
     numbers(const Task &task) const;
-    std::vector<bool>
+    void
     add_adjoint_gradients(const std::vector<double> &x, const Task &task, GaitValues &values);
     void
-    add_differences(const std::vector<double> &x, const std::vector<bool> &is_known, GaitValues &values);
+    add_differences(const std::vector<double> &x, GaitValues &values);
 
     SceneFamily &family_;
     const GaitWishes wishes_;
     const std::function<bool()> interrupted_;
-    std::vector<double> latest_x_; ///< of latest_
-    std::vector<Task> latest_;     ///< one, the answer there
+    std::vector<double> latest_x_;        ///< of latest_
+    std::vector<Task> latest_;            ///< one, the answer there
+    std::vector<double> strain_jacobian_; ///< [smallest, largest][variable]
   };
 } // namespace crawler

@@ -62,6 +62,13 @@ namespace crawler
     bool
     varies(const std::string &entry) const;
 
+    /// Does point i have the value i of each axis?
+    bool
+    is_zip() const
+    {
+      return kind_ == Kind::zip;
+    }
+
     /// So many points in succession differ in the last axis only: its length for a grid, otherwise 1.
     unsigned long
     run_length() const

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 namespace crawler
@@ -28,7 +29,8 @@ namespace crawler
    * are prepared like the samples (with the period of @p prepared), and the scene is computed with each of these
    * tables, in the lanes of the batch engine where it fits (studies/core/compute.h). The smoothing, the mean of cycles
    * and the derivative of tracks act on the noise as they do on that of the measurement. Throws InputError if the scene
-   * does not use a table of this kind, and if a run or more than a tenth of the copies do not finish.
+   * does not use a table of this kind, and if a run or more than a tenth of the copies do not finish. @p progress is
+   * called now and then.
    */
   NoisyDisplacement
   noisy_displacement(const Samples &samples,
@@ -36,5 +38,6 @@ namespace crawler
                      const PreparedTable &prepared,
                      const ParameterFile &scene,
                      unsigned int n_copies,
-                     std::uint64_t seed);
+                     std::uint64_t seed,
+                     const std::function<void()> &progress);
 } // namespace crawler

@@ -1,0 +1,212 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Computes the numbers of the documents anew and prints a table of what has drifted.
+
+    contrib/verify.sh [BUILD] [--only WORD ...] [--list] [--output FOLDER]
+
+A check is a command and the part of a document that it belongs to: all tables, or the next one, or the paragraph behind a
+phrase. Each number there of three digits or more (apart from times) is looked for in what the command prints and in the
+files that it writes: it agrees if one of these rounds to it, or, for what is measured (a share, an error, a maximum), if one
+is as close as the check allows. What is not found is printed with its nearest neighbour. Numbers of one or two digits
+are found everywhere and prove nothing, so they are left out. FOLDER (default: BUILD/verify) has the output of each
+command and drift.csv. BUILD must have the tests (contrib/setup.sh tests). Some 50 minutes on 2 cores.
+
+Ends with 0 if nothing has drifted, 7 if something has, 2 for a bad input, 3 if a command failed.
+"""
+import argparse
+import csv
+import dataclasses
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?(?![\w])")
+TIMES = re.compile(r"[\d.]+(?: to [\d.]+)? (?:s|ms|us|minutes|min|h|points/s)(?![\w])")
+LEFT_OUT = re.compile(r"\bms\b|\bs\b|seconds|CPU|cost of|[Tt]ime|^series$")  # columns of times, and of a formula
+SELF_CHECK, FAILED = 7, 3
+THEORY, NUMERICS, OPTIMIZE, PAPER = "doc/theory.md", "doc/numerics.md", "doc/optimize.md", "doc/paper.md"
+
+
+@dataclasses.dataclass
+class Check:
+    """A command and the numbers that come from it."""
+    name: str
+    minutes: float
+    command: str  # {build}, {out}: folders; {mpi}: two processes
+    document: str
+    phrase: str  # where the part begins
+    part: str = "table"  # the next one; "tables": all from there to the next heading; "text": the paragraph
+    files: tuple = ()  # in {out}
+    within: float = 0.0  # relative, of what is measured
+
+
+def optimum(name, phrase, part="table", minutes=0.5):
+    """An optimisation, whose numbers are in its tables."""
+    return Check(name, minutes, f"{{mpi}} {{build}}/crawler optimize {{root}}/prm/studies/{name}.prm --overwrite --output {{out}}/{name}",
+                 OPTIMIZE, phrase, part, (f"{name}/optima.csv", f"{name}/summary.json"), 2e-3)
+
+
+CHECKS = (
+    Check("paper", 0.5, "{root}/contrib/paper/make_figures.py {build} {out}/paper", PAPER, "## Fig. 1a", "document",
+          ("paper/numbers.md",)),
+    Check("reference_numbers", 0.2, "{build}/tests/theory_table {root}/contrib/reference/table.json", THEORY,
+          "## 5. Reference numbers", files=("{root}/contrib/reference/table.json",)),
+    Check("accuracy", 0.2, "{build}/tests/theory_table {root}/contrib/reference/table.json", NUMERICS, "**Accuracy** ("),
+    Check("independent_solver", 10, "{root}/contrib/reference/table.py", THEORY, "## 5. Reference numbers",
+          files=("{root}/contrib/reference/table.json",)),
+    Check("scaling", 0.3, "{root}/tests/verification/scaling.py {build}/crawler", THEORY,
+          "The sweep `prm/studies/scaling.prm` runs", within=2e-6),
+    Check("examples", 1, "{root}/tests/verification/prm_files.py {build}/crawler", "", ""),
+    Check("jumps_on_meshes", 0.2, "{build}/tests/jump_study mesh -1 1", NUMERICS, "(`build/tests/jump_study mesh -1 1`"),
+    Check("calibration", 4, "{mpi} {build}/tests/calibration 220 {out}/calibration.csv", NUMERICS,
+          "mpirun -n 2 build/tests/calibration 220", within=0.01),
+    Check("calibration_of_jumps", 3, "{mpi} {build}/tests/calibration 10000-10059 {out}/jumps.csv", NUMERICS,
+          "build/tests/calibration 10000-10059", within=0.01),
+    Check("number_errors", 4, "{root}/tests/verification/number_errors.py {build}/crawler 100 7", NUMERICS,
+          "python3 tests/verification/number_errors.py", within=0.01),
+    Check("cycle_stop", 3, "{build}/tests/cycle_study 150", NUMERICS, "`build/tests/cycle_study 150`", "text", within=0.03),
+    Check("levels", 0.5, "{build}/tests/ladder_study 300", NUMERICS, "Measured with `build/tests/ladder_study 300`",
+          "tables", within=0.02),
+    Check("map_of_outcomes", 10, "{mpi} {build}/crawler atlas {root}/prm/studies/atlas_chi_p.prm --overwrite --output {out}/atlas",
+          NUMERICS, "**The map of outcomes**", "text", ("atlas/summary.json", "atlas/log.txt"), 3e-3),
+    optimum("optimize_segments", "| segments | periodic merit"),
+    optimum("optimize_actuators", "| segments | p = 2: displacement"),
+    optimum("optimize_uneven", "| body | displacement in two periods", minutes=3),
+    optimum("optimize_grounds", "mpirun -n 2 crawler optimize prm/studies/optimize_grounds.prm", minutes=1.5),
+)
+
+
+class Numbers:
+    """All numbers of a text, in order of size."""
+
+    def __init__(self, text):
+        found = {float(one) for one in NUMBER.findall(text)}
+        self.values = sorted(found | {100 * one for one in found if abs(one) <= 1})  # shares may be written in per cent
+
+    def nearest(self, value):
+        """The one that is closest, relative to the value."""
+        return min(self.values, key=lambda one: abs(one - value), default=float("nan"))
+
+
+def digits_of(text):
+    """How many digits a number is written with."""
+    mantissa = re.sub(r"[eE].*", "", text).lstrip("+-")
+    return len(mantissa.replace(".", "").lstrip("0")) if float(text) else 0
+
+
+def half_unit(text):
+    """Half a unit of the last digit of a number as written."""
+    mantissa, _, exponent = text.lower().partition("e")
+    return 0.5 * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+
+
+def tables_of(lines):
+    """The cells below the head of each table, but for columns that are left out."""
+    table = []
+    for line in [*lines, ""]:
+        if line.startswith("|"):
+            table.append([cell.strip() for cell in line.strip().strip("|").split("|")])
+        elif table:
+            keep = [i for i, name in enumerate(table[0]) if not LEFT_OUT.search(name)]
+            yield [" ; ".join(row[i] for i in keep if i < len(row)) for row in table[2:]]
+            table = []
+
+
+def part_of(check):
+    """The lines of the document that hold the numbers of a check."""
+    text = (ROOT / check.document).read_text(encoding="utf-8")
+    if check.phrase not in text:
+        sys.exit(f"verify.py: {check.document} has no \"{check.phrase}\", behind which the numbers of {check.name} are expected")
+    rest = text[text.rindex("\n", 0, text.index(check.phrase)) + 1:]
+    if check.part == "text":
+        return [TIMES.sub("", rest[rest.index(check.phrase) + len(check.phrase) - 1:].split("\n\n")[0])]
+    if check.part != "document":
+        rest = re.split(r"\n#+ ", rest[1:])[0]
+    tables = list(tables_of(rest.splitlines()))
+    return [row for table in (tables[:1] if check.part == "table" else tables) for row in table]
+
+
+def run(check, build, out):
+    """Runs the command; returns its exit code, what it printed, and what its files have in them."""
+    places = {"build": build, "out": out, "root": ROOT, "mpi": "mpirun --oversubscribe -n 2"}
+    words = shlex.split(check.command.format(**places))
+    words = [sys.executable, *words] if words[0].endswith(".py") else words
+    done = subprocess.run(words, cwd=out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
+                          env={**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
+    (out / f"{check.name}.log").write_text(done.stdout, encoding="utf-8")
+    text = done.stdout
+    for name in check.files:
+        path = out / name.format(**places)
+        text += path.read_text(encoding="utf-8") if path.is_file() else ""
+    return done.returncode, text
+
+
+def compared(check, text):
+    """A row for each number of the document: as written, nearest, relative drift, whether it agrees."""
+    if not check.document:
+        return []
+    found, rows = Numbers(text), []
+    for line in part_of(check):
+        for written in NUMBER.findall(line):
+            if digits_of(written) < 3:
+                continue
+            value, nearest = float(written), found.nearest(float(written))
+            # A document may round what a command cuts off, and the other way round.
+            agrees = abs(nearest - value) <= max(2.0002 * half_unit(written), check.within * abs(value))
+            rows.append((line[:60], written, nearest, abs(nearest - value) / abs(value), agrees))
+    if not rows:
+        sys.exit(f"verify.py: {check.document} has no numbers behind \"{check.phrase}\" ({check.name})")
+    return rows
+
+
+def main():
+    """Command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", nargs="?", type=pathlib.Path, default=ROOT / "build")
+    parser.add_argument("--only", nargs="+", metavar="WORD", default=[], help="checks with one of these words in their name")
+    parser.add_argument("--list", action="store_true", help="prints the checks, runs nothing")
+    parser.add_argument("--output", type=pathlib.Path, metavar="FOLDER")
+    options = parser.parse_args()
+    checks = [one for one in CHECKS if not options.only or any(word in one.name for word in options.only)]
+    if not checks:
+        parser.error(f"no check has one of the words {', '.join(options.only)} in its name: "
+                     + ", ".join(one.name for one in CHECKS))
+    if options.list:
+        for check in checks:
+            print(f"{check.name:22} {check.minutes:4g} min  {check.document or 'prm/'} : {check.command}")
+        return
+    build = options.build.resolve()
+    if not (build / "crawler").is_file() or not (build / "tests/theory_table").is_file():
+        parser.error(f"{build} has no crawler and tests/theory_table; contrib/setup.sh tests builds them")
+    out = (options.output or build / "verify").resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    print("| check | document | numbers | agree | largest drift | minutes |\n|---|---|---|---|---|---|", flush=True)
+    drifted, failed, table = [], [], []
+    for check in checks:
+        begin = time.monotonic()
+        code, text = run(check, build, out)
+        rows = compared(check, text)
+        failed += [f"{check.name} ended with {code}; {out / (check.name + '.log')} says why"] if code else []
+        drifted += [(check, *row) for row in rows if not row[-1]]
+        table += [(check.name, check.document, *row) for row in rows]
+        largest = max((row[3] for row in rows), default=0.0)
+        print(f"| {check.name} | {check.document or 'prm/'} | {len(rows)} | {sum(row[-1] for row in rows)} | {largest:.1e} | "
+              f"{(time.monotonic() - begin) / 60:.1f} |{f' exit {code}' if code else ''}", flush=True)
+    with open(out / "drift.csv", "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(("check", "document", "where", "written", "nearest", "relative drift", "agrees"))
+        writer.writerows(table)
+    for check, where, written, nearest, drift, _ in drifted:
+        print(f"{check.document}, {check.name}: {written} is not there; the nearest is {nearest:.10g} ({drift:.1e}) in: {where}")
+    for line in failed:
+        print(line)
+    sys.exit(FAILED if failed else SELF_CHECK if drifted else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/accuracy/extrapolation.h>
+#include <crawler/accuracy/finer_run_errors.h>
+#include <crawler/accuracy/moving_fronts.h>
+#include <crawler/run/accuracy_rule.h>
+#include <crawler/scene/moving_jumps.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    using namespace accuracy_rule::fronts;
+
+    class Fronts
+    {
+    public:
+      Fronts(const RunParameters &parameters, const Scene &scene, const AnswerOf &answer_of)
+        : parameters_(parameters)
+        , scene_(scene)
+        , answer_of_(answer_of)
+      {
+        parameters_.accuracy       = std::clamp(part_of_runs * parameters.accuracy, least_accuracy, largest_accuracy);
+        wanted_part_               = parameters.accuracy;
+        parameters_.error_estimate = true; // the fronts are chosen by it
+      }
+
+      Answer
+      compute()
+      {
+        for (double part = first_part; part >= last_part && n_steps_ <= most_steps; part *= 0.5)
+        {
+          Answer next         = answer_of_(parameters_, *with_fronts(scene_, part));
+          const bool inverted = next.result.time.status == Status::inverted;
+          const bool is_known = next.result.error && std::isfinite(next.result.error->total);
+          const bool stopped  = next.result.time.status == Status::stopped;
+          if (!inverted && !is_known && !stopped && answer_.result.error) // what is there is better
+            break;
+          answer_                            = std::move(next);
+          answer_.choice.has_fronts          = true;
+          answer_.choice.front_part          = part;
+          answer_.choice.numerics.jumps_move = true; // no single run is the answer
+          answer_.choice.explanation = fmt::format("jumps that move: the {}fronts of {:g} of the widest that fit, {}",
+                                                   levels_.empty() ? "" : "extrapolation of wider fronts and of ",
+                                                   part,
+                                                   answer_.choice.explanation);
+          if (inverted ? confirms_inversion() : !is_known)
+            break;
+          if (inverted)
+            continue;
+          n_steps_ += answer_.result.time.steps;
+          levels_.push_back({part, answer_.result});
+          if (levels_.size() > most_levels)
+            levels_.erase(levels_.begin());
+          if (levels_.size() == 1)
+            continue;
+          extrapolate();
+          if (answer_.result.error->total <= wanted())
+            break;
+        }
+        judge();
+        return answer_;
+      }
+
+    private:
+      struct Level
+      {
+        double width;
+        SimulationResult result;
+      };
+
+      /// The time of the inversion has to settle.
+      bool
+      confirms_inversion()
+      {
+        levels_.clear();
+        const double t    = answer_.result.inversion->t;
+        const bool second = inversion_.has_value();
+        if (second)
+          answer_.result.inversion_error = 2. * std::abs(t - *inversion_);
+        inversion_ = t;
+        return second && *answer_.result.inversion_error <= std::max(wanted_part_, settled_inversion) * t;
+      }
+
+      double
+      wanted() const
+      {
+        const SimulationResult &result = answer_.result;
+        const double size =
+          std::max(std::abs(result.displacement), accuracy_rule::displacement_floor * result.largest_u);
+        return wanted_part_ * size;
+      }
+
+      /// The results of the levels from @p first on, extrapolated.
+      SimulationResult
+      extrapolated(const std::size_t first) const
+      {
+        std::vector<double> widths;
+        std::vector<const SimulationResult *> results;
+        for (std::size_t i = first; i < levels_.size(); ++i)
+        {
+          widths.push_back(levels_[i].width);
+          results.push_back(&levels_[i].result);
+        }
+        const std::vector<double> weights = weights_at_zero(widths);
+        SimulationResult sum              = combined(scene_, results, weights);
+        for (const auto extreme : {&SimulationResult::min_stretch, &SimulationResult::max_stretch})
+        {
+          double value = 0.;
+          for (std::size_t i = 0; i < results.size(); ++i)
+            value += weights[i] * (results[i]->*extreme).value;
+          if (value > 0.)
+            (sum.*extreme).value = value;
+        }
+        return sum;
+      }
+
+      void
+      extrapolate()
+      {
+        const SimulationResult &steepest = levels_.back().result;
+        SimulationResult result          = extrapolated(0);
+        const SimulationResult other     = extrapolated(1);
+        std::vector<double> widths;
+        for (const Level &level : levels_)
+          widths.push_back(level.width);
+        const std::vector<double> weights = weights_at_zero(widths);
+        double time                       = 0.;
+        for (std::size_t i = 0; i < levels_.size(); ++i)
+          time += std::abs(weights[i]) * levels_[i].result.error->total;
+        // Fewer widths agree better than they should now and then: the answer before is looked at, too.
+        result.error.emplace();
+        if (before_)
+        {
+          const double space = std::max(factor * std::abs(result.displacement - other.displacement),
+                                        factor_of_change * std::abs(result.displacement - *before_));
+          result.error       = {.total = space + time, .space = space, .time = time, .model = 0.};
+        }
+        before_       = result.displacement;
+        result.errors = number_errors(result, other, factor, parameters_.accuracy);
+        result.corrected.reset();
+        result.time                   = steepest.time;
+        answer_.result                = std::move(result);
+        answer_.choice.wanted_error   = wanted();
+        answer_.choice.promised_error = answer_.result.error->total;
+      }
+
+      /// What is not as accurate as wanted, or of one width of fronts only, is no answer.
+      void
+      judge()
+      {
+        SimulationResult &result = answer_.result;
+        if (result.time.status != Status::finished && result.time.reason != accuracy_not_met)
+          return;
+        if (!before_)
+          result.error.emplace();
+        const double error  = result.error->total;
+        TimeOutcome &ending = result.time;
+        ending.status       = error <= wanted() ? Status::finished : Status::failed;
+        ending.reason       = error <= wanted() ? "" : accuracy_not_met;
+        ending.message      = error <= wanted() ? ""
+                              : std::isfinite(error)
+                                ? fmt::format("the error of the displacement is about {:.2g}, but Accuracy asks for {:.2g}",
+                                         error,
+                                         wanted())
+                                : "the error of the displacement is not known: steeper fronts have no answer";
+      }
+
+      RunParameters parameters_; ///< of the runs
+      const Scene &scene_;
+      const AnswerOf &answer_of_;
+      Answer answer_;
+      std::vector<Level> levels_;
+      std::optional<double> inversion_; ///< of the fronts before
+      std::optional<double> before_;    ///< the displacement extrapolated to fewer widths
+      double wanted_part_    = 0.;
+      unsigned long n_steps_ = 0;
+    };
+  } // namespace
+
+  Answer
+  answer_of_fronts(const RunParameters &parameters,
+                   const Scene &scene,
+                   const AnswerOf &answer_of,
+                   const std::function<SimulationResult(const NumericsChoice &)> &simulate)
+  {
+    Answer answer = Fronts(parameters, scene, answer_of).compute();
+    if (!simulate || answer.result.time.status == Status::stopped)
+      return answer;
+    const SimulationResult files = simulate(answer.choice);
+    if (files.time.status == Status::stopped)
+      answer.result = files;
+    answer.result.output_seconds = files.output_seconds;
+    return answer;
+  }
+} // namespace crawler

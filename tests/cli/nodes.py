@@ -1,0 +1,185 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""A sweep over several nodes, which lose their power: nodes are network namespaces with names and addresses of their own,
+whose processes see each other over TCP only. The table after kills of whole nodes and --resume on those that are left is
+that of one process; 16 ranks share the 4 nodes. Points cost from 0.5 ms to 0.1 s.
+
+    python3 nodes.py PATH_TO_CRAWLER MPIEXEC [KILLS]        77 if it may not make namespaces (root and iproute2 can)
+"""
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+import numpy as np
+
+PROGRAM, MPIEXEC = str(pathlib.Path(sys.argv[1]).resolve()), shutil.which(sys.argv[2])
+KILLS = int(sys.argv[3]) if len(sys.argv) > 3 else 3
+NODES, RANKS_OF_NODE = 4, 4
+NET = f"10.{os.getpid() % 200 + 20}.{os.getpid() // 200 % 250}"
+NAME = f"crawler{os.getpid()}"
+SCENE = """set Accuracy = 1e-7
+subsection Active stress
+  subsection Optimal wave
+    set Choose wave by = wave speed
+  end
+end
+subsection Sweep
+  set Axes = Body/Anchoring exponent : linspace(-1, 4, 42); Time/End time : 1, 30; \\
+             Active stress/Optimal wave/Perturbation parameter : 0.1, 0.2, 0.3, 0.45; Body/Elastic modulus : 1, 3; \\
+             Body/Friction profile : 1, 1+0.3*sin(6*s)
+end
+"""
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+failures = []
+
+
+def check(condition, what):
+    """Prints one line and keeps failures."""
+    print(("ok     " if condition else "FAILED ") + what, flush=True)
+    if not condition:
+        failures.append(what)
+
+
+def ip(*words, **more):
+    """One call of iproute2."""
+    return subprocess.run(["ip", *words], check=True, capture_output=True, text=True, **more).stdout
+
+
+def node(i):
+    """The name of a node's namespace."""
+    return f"{NAME}n{i}"
+
+
+def make_nodes():
+    """A bridge with a cable to each node."""
+    ip("link", "add", f"{NAME[-9:]}b", "type", "bridge")
+    ip("addr", "add", f"{NET}.254/24", "dev", f"{NAME[-9:]}b")
+    ip("link", "set", f"{NAME[-9:]}b", "up")
+    for i in range(NODES):
+        outer = f"{NAME[-9:]}v{i}"
+        ip("netns", "add", node(i))
+        ip("link", "add", outer, "type", "veth", "peer", "name", "eth0", "netns", node(i))
+        ip("link", "set", outer, "master", f"{NAME[-9:]}b", "up")
+        for words in (["addr", "add", f"{NET}.{i + 1}/24", "dev", "eth0"], ["link", "set", "eth0", "up"], ["link", "set", "lo", "up"]):
+            ip("-n", node(i), *words)
+
+
+def power_off(i):
+    """Kills all processes of a node at once."""
+    for process in ip("netns", "pids", node(i)).split():
+        try:
+            os.kill(int(process), signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+
+def remove_nodes():
+    """Takes all of it away."""
+    for i in range(NODES):
+        if subprocess.run(["ip", "netns", "pids", node(i)], capture_output=True, check=False).returncode == 0:
+            power_off(i)
+        subprocess.run(["ip", "netns", "del", node(i)], capture_output=True, check=False)
+    subprocess.run(["ip", "link", "del", f"{NAME[-9:]}b"], capture_output=True, check=False)
+
+
+def sweep(folder, nodes, *options):
+    """Starts the sweep on some nodes."""
+    hosts = ",".join(f"{NET}.{i + 1}:{RANKS_OF_NODE}" for i in nodes)
+    words = [MPIEXEC, "--host", hosts, "-n", str(RANKS_OF_NODE * len(nodes)), "--oversubscribe", "--bind-to", "none",
+             "--mca", "plm_rsh_agent", str(folder / "agent"), "--mca", "btl", "tcp,self", "--mca", "pml", "ob1",
+             "--mca", "oob_tcp_if_include", f"{NET}.0/24", "--mca", "btl_tcp_if_include", f"{NET}.0/24",
+             "--mca", "orte_keep_fqdn_hostnames", "1", "--mca", "mpi_yield_when_idle", "1",
+             PROGRAM, "sweep", "sweep.prm", "--output", "nodes", *options]
+    return subprocess.Popen(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True,
+                            env=ENVIRONMENT)
+
+
+def table(folder):
+    """The columns of a results.h5, without times."""
+    with h5py.File(folder / "results.h5", "r") as file:
+        group = file["results"] if "results" in file else file
+        columns = {}
+        group.visititems(lambda name, one: columns.update({name: one[()]}) if isinstance(one, h5py.Dataset) else None)
+    return {name: values for name, values in columns.items() if "seconds" not in name and "checksum" not in name}
+
+
+def same(one, other):
+    """Are all columns equal, bit for bit?"""
+    return one.keys() == other.keys() and all(
+        np.array_equal(values, other[name], equal_nan=values.dtype.kind == "f") for name, values in one.items())
+
+
+def finished_rows(folder):
+    """How many rows a table has that may be written to at this moment."""
+    done = subprocess.run([sys.executable, "-c", "import sys, h5py\nwith h5py.File(sys.argv[1], 'r', locking=False) as f:\n"
+                           " print(int((f['results/status'][()] != b'').sum()))", str(folder / "results.h5")],
+                          capture_output=True, text=True, check=False)
+    return int(done.stdout) if done.returncode == 0 else 0
+
+
+def wait_for_rows(process, folder, n):
+    """Waits until that many rows are there; False if the sweep ends before."""
+    while process.poll() is None:
+        if finished_rows(folder) >= n:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def main():
+    """All of it; the exit status says whether something failed."""
+    if os.geteuid() != 0 or shutil.which("ip") is None:
+        print("namespaces need root and iproute2")
+        sys.exit(77)
+    generator = random.Random(5)
+    with tempfile.TemporaryDirectory() as place:
+        folder = pathlib.Path(place)
+        (folder / "sweep.prm").write_text(SCENE)
+        agent = folder / "agent"  # what mpirun calls in the place of ssh: agent HOST COMMAND...
+        agent.write_text("#!/bin/sh\nnode=$1; shift; i=$((${node##*.} - 1))\n"
+                         f"exec ip netns exec {NAME}n$i unshare --uts sh -c \"hostname node$i; $*\"\n")
+        agent.chmod(0o755)
+        try:
+            try:
+                make_nodes()
+            except subprocess.CalledProcessError as error:
+                print(f"no namespaces here: {error.stderr.strip()}")
+                sys.exit(77)
+            done = subprocess.run([PROGRAM, "sweep", "sweep.prm", "--output", "one"], cwd=folder, capture_output=True, text=True,
+                                  check=False)
+            if done.returncode != 0:
+                sys.exit(f"one process: {done.stderr}")
+            reference = table(folder / "one")
+            n_rows = finished_rows(folder / "one")
+            rows, killed, nodes = 0, 0, list(range(NODES))
+            for k in range(KILLS):
+                victim, wanted = generator.choice(nodes), rows + generator.randint(1, n_rows // (4 * KILLS))
+                if wanted > 0.7 * n_rows:
+                    break
+                process = sweep(folder, nodes, *(["--resume"] if k > 0 else []))
+                check(wait_for_rows(process, folder / "nodes", wanted), f"{wanted} of {n_rows} rows before a node is off")
+                power_off(victim)
+                process.communicate()
+                killed += 1
+                before, rows = rows, finished_rows(folder / "nodes")
+                check(process.returncode != 0 and before < rows, f"node {victim} of {nodes} off: {rows} rows, {before} before")
+                nodes = [i for i in range(NODES) if i != victim] if k % 2 == 0 else list(range(NODES))
+            process = sweep(folder, nodes, "--resume")
+            text, _ = process.communicate()
+            check(process.returncode == 0, f"the last one, on nodes {nodes}: {process.returncode}, {text[-600:]}")
+            check(killed >= 2, f"{killed} nodes were switched off under way")
+            check(same(reference, table(folder / "nodes")), f"the table is that of one process ({len(nodes) * RANKS_OF_NODE} ranks)")
+        finally:
+            remove_nodes()
+    sys.exit("\n".join(failures) or 0)
+
+
+if __name__ == "__main__":
+    main()

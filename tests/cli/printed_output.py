@@ -1,0 +1,127 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the user guide prints as output of the program is what the program prints: the files that stand in the guide are
+run as the guide says, and each line of output in it is looked for in what comes out.
+
+    python3 printed_output.py PATH_TO_CRAWLER MPIEXEC...
+
+Words must be the same; numbers of many digits to 1e-5 of their size, others to 1e-2, errors and residuals to a factor of
+two. Times and numbers of points per second may be any.
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from documentation import ROOT, split_blocks
+
+CRAWLER, MPIEXEC = str(pathlib.Path(sys.argv[1]).resolve()), sys.argv[2:]
+GUIDE = ROOT / "doc" / "user_guide.md"
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:e[-+]?\d+)?(?![\w])")
+TIMES = re.compile(r"[\d.]+(?:e[-+]\d+)? (s|ms|points/s)(?![\w])")
+# How lines of output begin; all others of the guide are commands, files or code.
+BEGINNINGS = ("Body L", "Active stress:", "Optimal wave:", "Model ", "Mesh:", "(for Accuracy", "Output:", "Finished at",
+              "displacement  ", "stress power  ", "dissipation  ", "ledger residual", "stretch  ", "stride  ", "wave  ",
+              "cost of transport", "efficiency  ", "Results are in", "Sweep:", "18 points", "crawler: ", "worm.prm is")
+PROGRESS = re.compile(r"\d+ %  t = ")
+
+
+def section(text, begin, end):
+    """The part of the guide between two headings."""
+    return text[text.index(f"\n{begin}\n"):text.index(f"\n{end}\n")]
+
+
+def shown_file(part, beginning):
+    """A file that the part shows, in a block marked prm or with all lines indented."""
+    for _, language, block in split_blocks(part)[1]:
+        if language == "prm" and beginning in block:
+            return block
+    block = re.search(rf"((?:^    .*\n|^\n)*^    {re.escape(beginning)}.*\n(?:^    .*\n|^\n)*)", part, re.M)
+    return re.sub("^    ", "", block.group(1), flags=re.M)
+
+
+def pattern(line):
+    """The words of a line, and its numbers."""
+    line = re.sub(r" +", " ", TIMES.sub(r"T \1", line.strip()))
+    return NUMBER.sub("#", line), NUMBER.findall(line)
+
+
+def are_close(text, other):
+    """Are these two numbers one, as the document of this program says?"""
+    a, b = float(text), float(other)
+    size = max(abs(a), abs(b))
+    if size < 1e-3:
+        return size < 1e-12 or (a * b > 0 and 0.5 <= a / b <= 2)
+    digits = len(re.sub(r"e.*|[-+.]", "", text).lstrip("0"))
+    return abs(a - b) <= (1e-5 if digits >= 6 else 1e-2) * size
+
+
+def differences(part, output):
+    """Lines of output in a part of the guide that the program does not print."""
+    printed = [pattern(line) for line in output.splitlines()]
+    lines = [line for _, line in split_blocks(part)[0] if line.startswith("    ")]
+    lines = [line for line in lines if line.strip().startswith(BEGINNINGS) or PROGRESS.match(line.strip())]
+    if len(lines) < 10:
+        yield f"only {len(lines)} lines of output were found"
+    for line in lines:
+        words, numbers = pattern(line)
+        if not any(words == other and all(map(are_close, numbers, others)) for other, others in printed):
+            near = [f"{other}  {' '.join(others)}" for other, others in printed if other[:20] == words[:20]]
+            yield f"the program does not print \"{line.strip()}\"; near it: {near[:2]}"
+
+
+class Place:
+    """A folder in which commands are given."""
+
+    def __init__(self, folder):
+        self.folder, self.output = pathlib.Path(folder), ""
+        self.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                                OMP_NUM_THREADS="1")
+
+    def write(self, name, text):
+        """A file of the user."""
+        (self.folder / name).write_text(text, encoding="utf-8")
+
+    def give(self, code, *words, ranks=1):
+        """A command, and which exit code it has."""
+        command = [*(MPIEXEC + ["-n", str(ranks)] if ranks > 1 else []), CRAWLER, *words]
+        done = subprocess.run(command, cwd=self.folder, env=self.environment, capture_output=True, text=True,
+                              timeout=120, check=False)
+        if done.returncode != code:
+            sys.exit(f"{' '.join(words)} ends with {done.returncode}: {done.stdout}{done.stderr}")
+        self.output += done.stdout + done.stderr
+
+
+def main():
+    """Prints what differs, and returns how much."""
+    guide = GUIDE.read_text(encoding="utf-8")
+    problems = []
+    with tempfile.TemporaryDirectory() as folder:
+        place, part = Place(folder), section(guide, "## Tutorial", "## Install")
+        worm = shown_file(part, "A worm of 10 cm")
+        place.write("worm.prm", worm.replace("Elastic modulus ", "Elastic modulous "))
+        place.give(2, "check", "worm.prm")
+        place.write("worm.prm", worm.replace("exp(-5*t/P))", "exp(-5*t/P)"))
+        place.give(2, "check", "worm.prm")
+        place.write("worm.prm", worm)
+        place.give(0, "check", "worm.prm")
+        place.give(0, "run", "worm.prm")
+        place.output += (place.folder / "output-worm" / "log.txt").read_text(encoding="utf-8")
+        place.give(4, "run", "worm.prm", "--overwrite", "--set", "Active stress/Expression/Constants=A = 22, P = 4")
+        place.write("worm_sweep.prm", shown_file(part, "include worm.prm"))
+        place.give(0, "sweep", "worm_sweep.prm", ranks=2)
+        problems += differences(part, place.output)
+    with tempfile.TemporaryDirectory() as folder:
+        place, part = Place(folder), section(guide, "## A case of the paper", "## The parameter file")
+        place.write("first.prm", shown_file(part, "Perturbation parameter"))
+        place.give(0, "run", "first.prm")
+        place.give(2, "run", "first.prm")
+        problems += differences(part, place.output)
+    print("\n".join(problems) if problems else "the guide prints what the program prints")
+    return len(problems)
+
+
+if __name__ == "__main__":
+    sys.exit(1 if main() else 0)

@@ -1,0 +1,142 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The same input, program and number of ranks leave the same files, times aside; the instruction sets of the processor
+agree within the error bounds; a set that is not there is refused.
+
+    python3 same_bytes.py PATH_TO_CRAWLER
+"""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import h5py
+
+CRAWLER = pathlib.Path(sys.argv[1]).resolve()
+BASE = """
+set Accuracy = 1e-4
+subsection Active stress
+  subsection Optimal wave
+    set Choose wave by = wave speed
+  end
+end
+subsection Output
+  set Number of snapshots = 5
+end
+"""
+CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
+STUDIES = {
+    "run": [],
+    "sweep": [f"Sweep/Axes={P} : 1.5, 2.5; {CHI} : 0.1, 0.2, 0.3"],
+    "atlas": [f"Atlas/First axis={P} : 1.5, 2", f"Atlas/Second axis={CHI} : 0.1, 0.3", "Accuracy=1e-3"],
+}
+SETS = ("baseline", "avx2", "avx512")
+# What may differ: seconds, moments, the folder's name; in tables, columns and rows of them.
+TIMES = re.compile(rb'(?i)("?[\w. ]*(?:seconds|duration|processor|wall)[\w. ]*"?\s*[:=,]\s*)[-+\d.e]+|\d+(?:\.\d+)? ?(?:s|ms|us|min|h)\b'
+                   rb'|\d{4}-\d\d-\d\d[T ][\d:.]+Z?|[\d.]+ points/s|(?<=[_/])(?:first|second)\b')
+failures = 0
+
+
+def check(condition, what):
+    """Prints what was checked and counts failures."""
+    global failures
+    failures += not condition
+    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
+
+
+def call(folder, command, entries, output, instruction_set=None):
+    """Runs the command; its exit code and errors."""
+    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+    if instruction_set is not None:
+        environment["CRAWLER_INSTRUCTION_SET"] = instruction_set
+    sets = [word for entry in entries for word in ("--set", entry)]
+    return subprocess.run([CRAWLER, command, "scene.prm", "--quiet", "--output", output, *sets], cwd=folder, env=environment,
+                          capture_output=True, text=True, timeout=300, check=False)
+
+
+def without_seconds(value):
+    """JSON without times and what names the folder."""
+    if isinstance(value, dict):
+        return {key: without_seconds(v) for key, v in value.items() if not re.search("second|command_line|time_per|rate", key)}
+    return [without_seconds(v) for v in value] if isinstance(value, list) else value
+
+
+def content(path):
+    """What of a file must be the same."""
+    if path.suffix == ".h5":
+        found = {}
+
+        def note(name, item):
+            title = bytes(item.attrs["name"]).decode() if "name" in item.attrs else name
+            if isinstance(item, h5py.Dataset) and "second" not in title and "checksum" not in name:
+                found[name] = item[()].tobytes() if item.dtype.kind != "O" else repr(item[()])
+        with h5py.File(path, "r") as file:
+            file.visititems(note)
+        return found
+    if path.suffix == ".json":
+        return without_seconds(json.loads(path.read_text(encoding="utf-8")))
+    if path.suffix == ".csv":
+        rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines()]
+        kept = [i for i, name in enumerate(rows[0]) if "seconds" not in name]
+        return [[row[i] for i in kept if i < len(row)] for row in rows]
+    return TIMES.sub(b"TIME", path.read_bytes())
+
+
+def files(folder):
+    """Contents by name."""
+    return {str(path.relative_to(folder)): content(path) for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def same_files(folder, command, entries):
+    """Twice the same."""
+    results = [call(folder, command, entries, f"{command}_{name}") for name in ("first", "second")]
+    one, two = (files(folder / f"{command}_{name}") for name in ("first", "second"))
+    differ = sorted(name for name in one.keys() | two.keys() if one.get(name) != two.get(name))
+    check(all(r.returncode == 0 for r in results) and len(one) > 3 and not differ,
+          f"{command}: {len(one)} files twice the same {differ or ''} {results[0].stderr.strip()}")
+
+
+def same_answer(folder):
+    """Every instruction set gives the answer within its error bound; they are not all the same computation."""
+    answers = {}
+    for name in SETS:
+        result = call(folder, "run", [], f"with_{name}", name)
+        if result.returncode == 2 and "this processor does not have it" in result.stderr:
+            print(f"       {name}: {result.stderr.strip()}")
+            continue
+        summary = json.loads((folder / f"with_{name}" / "summary.json").read_text(encoding="utf-8"))
+        sweep = call(folder, "sweep", STUDIES["sweep"], f"sweep_{name}", name)
+        with h5py.File(folder / f"sweep_{name}" / "results.h5", "r") as file:
+            rows = {bytes(data.attrs["name"]).decode(): data[:] for data in file["results"].values()}
+        answers[name] = (summary["displacement"], summary["displacement_error"]["total"], rows)
+        check(result.returncode == sweep.returncode == 0, f"{name} is used {result.stderr.strip()}{sweep.stderr.strip()}")
+    check("baseline" in answers, "baseline is there")
+    base = answers["baseline"]
+    for name, (value, bound, rows) in answers.items():
+        key, error = "displacement", "displacement_error.total"
+        apart = abs(value - base[0])
+        largest = max(abs(rows[key] - base[2][key]) / (rows[error] + base[2][error]))
+        check(apart <= bound + base[1] and largest <= 1,
+              f"{name}: run differs from baseline by {apart:.1e} (bound {bound:.1e}), a sweep by {largest:.1e} of the bounds")
+
+
+def main():
+    """1 if any check failed."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "scene.prm").write_text(BASE, encoding="utf-8")
+        for command, entries in STUDIES.items():
+            same_files(folder, command, entries)
+        same_answer(folder)
+        result = call(folder, "run", [], "none", "sse9")
+        check(result.returncode == 2 and 'CRAWLER_INSTRUCTION_SET is "sse9"' in result.stderr and "baseline" in result.stderr
+              and len(result.stderr.splitlines()) == 1 and not (folder / "none").exists(), f"unknown: {result.stderr.strip()}")
+    print(f"{failures} checks failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
