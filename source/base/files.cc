@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
+#include <crawler/base/stop_place.h>
 
 #include <boost/crc.hpp>
 #include <fmt/format.h>
@@ -50,6 +51,7 @@ namespace crawler
   void
   rename_whole(const std::filesystem::path &temporary, const std::filesystem::path &path)
   {
+    reach_write(path);
     std::error_code error;
     std::filesystem::rename(temporary, path, error);
     if (!error)

@@ -5,6 +5,7 @@
 #include <crawler/base/hdf5_trial.h>
 #include <crawler/base/hdf5_writing.h>
 #include <crawler/base/row_file.h>
+#include <crawler/base/stop_place.h>
 
 #include <boost/crc.hpp>
 #include <fmt/format.h>
@@ -353,6 +354,7 @@ namespace crawler
         return rows[row][i];
       });
     }
+    reach(StopPlace::row, rows.size());
   }
 
   struct RowReader::Handles

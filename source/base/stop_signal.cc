@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
+#include <crawler/base/stop_place.h>
 #include <crawler/base/stop_signal.h>
 
 #include <csignal>
@@ -21,6 +22,7 @@ namespace crawler
 
   StopSignal::StopSignal()
   {
+    check_stop_place();
     noted = 0;
     for (std::size_t i = 0; i < std::size(numbers); ++i)
     {
@@ -38,6 +40,7 @@ namespace crawler
   bool
   StopSignal::arrived() const
   {
+    reach(StopPlace::step);
     return noted != 0;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/archive.h>
 #include <crawler/base/clock.h>
+#include <crawler/base/stop_place.h>
 #include <crawler/run/run_journal.h>
 
 #include <algorithm>
@@ -106,5 +107,6 @@ namespace crawler
     last_        = now();
     cost_        = last_ - begin;
     was_written_ = true;
+    reach(StopPlace::state);
   }
 } // namespace crawler

@@ -6,6 +6,7 @@
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
+#include <crawler/base/stop_place.h>
 #include <crawler/base/stop_signal.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/snapshot_writer.h>
@@ -260,6 +261,7 @@ namespace crawler
       WaitProgress pilots(log, pilot_runs);
       const auto goes_on_with_pilots = [&]() {
         pilots.step();
+        reach(StopPlace::pilot);
         return !stops.arrived_anywhere(MPI_COMM_SELF);
       };
       chosen = choose_numerics(MPI_COMM_SELF, parameters, input.scene, KeepGoing(goes_on_with_pilots, &journal));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
+#include <crawler/base/stop_place.h>
 #include <crawler/studies/tradeoff/tradeoff_rows.h>
 
 #include <fmt/format.h>
@@ -162,6 +163,7 @@ namespace crawler
     out_ << pack({{row.index, row}}) << std::flush;
     if (!out_)
       throw FileError("cannot write \"" + path_.string() + "\" (is the disk full?)");
+    reach(StopPlace::row);
   }
 
   std::map<unsigned long, TradeoffRow>

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace crawler
+{
+  /**
+   * Places of the program at which tests of kills, signals and interruptions stop it. A place is where the work stands,
+   * not a time, so such a test does the same on every machine. The environment variable
+   *
+   *     CRAWLER_STOP_AT=PLACE[:NUMBER]:SIGNAL[:RANK]
+   *
+   * raises SIGNAL (KILL, TERM, INT, USR1, or STOP, which waits for CONT) in the process that reaches PLACE for the
+   * NUMBER-th time (default 1), if it has this RANK of mpirun (default: any). PLACE is one of
+   *
+   * | place | reached |
+   * |---|---|
+   * | step | each time the program looks for a signal: at each time step of whatever it computes, and more often |
+   * | pilot | the same in the runs of `crawler run` that choose the numerics |
+   * | state | behind each state that is written for --resume |
+   * | row | behind each row that is written to the table of a study |
+   * | write:NAME | when a file of this name is complete, before it gets its name |
+   */
+  enum class StopPlace
+  {
+    step,
+    pilot,
+    state,
+    row
+  };
+
+  /// The work is at this place, as many times as @p times. Throws InputError if CRAWLER_STOP_AT is none of the above.
+  void
+  reach(StopPlace place, unsigned long times = 1);
+
+  /// A whole file is about to get this name. Throws as reach().
+  void
+  reach_write(const std::filesystem::path &path);
+
+  /// Throws InputError if CRAWLER_STOP_AT is set and none of the above.
+  void
+  check_stop_place();
+
+  /// What CRAWLER_STOP_AT asks for.
+  struct StopWish
+  {
+    std::string place; ///< as in the table
+    unsigned long number = 1;
+    int signal           = 0;
+    int rank             = -1; ///< -1: any
+  };
+
+  /// Reads a value of CRAWLER_STOP_AT. Throws InputError.
+  StopWish
+  stop_wish(const std::string &text);
+} // namespace crawler

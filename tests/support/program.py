@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The program as scripts of the tests start, stop and continue it.
+
+A stop happens at a place of the work, not at a time: the environment variable CRAWLER_STOP_AT (see
+include/crawler/base/stop_place.h) raises a signal when the program gets there. So no test reads a clock; PATIENCE only
+ends what hangs.
+"""
+import os
+import signal
+import subprocess
+import sys
+
+PATIENCE = 600  # seconds
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1",
+               "OPENBLAS_NUM_THREADS": "1"}
+ENVIRONMENT.pop("CRAWLER_STOP_AT", None)
+
+
+class Checks:
+    """Counts what is wrong: `expect` notes it, `end` closes the script with the exit code."""
+
+    def __init__(self):
+        self.n, self.failures = 0, []
+
+    def expect(self, condition, what):
+        """What is to be, in words; printed if it is not."""
+        self.n += 1
+        if not condition:
+            self.failures.append(what)
+            print(f"FAILED {what}", flush=True)
+
+    def end(self):
+        """Exit code 0 only if something was checked, and all of it is right."""
+        print(f"{self.n} checks, {len(self.failures)} failed")
+        sys.exit(1 if self.failures or self.n == 0 else 0)
+
+
+def environment(stop_at=None, **more):
+    """Of the program: one thread, Open MPI as root, and where it is to stop, if anywhere."""
+    return {**ENVIRONMENT, **({"CRAWLER_STOP_AT": stop_at} if stop_at else {}), **more}
+
+
+def call(command, folder=None, stop_at=None, **more):
+    """Runs a command to its end, and gives its exit code (negative: the signal that killed it) and what it printed."""
+    return subprocess.run([str(word) for word in command], cwd=folder, env=environment(stop_at), stdin=subprocess.DEVNULL,
+                          capture_output=True, text=True, timeout=PATIENCE, check=False, **more)
+
+
+class Paused:
+    """A command that waits at a place (its stop_at has the signal STOP) while the `with` block runs; `go_on` lets it end.
+
+    Raises AssertionError if it ended before it came there.
+    """
+
+    def __init__(self, command, stop_at, folder=None):
+        assert ":STOP" in stop_at, stop_at
+        self.process = subprocess.Popen([str(word) for word in command], cwd=folder, env=environment(stop_at),
+                                        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        _, status = os.waitpid(self.process.pid, os.WUNTRACED)
+        if not os.WIFSTOPPED(status):
+            self.process.returncode = os.waitstatus_to_exitcode(status)
+            raise AssertionError(f"{command} ended before {stop_at}: {status}, {self.process.stderr.read()}")
+
+    def go_on(self, *signals):
+        """These signals are sent, then it goes on to its end. Gives its exit code and what it printed."""
+        for number in signals:
+            self.process.send_signal(number)
+        self.process.send_signal(signal.SIGCONT)
+        out, errors = self.process.communicate(timeout=PATIENCE)
+        return subprocess.CompletedProcess(self.process.args, self.process.returncode, out, errors)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.communicate()
