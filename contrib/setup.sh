@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Installs from Debian what is missing (as root or with sudo), and builds crawler in Release mode into build/.
-# Usage: contrib/setup.sh [tests|python|package|live|fuzz]   with "tests": also what the tests need, and the tests themselves;
+# No package that is there is removed.
+# Usage: contrib/setup.sh [tests|verify|python|package|live|fuzz]   with "tests": also what the tests need, and the tests
+#                                           themselves; with "verify": the same, and what contrib/verify.sh needs;
 #                                           with "python": the Python package, in build/python (doc/python.md);
 #                                           with "package": the same, and what makes a Debian package of it;
 #                                           with "live": the live page, in build/live (doc/live_page.md), by
@@ -16,11 +18,20 @@ python=(python3-dev pybind11-dev python3-numpy)
 [ "${1:-}" = package ] && packages+=("${python[@]}" dpkg-dev file)
 [ "${1:-}" = live ] && packages+=(emscripten)
 [ "${1:-}" = fuzz ] && packages+=(libclang-rt-dev)
-[ "${1:-}" = tests ] && packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev python3-scipy python3-vtk9 python3-h5py python3-pandas python3-matplotlib python3-jsonschema zsh groff-base chromium clang-format clang-tidy doxygen texlive-binaries)
+is_installed() { dpkg-query -W -f '${db:Status-Abbrev}' "$1" 2>/dev/null | grep -q '^ii'; }
+if [ "${1:-}" = tests ] || [ "${1:-}" = verify ]; then
+  packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev python3-scipy python3-h5py
+    python3-pandas python3-matplotlib python3-jsonschema zsh groff-base chromium clang-format clang-tidy doxygen
+    texlive-binaries)
+  # ParaView brings VTK for Python; Debian has the two not beside each other.
+  is_installed python3-paraview || packages+=(python3-vtk9)
+fi
+[ "${1:-}" = verify ] &&
+  packages+=(emscripten iproute2 ffmpeg xvfb octave libsundials-dev libclang-rt-dev stress-ng dpkg-dev file)
 
 missing=()
 for package in "${packages[@]}"; do
-  dpkg-query -W -f '${db:Status-Abbrev}' "$package" 2>/dev/null | grep -q '^ii' || missing+=("$package")
+  is_installed "$package" || missing+=("$package")
 done
 if [ ${#missing[@]} -gt 0 ]; then
   echo "Installing from Debian: ${missing[*]}"
@@ -30,7 +41,7 @@ if [ ${#missing[@]} -gt 0 ]; then
     as_root=(sudo)
   fi
   "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-remove --no-install-recommends "${missing[@]}" >/dev/null
 fi
 
 [ "${1:-}" = live ] && exec contrib/live/build.sh
@@ -41,7 +52,7 @@ if [ "${1:-}" = fuzz ]; then
 fi
 
 with_tests=OFF
-if [ "${1:-}" = tests ]; then
+if [ "${1:-}" = tests ] || [ "${1:-}" = verify ]; then
   with_tests=ON
 elif [ -f build/CMakeCache.txt ] && grep -q '^CRAWLER_TESTS:BOOL=ON' build/CMakeCache.txt; then
   with_tests=ON # keep what is there
@@ -54,7 +65,7 @@ if [ "${1:-}" = python ] || [ "${1:-}" = package ]; then
 elif [ -f build/CMakeCache.txt ] && grep -q '^CRAWLER_PYTHON_PACKAGE:BOOL=ON' build/CMakeCache.txt; then
   with_python=ON
 fi
-[ "${1:-}" = tests ] && targets=(all)
+[ "${1:-}" = tests ] || [ "${1:-}" = verify ] && targets=(all)
 cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCRAWLER_TESTS=$with_tests -DCRAWLER_PYTHON_PACKAGE=$with_python >build.log 2>&1 ||
   { cat build.log >&2; exit 1; }
 rm -f build.log

@@ -1,21 +1,27 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Computes the numbers of the documents anew and prints a table of what has drifted.
+"""Computes what takes long: the numbers of the documents anew, statistics, kills, faults, films. Prints one table.
 
-    contrib/verify.sh [BUILD] [--only WORD ...] [--list] [--output FOLDER]
+    contrib/verify.sh [BUILD] [--only WORD ...] [--list] [--output FOLDER] [--again]
 
-A check is a command and the part of a document that it belongs to: all tables, or the next one, or the paragraph behind a
-phrase. Each number there of three digits or more (apart from times) is looked for in what the command prints and in the
-files that it writes: it agrees if one of these rounds to it, or, for what is measured (a share, an error, a maximum), if one
-is as close as the check allows. What is not found is printed with its nearest neighbour. Numbers of one or two digits
-are found everywhere and prove nothing, so they are left out. FOLDER (default: BUILD/verify) has the output of each
-command and drift.csv. BUILD must have the tests (contrib/setup.sh tests). Some 50 minutes on 2 cores.
+A check is a command that must end with 0; 77 says that something it needs is not installed, which is a skip with a name.
+If it belongs to a part of a document (all tables, or the next one, or the paragraph behind a phrase), each number there
+of three digits or more (apart from times) is looked for in what the command prints and in the files that it writes: it
+agrees if one of these rounds to it, or, for what is measured (a share, an error, a maximum), if one is as close as the
+check allows. What is not found is printed with its nearest neighbour. Numbers of one or two digits are found everywhere
+and prove nothing, so they are left out.
 
-Ends with 0 if nothing has drifted, 7 if something has, 2 for a bad input, 3 if a command failed.
+FOLDER (default: BUILD/verify) has the output of each command, drift.csv and done.json: what is done is not done again
+after a break unless the program has changed or --again is given. contrib/verify.sh builds and installs what the checks
+need. All of it takes some four hours on 2 cores.
+
+Ends with 0 if all is as expected, 7 if a number has drifted, 2 for a bad input, 3 if a command failed.
 """
 import argparse
 import csv
 import dataclasses
+import hashlib
+import json
 import os
 import pathlib
 import re
@@ -28,18 +34,18 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?(?![\w])")
 TIMES = re.compile(r"[\d.]+(?: to [\d.]+)? (?:s|ms|us|minutes|min|h|points/s)(?![\w])")
 LEFT_OUT = re.compile(r"\bms\b|\bs\b|seconds|CPU|cost of|[Tt]ime|^series$")  # columns of times, and of a formula
-SELF_CHECK, FAILED = 7, 3
+SELF_CHECK, FAILED, SKIPPED = 7, 3, 77
 THEORY, NUMERICS, OPTIMIZE, PAPER = "doc/theory.md", "doc/numerics.md", "doc/optimize.md", "doc/paper.md"
 
 
 @dataclasses.dataclass
 class Check:
-    """A command and the numbers that come from it."""
+    """A command, and the numbers of a document that come from it, if there are any."""
     name: str
     minutes: float
-    command: str  # {build}, {out}: folders; {mpi}: two processes
-    document: str
-    phrase: str  # where the part begins
+    command: str  # {build}, {out}: folders; {mpi}: two processes; {crawler}: the program
+    document: str = ""
+    phrase: str = ""  # where the part begins
     part: str = "table"  # the next one; "tables": all from there to the next heading; "text": the paragraph
     files: tuple = ()  # in {out}
     within: float = 0.0  # relative, of what is measured
@@ -78,6 +84,24 @@ CHECKS = (
     optimum("optimize_actuators", "| segments | p = 2: displacement"),
     optimum("optimize_uneven", "| body | displacement in two periods", minutes=3),
     optimum("optimize_grounds", "mpirun -n 2 crawler optimize prm/studies/optimize_grounds.prm", minutes=1.5),
+    # Statistics of errors: scenes that nobody has looked at.
+    Check("calibration_fresh", 8, "{mpi} {build}/tests/calibration {seed}-{seed+299} {out}/calibration_fresh.csv"),
+    Check("random_extremes", 40, "{build}/tests/random_extremes {seed}-{seed+999} {out}/random_extremes.csv"),
+    # Interruptions and faults.
+    Check("kills_of_runs", 10, "{root}/tests/long/run_kills.py {crawler} mpirun 60 {seed}"),
+    Check("kills_of_studies", 10, "{root}/tests/long/study_kills.py {crawler} mpirun 20 {seed}"),
+    Check("nodes", 5, "{root}/tests/long/nodes.py {crawler} mpirun"),
+    Check("disk", 10, "{root}/tests/long/disk.py {crawler} {root}/prm 3"),
+    Check("memory", 3, "{root}/tests/long/memory.py {crawler} 100000 0.2"),
+    Check("fuzz", 65, "{root}/contrib/fuzz.sh 600"),
+    Check("sanitizers", 12, "{root}/contrib/check_sanitizers.sh"),
+    Check("tidy", 15, "{root}/contrib/check_tidy.sh source tests"),
+    # What people see.
+    Check("films", 4, "{root}/tests/long/paraview_films.py {crawler} pvbatch"),
+    Check("live_page", 15, "{root}/tests/long/live_page.py {crawler} {build}/live"),
+    Check("octave", 0.5, "{root}/tests/long/octave_tutorial.py {crawler}"),
+    # Other programs.
+    Check("peers", 60, "{root}/contrib/peers/compare.py {build}"),
 )
 
 
@@ -131,19 +155,39 @@ def part_of(check):
     return [row for table in (tables[:1] if check.part == "table" else tables) for row in table]
 
 
-def run(check, build, out):
-    """Runs the command; returns its exit code, what it printed, and what its files have in them."""
-    places = {"build": build, "out": out, "root": ROOT, "mpi": "mpirun --oversubscribe -n 2"}
-    words = shlex.split(check.command.format(**places))
-    words = [sys.executable, *words] if words[0].endswith(".py") else words
-    done = subprocess.run(words, cwd=out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
-                          env={**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
-    (out / f"{check.name}.log").write_text(done.stdout, encoding="utf-8")
-    text = done.stdout
-    for name in check.files:
-        path = out / name.format(**places)
-        text += path.read_text(encoding="utf-8") if path.is_file() else ""
-    return done.returncode, text
+class Runs:
+    """Runs commands in a folder; what has been done by this program is kept there."""
+
+    def __init__(self, build, out, seed, again):
+        self.build, self.out = build, out
+        self.places = {"build": build, "out": out, "root": ROOT, "mpi": "mpirun --oversubscribe -n 2", "crawler": build / "crawler",
+                       "seed": seed, "seed+299": seed + 299, "seed+999": seed + 999}
+        self.file = out / "done.json"
+        self.program = hashlib.sha256((build / "crawler").read_bytes()).hexdigest()
+        known = json.loads(self.file.read_text(encoding="utf-8")) if self.file.is_file() and not again else {}
+        self.done = known.get("checks", {}) if known.get("program") == self.program else {}
+
+    def make(self, check):
+        """Exit code, minutes, what the command printed, and what its files have in them."""
+        command = re.sub(r"\{([a-z0-9+]+)\}", lambda name: str(self.places[name[1]]), check.command)
+        log = self.out / f"{check.name}.log"
+        if self.done.get(check.name, {}).get("command") != command or not log.is_file():
+            words = shlex.split(command)
+            words = [sys.executable, *words] if words[0].endswith(".py") else words
+            begin = time.monotonic()
+            done = subprocess.run(words, cwd=self.out, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
+                                  stdin=subprocess.DEVNULL,
+                                  env={**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
+            log.write_text(done.stdout, encoding="utf-8")
+            self.done[check.name] = {"command": command, "code": done.returncode, "minutes": (time.monotonic() - begin) / 60}
+            part = self.file.with_suffix(".part")
+            part.write_text(json.dumps({"program": self.program, "checks": self.done}, indent=1), encoding="utf-8")
+            part.replace(self.file)
+        known, text = self.done[check.name], log.read_text(encoding="utf-8")
+        for name in check.files:
+            path = self.out / name.format(**self.places)
+            text += path.read_text(encoding="utf-8") if path.is_file() else ""
+        return known["code"], known["minutes"], text
 
 
 def compared(check, text):
@@ -171,6 +215,8 @@ def main():
     parser.add_argument("--only", nargs="+", metavar="WORD", default=[], help="checks with one of these words in their name")
     parser.add_argument("--list", action="store_true", help="prints the checks, runs nothing")
     parser.add_argument("--output", type=pathlib.Path, metavar="FOLDER")
+    parser.add_argument("--again", action="store_true", help="what is done is done again")
+    parser.add_argument("--seed", type=int, default=100000, help="of the random scenes and kills that are new (default: %(default)s)")
     options = parser.parse_args()
     checks = [one for one in CHECKS if not options.only or any(word in one.name for word in options.only)]
     if not checks:
@@ -178,25 +224,31 @@ def main():
                      + ", ".join(one.name for one in CHECKS))
     if options.list:
         for check in checks:
-            print(f"{check.name:22} {check.minutes:4g} min  {check.document or 'prm/'} : {check.command}")
+            print(f"{check.name:22} {check.minutes:4g} min  {check.document or '-'} : {check.command}")
         return
     build = options.build.resolve()
     if not (build / "crawler").is_file() or not (build / "tests/theory_table").is_file():
-        parser.error(f"{build} has no crawler and tests/theory_table; contrib/setup.sh tests builds them")
+        parser.error(f"{build} has no crawler and tests/theory_table; contrib/verify.sh builds them")
     out = (options.output or build / "verify").resolve()
     out.mkdir(parents=True, exist_ok=True)
-    print("| check | document | numbers | agree | largest drift | minutes |\n|---|---|---|---|---|---|", flush=True)
-    drifted, failed, table = [], [], []
+    runs = Runs(build, out, options.seed, options.again)
+    print("| check | expected | found | seconds |\n|---|---|---|---|", flush=True)
+    drifted, failed, skipped, table = [], [], [], []
     for check in checks:
-        begin = time.monotonic()
-        code, text = run(check, build, out)
-        rows = compared(check, text)
-        failed += [f"{check.name} ended with {code}; {out / (check.name + '.log')} says why"] if code else []
+        code, minutes, text = runs.make(check)
+        last = ([line.strip() for line in text.splitlines() if line.strip()] or [""])[-1][:100].replace("|", "/")
+        rows = compared(check, text) if code == 0 else []
         drifted += [(check, *row) for row in rows if not row[-1]]
         table += [(check.name, check.document, *row) for row in rows]
-        largest = max((row[3] for row in rows), default=0.0)
-        print(f"| {check.name} | {check.document or 'prm/'} | {len(rows)} | {sum(row[-1] for row in rows)} | {largest:.1e} | "
-              f"{(time.monotonic() - begin) / 60:.1f} |{f' exit {code}' if code else ''}", flush=True)
+        if code == SKIPPED:
+            skipped.append(f"{check.name}: {last}")
+        elif code:
+            failed.append(f"{check.name} ended with {code}; {out / (check.name + '.log')} says why")
+        n, agree = len(rows), sum(row[-1] for row in rows)
+        expected = f"{n} numbers of {check.document}" if n else "exit 0"
+        found = (f"skipped: {last}" if code == SKIPPED else f"exit {code}: {last}" if code
+                 else f"{agree}, drift at most {max(row[3] for row in rows):.1e}" if n else f"exit 0: {last}")
+        print(f"| {check.name} | {expected} | {found} | {60 * minutes:.0f} |", flush=True)
     with open(out / "drift.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(("check", "document", "where", "written", "nearest", "relative drift", "agrees"))
@@ -205,6 +257,8 @@ def main():
         print(f"{check.document}, {check.name}: {written} is not there; the nearest is {nearest:.10g} ({drift:.1e}) in: {where}")
     for line in failed:
         print(line)
+    print(f"{len(checks) - len(failed) - len(skipped)} checks passed, {len(failed)} failed, {len(skipped)} skipped, "
+          f"{len(drifted)} numbers drifted")
     sys.exit(FAILED if failed else SELF_CHECK if drifted else 0)
 
 

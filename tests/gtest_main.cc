@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <iostream>
+#include <string>
+
 #ifdef __SANITIZE_ADDRESS__
 #  include <sanitizer/lsan_interface.h>
 
@@ -14,6 +18,31 @@ __lsan_default_suppressions()
 }
 #endif
 
+namespace
+{
+  /// Restricts the run to the tests of one source, archive_test for archive_test.cc. Returns how many it has.
+  unsigned int
+  keep_tests_of(const std::string &source)
+  {
+    const auto &all = *::testing::UnitTest::GetInstance();
+    std::string filter;
+    unsigned int n = 0;
+    for (int i = 0; i < all.total_test_suite_count(); ++i)
+    {
+      const auto &suite = *all.GetTestSuite(i);
+      for (int j = 0; j < suite.total_test_count(); ++j)
+        if (const auto &test = *suite.GetTestInfo(j); std::filesystem::path(test.file()).stem() == source)
+        {
+          filter += std::string(suite.name()) + "." + test.name() + ":";
+          ++n;
+        }
+    }
+    ::testing::GTEST_FLAG(filter) = filter;
+    return n;
+  }
+} // namespace
+
+/// Runs the tests of all sources of the program, or of the one that is named: unit_base archive_test.
 /// Starts MPI and PETSc for all tests of a program; only rank 0 prints, and all ranks fail together.
 /// Leaks are looked for in what the tests allocate. Start and end of MPI are left out: it loads and unloads modules,
 /// and what these keep would look like leaks of unknown origin.
@@ -29,6 +58,11 @@ main(int argc, char **argv)
 #ifdef __SANITIZE_ADDRESS__
   __lsan_enable();
 #endif
+  if (argc > 1 && keep_tests_of(argv[1]) == 0)
+  {
+    std::cerr << argv[0] << " has no tests of " << argv[1] << ".cc\n";
+    return 2;
+  }
   auto &listeners = ::testing::UnitTest::GetInstance()->listeners();
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
     delete listeners.Release(listeners.default_result_printer());

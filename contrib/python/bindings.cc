@@ -6,6 +6,7 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/plain_numbers.h>
+#include <crawler/base/stop_place.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
 #include <crawler/parameters/entry_lists.h>
@@ -101,6 +102,7 @@ namespace crawler
         interrupted = interrupted || PyErr_CheckSignals() != 0;
       };
       const std::function<bool()> asked = [&]() {
+        reach(StopPlace::step);
         if (!interrupted && now() - last > pause)
           look();
         return interrupted;

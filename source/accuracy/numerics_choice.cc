@@ -3,6 +3,7 @@
 #include <crawler/accuracy/graded_choice.h>
 #include <crawler/accuracy/numerics_choice.h>
 #include <crawler/accuracy/stress_scales.h>
+#include <crawler/base/clock.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/run/accuracy_rule.h>
 #include <crawler/scene/moving_jumps.h>
@@ -11,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -664,7 +664,7 @@ namespace crawler
         }
         if (jumps_move_ && predicts)
           choice_.wanted_error = accuracy_ * size_;
-        const double seconds   = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const double seconds   = watch_.seconds();
         const std::string kind = jumps_move_ ? "jumps of the active stress that move, "
                                  : is_graded ? fmt::format("sudden stress, {} of cells smaller by {:g} each, ",
                                                            counted(n.grading.levels, "level"),
@@ -695,7 +695,7 @@ namespace crawler
           choice_.explanation += "; " + choice_.advice;
       }
 
-      const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+      const Stopwatch watch_;
       const MPI_Comm communicator_;
       const KeepGoing &keep_going_;
       const RunParameters &parameters_;

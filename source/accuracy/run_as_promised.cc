@@ -3,6 +3,7 @@
 #include <crawler/accuracy/mesh_family.h>
 #include <crawler/accuracy/moving_fronts.h>
 #include <crawler/accuracy/run_as_promised.h>
+#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/run/self_check.h>
 #include <crawler/time/failure.h>
@@ -10,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace crawler
@@ -118,7 +118,6 @@ namespace crawler
                   const bool writes,
                   const KeepGoing &keep_going)
   {
-    using Clock = std::chrono::steady_clock;
     if (choice.has_fronts)
       return answer_of_fronts(
         parameters,
@@ -159,9 +158,9 @@ namespace crawler
         ++answer.refinements;
         continue;
       }
-      const auto start = Clock::now();
+      const Stopwatch watch;
       estimate_errors(communicator, parameters, scene, answer.choice, result, keep_going);
-      answer.estimate_seconds += std::chrono::duration<double>(Clock::now() - start).count();
+      answer.estimate_seconds += watch.seconds();
       const double total = result.error->total;
       // An energy balance that does not close asks for a finer run, too; if that does not help it is the self-check's
       // business.

@@ -21,7 +21,7 @@ namespace crawler
 {
   namespace
   {
-    const char *const variable = "CRAWLER_STOP_AT";
+    const char *const variable_name = "CRAWLER_STOP_AT";
     /// In the order of StopPlace.
     constexpr std::string_view places[]                  = {"step", "pilot", "state", "row"};
     constexpr std::string_view write_prefix              = "write:";
@@ -54,7 +54,7 @@ namespace crawler
 
       Armed()
       {
-        const char *const text = std::getenv(variable);
+        const char *const text = std::getenv(variable_name);
         if (text == nullptr)
           return;
         wish = stop_wish(text);
@@ -92,7 +92,7 @@ namespace crawler
       return InputError(
         fmt::format("the environment variable {} is \"{}\"; PLACE[:NUMBER]:SIGNAL[:RANK] is expected, with "
                     "the place {} or write:NAME, and the signal KILL, TERM, INT, USR1 or STOP",
-                    variable,
+                    variable_name,
                     text,
                     fmt::join(places, ", ")));
     };

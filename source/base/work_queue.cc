@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/work_queue.h>
 
@@ -93,8 +94,8 @@ namespace crawler
   void
   WorkQueue::serve()
   {
-    constexpr auto pause = std::chrono::microseconds(100);
-    if (!is_owner_ || !has_others_ || Clock::now() < served_ + pause)
+    constexpr double pause = 1e-4; // seconds
+    if (!is_owner_ || !has_others_ || now() < served_ + pause)
       return;
     // Any call lets MPI work; Open MPI looks at TCP in one of eight.
     for (int i = 0; i < 8; ++i)
@@ -102,7 +103,7 @@ namespace crawler
       int ignored = 0;
       MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, communicator_, &ignored, MPI_STATUS_IGNORE);
     }
-    served_ = Clock::now();
+    served_ = now();
   }
 
   void

@@ -47,9 +47,6 @@ namespace crawler
 
   namespace
   {
-    /// A record that is beaten by less than this part of a strain may be beaten after sharpening.
-    constexpr double sharpening = 0.05;
-
     /// Hands the runs of one method out to the lanes and makes results of what they give.
     class Batch
     {

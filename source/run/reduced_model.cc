@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/run/gait_efficiency.h>
 #include <crawler/run/reduced_model.h>
@@ -8,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -116,7 +116,7 @@ namespace crawler
   SimulationResult
   ReducedModel::compute(const double accuracy, const bool energy_balance, const std::function<bool()> &keep_going)
   {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     SimulationResult result;
     result.model       = model_;
     result.time.status = Status::finished;
@@ -143,7 +143,7 @@ namespace crawler
                                         s,
                                         result.inversion->t);
     }
-    result.solve_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.solve_seconds = watch.seconds();
     return result;
   }
 

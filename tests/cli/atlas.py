@@ -4,24 +4,22 @@
 
     python3 atlas.py PATH_TO_CRAWLER MPIRUN
 """
-import csv
-import json
 import math
-import os
 import pathlib
 import re
+import shutil
 import signal
-import subprocess
 import sys
 import tempfile
-import time
 
 import h5py
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call, on_ranks, ranks_that_stop  # noqa: E402
+from tables import csv_rows, h5_columns, json_of, number, same_as_csv, same_columns  # noqa: E402
+
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
 RUNS = ("run", "position", "stretch", "refined")
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
-                   OPENBLAS_NUM_THREADS="1")
 SCENE = """
 set Accuracy = 1e-3
 subsection Active stress
@@ -34,37 +32,30 @@ subsection Atlas
   set Second axis = Body/Anchoring exponent : linspace(0, 2, 2)
 end
 """
-failures = 0
+PROGRAM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
+checks = Checks()
+check = checks.expect
 
 
-def check(condition, what):
-    """Prints what was checked and counts failures."""
-    global failures
-    failures += not condition
-    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
-
-
-def call(program, folder, *arguments, command=()):
-    """Runs the program in the folder, with the scene in scene.prm."""
-    pathlib.Path(folder, "scene.prm").write_text(SCENE, encoding="utf-8")
-    return subprocess.run([*command, program, *arguments], cwd=folder, env=ENVIRONMENT, capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, timeout=300, check=False)
+def atlas(output, *more, ranks=1, stop_at=None):
+    """The atlas of the scene."""
+    return call([*on_ranks(MPIRUN, ranks), PROGRAM, "atlas", "scene.prm", "--output", output.name, *more], output.parent,
+                stop_at)
 
 
 def table(folder):
     """The rows of atlas.csv."""
-    with open(folder / "atlas.csv", newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return csv_rows(folder / "atlas.csv")
 
 
-def number(text):
-    """What is not known is empty in CSV and not a number in HDF5."""
-    return float(text) if text else math.nan
+def columns(folder):
+    """All columns of atlas.h5."""
+    return h5_columns(folder / "atlas.h5", "atlas")
 
 
-def same(a, b):
-    """Numbers that are equal, or both not known."""
-    return a == b or (math.isnan(a) and math.isnan(b))
+def computed(folder):
+    """Which points have a row."""
+    return [i for i, outcome in enumerate(columns(folder)["outcome"]) if outcome != ""]
 
 
 def check_rows(rows):
@@ -87,17 +78,9 @@ def check_rows(rows):
 
 def check_hdf5(folder, rows):
     """The same numbers and texts in atlas.h5."""
+    check(same_as_csv(columns(folder), rows), "atlas.h5 has what atlas.csv has")
     with h5py.File(folder / "atlas.h5") as file:
         group = file["atlas"]
-        names = {bytes(dataset.attrs["name"]).decode(): dataset for dataset in group.values()}
-        check(set(names) == set(rows[0]), "the columns of atlas.h5 are those of atlas.csv")
-        good = True
-        for name, dataset in names.items():
-            if h5py.check_string_dtype(dataset.dtype):
-                good &= list(dataset.asstr()[:]) == [row[name] for row in rows]
-            else:
-                good &= all(same(a, number(row[name])) for a, row in zip(dataset[:], rows))
-        check(good, "the values of atlas.h5 are those of atlas.csv")
         check(group["run displacement"].attrs["unit"] == b"length" and group["Body.Anchoring exponent"].shape == (6,)
               and b"subsection Atlas" in group.attrs["parameters.prm"] and "version of PETSc" in group.attrs,
               "atlas.h5 knows units and where it comes from")
@@ -108,7 +91,7 @@ def check_files(folder, ranks):
     names = {path.name for path in folder.iterdir()}
     check(names == {"original.prm", "parameters.prm", "log.txt", "atlas.csv", "atlas.h5", "atlas.png", "atlas.svg",
                     "summary.json"}, f"files {sorted(names)}")
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary = json_of(folder / "summary.json")
     check(summary["status"] == "finished" and summary["points"] == summary["computed"] == 6
           and summary["finished"] == 6 and summary["inverted"] == 0 and summary["silent_wrong_answers"] == 0
           and summary["ranks"] == ranks and 0 < summary["largest_error_ratio"] <= 1, f"summary.json {summary}")
@@ -116,143 +99,104 @@ def check_files(folder, ranks):
           "pictures are pictures")
 
 
-def check_refused(program, folder):
+def check_refused(folder):
     """A scene that makes no sense is a row, and a formulation that the user chose is the only one."""
-    result = call(program, folder, "atlas", "scene.prm", "--quiet", "--set", "Discretization/Formulation=position",
-                  "--set", "Active stress/Optimal wave/Choose wave by=energy",
-                  "--set", "Atlas/First axis=Active stress/Optimal wave/Energy : 0.4, 0.5",
-                  "--set", "Atlas/Second axis=Discretization/Number of cells : 4, 8")
-    rows = table(pathlib.Path(folder, "output-scene"))
-    check(result.returncode == 0 and not result.stdout and not result.stderr, "quiet is quiet")
+    result = atlas(folder / "refused", "--quiet", "--set", "Discretization/Formulation=position",
+                   "--set", "Active stress/Optimal wave/Choose wave by=energy",
+                   "--set", "Atlas/First axis=Active stress/Optimal wave/Energy : 0.4, 0.5",
+                   "--set", "Atlas/Second axis=Discretization/Number of cells : 4, 8")
+    rows = table(folder / "refused")
+    check(result.returncode == 0 and not result.stdout and not result.stderr, f"quiet is quiet {result}")
     check([row["outcome"] for row in rows] == ["refused"] * 2 + ["finished"] * 2
           and "no wave spends the energy" in rows[0]["explanation"], "an inadmissible scene is a row with its reason")
     check(not any(row["position status"] + row["stretch status"] for row in rows), "only one form if one is set")
     check(rows[2]["verdict"] == "unchecked" and not rows[2]["run promised error"], "no promise where cells are set")
 
 
-def check_inverted(program, folder):
+def check_inverted(folder):
     """Ends of stretch 1 - 2 t/k invert at t = k/2."""
-    result = call(program, folder, "atlas", "scene.prm", "--overwrite", "--set", "Active stress/Generator=expression",
-                  "--set", "Active stress/Expression/Active stress=2*t",
-                  "--set", "Atlas/First axis=Body/Elastic modulus : 1, 4",
-                  "--set", f"Atlas/Second axis={P} : 0, 1")
-    rows = table(pathlib.Path(folder, "output-scene"))
+    result = atlas(folder / "inverted", "--set", "Active stress/Generator=expression",
+                   "--set", "Active stress/Expression/Active stress=2*t",
+                   "--set", "Atlas/First axis=Body/Elastic modulus : 1, 4",
+                   "--set", f"Atlas/Second axis={P} : 0, 1")
+    rows = table(folder / "inverted")
     check(result.returncode == 0 and [row["outcome"] for row in rows] == ["inverted at end"] * 2 + ["finished"] * 2,
           f"outcomes {[row['outcome'] for row in rows]}")
     check(all(abs(number(row["run inversion t"]) - 0.5) < 1e-3 and row["verdict"] == "agree"
               and not row["run displacement"] for row in rows[:2]), "the ends invert at t = k/2, and all runs say so")
 
 
-def columns(folder):
-    """All columns of atlas.h5 but for times."""
-    with h5py.File(folder / "atlas.h5", "r") as file:
-        return {name: list(data.asstr()[:]) if data.dtype.kind == "S" else list(map(float.hex, data[:]))
-                for name, data in file["atlas"].items() if not name.endswith(" seconds")}
-
-
-def computed(folder):
-    """How many points have a row, of an atlas that may be writing."""
-    try:
-        return sum(outcome != "" for outcome in columns(folder)["outcome"])
-    except (OSError, KeyError):
-        return 0
-
-
-LONG = ["--set", f"Atlas/First axis={CHI} : linspace(0.1, 0.3, 60)"]
-
-
-def start(program, folder, output, *more, command=()):
-    """An atlas of 120 points that goes on in the background."""
-    pathlib.Path(folder, "scene.prm").write_text(SCENE, encoding="utf-8")
-    return subprocess.Popen([*command, program, "atlas", "scene.prm", "--output", output, *LONG, *more], cwd=folder,
-                            env=ENVIRONMENT, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE)
-
-
-def wait_for_rows(process, folder, n):
-    """Until so many points have a row, or the atlas has ended."""
-    end = time.time() + 60
-    while process.poll() is None and computed(folder) < n and time.time() < end:
-        time.sleep(0.02)
-
-
-def check_interrupted(program, mpirun, folder):
-    """SIGTERM, and kill -9 at some moments: what is computed is kept, and --resume makes the rest, bit for bit."""
-    whole = call(program, folder, "atlas", "scene.prm", "--output", "whole", *LONG)
-    check(whole.returncode == 0, f"an atlas of 120 points: {whole.stderr}")
-    reference, output = columns(pathlib.Path(folder, "whole")), pathlib.Path(folder, "stopped")
-    with start(program, folder, "stopped") as process:
-        wait_for_rows(process, output, 8)
-        process.send_signal(signal.SIGTERM)
-        _, errors = process.communicate(timeout=60)
-    summary = json.loads((output / "summary.json").read_text(encoding="utf-8"))
-    rows = table(output)
-    check(process.returncode == 5 and "stopped by a signal" in errors and "--resume" in errors
-          and summary["status"] == "stopped" and len(rows) == 120
-          and 0 < sum(row["outcome"] != "" for row in rows) == summary["computed"] < 120,
-          f"stopped after {summary['computed']} points: {errors.strip()}")
-    n_before, n_kills = summary["computed"], 0
-    for n, ranks in ((24, 1), (48, 2), (72, 2)):
-        command = [mpirun, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        with start(program, folder, "stopped", "--resume", command=command) as process:
-            wait_for_rows(process, output, n)
-            n_kills += process.poll() is None
-            for child in subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True,
-                                        check=False).stdout.split():
-                os.kill(int(child), signal.SIGKILL)
-            process.kill()
-            process.communicate()
-        time.sleep(1)  # orphans of mpirun end by themselves
-        now = computed(output)
-        check(now >= n_before, f"{now} rows outlive kill -9")
-        n_before = now
-    check(n_kills >= 2, f"{n_kills} were killed under way")
-    changed = call(program, folder, "atlas", "scene.prm", "--output", "stopped", "--resume", *LONG, "--set",
-                   "Body/Length=2")
-    check(changed.returncode == 2 and "Body/Length" in changed.stderr, f"other inputs are refused: {changed.stderr.strip()}")
-    last = call(program, folder, "atlas", "scene.prm", "--output", "stopped", "--resume", *LONG)
-    check(last.returncode == 0 and columns(output) == reference and not (output / "study.lock").exists(),
-          f"the table is that of an atlas in one go {last.stderr}")
-    other = call(program, folder, "atlas", "scene.prm", "--output", "stopped", "--overwrite")
+def check_stops(folder):
+    """SIGTERM and kill -9 at some rows: what is computed is kept, and --resume makes the rest, bit for bit."""
+    n, long = 24, ("--set", f"Atlas/First axis={CHI} : linspace(0.1, 0.3, 12)")
+    whole = atlas(folder / "whole", *long)
+    reference, output = columns(folder / "whole"), folder / "stopped"
+    check(whole.returncode == 0 and len(computed(folder / "whole")) == n, f"an atlas of {n} points: {whole.stderr}")
+    stopped = atlas(output, *long, stop_at="row:4:TERM")
+    summary, rows = json_of(output / "summary.json"), table(output)
+    check(stopped.returncode == 5 and "stopped by a signal" in stopped.stderr and "--resume" in stopped.stderr
+          and summary["status"] == "stopped" and len(rows) == n
+          and 4 <= sum(row["outcome"] != "" for row in rows) == summary["computed"] < n,
+          f"stopped after {summary['computed']} points: {stopped}")
+    command = [PROGRAM, "atlas", "scene.prm", "--output", output.name, "--resume", *long]
+    # Rank 0 waits from its first row on, until mpirun ends it: it may make more rows in its last moments.
+    for what, words, stop_at, code in (
+            ("the only process", command, "row:4:KILL", -signal.SIGKILL),
+            ("rank 1 of two", ranks_that_stop(MPIRUN, command, "row:1:STOP", "row:4:KILL"), None, 128 + signal.SIGKILL)):
+        before, times = computed(output), columns(output)["run seconds"]
+        killed = call(words, folder, stop_at)
+        after, done = columns(output), computed(output)
+        check(killed.returncode == code and len(done) >= len(before) + 4 and (output / "study.lock").exists()
+              and all(after["run seconds"][i] == times[i] for i in before), f"{what} killed: {killed}")
+        again = folder / f"again after {what}"
+        shutil.copytree(output, again)
+        last = atlas(again, "--resume", *long)
+        rest = columns(again)
+        check(last.returncode == 0 and same_columns(rest, reference) and not (again / "study.lock").exists()
+              and all(rest["run seconds"][i] == after["run seconds"][i] for i in done),
+              f"{what} killed: the table is that of an atlas in one go {last.stderr}")
+    changed = atlas(output, "--resume", *long, "--set", "Body/Length=2")
+    check(changed.returncode == 2 and "Body/Length" in changed.stderr, f"other inputs are refused: {changed.stderr}")
+    other = atlas(output, "--overwrite")
     check(other.returncode == 0 and len(table(output)) == 6, "the next atlas replaces it")
 
 
 def main():
-    """1 if any check failed."""
-    if len(sys.argv) != 3:
-        sys.exit("usage: atlas.py PATH_TO_CRAWLER MPIRUN")
-    program, mpirun = str(pathlib.Path(sys.argv[1]).resolve()), sys.argv[2]
-    results = {}
-    for ranks in (1, 3, 8):  # the last: more ranks than points
-        with tempfile.TemporaryDirectory() as folder:
-            command = [mpirun, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-            result = call(program, folder, "atlas", "scene.prm", "--output", "map", command=command)
+    """All checks in a folder of their own."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "scene.prm").write_text(SCENE, encoding="utf-8")
+        results = {}
+        for ranks in (1, 4):
+            output = folder / f"on-{ranks}"
+            result = atlas(output, ranks=ranks)
             check(result.returncode == 0 and not result.stderr, f"exit code {result.returncode} on {ranks} ranks "
                   f"{result.stderr}")
-            paragraph = re.search(r"6 points, 6 finished, 0 inverted.* 0 disagree", result.stdout)
-            check(paragraph is not None, f"the paragraph on the screen: {result.stdout.splitlines()[-2]}")
-            output = pathlib.Path(folder, "map")
+            check(re.search(r"6 points, 6 finished, 0 inverted.* 0 disagree", result.stdout) is not None,
+                  f"the paragraph on the screen: {result.stdout}")
             check_files(output, ranks)
             rows = table(output)
             check_rows(rows)
             check_hdf5(output, rows)
-            results[ranks] = [{name: value for name, value in row.items() if not name.endswith(" seconds")}
-                              for row in rows]
-    check(results[1] == results[3] == results[8], "the same table on 1, 3 and 8 ranks")
+            results[ranks] = columns(output)
+        check(same_columns(results[1], results[4]), "the same table on 1 and 4 ranks")
+        few = atlas(folder / "few", "--set", f"Atlas/First axis={CHI} : 0.2, 0.3", "--set", f"Atlas/Second axis={P} : 2",
+                    ranks=4)
+        of_these = {name: column[3::2] for name, column in results[1].items()}
+        check(few.returncode == 0 and same_columns(columns(folder / "few"), of_these, but=("seconds", "index")),
+              f"more ranks than points: the same rows {few.stderr}")
 
-    with tempfile.TemporaryDirectory() as folder:
-        call(program, folder, "run", "scene.prm", "--output", "single", "--set", f"{CHI}=0.2", "--set", f"{P}=2",
-             "--set", "Output/Number of snapshots=0")
-        single = json.loads(pathlib.Path(folder, "single", "summary.json").read_text(encoding="utf-8"))
+        call([PROGRAM, "run", "scene.prm", "--output", "single", "--set", f"{CHI}=0.2", "--set", f"{P}=2",
+              "--set", "Output/Number of snapshots=0"], folder)
+        single = json_of(folder / "single" / "summary.json")
         # The lanes of a batch and a run alone add up in another order.
-        check(math.isclose(single["displacement"], number(results[1][3]["run displacement"]), rel_tol=1e-13)
-              and str(single["steps"]) == results[1][3]["run steps"], "crawler run gives the same answer")
-        check_refused(program, folder)
-        check_inverted(program, folder)
-        check_interrupted(program, mpirun, folder)
-    print(f"{failures} checks failed")
-    return 1 if failures else 0
+        check(math.isclose(single["displacement"], results[1]["run displacement"][3], rel_tol=1e-13)
+              and single["steps"] == results[1]["run steps"][3], "crawler run gives the same answer")
+        check_refused(folder)
+        check_inverted(folder)
+        check_stops(folder)
+    checks.end()
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Commands that compute nothing: templates, lists of entries, completion, manual page, help, and their errors.
 
-    python3 command_line.py PATH_TO_CRAWLER PATH_TO_SHELL_FILES MPIEXEC...
+    python3 command_line.py PATH_TO_CRAWLER PATH_TO_SHELL_FILES MPIEXEC
 """
 import json
 import os
@@ -13,29 +13,24 @@ import select
 import subprocess
 import sys
 import tempfile
-import time
 import xml.etree.ElementTree
 
 import jsonschema
 
-PROGRAM, SHELL_FILES, MPIEXEC = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3:]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import PATIENCE, Checks, call, environment, on_ranks  # noqa: E402
+
+PROGRAM, SHELL_FILES, MPIEXEC = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
 PRM = pathlib.Path(__file__).resolve().parents[2] / "prm"
 # MPI_Init ends a program in which Open MPI is told to use what does not exist.
 BROKEN_MPI = {"OMPI_MCA_pml": "none_such", "OMPI_MCA_btl": "none_such"}
-failures = []
+checks = Checks()
+check = checks.expect
 
 
-def check(condition, what):
-    """Prints one line and keeps failures."""
-    print(("ok     " if condition else "FAILED ") + what)
-    if not condition:
-        failures.append(what)
-
-
-def crawler(*arguments, folder=None, launcher=(), environment=None, **more):
+def crawler(*arguments, launcher=(), **more):
     """One call of the program."""
-    return subprocess.run([*launcher, PROGRAM, *arguments], cwd=folder, capture_output=True, text=True, check=False,
-                          timeout=120, env={**os.environ, **(environment or {})}, **more)
+    return call([*launcher, PROGRAM, *arguments], **more)
 
 
 def printed(*arguments):
@@ -177,34 +172,36 @@ def bash(folder, *words):
     """What the Tab key gives behind these words."""
     script = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _crawler; '
               'printf "%s\\n" "${COMPREPLY[@]}"')
-    done = subprocess.run(["bash", "-c", script, "bash", SHELL_FILES / "crawler", "crawler", *words], cwd=folder,
-                          capture_output=True, text=True, check=False, timeout=20)
+    done = call(["bash", "-c", script, "bash", SHELL_FILES / "crawler", "crawler", *words], folder)
     check(done.stderr == "", f"bash completes {words} {done.stderr}")
     return [line for line in done.stdout.splitlines() if line]
 
 
-def zsh(folder, typed):
-    """What a zsh in a pseudo terminal shows for this line and the Tab key."""
+def zsh(folder, *lines):
+    """What each of these lines is behind the Tab key, in a zsh in a pseudo terminal; a key of ours prints it."""
     main, inner = pty.openpty()
     shell = subprocess.Popen(["zsh", "-f", "-i"], cwd=folder, stdin=inner, stdout=inner, stderr=inner,
-                             start_new_session=True, env={**os.environ, "TERM": "dumb", "ZDOTDIR": str(folder)})
+                             start_new_session=True, env=environment(TERM="dumb", ZDOTDIR=str(folder)))
     os.close(inner)
 
-    def read_until(mark, seconds):
-        text, end = "", time.monotonic() + seconds
-        while mark not in text and select.select([main], [], [], max(0., end - time.monotonic()))[0]:
+    def read_until(mark):
+        text = ""
+        while not re.search(mark, text):
+            check(select.select([main], [], [], PATIENCE)[0], f"zsh hangs behind {text!r}")
             text += os.read(main, 65536).decode("utf-8", errors="replace")
         return text
 
     os.write(main, f"unsetopt zle_bracketed_paste; autoload -U compinit; compinit -D -u; source {SHELL_FILES}/_crawler; "
-                   "echo rea''dy\n".encode())
-    read_until("ready", 20)
-    os.write(main, f"{typed}\t".encode())
-    text = read_until("no such text", 2)
+                   "tell() { print -r -- \"<<$BUFFER>>\"; BUFFER= }; zle -N tell; bindkey '^X' tell; echo rea''dy\n".encode())
+    read_until("ready")
+    found = []
+    for line in lines:
+        os.write(main, f"{line}\t\x18".encode())
+        found.append(re.search("<<(.*?)>>", read_until("<<.*?>>"))[1])
     shell.kill()
     shell.wait()
     os.close(main)
-    return text
+    return found
 
 
 def completion(folder):
@@ -227,9 +224,9 @@ def completion(folder):
     check(bash(folder, "init", "r") == ["robot"] and bash(folder, "parameters", "--format", "s") == ["schema"] and
           bash(folder, "plot", "--kind", "tr") == ["tradeoff"] and bash(folder, "parameters", "Bo") == ["Body"],
           "bash completes words")
-    check("optimize" in zsh(folder, "crawler opt"), "zsh completes commands")
-    check("Body/Length=" in zsh(folder, "crawler run scene.prm --set Body/Le"), "zsh completes entries")
-    check("scene.prm" in zsh(folder, "crawler check sc"), "zsh completes parameter files")
+    found = zsh(folder, "crawler opt", "crawler run scene.prm --set Body/Le", "crawler check sc")
+    check([line.strip() for line in found] == ["crawler optimize", "crawler run scene.prm --set Body/Length=",
+                                               "crawler check scene.prm"], f"zsh completes commands, entries and files: {found}")
     wrong = crawler("completion", "fish")
     check(wrong.returncode == 2 and '"bash" or "zsh"' in wrong.stderr, "other shells are refused")
 
@@ -238,8 +235,7 @@ def manual():
     """The manual page is well formed and has all commands, options and exit codes."""
     page = printed("man")
     check(page == (SHELL_FILES / "crawler.1").read_text(), "the page that is installed is up to date")
-    done = subprocess.run(["groff", "-man", "-Tascii", "-ww", "-P-cbou"], input=page, capture_output=True, text=True,
-                          check=False, timeout=20)
+    done = call(["groff", "-man", "-Tascii", "-ww", "-P-cbou"], input=page)
     check(done.returncode == 0 and done.stderr == "", f"groff sets the page {done.stderr}")
     words = " ".join(done.stdout.split())
     for word in ("crawler run FILE", "--set ENTRY=VALUE", "crawler parameters [SECTION]", "EXIT STATUS",
@@ -261,18 +257,17 @@ def without_mpi():
     """What computes nothing does not start MPI; several processes speak once."""
     for arguments in (["--version"], ["--help"], ["run", "--help"], ["parameters"], ["init", "robot"], ["man"],
                       ["completion", "zsh"], ["plot", "--help"]):
-        done = crawler(*arguments, environment=BROKEN_MPI)
+        done = crawler(*arguments, variables=BROKEN_MPI)
         check(done.returncode == 0 and done.stdout and not done.stderr, f"{arguments} starts no MPI {done.stderr}")
     for arguments in ([], ["runn"], ["run"], ["run", "a.prm", "--sett", "x"], ["init", "x"], ["parameters", "x"]):
-        done = crawler(*arguments, environment=BROKEN_MPI)
+        done = crawler(*arguments, variables=BROKEN_MPI)
         check(done.returncode == 2 and len(done.stderr.splitlines()) == 1 and done.stderr.startswith("crawler: "),
               f"the error of {arguments} starts no MPI {done.stderr}")
-    check(crawler("check", "none.prm", environment=BROKEN_MPI).returncode not in (0, 2), "MPI can be broken")
-    if MPIEXEC:
-        two = [*MPIEXEC, "-n", "2"]
-        check(crawler("--version", launcher=two).stdout.count("deal.II") == 1, "two processes print the version once")
-        wrong = crawler("runn", launcher=two)
-        check(wrong.returncode == 2 and wrong.stderr.count("unknown command") == 1, "two processes complain once")
+    check(crawler("check", "none.prm", variables=BROKEN_MPI).returncode not in (0, 2), "MPI can be broken")
+    two = on_ranks(MPIEXEC, 2)
+    check(crawler("--version", launcher=two).stdout.count("deal.II") == 1, "two processes print the version once")
+    wrong = crawler("runn", launcher=two)
+    check(wrong.returncode == 2 and wrong.stderr.count("unknown command") == 1, "two processes complain once")
 
 
 def full_disk(folder):
@@ -281,27 +276,27 @@ def full_disk(folder):
     for arguments in (["parameters"], ["check", prm], ["--help"], ["--version"], ["man"], ["init", "robot"],
                       ["run", prm, "--output", str(folder / "full")]):
         with open("/dev/full", "w", encoding="utf-8") as full:
-            done = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, text=True, check=False,
-                                  timeout=60)
+            done = crawler(*arguments, stdout=full)
         check(done.returncode == 6 and len(done.stderr.splitlines()) == 1 and "No space left" in done.stderr,
               f"{arguments[0]} to a full device: {done.returncode}, {done.stderr.strip()}")
     check(json.loads((folder / "full/summary.json").read_text())["status"] == "finished", "the results are there")
     for arguments in (["parameters"], ["run", prm, "--output", str(folder / "left")]):
-        process = subprocess.Popen([PROGRAM, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        process.stdout.close()
-        problem = process.stderr.read()
-        check(process.wait(timeout=60) == 0 and problem == "", f"the reader of {arguments[0]} may leave {problem}")
+        reader, writer = os.pipe()
+        os.close(reader)
+        done = crawler(*arguments, stdout=writer)
+        os.close(writer)
+        check(done.returncode == 0 and done.stderr == "", f"the reader of {arguments[0]} may leave {done.stderr}")
 
 
 def without_scratch(folder):
     """Programs that start and end at the same time share no scratch folder: none is needed."""
     (folder / "file").write_text("")
-    done = crawler("check", str(PRM / "examples/small_wave.prm"), environment={"TMPDIR": str(folder / "file")})
+    done = crawler("check", str(PRM / "examples/small_wave.prm"), variables={"TMPDIR": str(folder / "file")})
     check(done.returncode == 0 and done.stderr == "", f"no scratch folder is needed: {done.stderr[:200]}")
 
 
 def main():
-    """All of it; the exit status says whether something failed."""
+    """All of it."""
     with tempfile.TemporaryDirectory() as first, tempfile.TemporaryDirectory() as second:
         templates(pathlib.Path(first))
         sections()
@@ -313,7 +308,7 @@ def main():
         without_mpi()
         full_disk(pathlib.Path(first))
         without_scratch(pathlib.Path(first))
-    sys.exit("\n".join(failures) or 0)
+    checks.end()
 
 
 if __name__ == "__main__":

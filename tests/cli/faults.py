@@ -1,29 +1,31 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Folders, files and texts that would do harm: each is answered with one sentence and the right exit code, in time, and
-nothing outside of the output folder is touched.
+"""Folders, files and texts that would do harm: each is answered with one sentence and the right exit code, and nothing
+outside of the output folder is touched.
 
-    python3 faults.py PATH_TO_CRAWLER PATH_TO_PRM
+    python3 faults.py PATH_TO_CRAWLER PATH_TO_PRM [EVERY]
+
+EVERY: of what is tried in many ways, only so much (default: 1, all; contrib/verify.sh tries all).
 """
 import csv
 import json
-import os
 import pathlib
 import random
 import re
 import resource
 import shutil
 import signal
-import subprocess
 import sys
 import tempfile
-import time
 
 import h5py
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, Paused, call  # noqa: E402
+
 CRAWLER, PRM = sys.argv[1], pathlib.Path(sys.argv[2])
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+EVERY = int(sys.argv[3]) if len(sys.argv) > 3 else 1
 QUICK = """set Model = kinematic
 subsection Active stress
   set Generator = prescribed strain
@@ -35,19 +37,18 @@ subsection Sweep
   set Axes = Active stress/Prescribed strain/Amplitude : linspace(0.05, 0.3, 16)
 end
 """
-failures = []
+checks = Checks()
+expect = checks.expect
 
 
-def expect(condition, what):
-    """Notes what is wrong."""
-    if not condition:
-        failures.append(what)
+def some(things):
+    """Not all of them, if that is asked for."""
+    return list(things)[::EVERY]
 
 
-def crawler(*arguments, seconds=60, **options):
+def crawler(*arguments, **options):
     """The finished process."""
-    return subprocess.run([CRAWLER, *map(str, arguments)], env=ENVIRONMENT, capture_output=True, text=True,
-                          timeout=seconds, check=False, **options)
+    return call([CRAWLER, *arguments], **options)
 
 
 def refused(done, code, words, what):
@@ -83,7 +84,7 @@ def damaged_tables(place, scene):
     values = whole / "results.h5"
     with h5py.File(values) as file:
         places = [file["results"][name].id.get_offset() for name in ("displacement", "stress_power", "gait.efficiency")]
-    for attempt in range(12):
+    for attempt in some(range(12)):
         folder = place / f"flipped_{attempt}"
         shutil.copytree(whole, folder)
         data = bytearray((folder / "results.h5").read_bytes())
@@ -113,19 +114,22 @@ def links(place, scene):
     (outside / "snapshots").mkdir(parents=True)
     (outside / "snapshots" / "mine.vtu").write_text("mine")
     (outside / "file").write_text("mine")
-    for name in ("original.prm.part", "parameters.prm.part", "summary.json.part", "results.csv.part", "results.h5.part"):
-        for command in ("run", "sweep"):
-            folder = place / f"link_{command}_{name}"
-            folder.mkdir()
-            (folder / name).symlink_to(outside / "file")
-            crawler(command, scene, "--output", folder, "--overwrite")
-            expect((outside / "file").read_text() == "mine", f"{command} writes through the link {name}")
+    for command, code, names in (("run", 0, ("original.prm", "parameters.prm", "summary.json", "results.csv", "kymograph.vts")),
+                                 ("sweep", 0, ("original.prm", "parameters.prm", "summary.json", "results.csv")),
+                                 ("run", 6, ["results.h5"]), ("sweep", 6, ["results.h5"])):
+        folder = place / f"link_{command}_{code}"
+        folder.mkdir()
+        for name in names:
+            (folder / f"{name}.part").symlink_to(outside / "file")
+        done = crawler(command, scene, "--output", folder, "--overwrite")
+        expect(done.returncode == code and (outside / "file").read_text() == "mine",
+               f"{command} writes through the links of {names}: {done.returncode}, {done.stderr!r}")
     for name in ("study.lock", "summary.json", "results.csv", "results.h5", "log.txt", "statistics.csv"):
         folder = place / f"link_{name}"
         folder.mkdir()
         (folder / name).symlink_to(outside / "file")
         for command in ("run", "sweep"):
-            for option in ("--overwrite", "--resume"):
+            for option in some(("--overwrite", "--resume") if command == "run" else ("--resume", "--overwrite")):
                 done = crawler(command, scene, "--output", folder, option)
                 expect(done.returncode in (2, 6) and (outside / "file").read_text() == "mine" and
                        (folder / name).is_symlink(), f"{command} {option} follows the link {name}: {done.stderr!r}")
@@ -150,17 +154,17 @@ def texts(place):
     for level in range(9):
         (bomb / f"{level}.prm").write_text(f"include {level + 1}.prm\n" * 10)
     (bomb / "9.prm").write_text("# nothing\n")
-    refused(crawler("check", bomb / "0.prm", seconds=20), 2, "at most 1000", "ten includes of ten files")
+    refused(crawler("check", bomb / "0.prm"), 2, "at most 1000", "ten includes of ten files")
     nested = place / "nested.prm"
     nested.write_text("subsection a\n" * 100000 + "end\n" * 100000)
-    refused(crawler("check", nested, seconds=20), 2, "more than 100 deep", "nested sections")
+    refused(crawler("check", nested), 2, "more than 100 deep", "nested sections")
     many = place / "many.prm"
     many.write_text("".join(f"set Entry {i} = 1\n" for i in range(100000)))
-    refused(crawler("check", many, seconds=20), 2, "Entry 0", "many entries")
+    refused(crawler("check", many), 2, "Entry 0", "many entries")
     long = place / "long.prm"
     long.write_text("subsection Active stress\n set Generator = expression\n subsection Expression\n  set Active stress = "
                     + "1+" * 500000 + "x\n end\nend\n")
-    refused(crawler("check", long, seconds=20), 2, "characters)", "a long formula")
+    refused(crawler("check", long), 2, "characters)", "a long formula")
     steering = place / "steering.prm"
     steering.write_text("subsection Body\n set Length = \x1b[31mred\nend\n")
     done = crawler("check", steering)
@@ -169,24 +173,24 @@ def texts(place):
 
 def endless(place):
     """Files without an end, or with too much in them."""
-    for name in ("/dev/zero", "/dev/urandom"):
-        refused(crawler("check", name, seconds=20), 6, "is a device", name)
+    for name in some(("/dev/zero", "/dev/urandom")):
+        refused(crawler("check", name), 6, "is a device", name)
         (place / "endless.prm").write_text(f"include {name}\n")
-        refused(crawler("check", place / "endless.prm", seconds=20), 6, "is a device", f"include {name}")
-        refused(crawler("table", name, place / "out.csv", seconds=20), 6, "is a device", f"table {name}")
+        refused(crawler("check", place / "endless.prm"), 6, "is a device", f"include {name}")
+        refused(crawler("table", name, place / "out.csv"), 6, "is a device", f"table {name}")
         for generator, section in (("table", "Table"), ("prescribed strain", "Prescribed strain")):
             done = crawler("check", "-", "--set", f"Active stress/Generator={generator}", "--set",
                            f"Active stress/{section}/File={name}", "--set", "Active stress/Prescribed strain/Given by=table",
-                           seconds=20, input="set Accuracy = 1e-3\n")
+                           input="set Accuracy = 1e-3\n")
             refused(done, 2, "is a device", f"{generator} {name}")
     (place / "dash.prm").write_text("include -\n")
-    refused(crawler("check", "dash.prm", seconds=20, cwd=place, input="set Accuracy = 1\n"), 6, "no such file", "include -")
+    refused(crawler("check", "dash.prm", folder=place, input="set Accuracy = 1\n"), 6, "no such file", "include -")
     with open(place / "big.prm", "wb") as file:
         file.truncate(1 << 40)
-    refused(crawler("check", place / "big.prm", seconds=20), 6, "4 GiB", "a file of 1 TiB")
+    refused(crawler("check", place / "big.prm"), 6, "4 GiB", "a file of 1 TiB")
     (place / "part.prm").write_text(("#" * 99 + "\n") * 200000)
     (place / "whole.prm").write_text("include part.prm\n" * 900)
-    refused(crawler("check", place / "whole.prm", seconds=20), 2, "at most 64 MB", "900 includes of 20 MB")
+    refused(crawler("check", place / "whole.prm"), 2, "at most 64 MB", "900 includes of 20 MB")
 
 
 def counts(scene):
@@ -205,17 +209,13 @@ def counts(scene):
 
     walk(entries, [])
     expect(len(names) > 10, f"only {len(names)} entries are whole numbers")
-    for name in names:
-        for value in ("1e18", "2147483648"):
-            try:
-                done = crawler("check", scene, "--set", f"{name}={value}", seconds=30, preexec_fn=limit)
-                expect(done.returncode in (0, 2) and done.stderr.count("\n") <= 1,
-                       f"{name} = {value}: exit code {done.returncode}, {done.stderr[:300]!r}")
-            except subprocess.TimeoutExpired:
-                failures.append(f"{name} = {value}: no answer")
+    for name, value in some((name, value) for name in names for value in ("1e18", "2147483648")):
+        done = crawler("check", scene, "--set", f"{name}={value}", preexec_fn=limit)
+        expect(done.returncode in (0, 2) and done.stderr.count("\n") <= 1,
+               f"{name} = {value}: exit code {done.returncode}, {done.stderr[:300]!r}")
     for axes in ("Body/Length : linspace(1, 2, 1e18)", "Body/Length : linspace(1, 2, 1e5); Body/Elastic modulus : "
                  "linspace(1, 2, 1e5); Body/Anchoring exponent : linspace(1, 2, 1e5)"):
-        done = crawler("check", scene, "--set", f"Sweep/Axes={axes}", seconds=30, preexec_fn=limit)
+        done = crawler("check", scene, "--set", f"Sweep/Axes={axes}", preexec_fn=limit)
         refused(done, 2, "Sweep/Axes", axes)
 
 
@@ -227,10 +227,11 @@ def names_and_cells(place, scene):
         refused(crawler("run", place / f"{word}.prm"), 2, "control character", repr(word))
     done = crawler("run", place / "a\xc2\x9b31mb.prm".encode("latin-1").decode("utf-8"))
     refused(done, 6, "\\xc2\\x9b31m", "a control character behind ASCII")
-    for name in ("$(touch pwned)", "`touch pwned`", "; touch pwned;", "a b' \" &"):
+    for name in some(("$(touch pwned) `touch pwned`; touch pwned; a b' \" &", "$(touch pwned)", "`touch pwned`",
+                      "; touch pwned;", "a b' \" &")):
         folder = place / "names" / name
         for words in (["run", scene, "--output", folder], ["plot", folder], ["report", folder]):
-            done = crawler(*words, cwd=place)
+            done = crawler(*words, folder=place)
             expect(done.returncode == 0, f"{words[0]} in {name}: {done.returncode}, {done.stderr!r}")
     expect(not list(place.rglob("pwned")), "a name was given to a shell")
     # A sweep over words: texts of the user in cells.
@@ -262,7 +263,7 @@ def plugins(place):
     """Shared objects are loaded from the path given alone, not from where the system looks for libraries."""
     for name in ("libm.so.6", "libdeal.ii.so"):
         done = crawler("check", "-", "--set", "Active stress/Generator=library", "--set",
-                       f"Active stress/Library/File={name}", cwd=place, input="set Accuracy = 1e-3\n")
+                       f"Active stress/Library/File={name}", folder=place, input="set Accuracy = 1e-3\n")
         refused(done, 2, "there is no file", f"plug-in {name}")
 
 
@@ -274,13 +275,13 @@ def damaged_input(place):
         file.create_dataset("m", data=np.zeros((5, 5)), chunks=(2, 2), compression="gzip")
     whole = table.read_bytes()
     codes = set()
-    for number in range(60):
+    for number in some(range(60)):
         data = bytearray(whole)
         for _ in range(chance.randrange(1, 6)):
             data[chance.randrange(len(data))] = chance.choice((0, 1, 0x7f, 0x80, 0xff, chance.randrange(256)))
         (place / "damaged.h5").write_bytes(data[:chance.randrange(len(data))] if number % 5 == 0 else data)
         done = crawler("check", "-", "--set", "Active stress/Generator=table", "--set", "Active stress/Table/File=damaged.h5",
-                       cwd=place, input="set Accuracy = 1e-3\n", seconds=20)
+                       folder=place, input="set Accuracy = 1e-3\n")
         codes.add(done.returncode)
         expect(done.returncode in (0, 2) and done.stderr.count("\n") <= 1,
                f"damaged table {number}: {done.returncode}, {done.stderr[:300]!r}")
@@ -294,15 +295,10 @@ def two_at_once(place):
     command = [CRAWLER, "run", str(scene), "--output", str(folder), "--set", "Time/End time=1000",
                "--set", "Output/Number of snapshots=10000", "--set", "Active stress/Generator=expression",
                "--set", "Active stress/Expression/Active stress=" + formula]
-    first = subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    limit = time.monotonic() + 60
-    while not (folder / "solution").exists() and first.poll() is None and time.monotonic() < limit:
-        time.sleep(0.01)
-    expect(first.poll() is None, "the first run is too quick for this test")
-    refused(crawler("run", scene, "--output", folder, "--overwrite"), 2, "writes to", "a second run in the same folder")
-    first.send_signal(signal.SIGTERM)
-    first.communicate(timeout=60)
-    expect(first.returncode in (0, 5) and not (folder / "study.lock").exists(), "the first run leaves its lock")
+    with Paused(command, "write:000003.vtu:STOP") as first:
+        refused(crawler("run", scene, "--output", folder, "--overwrite"), 2, "writes to", "a second run in the same folder")
+        done = first.go_on(signal.SIGTERM)
+    expect(done.returncode == 5 and not (folder / "study.lock").exists(), f"the first run leaves its lock: {done.returncode}")
 
 
 with tempfile.TemporaryDirectory() as directory:
@@ -320,4 +316,4 @@ with tempfile.TemporaryDirectory() as directory:
     damaged_input(directory)
     two_at_once(directory)
 
-sys.exit("\n".join(failures) or 0)
+checks.end()

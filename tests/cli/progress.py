@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """How the program shows how far it is: a bar and a kymograph in place on a terminal, lines where there is none.
 
-    python3 progress.py PATH_TO_CRAWLER MPIEXEC...
+    python3 progress.py PATH_TO_CRAWLER MPIEXEC
 
 The program runs in a pseudo terminal; a small terminal of our own follows its control sequences, so that what stands on
-the screen at any time is known.
+the screen at any time is known. What a bar shows is read until enough of it was seen; the work, which lasts for minutes, is then
+stopped by a signal.
 """
 import codecs
 import fcntl
@@ -13,28 +14,27 @@ import os
 import pathlib
 import pty
 import re
+import select
+import signal
 import statistics
 import struct
 import subprocess
 import sys
 import tempfile
 import termios
-import time
 
-PROGRAM, MPIEXEC = sys.argv[1], sys.argv[2:]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import PATIENCE, Checks, call, environment, on_ranks  # noqa: E402
+
+PROGRAM, MPIEXEC = sys.argv[1:]
 PRM = pathlib.Path(__file__).resolve().parents[2] / "prm"
 WIDTH = 100
 VERSION = re.compile(r"crawler \d+\.\d+\.\d+ \(revision \S+, deal\.II \S+, PETSc \S+\)")
 BAR = re.compile(r"^[█░]{24} ")
 LEFT = re.compile(r"^[█░]{24} +(\d+) %  \S+ (ms|s|min) left  ")
-failures = []
-
-
-def check(condition, what):
-    """Prints one line and keeps failures."""
-    print(("ok     " if condition else "FAILED ") + what)
-    if not condition:
-        failures.append(what)
+POINTS = re.compile(r"(\d+) of (\d+) points, ")
+checks = Checks()
+check = checks.expect
 
 
 class Screen:
@@ -64,31 +64,38 @@ class Screen:
         self.seen.append([row for row in self.rows if row])
 
 
-def on_terminal(command, folder, language="C.UTF-8", term="xterm"):
-    """The screen, with all that was seen on it, and the exit code."""
+def on_terminal(command, folder, language="C.UTF-8", term="xterm", stop=None):
+    """The screen, with all that was seen on it, and the exit code. stop: a signal, and what is asked, with the screen, until
+    it is to be sent.
+    """
     main, inner = pty.openpty()
     fcntl.ioctl(inner, termios.TIOCSWINSZ, struct.pack("HHHH", 40, WIDTH, 0, 0))
-    environment = {**os.environ, "TERM": term, "LC_ALL": language}
-    process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=inner, stderr=inner,
-                               env=environment)
-    os.close(inner)
-    screen, waiting, end = Screen(), "", time.monotonic() + 240
-    decoder = codecs.getincrementaldecoder("utf-8")(errors="replace")
-    while time.monotonic() < end:
-        try:
-            data = os.read(main, 65536)
-        except OSError:  # the other end is closed
-            break
-        if not data:
-            break
-        # A piece may end within a character or a control sequence: these wait for their rest.
-        text = waiting + decoder.decode(data)
-        whole = text[:re.search(r"(\r|\x1b(\[\d*)?)?\Z", text).start()]
-        waiting = text[len(whole):]
-        screen.write(whole.replace("\r\n", "\n\r"))
-    screen.write(waiting + decoder.decode(b"", final=True))
-    os.close(main)
-    return screen, process.wait(timeout=60)
+    with subprocess.Popen([str(word) for word in command], cwd=folder, stdin=subprocess.DEVNULL, stdout=inner, stderr=inner,
+                          env=environment(TERM=term, LC_ALL=language)) as process:
+        os.close(inner)
+        screen, waiting = Screen(), ""
+        decoder = codecs.getincrementaldecoder("utf-8")(errors="replace")
+        while True:
+            if not select.select([main], [], [], PATIENCE)[0]:
+                process.kill()
+                raise TimeoutError(f"{command} hangs, with {screen.seen[-1:]}")
+            try:
+                data = os.read(main, 65536)
+            except OSError:  # the other end is closed
+                break
+            if not data:
+                break
+            # A piece may end within a character or a control sequence: these wait for their rest.
+            text = waiting + decoder.decode(data)
+            whole = text[:re.search(r"(\r|\x1b(\[\d*)?)?\Z", text).start()]
+            waiting = text[len(whole):]
+            screen.write(whole.replace("\r\n", "\n\r"))
+            if stop and stop[1](screen):
+                process.send_signal(stop[0])
+                stop = None
+        screen.write(waiting + decoder.decode(b"", final=True))
+        os.close(main)
+    return screen, process.returncode
 
 
 def shown(screen):
@@ -96,25 +103,33 @@ def shown(screen):
     return [row for rows in screen.seen for row in rows]
 
 
+def percents(screen):
+    """That the bar showed, as they came, with the time left behind them."""
+    return [int(match[1]) for match in map(LEFT.match, shown(screen)) if match]
+
+
 def run(folder):
-    """A run of some seconds: a bar for pilots and run, which is gone at the end; log.txt has the lines."""
-    slow = [PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--set", "Accuracy=1e-9", "--set",
-            "Time/Engine=petsc", "--set", "Time/End time=400", "--set", "Output/Number of snapshots=20"]
-    screen, code = on_terminal([*slow, "--output", "bar"], folder)
-    rows, last = shown(screen), screen.seen[-1]
-    check(code == 0, f"the run finishes {last}")
-    check(VERSION.fullmatch(last[0]) is not None, f"the first line names the version: {last[0]}")
-    check(last[-1].startswith("Results are in bar/"), f"the last line says where the files are: {last[-1]}")
-    check(not any(BAR.match(row) for row in last), "no bar stays")
-    percents = [int(match[1]) for match in map(LEFT.match, rows) if match]
-    check(len(percents) > 1 and percents == sorted(percents) and percents[-1] > 50, f"the bar grows: {percents}")
-    check(max(len(row) for row in rows if BAR.match(row)) <= WIDTH, "no bar is wider than the terminal")
-    tenths = [line for line in (folder / "bar/log.txt").read_text().splitlines() if re.match(r" +\d+ %  t = ", line)]
-    check(len(tenths) >= 8 and not any(line in last for line in tenths), "the lines are in log.txt only")
+    """A bar for pilots and run, which is gone at the end; log.txt has the lines."""
+    slow = [PROGRAM, "run", PRM / "examples/earthworm.prm", "--set", "Accuracy=1e-9", "--set", "Time/Engine=petsc"]
+    screen, code = on_terminal([*slow, "--output", "bar", "--set", "Time/End time=1e4"], folder,
+                               stop=(signal.SIGTERM, lambda screen: len(set(percents(screen))) > 2))
+    check(code == 5 and not any(BAR.match(row) for row in screen.seen[-1]), f"a run that is stopped leaves no bar: {screen.seen[-1]}")
+    grows = percents(screen)
+    check(len(set(grows)) > 2 and grows == sorted(grows) and grows[-1] <= 100, f"the bar grows: {grows}")
+    check(max(len(row) for row in shown(screen) if BAR.match(row)) <= WIDTH, "no bar is wider than the terminal")
     check("\x1b" not in (folder / "bar/log.txt").read_text(), "log.txt has no control sequences")
 
-    plain = subprocess.run([*slow, "--output", "plain"], cwd=folder, capture_output=True, text=True, check=False,
-                           timeout=240)
+    quick = [PROGRAM, "run", PRM / "examples/earthworm.prm", "--set", "Output/Number of snapshots=2"]
+    screen, code = on_terminal([*quick, "--output", "whole"], folder)
+    last = screen.seen[-1]
+    check(code == 0, f"the run finishes {last}")
+    check(VERSION.fullmatch(last[0]) is not None, f"the first line names the version: {last[0]}")
+    check(last[-1].startswith("Results are in whole/"), f"the last line says where the files are: {last[-1]}")
+    check(not any(BAR.match(row) for row in last), "no bar stays")
+    tenths = [line for line in (folder / "whole/log.txt").read_text().splitlines() if re.match(r" +\d+ %  t = ", line)]
+    check(len(tenths) >= 8 and not any(line in last for line in tenths), "the lines are in log.txt only")
+
+    plain = call([*quick, "--output", "plain"], folder)
     lines = plain.stdout.splitlines()
     check(plain.returncode == 0 and "\x1b" not in plain.stdout and "\r" not in plain.stdout, "redirected: plain text")
     check(VERSION.fullmatch(lines[0]) is not None and lines[-1].startswith("Results are in plain/"),
@@ -122,7 +137,7 @@ def run(folder):
     check(sum(re.match(r" +\d+ %  t = ", line) is not None for line in lines) >= 8, "redirected: a line at each tenth")
     check(lines == (folder / "plain/log.txt").read_text().splitlines(), "log.txt has the same lines")
 
-    screen, code = on_terminal([*slow, "--output", "dumb"], folder, term="dumb")
+    screen, code = on_terminal([*quick, "--output", "dumb"], folder, term="dumb")
     check(code == 0 and not any(BAR.match(row) for row in shown(screen)) and
           any(re.match(r" +\d+ %  t = ", row) for row in screen.seen[-1]), "a terminal that cannot do it has lines")
 
@@ -151,8 +166,7 @@ def watch(folder):
                                folder)
     check(code == 0 and sum(re.match(r"(head|tail)  ", row) is not None for row in screen.seen[-1]) == 2,
           "a run without a mesh has a kymograph, too")
-    plain = subprocess.run([PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--watch", "--output", "redirected"],
-                           cwd=folder, capture_output=True, text=True, check=False, timeout=60)
+    plain = call([PROGRAM, "run", PRM / "examples/earthworm.prm", "--watch", "--output", "redirected"], folder)
     check(plain.returncode == 0 and "head" not in plain.stdout and "█" not in plain.stdout,
           "redirected there is no picture")
     screen, code = on_terminal([PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--quiet", "--output", "quiet"],
@@ -160,36 +174,46 @@ def watch(folder):
     check(code == 0 and not any(shown(screen)), "--quiet shows nothing")
 
 
+def counts(screen):
+    """Of points that a bar showed, as they came."""
+    return [int(match[1]) for match in map(POINTS.search, shown(screen)) if match]
+
+
 def sweep(folder):
     """The bar of a sweep counts the points of all ranks."""
-    command = [PROGRAM, "sweep", str(PRM / "studies/sweep_p_chi.prm"), "--set",
-               "Sweep/Axes=Body/Anchoring exponent : linspace(1.5, 4, 200); "
-               "Active stress/Optimal wave/Perturbation parameter : linspace(0.05, 0.45, 200)"]
+    def command(n):
+        return [PROGRAM, "sweep", PRM / "studies/sweep_p_chi.prm", "--set",
+                f"Sweep/Axes=Body/Anchoring exponent : linspace(1.5, 4, {n}); "
+                f"Active stress/Optimal wave/Perturbation parameter : linspace(0.05, 0.45, {n})"]
+
+    two = on_ranks(MPIEXEC, 2)
     # mpirun gives its processes pseudo terminals even if its own output is redirected.
-    two = [*MPIEXEC, "--oversubscribe", "-n", "2", *command]
-    done = subprocess.run([*two, "--output", "plain_sweep"], cwd=folder, capture_output=True, text=True, check=False,
-                          env={**os.environ, "TERM": "xterm"}, timeout=240)
+    done = call([*two, *command(20), "--output", "plain_sweep"], folder, variables={"TERM": "xterm"})
     check(done.returncode == 0 and VERSION.fullmatch(done.stdout.splitlines()[0]) is not None and
           "\x1b" not in done.stdout and "█" not in done.stdout,
           f"a sweep on two ranks, redirected, is plain: {done.returncode} {done.stdout[:200]!r} {done.stderr[:200]!r}")
-    for name, line in (("one", command), ("two", two)):
-        screen, code = on_terminal([*line, "--output", name], folder)
-        rows, last = shown(screen), screen.seen[-1]
-        counts = [int(match[1]) for row in rows for match in [re.search(r"(\d+) of 40000 points, ", row)] if match]
-        check(code == 0 and len(counts) > 3 and counts == sorted(counts) and counts[-1] > 10000,
-              f"the bar of a sweep on {name} counts points: {counts[:3]} ... {counts[-3:]}")
-        check(any(LEFT.match(row) for row in rows), "it has the time left")
-        check(VERSION.fullmatch(last[0]) is not None and f"Results are in {name}/" in last[-1] and
+    for name, ranks in (("one", []), ("two", two)):
+        screen, code = on_terminal([*ranks, *command(1000), "--output", name + "_stopped"], folder,
+                                   stop=(signal.SIGUSR1, lambda screen: len(set(counts(screen))) > 3))
+        found = counts(screen)
+        check(code == 5 and len(set(found)) > 3 and found == sorted(found) and found[-1] < 10**6,
+              f"the bar of a sweep on {name} counts points: {code}, {found[:3]} ... {found[-3:]}")
+        check(any(LEFT.match(row) for row in shown(screen)), "it has the time left")
+        check(not any(BAR.match(row) and "mpirun: Forwarding" not in row for row in screen.seen[-1]),
+              f"no bar stays: {screen.seen[-1]}")
+        screen, code = on_terminal([*ranks, *command(20), "--output", name], folder)
+        last = screen.seen[-1]
+        check(code == 0 and VERSION.fullmatch(last[0]) is not None and f"Results are in {name}/" in last[-1] and
               not any(BAR.match(row) for row in last), f"the version first, the folder last: {last[-1]}")
 
 
 def main():
-    """All of it; the exit status says whether something failed."""
+    """All of it."""
     with tempfile.TemporaryDirectory() as folder:
         run(pathlib.Path(folder))
         watch(pathlib.Path(folder))
         sweep(pathlib.Path(folder))
-    sys.exit("\n".join(failures) or 0)
+    checks.end()
 
 
 if __name__ == "__main__":

@@ -7,19 +7,17 @@ bad input, and the picture.
 """
 import csv
 import json
-import os
 import pathlib
-import signal
-import subprocess
 import sys
 import tempfile
-import time
 
 import matplotlib.image
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call  # noqa: E402
+
 PLOT = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "plot" / "sensitivity.py"
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
 WAVE = """
 set Accuracy = 1e-6
 subsection Active stress
@@ -59,23 +57,17 @@ subsection Output
 end
 """
 K, P, CHI = "Body/Elastic modulus", "Body/Anchoring exponent", "Active stress/Optimal wave/Perturbation parameter"
-failures = []
+checks = Checks()
+expect = checks.expect
 
 
-def expect(condition, what):
-    """Notes what is wrong."""
-    if not condition:
-        failures.append(what)
-
-
-def crawler(folder, text, *settings):
+def crawler(folder, text, *settings, stop_at=None):
     """Runs a parameter file; the result of the process and the summary, if there is one."""
     file = folder / "scene.prm"
     file.write_text(text, encoding="utf-8")
     output = folder / "output"
     arguments = [word for setting in settings for word in ("--set", setting)]
-    result = subprocess.run([sys.argv[1], "run", file, "--output", output, "--overwrite", *arguments],
-                            capture_output=True, text=True, check=False, env=ENVIRONMENT)
+    result = call([sys.argv[1], "run", file, "--output", output, "--overwrite", *arguments], stop_at=stop_at)
     summary = output / "summary.json"
     return result, json.loads(summary.read_text(encoding="utf-8")) if summary.exists() else None
 
@@ -111,20 +103,13 @@ def answers_without_adjoint(folder):
                          "Discretization/Formulation=stretch", f"Output/Sensitivities={CHI}")
     found = summary["sensitivities"][CHI]
     expect(found["value"] is None or abs(found["value"] - 2.2376) <= found["error"], f"beside a kink: {found}")
-    # A signal comes while they are computed.
-    feedback = (pathlib.Path(__file__).resolve().parents[2] / "prm/examples/feedback.prm").read_text(encoding="utf-8")
-    (folder / "feedback.prm").write_text(feedback, encoding="utf-8")
-    run = subprocess.Popen([sys.argv[1], "run", folder / "feedback.prm", "--output", folder / "stopped", "--set",
-                            f"Output/Sensitivities={K}, {P}"], stdout=subprocess.PIPE, text=True, env=ENVIRONMENT)
-    for line in run.stdout:
-        if line.startswith("100 %") or "100 %" in line:
-            break
-    time.sleep(5)
-    run.send_signal(signal.SIGINT)
-    run.communicate()
-    summary = json.loads((folder / "stopped/summary.json").read_text(encoding="utf-8"))
-    expect(run.returncode == 5 and summary["status"] == "stopped" and summary["displacement"] is not None,
-           f"stopped while sensitivities are computed: {run.returncode}, {summary['status']}")
+    # A signal comes while they are computed: the first one is known, and the second one is not.
+    result, summary = crawler(folder, WAVE, "Time/Integrator=bdf", "Accuracy=1e-4", f"Output/Sensitivities={K}, {P}",
+                              stop_at="step:1000:INT")
+    expect(result.returncode == 5 and summary["status"] == "stopped" and summary["displacement"] is not None,
+           f"stopped while sensitivities are computed: {result.returncode}, {summary['status']}")
+    expect(summary["sensitivities"][K]["value"] is not None and "stopped" in summary["sensitivities"][P]["reason"],
+           f"stopped while sensitivities are computed: {summary['sensitivities']}")
 
 
 def with_a_given_strain(folder):
@@ -173,13 +158,13 @@ def main():
         with open(output / "sensitivity_body.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.reader(file))
         expect(rows[0] == ["s [length]", "elastic modulus [1]", "friction [1]"], f"sensitivity_body.csv has {rows[0]}")
-        plot = subprocess.run([sys.executable, PLOT, output], capture_output=True, text=True, check=False)
+        plot = call([sys.executable, PLOT, output])
         expect(plot.returncode == 0, f"sensitivity.py: {plot.stderr}")
         picture = matplotlib.image.imread(output / "sensitivity.png")
         expect(np.ptp(picture[..., :3]) > 0.5 and picture.shape[1] > 800, "sensitivity.png is blank")
         _, summary = crawler(folder, WAVE)
         expect(summary["sensitivities"] is None, "sensitivities that nobody wants")
-        plot = subprocess.run([sys.executable, PLOT, folder], capture_output=True, text=True, check=False)
+        plot = call([sys.executable, PLOT, folder])
         expect(plot.returncode == 2 and "Output/Sensitivities" in plot.stderr, f"sensitivity.py on no run: {plot.stderr}")
 
         phase = "Active stress/Segments/Phase lag"
@@ -200,19 +185,20 @@ def main():
         expect(result.returncode == 2 and "nonlinear" in result.stderr, f"the kinematic level: {result.stderr}")
         with_a_given_strain(folder)
         in_sweeps(folder)
-    sys.exit("\n".join(failures) or 0)
+    checks.end()
 
 
 def in_sweeps(folder):
     """Columns of a sweep, against single runs."""
     file, output = folder / "sweep.prm", folder / "sweep"
     file.write_text(WAVE + f"subsection Sweep\n set Axes = {P} : 1.7, 3.2; {CHI} : 0.1, 0.35\nend\n", encoding="utf-8")
-    result = subprocess.run([sys.argv[1], "sweep", file, "--output", output, "--set", "Output/Sensitivities=" + K, "--set",
-                             f"Output/Uncertainty={P} : 10 %"], capture_output=True, text=True, check=False,
-                            env=ENVIRONMENT)
+    result = call([sys.argv[1], "sweep", file, "--output", output, "--set", "Output/Sensitivities=" + K, "--set",
+                   f"Output/Uncertainty={P} : 10 %"])
     expect(result.returncode == 0, f"a sweep with sensitivities: {result.stderr}")
     with open(output / "results.csv", newline="", encoding="utf-8") as table:
-        for row in csv.DictReader(table):
+        rows = list(csv.DictReader(table))
+        expect(len(rows) == 4, f"{len(rows)} rows of a sweep")
+        for row in rows:
             _, summary = crawler(folder, WAVE, f"{P}={row[P]}", f"{CHI}={row[CHI]}", f"Output/Sensitivities={K}, {P}")
             for entry in (K, P):
                 one = summary["sensitivities"][entry]

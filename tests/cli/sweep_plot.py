@@ -4,20 +4,28 @@
 
     python3 sweep_plot.py PATH_TO_CRAWLER
 """
+import contextlib
+import io
 import os
 import pathlib
 import re
+import runpy
 import shutil
 import subprocess
 import sys
 import tempfile
 
-import h5py
-import matplotlib.image
-import numpy as np
+os.environ["MPLBACKEND"] = "agg"
+import h5py  # noqa: E402
+import matplotlib.image  # noqa: E402
+import matplotlib.pyplot  # noqa: E402
+import numpy as np  # noqa: E402
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call  # noqa: E402
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "plot" / "sweep.py"
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+sys.path.insert(0, str(SCRIPT.parent))  # as if the script were started
 CHI, P, K = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent", "Body/Elastic modulus"
 BASE = """
 set Accuracy = {accuracy}
@@ -46,20 +54,27 @@ SWEEPS = {
     "failed": (f"{P} : 0, 0.5; {CHI} : 0.1, 0.3, 0.6", "", 1e-2),
     "unfinished": (f"{P} : linspace(2, 4, 5); {CHI} : linspace(0.05, 0.4, 6)", "", 1e-2),
 }
-failures = 0
+checks = Checks()
+check = checks.expect
 
 
-def check(condition, what):
-    """Prints what was checked and counts failures."""
-    global failures
-    failures += not condition
-    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
-
-
-def draw(folder, name, *arguments):
-    """Calls the script."""
-    return subprocess.run([sys.executable, SCRIPT, name, *arguments], cwd=folder, env=ENVIRONMENT, capture_output=True, text=True,
-                          timeout=120, check=False)
+def draw(folder, name, *arguments, alone=False):
+    """Calls the script as its users do (alone), or in this process, which saves the time of reading its libraries."""
+    if alone:
+        return call([sys.executable, SCRIPT, name, *arguments], folder)
+    out, errors, code, before = io.StringIO(), io.StringIO(), 0, (sys.argv, os.getcwd())
+    sys.argv = [str(SCRIPT), name, *arguments]
+    os.chdir(folder)
+    try:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(errors):
+            runpy.run_path(str(SCRIPT), run_name="__main__")
+    except SystemExit as end:
+        code = end.code or 0
+    finally:
+        sys.argv = before[0]
+        os.chdir(before[1])
+        matplotlib.pyplot.close("all")
+    return subprocess.CompletedProcess([name, *arguments], code, out.getvalue(), errors.getvalue())
 
 
 def words(picture):
@@ -67,11 +82,11 @@ def words(picture):
     return re.findall(r"<!-- (.*?) -->", picture.read_text(encoding="utf-8"), re.DOTALL)
 
 
-def expect_picture(folder, name, wanted, *arguments):
+def expect_picture(folder, name, wanted, *arguments, alone=False):
     """A picture in both formats, in which certain words stand."""
     for old in ("results.png", "results.svg"):
         (folder / name / old).unlink(missing_ok=True)
-    result = draw(folder, name, *arguments)
+    result = draw(folder, name, *arguments, alone=alone)
     said = " ".join([name, *arguments])
     if result.returncode != 0:
         check(False, f"{said}: {result.returncode} {result.stderr.strip()}")
@@ -86,7 +101,7 @@ def expect_picture(folder, name, wanted, *arguments):
 
 def test_pictures(folder):
     """Each design."""
-    texts = expect_picture(folder, "line", ["Perturbation parameter", "displacement $D$ [length]"])
+    texts = expect_picture(folder, "line", ["Perturbation parameter", "displacement $D$ [length]"], alone=True)
     check("Anchoring exponent" not in texts, "what is no axis is not named")
     expect_picture(folder, "grid", ["Perturbation parameter", "Anchoring exponent", "displacement $D$ [length]"])
     expect_picture(folder, "grid", ["Anchoring exponent = 0", "Anchoring exponent = 2"], "--lines")
@@ -178,10 +193,10 @@ def test_bad_input(folder):
              (("grid", "--output", "picture.xyz"), "picture.xyz"), (("grid", "--output", "no/picture.png"), "no/picture.png"),
              (("line", "--value", "status"), "two axes")]
     for arguments, word in cases:
-        result = draw(folder, *arguments)
+        result = draw(folder, *arguments, alone=arguments[0] == "nowhere" or "no/picture.png" in arguments)
         lines = result.stderr.splitlines()
-        check(result.returncode == (6 if "no/picture.png" in arguments else 2) and len(lines) == 1 and word in lines[0] and "wrote" not in result.stdout,
-              f"{' '.join(arguments)}: {result.returncode}, {lines[0] if len(lines) == 1 else lines[-3:]}")
+        check(result.returncode == (6 if "no/picture.png" in arguments else 2) and len(lines) == 1 and word in lines[0]
+              and "wrote" not in result.stdout, f"{' '.join(arguments)}: {result.returncode}, {lines[-3:]}")
 
 
 def test_without_matplotlib(folder):
@@ -190,8 +205,7 @@ def test_without_matplotlib(folder):
     (folder / "blind" / "matplotlib.py").write_text("raise ImportError(\"No module named 'matplotlib'\")\n", encoding="utf-8")
     for script in sorted(set(SCRIPT.parent.glob("*.py")) - {SCRIPT.parent / "plotting.py"}):
         arguments = ["grid", "table.csv"] if script.name == "scaling.py" else ["grid"]
-        result = subprocess.run([sys.executable, script, *arguments], cwd=folder, capture_output=True, text=True, timeout=120,
-                                env={**ENVIRONMENT, "PYTHONPATH": str(folder / "blind")}, check=False)
+        result = call([sys.executable, script, *arguments], folder, variables={"PYTHONPATH": str(folder / "blind")})
         check(result.returncode == 69 and len(result.stderr.splitlines()) == 1 and "apt install python3-" in result.stderr
               and os.access(script, os.X_OK), f"{script.name} can be called; without matplotlib: {result.stderr.strip()[-300:]}")
 
@@ -219,14 +233,13 @@ def test_columns(folder):
 def main():
     """Makes the sweeps and draws them."""
     with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
+        folder, program = pathlib.Path(name), pathlib.Path(sys.argv[1]).resolve()
         for scene, modulus in (("soft", 1), ("stiff", 10)):
             (folder / f"{scene}.prm").write_text(f"subsection Body\n  set Elastic modulus = {modulus}\nend\n", encoding="utf-8")
         for sweep, (axes, more, accuracy) in SWEEPS.items():
             (folder / f"{sweep}.prm").write_text(BASE.format(axes=axes, more=more, accuracy=accuracy), encoding="utf-8")
-            result = subprocess.run([pathlib.Path(sys.argv[1]).resolve(), "sweep", f"{sweep}.prm", "--output", sweep], cwd=folder,
-                                    env=ENVIRONMENT, capture_output=True, text=True, timeout=120, check=False)
-            check(result.returncode == 0, f"sweep {sweep}: {result.returncode} {result.stderr.strip()}")
+            result = call([program, "sweep", f"{sweep}.prm", "--output", sweep], folder)
+            check(result.returncode == 0, f"sweep {sweep}: {result.returncode} {result.stderr}")
         with h5py.File(folder / "unfinished" / "results.h5", "r+") as file:  # as if only the first points were computed
             file["results/status"][11:] = b""
             file["results/displacement"][11:] = np.nan
@@ -235,7 +248,7 @@ def main():
         test_bad_input(folder)
         test_without_matplotlib(folder)
         test_columns(folder)
-    sys.exit(failures > 0)
+    checks.end()
 
 
 if __name__ == "__main__":

@@ -4,23 +4,20 @@
 
     python3 tradeoff.py PATH_TO_CRAWLER MPIRUN
 """
-import csv
 import json
 import math
-import os
 import pathlib
-import random
 import re
 import signal
-import subprocess
 import sys
 import tempfile
-import time
 
 import h5py
 
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
-                   OPENBLAS_NUM_THREADS="1")
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call, on_ranks, ranks_that_stop  # noqa: E402
+from tables import csv_rows, h5_columns, json_of, number, same_as_csv  # noqa: E402
+
 BODY = """
 subsection Active stress
   subsection Optimal wave
@@ -42,46 +39,25 @@ end
 KEY = ("model", "formulation", "mesh", "engine", "integrator", "degree", "cells", "mesh tolerance", "tolerance")
 DETERMINISTIC = ("status", "reason", "displacement", "error", "shown error", "below bar", "steps")
 REFERENCE = 9.0072529800e-2  # doc/theory.md
-failures = 0
+PROGRAM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
+checks = Checks()
+check = checks.expect
 
 
-def check(condition, what):
-    """Prints what was checked and counts failures."""
-    global failures
-    failures += not condition
-    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
-
-
-def write_study(folder):
-    """The study as small.prm."""
-    pathlib.Path(folder, "small.prm").write_text(BODY + STUDY, encoding="utf-8")
-
-
-def call(program, folder, *arguments, command=()):
-    """Runs the program in the folder."""
-    return subprocess.run([*command, program, *arguments], cwd=folder, env=ENVIRONMENT, capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL, timeout=300, check=False)
+def study(output, *more, ranks=1, stop_at=None):
+    """The study, or the rest of it."""
+    return call([*on_ranks(MPIRUN, ranks), PROGRAM, "tradeoff", "small.prm", "--output", output.name, *more], output.parent,
+                stop_at)
 
 
 def table(folder):
     """The rows of tradeoff.csv."""
-    with open(folder / "tradeoff.csv", newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return csv_rows(folder / "tradeoff.csv")
 
 
 def summary_of(folder):
     """summary.json."""
-    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-
-
-def number(text):
-    """What is not known is empty in CSV and not a number in HDF5."""
-    return float(text) if text else math.nan
-
-
-def same(a, b):
-    """Numbers that are equal, or both not known."""
-    return a == b or (math.isnan(a) and math.isnan(b))
+    return json_of(folder / "summary.json")
 
 
 def answers(rows):
@@ -135,16 +111,9 @@ def check_pareto(rows):
 
 def check_hdf5(folder, rows):
     """The same numbers and texts in tradeoff.h5."""
+    check(same_as_csv(h5_columns(folder / "tradeoff.h5", "tradeoff"), rows), "tradeoff.h5 has what tradeoff.csv has")
     with h5py.File(folder / "tradeoff.h5") as file:
         group = file["tradeoff"]
-        names = {bytes(dataset.attrs["name"]).decode(): dataset for dataset in group.values()}
-        good = set(names) == set(rows[0])
-        for name, dataset in names.items():
-            if h5py.check_string_dtype(dataset.dtype):
-                good &= list(dataset.asstr()[:]) == [row[name] for row in rows]
-            else:
-                good &= all(same(a, number(row[name])) for a, row in zip(dataset[:], rows))
-        check(good, "tradeoff.h5 has what tradeoff.csv has")
         check(group["seconds"].attrs["unit"] == b"s" and b"subsection Tradeoff" in group.attrs["parameters.prm"]
               and "version of PETSc" in group.attrs, "tradeoff.h5 knows units and where it comes from")
 
@@ -158,7 +127,7 @@ def check_files(folder):
           "pictures are pictures")
 
 
-def check_advice(program, folder, output, screen):
+def check_advice(folder, output, screen):
     """Each recommendation, pasted into the file, reproduces its error."""
     summary = summary_of(output)
     advice = summary["recommendations"]
@@ -170,7 +139,7 @@ def check_advice(program, folder, output, screen):
     for item in {item["setting"]: item for item in advice}.values():
         check(item["prm"] in blocks, f"recommendations.prm has {item['setting']}")
         pathlib.Path(folder, "pasted.prm").write_text(BODY + item["prm"], encoding="utf-8")
-        call(program, folder, "run", "pasted.prm", "--overwrite", "--quiet", "--set", "Output/Number of snapshots=0")
+        call([PROGRAM, "run", "pasted.prm", "--overwrite", "--quiet", "--set", "Output/Number of snapshots=0"], folder)
         run = summary_of(pathlib.Path(folder, "output-pasted"))
         error = abs(run["displacement"] - summary["reference"]["displacement"]) / summary["reference"]["size"]
         check(run["status"] == "finished" and error <= item["accuracy"]
@@ -178,105 +147,90 @@ def check_advice(program, folder, output, screen):
               f"pasted for {item['accuracy']:g}: error {error:.3e}, measured {item['error']:.3e}")
 
 
-def start(program, folder, output, *arguments, command=()):
-    """Starts the study and waits until some settings are done."""
-    process = subprocess.Popen([*command, program, "tradeoff", "small.prm", "--output", output, *arguments], cwd=folder,
-                               env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
-    rows, end = pathlib.Path(folder, output, "rows"), time.time() + 60
-    while process.poll() is None and time.time() < end and (
-            sum(path.read_bytes().count(b"\n") for path in rows.glob("*.jsonl")) < 5):
-        time.sleep(0.01)
-    return process
+def written(folder):
+    """The rows of each rank that are whole, by their numbers."""
+    rows = {}
+    for file in (folder / "rows").glob("*.jsonl"):
+        for line in file.read_text(encoding="utf-8").splitlines():
+            if line.endswith("}"):
+                row = json.loads(line)
+                rows[row["index"]] = row
+    return rows
 
 
-def check_kill(program, folder, expected, mpirun):
-    """kill -9 at a random moment loses nothing but what was under way."""
-    seed = int(time.time())
-    slow = ("--set", "Tradeoff/Repetitions=20")  # so that it does not end before it is killed
-    process = start(program, folder, "killed", *slow)
-    time.sleep(random.Random(seed).uniform(0, 1))
-    process.kill()
-    process.communicate()
-    output = pathlib.Path(folder, "killed")
-    lines = (output / "rows" / "0.jsonl").read_text(encoding="utf-8").splitlines()
-    before = {row["index"]: row for row in map(json.loads, lines[:-1])}
+def check_stops(output, expected):
+    """Kills of the only process and of one rank of two, signals and the limit of time lose nothing but what was under way.
+
+    One study: each of them stops it again, and what was measured before is kept to the end.
+    """
+    killed = study(output, stop_at="row:5:KILL")
+    lines = written(output)
+    check(killed.returncode == -signal.SIGKILL and 5 <= len(lines) < len(expected) and not (output / "tradeoff.csv").exists(),
+          f"the only process is killed after {len(lines)} of {len(expected)} settings: {killed}")
     with open(output / "rows" / "0.jsonl", "a", encoding="utf-8") as file:
-        file.write(lines[0][:40])  # what a full disk or a power cut leaves
-    check(5 <= len(lines) < len(expected) and not (output / "tradeoff.csv").exists(),
-          f"killed after {len(lines)} of {len(expected)} settings (seed {seed})")
-    changed = call(program, folder, "tradeoff", "small.prm", "--output", "killed", "--resume", *slow,
-                   "--set", "Body/Length=2")
+        file.write(json.dumps(next(iter(lines.values())))[:40])  # what a full disk or a power cut leaves
+    changed = study(output, "--resume", "--set", "Body/Length=2")
     check(changed.returncode == 2 and 'Body/Length was "1" and is "2"' in changed.stderr,
-          f"other parameters are refused: {changed.stderr.strip()}")
-    refused = call(program, folder, "tradeoff", "small.prm", "--output", "killed")
-    check(refused.returncode == 2 and "not empty" in refused.stderr, "without --resume the folder is refused")
-    done = call(program, folder, "tradeoff", "small.prm", "--output", "killed", "--resume", *slow,
-                command=(mpirun, "--oversubscribe", "-n", "2"))
+          f"other parameters are refused: {changed.stderr}")
+    refused = study(output)
+    check(refused.returncode == 2 and "not empty" in refused.stderr, f"without --resume it is refused {refused.stderr}")
+    for stop_at, reason, more in (("row:3:TERM", "signal", ()), ("step:1:INT", "signal", ()),
+                                  (None, "time_limit", ("--set", "Tradeoff/Time limit=0.001"))):
+        stopped = study(output, "--resume", *more, stop_at=stop_at)
+        rows, summary = table(output), summary_of(output)
+        check(stopped.returncode == 5 and summary["status"] == "stopped" and summary["reason"] == reason
+              and "--resume goes on" in stopped.stderr and len(rows) == summary["tried"] < len(expected)
+              and len(rows) >= len(lines) + (3 if reason == "signal" else 0) and answers(rows).items() <= expected.items(),
+              f"stopped by {stop_at}{more} after {len(rows)} settings: {stopped}")
+    before = written(output)
+    command = [PROGRAM, "tradeoff", "small.prm", "--output", output.name, "--resume"]
+    # Rank 0 waits from its first row on, until mpirun ends it.
+    killed = call(ranks_that_stop(MPIRUN, command, "row:1:STOP", "row:5:KILL"), output.parent)
+    lines = written(output)
+    check(killed.returncode == 128 + signal.SIGKILL and len(lines) >= len(before) + 5 and before.items() <= lines.items(),
+          f"rank 1 of two is killed after {len(lines)} settings, {len(before)} before: {killed}")
+    done = study(output, "--resume", "--set", "Tradeoff/Time limit=1e6", ranks=2)
     check(done.returncode == 0 and "Resumed with" in done.stdout, f"resumed on two ranks {done.stderr}")
     rows = table(output)
     check(answers(rows) == expected and len(rows) == len(expected), "the same settings and errors as without a break")
     after = {int(row["index"]): row for row in rows}
-    check(all(number(after[index]["seconds"]) == row["seconds"] for index, row in before.items()
+    check(all(number(after[index]["seconds"]) == row["seconds"] for index, row in lines.items()
               if row["seconds"] is not None), "what was measured before is kept")
     check_files(output)
-    again = call(program, folder, "tradeoff", "small.prm", "--output", "killed", "--resume", *slow)
+    again = study(output, "--resume")
     check(again.returncode == 0 and "nothing is left to do" in again.stdout, "a finished study has nothing to resume")
-
-
-def check_stop(program, folder, expected):
-    """A signal, and the limit of time, end the study in order."""
-    slow = ("--set", "Tradeoff/Repetitions=20")
-    process = start(program, folder, "stopped", *slow)
-    process.send_signal(signal.SIGTERM)
-    _, errors = process.communicate(timeout=60)
-    output = pathlib.Path(folder, "stopped")
-    n, summary = len(table(output)), summary_of(output)
-    check(process.returncode == 5 and summary["status"] == "stopped" and summary["reason"] == "signal"
-          and "--resume goes on" in errors and 5 <= n < len(expected), f"stopped after {n} settings: {errors.strip()}")
-    seconds = min(4.0, max(1.5, summary["seconds"] + 0.3))
-    result = call(program, folder, "tradeoff", "small.prm", "--output", "stopped", "--resume", *slow, "--set",
-                  f"Tradeoff/Time limit={seconds}")
-    summary = summary_of(output)
-    check(result.returncode == 5 and summary["reason"] == "time_limit" and n < summary["tried"] < len(expected)
-          and set(answers(table(output)).items()) <= set(expected.items()), f"out of time after {summary['tried']}")
-    other = pathlib.Path(folder, "other")
+    other = output.parent / "other"
     other.mkdir()
     (other / "file").write_text("mine", encoding="utf-8")
-    result = call(program, folder, "tradeoff", "small.prm", "--output", "other", "--resume")
+    result = study(other, "--resume")
     check(result.returncode == 2 and "no tradeoff that could be resumed" in result.stderr, "a strange folder is refused")
 
 
 def main():
-    """1 if any check failed."""
-    if len(sys.argv) != 3:
-        sys.exit("usage: tradeoff.py PATH_TO_CRAWLER MPIRUN")
-    program, mpirun = str(pathlib.Path(sys.argv[1]).resolve()), sys.argv[2]
-    with tempfile.TemporaryDirectory() as folder:
-        write_study(folder)
+    """All checks in a folder of their own."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "small.prm").write_text(BODY + STUDY, encoding="utf-8")
         all_answers = {}
         for ranks in (1, 2):
-            command = [mpirun, "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-            result = call(program, folder, "tradeoff", "small.prm", "--output", f"on-{ranks}", command=command)
+            output = folder / f"on-{ranks}"
+            result = study(output, ranks=ranks)
             check(result.returncode == 0 and not result.stderr, f"exit code {result.returncode} on {ranks} ranks "
                   f"{result.stderr}")
-            output = pathlib.Path(folder, f"on-{ranks}")
             rows, summary = table(output), summary_of(output)
             all_answers[ranks] = answers(rows)
             check(summary["status"] == "finished" and summary["ranks"] == ranks
-                  and len(summary["calibration_seconds"]["at_start"]) == ranks, f"summary of {summary['seconds']:.1f} s")
+                  and len(summary["calibration_seconds"]["at_start"]) == ranks, f"summary {summary}")
             check_files(output)
             check_rows(rows, summary)
             check_pareto(rows)
             check_hdf5(output, rows)
             if ranks == 1:
-                check_advice(program, folder, output, result.stdout)
+                check_advice(folder, output, result.stdout)
         check(all_answers[1] == all_answers[2], "the same settings and errors on 1 and 2 ranks")
-        check_kill(program, folder, all_answers[1], mpirun)
-        check_stop(program, folder, all_answers[1])
-    print(f"{failures} checks failed")
-    return 1 if failures else 0
+        check_stops(folder / "stopped", all_answers[1])
+    checks.end()
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The Python package as a guest in someone's process: the sentences of its errors, Ctrl-C, threads, memory that does
-not grow, nothing on the screen; and that it runs where it is installed.
+not grow, nothing on the screen; and that it runs where it is installed. tests/long/python_memory.py has more runs.
 
     python3 behaviour.py PATH_TO_CRAWLER FOLDER_OF_THE_PACKAGE CMAKE
 """
@@ -8,32 +8,29 @@ import contextlib
 import io
 import os
 import pathlib
-import signal
-import subprocess
 import sys
 import tempfile
 import threading
-import time
 import warnings
 
 PROGRAM, PACKAGE = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
-sys.path.insert(0, PACKAGE)
+sys.path[:0] = [PACKAGE, str(pathlib.Path(__file__).resolve().parents[1] / "support")]
 import crawler  # noqa: E402
+from program import Checks, call  # noqa: E402
 
-ENVIRONMENT = dict(os.environ, PYTHONPATH=PACKAGE)
 FILE = pathlib.Path(__file__).resolve().parents[2] / "prm/paper/fig_s1.prm"
 K = "Body/Elastic modulus"
 LONG = {"Accuracy": 1e-9, "Active stress": {"Generator": "expression",
                                             "Expression": {"Active stress": "0.3*sin(2*pi*(s+t))*cos(0.1*t)"}},
         "Time": {"End time": 10000}}
 INVERTS = {"Active stress": {"Generator": "expression", "Expression": {"Active stress": "3*sin(2*pi*(s+t))"}}}
-failures = []
+checks = Checks()
+expect = checks.expect
 
 
-def expect(condition, what):
-    """Notes what is wrong."""
-    if not condition:
-        failures.append(what)
+def python(script, stop_at=None, package=PACKAGE, **variables):
+    """Another interpreter that has the package; it ends at os._exit, whatever its threads do."""
+    return call([sys.executable, "-c", script], stop_at=stop_at, variables={"PYTHONPATH": package, **variables})
 
 
 def refused(action, kind, *words):
@@ -44,14 +41,15 @@ def refused(action, kind, *words):
         for word in words:
             expect(word in str(error), f'"{word}" is not in "{error}"')
         return error
-    failures.append(f"not refused: {words}")
+    expect(False, f"not refused: {words}")
+    return None
 
 
 def check_errors(folder):
     bad = folder / "bad.prm"
     bad.write_text("subsection Body\n  set Lenght = 2\nend\n")
     error = refused(lambda: crawler.run(bad), crawler.InputError, f"{bad}, line 2", "Lenght", '"Length"')
-    ended = subprocess.run([PROGRAM, "check", bad], capture_output=True, text=True)
+    ended = call([PROGRAM, "check", bad])
     expect(ended.stderr.strip() == f"crawler: {error}", f"the program says {ended.stderr}, Python {error}")
     expect(isinstance(error, ValueError), "InputError is not a ValueError")
     refused(lambda: crawler.run({"Body": {"Lenght": 2}}), crawler.InputError, "scene, line 2", "Lenght")
@@ -109,65 +107,84 @@ def check_ends():
     refused(lambda: crawler.batch([FILE, INVERTS], check=True), crawler.RunFailed)
 
 
-def interrupts(action):
-    """Seconds from Ctrl-C to KeyboardInterrupt."""
-    threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-    start = time.perf_counter()
-    try:
-        action()
-    except KeyboardInterrupt:
-        return time.perf_counter() - start - 0.5
-    return float("nan")
-
-
 def check_signals(folder):
-    handler = signal.getsignal(signal.SIGINT)
-    for name, action in (("run", lambda: crawler.run(LONG, fields=False)),
-                         ("batch", lambda: crawler.batch([LONG] * 4)),
-                         ("sweep", lambda: crawler.sweep(LONG, {K: "linspace(1, 2, 100)"})),
-                         ("run with files", lambda: crawler.run(LONG, fields=False, output=folder / "stopped"))):
-        seconds = interrupts(action)
-        expect(-0.1 < seconds < 5, f"Ctrl-C in {name}: KeyboardInterrupt after {seconds} s")
-    expect(signal.getsignal(signal.SIGINT) is handler, "the handler of signals is another one")
-    seconds = interrupts(lambda: time.sleep(3))  # the handler is Python's again
-    expect(seconds < 1, f"Ctrl-C in Python: {seconds}")
-    expect(crawler.run(FILE, fields=False).status == "finished", "no run after Ctrl-C")
+    """Ctrl-C in the middle of whatever computes is a KeyboardInterrupt; afterwards all is as before."""
+    script = """
+import crawler, signal
+handler = signal.getsignal(signal.SIGINT)
+try:
+    {action}
+    print("it came to its end")
+except KeyboardInterrupt:
+    pass
+assert signal.getsignal(signal.SIGINT) is handler, "the handler of signals is another one"
+try:
+    signal.raise_signal(signal.SIGINT)
+    print("no KeyboardInterrupt in Python")
+except KeyboardInterrupt:
+    pass
+assert crawler.run({file!r}, fields=False).status == "finished", "no run after Ctrl-C"
+"""
+    output = str(folder / "stopped")
+    for action, step in ((f"crawler.run({LONG}, fields=False)", 50), (f"crawler.run({LONG}, fields=False)", 2000),
+                         (f"crawler.batch([{LONG}] * 4)", 500), (f"crawler.sweep({LONG}, {{{K!r}: 'linspace(1, 2, 100)'}})", 500),
+                         (f"crawler.run({LONG}, fields=False, output={output!r})", 50)):
+        ended = python(script.format(action=action, file=str(FILE)), f"step:{step}:INT")
+        expect((ended.returncode, ended.stdout) == (0, ""), f"Ctrl-C at step {step} of {action[:13]}: {ended}")
 
 
 def check_threads():
     """Python goes on while a run computes, and runs of several threads wait for each other."""
-    count, results = [0], []
+    # The run is far from its end when it tells the main thread that it has come to its 50th step.
+    script = f"""
+import crawler, os, signal, threading
+begun, tell = os.pipe()
+os.set_blocking(tell, False)
+signal.signal(signal.SIGUSR1, lambda *_: None)
+signal.set_wakeup_fd(tell)
+thread = threading.Thread(target=lambda: crawler.run({dict(LONG, Time={"End time": 1e7})}, fields=False), daemon=True)
+thread.start()
+os.read(begun, 1)
+print("alive" if thread.is_alive() else "over", flush=True)
+os._exit(0)
+"""
+    ended = python(script, "step:50:USR1")
+    expect((ended.returncode, ended.stdout) == (0, "alive\n"), f"Python stands still while a run computes: {ended}")
+    results = []
     threads = [threading.Thread(target=lambda: results.append(crawler.run(FILE).displacement)) for _ in range(4)]
     for thread in threads:
         thread.start()
-    while any(thread.is_alive() for thread in threads):
-        count[0] += 1
-        time.sleep(1e-4)
+    for thread in threads:
+        thread.join()
     expect(len(results) == 4 and len(set(results)) == 1, f"threads: {results}")
-    expect(count[0] > 5, "Python stands still while a run computes")
-
-
-def resident():
-    """MiB."""
-    pages = int(pathlib.Path("/proc/self/statm").read_text().split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
 
 
 def check_memory():
-    """2000 runs: what a leak of 1 kB in each would add is seen."""
-    sizes = []
-    for n in range(2001):
-        crawler.run(FILE, fields=n % 10 == 0, set={K: 1 + 1e-4 * n})
-        if n % 500 == 0:
-            sizes.append(resident())
-    expect(sizes[-1] - sizes[1] < 1.5, f"memory after 0, 500, ... runs: {sizes} MiB")
+    """What runs leave behind: less than 200 bytes each, as the allocator counts them."""
+    script = f"""
+import crawler, ctypes, gc
+class Info(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_size_t) for name in "arena ordblks smblks hblks hblkhd usmblks fsmblks uordblks fordblks keepcost".split()]
+mallinfo2 = ctypes.CDLL(None).mallinfo2
+mallinfo2.restype = Info
+def used(n):
+    for i in range(n):
+        crawler.run({str(FILE)!r}, fields=i % 10 == 0, set={{{K!r}: 1 + 1e-4 * i}})
+    gc.collect()
+    return mallinfo2().uordblks + mallinfo2().hblkhd
+used(100)
+print(used(10), used(100))
+"""
+    ended = python(script, PYTHONMALLOC="malloc")
+    before, after = map(int, ended.stdout.split() or (0, 10**9))
+    expect(0 < before and after - before < 200 * 100, f"100 runs leave {after - before} bytes behind, {ended.stderr}")
 
 
 def check_silence():
     """Nothing is printed, not by the C++ part either; --verbose prints through Python, where notebooks see it."""
     script = (f"import crawler; f = {str(FILE)!r}; crawler.run(f); crawler.batch([f]); "
               f"crawler.sweep(f, {{{K!r}: [1, 2]}})")
-    ended = subprocess.run([sys.executable, "-c", script], env=ENVIRONMENT, capture_output=True, text=True)
+    ended = python(script)
     expect((ended.returncode, ended.stdout, ended.stderr) == (0, "", ""), f"it prints {ended}")
     text = io.StringIO()
     with contextlib.redirect_stdout(text):
@@ -186,24 +203,22 @@ assert crawler.run({file!r}, fields=False).status == "finished"
 {after}
 """
     for before, after in (("import h5py, pandas", ""), ("", "import h5py, pandas, scipy.optimize")):
-        ended = subprocess.run([sys.executable, "-c", script.format(before=before, after=after, file=str(FILE))],
-                               env=ENVIRONMENT, capture_output=True, text=True)
+        ended = python(script.format(before=before, after=after, file=str(FILE)))
         expect(ended.returncode == 0, f"{before} {after}: {ended.stderr}")
     small = FILE.parents[1] / "examples/small_wave.prm"
     script = (f"import crawler, ctypes; r = crawler.run({str(small)!r}, set={{'Model': 'perturbation', 'Accuracy': 0.01}}); "
               "flag = ctypes.c_int(); ctypes.CDLL('libmpi.so.40').MPI_Initialized(ctypes.byref(flag)); "
               "assert r.model == 'perturbation' and not flag.value, 'MPI was started'")
-    ended = subprocess.run([sys.executable, "-c", script], env=ENVIRONMENT, capture_output=True, text=True)
+    ended = python(script)
     expect(ended.returncode == 0, f"the series: {ended.stderr}")
 
 
 def check_installed(folder):
-    subprocess.run([sys.argv[3], "--install", pathlib.Path(PACKAGE).parent, "--prefix", folder / "there", "--component",
-                    "python"], check=True, stdout=subprocess.DEVNULL)
+    done = call([sys.argv[3], "--install", pathlib.Path(PACKAGE).parent, "--prefix", folder / "there", "--component", "python"])
+    expect(done.returncode == 0, f"cmake --install: {done.stderr}")
     (place,) = (folder / "there").glob("lib/python3.*/dist-packages")
     script = f"import crawler; assert crawler.__file__.startswith({str(folder)!r}); print(crawler.run({str(FILE)!r}))"
-    ended = subprocess.run([sys.executable, "-c", script], env=dict(os.environ, PYTHONPATH=str(place)),
-                           capture_output=True, text=True)
+    ended = python(script, package=str(place))
     expect(ended.stdout.startswith("<crawler.Result: finished"), f"installed: {ended}")
 
 
@@ -220,7 +235,7 @@ def main():
         check_installed(pathlib.Path(name))
         check_memory()
         os.chdir("/")
-    sys.exit("\n".join(failures) or 0)
+    checks.end()
 
 
 if __name__ == "__main__":

@@ -3,24 +3,28 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <poll.h>
 #include <spawn.h>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <sys/syscall.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
 #include <vector>
 
 namespace crawler::test
 {
+  /// Ends a program that hangs [s]; no test depends on it otherwise.
+  constexpr int patience = 600;
+
   inline std::string
   read_text(const std::filesystem::path &path)
   {
@@ -80,14 +84,16 @@ namespace crawler::test
 
   /**
    * The real program, started in a folder. It gets an environment of its own: MPI_Init of the test
-   * leaves variables behind that would make the child believe it belongs to the same job.
+   * leaves variables behind that would make the child believe it belongs to the same job. It stops where
+   * @p stop_at says (crawler/base/stop_place.h), if that is not empty.
    */
   class Program
   {
   public:
     Program(const std::filesystem::path &folder,
             const std::vector<std::string> &arguments,
-            const std::string &input = "")
+            const std::string &input   = "",
+            const std::string &stop_at = "")
     {
       write_text(streams_.path / "in", input);
       std::vector<std::string> words = {CRAWLER_PROGRAM};
@@ -97,6 +103,8 @@ namespace crawler::test
       for (const char *name : {"PATH", "HOME", "TMPDIR", "LD_LIBRARY_PATH"})
         if (const char *value = std::getenv(name); value != nullptr)
           environment.push_back(std::string(name) + "=" + value);
+      if (!stop_at.empty())
+        environment.push_back("CRAWLER_STOP_AT=" + stop_at);
 
       posix_spawn_file_actions_t actions;
       posix_spawn_file_actions_init(&actions);
@@ -116,63 +124,32 @@ namespace crawler::test
     Program(const Program &) = delete;
     ~Program()
     {
-      if (running())
+      if (!ended_)
       {
         kill(id_, SIGKILL);
         waitpid(id_, nullptr, 0);
       }
     }
 
-    bool
-    running()
-    {
-      if (!ended_)
-        ended_ = waitpid(id_, &status_, WNOHANG) == id_;
-      return !ended_;
-    }
-
-    /// Has it a handler for this signal by now?
-    bool
-    handles(const int number) const
-    {
-      std::ifstream status("/proc/" + std::to_string(id_) + "/status");
-      for (std::string word; status >> word;)
-        if (word == "SigCgt:")
-        {
-          unsigned long signals = 0;
-          status >> std::hex >> signals;
-          return ((signals >> (number - 1)) & 1) != 0;
-        }
-      return false;
-    }
-
-    void
-    signal(const int number) const
-    {
-      kill(id_, number);
-    }
-
-    /// Waits until @p condition holds; false if it does not within @p seconds.
-    template <typename Condition>
-    static bool
-    wait_until(const Condition &condition, const double seconds = 60)
-    {
-      const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-      while (!condition())
-      {
-        if (std::chrono::steady_clock::now() > end)
-          return false;
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-      }
-      return true;
-    }
-
     /// Waits for the end: the exit code, or minus the number of the signal that ended the program.
     int
     exit_code()
     {
-      if (!wait_until([this]() { return !running(); }))
-        throw std::runtime_error("the program does not come to an end");
+      if (!ended_)
+      {
+        const int file = static_cast<int>(syscall(SYS_pidfd_open, id_, 0)); // readable when the program has ended
+        if (file < 0)
+          throw std::runtime_error("cannot wait for the program");
+        pollfd end = {file, POLLIN, 0};
+        int n      = -1;
+        do
+          n = poll(&end, 1, 1000 * patience);
+        while (n < 0 && errno == EINTR);
+        close(file);
+        if (n != 1)
+          throw std::runtime_error("the program does not come to an end");
+        ended_ = waitpid(id_, &status_, 0) == id_;
+      }
       return WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
     }
 
@@ -213,9 +190,10 @@ namespace crawler::test
   inline ProgramResult
   run_program(const std::filesystem::path &folder,
               const std::vector<std::string> &arguments,
-              const std::string &input = "")
+              const std::string &input   = "",
+              const std::string &stop_at = "")
   {
-    Program program(folder, arguments, input);
+    Program program(folder, arguments, input, stop_at);
     const int exit_code = program.exit_code();
     return {exit_code, program.out(), program.err()};
   }

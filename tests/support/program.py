@@ -20,7 +20,7 @@ class Checks:
     """Counts what is wrong: `expect` notes it, `end` closes the script with the exit code."""
 
     def __init__(self):
-        self.n, self.failures = 0, []
+        self.n, self.failures, self.skipped = 0, [], []
 
     def expect(self, condition, what):
         """What is to be, in words; printed if it is not."""
@@ -29,9 +29,14 @@ class Checks:
             self.failures.append(what)
             print(f"FAILED {what}", flush=True)
 
+    def skip(self, what):
+        """What this machine cannot check, and why; the last line counts it."""
+        self.skipped.append(what)
+        print(f"SKIPPED {what}", flush=True)
+
     def end(self):
         """Exit code 0 only if something was checked, and all of it is right."""
-        print(f"{self.n} checks, {len(self.failures)} failed")
+        print(f"{self.n} checks, {len(self.failures)} failed, {len(self.skipped)} skipped")
         sys.exit(1 if self.failures or self.n == 0 else 0)
 
 
@@ -40,10 +45,31 @@ def environment(stop_at=None, **more):
     return {**ENVIRONMENT, **({"CRAWLER_STOP_AT": stop_at} if stop_at else {}), **more}
 
 
-def call(command, folder=None, stop_at=None, **more):
-    """Runs a command to its end, and gives its exit code (negative: the signal that killed it) and what it printed."""
-    return subprocess.run([str(word) for word in command], cwd=folder, env=environment(stop_at), stdin=subprocess.DEVNULL,
-                          capture_output=True, text=True, timeout=PATIENCE, check=False, **more)
+def call(command, folder=None, stop_at=None, variables=None, **more):
+    """Runs a command to its end, and gives its exit code (negative: the signal that killed it) and what it printed.
+
+    The variables are added to its environment; more are arguments of subprocess.run, such as the text of its input.
+    """
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **({} if "input" in more else {"stdin": subprocess.DEVNULL})}
+    return subprocess.run([str(word) for word in command], cwd=folder, env=environment(stop_at, **(variables or {})),
+                          text=True, timeout=PATIENCE, check=False, **{**streams, **more})
+
+
+def on_ranks(mpirun, n):
+    """What stands before a command that n ranks run; nothing for one."""
+    return [mpirun, "--oversubscribe", "-n", n] if n > 1 else []
+
+
+def ranks_that_stop(mpirun, command, *places):
+    """This command on as many ranks as places, each of which stops at its own (None: nowhere).
+
+    Where one rank is to be killed in the middle of its work, another that waits from then on (STOP) leaves it enough of it,
+    on any machine; mpirun ends that one, too.
+    """
+    words = [mpirun, "--oversubscribe"]
+    for i, place in enumerate(places):
+        words += [":"] * (i > 0) + ["-n", 1] + (["env", f"CRAWLER_STOP_AT={place}"] if place else []) + list(command)
+    return words
 
 
 class Paused:

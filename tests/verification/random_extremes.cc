@@ -6,9 +6,12 @@
 // automatic numerics, which report their errors. An answer is wrong if the difference is larger than both errors
 // together ("the bound only" if it is still as small as Accuracy asks for). Prints coverage, failures by reason, and
 // the cost (processor time of choice, run and error, without files). The exit code is 1 if an answer is wrong, if a
-// single scene has none, or, of 500 scenes or more, if 0.5 % fail, one takes 5 s, or 5 % take 20 ms.
+// single scene has none, if fewer than half of the answers could be compared, or, of 500 scenes or more, if 0.5 % fail,
+// one takes 5 s, or 5 % take 20 ms. How long a method is waited for is a number of steps, so the verdicts are the same
+// on any machine.
 //
-//     random_extremes FIRST-LAST OUT.csv [seconds that a run of the second method may take; 0: nothing is compared]
+//     random_extremes FIRST-LAST OUT.csv [steps that a run of the second method may take; 0: nothing is compared
+//                                         [steps that the program may take]]
 //     random_extremes NUMBER --prm           prints the parameter file of one scene
 #include "anything.h"
 
@@ -34,8 +37,10 @@ namespace
                    most_seconds = 5.;
   /// Of fewer scenes only wrong answers count: shares and times say little.
   constexpr unsigned int fewest = 500;
-  /// No answer is waited for longer [s].
-  constexpr double own_limit = 12.;
+  /// No answer is waited for longer, and no second method unless the user says so [steps].
+  constexpr unsigned long own_limit = 20000, second_limit = 20000;
+  /// Of the answers so many must have been compared.
+  constexpr double least_compared_share = 0.5;
   /// The error is larger than the reported one, but not larger than Accuracy asks for.
   constexpr const char *bound_only = "WRONG: the bound only";
   /// Inversions inside agree if they are within this part of the duration.
@@ -83,25 +88,23 @@ namespace
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
   }
 
-  /// What `crawler run` computes, stopped if it takes longer than @p limit [s].
+  /// What `crawler run` computes, stopped if it takes more than @p limit steps.
   Task
-  computed(const Parameters &parameters, const double limit)
+  computed(const Parameters &parameters, const unsigned long limit)
   {
     Task task;
-    task.parameters    = parameters;
-    const double begin = processor_seconds();
-    compute_all({&task, 1}, std::numeric_limits<double>::infinity(), [&]() {
-      task.is_out_of_time = processor_seconds() - begin > limit;
-      return task.is_out_of_time;
-    });
+    task.parameters     = parameters;
+    const double begin  = processor_seconds();
+    unsigned long steps = 0;
+    compute_all({&task, 1}, std::numeric_limits<double>::infinity(), [&]() { return ++steps > limit; });
     task.seconds        = processor_seconds() - begin;
-    task.is_out_of_time = task.seconds > limit;
+    task.is_out_of_time = steps > limit;
     return task;
   }
 
   /// The answer of the program for another form or accuracy.
   Judgement
-  by_program(const Parameters &parameters, const std::string &name, const double limit)
+  by_program(const Parameters &parameters, const std::string &name, const unsigned long limit)
   {
     const Task task                = computed(parameters, limit);
     const SimulationResult &result = task.computed.result;
@@ -116,7 +119,10 @@ namespace
 
   /// Numerics that owe nothing to the choice of the program but a number of cells that is not smaller.
   Judgement
-  by_position_form(const Parameters &parameters, const test::RandomScene &random, const Task &own, const double limit)
+  by_position_form(const Parameters &parameters,
+                   const test::RandomScene &random,
+                   const Task &own,
+                   const unsigned long limit)
   {
     const Scene scene      = parameters.create_scene();
     const Numerics &chosen = own.computed.choice.numerics;
@@ -146,14 +152,11 @@ namespace
       time.cycle_stop     = CycleStopMode::off;
       time.engine         = Engine::petsc;
       time.max_steps      = 1000000;
-      const double begin  = processor_seconds();
-      bool in_time        = true;
+      unsigned long steps = 0;
       SimulationResult result;
       try
       {
-        result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {}, {}, [&]() {
-          return in_time = processor_seconds() - begin < limit;
-        });
+        result = Simulation(MPI_COMM_SELF, scene, time, n).run({}, {}, {}, [&]() { return ++steps <= limit; });
       }
       catch (const std::exception &error)
       {
@@ -161,7 +164,7 @@ namespace
         return result;
       }
       if (result.time.status != Status::finished)
-        judgement.problem = in_time ? reason_of(result) : "time_limit";
+        judgement.problem = steps <= limit ? reason_of(result) : "time_limit";
       return result;
     };
     const SimulationResult fine = run("radau 9", 1e-3, 1.);
@@ -198,7 +201,7 @@ namespace
   /// By one method after the other until one decides; what says that a wrong answer is right must know it four times as
   /// well, and then nothing is decided.
   void
-  judge(Row &row, const Parameters &parameters, const Task &own, const double limit)
+  judge(Row &row, const Parameters &parameters, const Task &own, const unsigned long limit)
   {
     const SimulationResult &result = own.computed.result;
     const bool has_bound           = result.error && std::isfinite(result.error->total);
@@ -207,7 +210,7 @@ namespace
     else if (has_bound)
       row.bound = result.error->total;
     row.verdict = "not compared";
-    if (limit == 0. || own.is_out_of_time || (row.status != "inverted" && !has_bound))
+    if (limit == 0 || own.is_out_of_time || (row.status != "inverted" && !has_bound))
       return;
     const double wanted         = parameters.accuracy * std::abs(result.displacement);
     Parameters other            = parameters;
@@ -247,7 +250,10 @@ namespace
   }
 
   Row
-  answer(const unsigned int number, const std::filesystem::path &folder, const double limit)
+  answer(const unsigned int number,
+         const std::filesystem::path &folder,
+         const unsigned long limit,
+         const unsigned long most_steps)
   {
     Row row;
     row.number = number;
@@ -256,7 +262,7 @@ namespace
     {
       const Parameters parameters    = test::parameters_with(row.scene.settings);
       row.accuracy                   = parameters.accuracy;
-      const Task own                 = computed(parameters, own_limit);
+      const Task own                 = computed(parameters, most_steps);
       row.seconds                    = own.seconds;
       const SimulationResult &result = own.computed.result;
       if (own.error)
@@ -360,7 +366,7 @@ namespace
       finished += r.status == "finished";
       inverted += r.status == "inverted";
       failed += r.has_failed();
-      compared += r.verdict != "not compared" && r.verdict != "disputed";
+      compared += r.verdict == "agree" || r.verdict.starts_with("WRONG");
       missed += r.verdict == bound_only;
       wrong += r.verdict.starts_with("WRONG") && r.verdict != bound_only;
       seconds.push_back(r.seconds);
@@ -399,7 +405,7 @@ namespace
   }
 
   bool
-  print_summary(const std::vector<Row> &rows)
+  print_summary(const std::vector<Row> &rows, const bool is_compared)
   {
     std::map<std::string, Count> counts;
     std::map<std::string, unsigned int> failures, refusals;
@@ -444,11 +450,15 @@ namespace
                       (all.n < fewest || (all.failed < largest_failed_share * all.n &&
                                           quantile(all.seconds, usual_share) < usual_seconds &&
                                           quantile(all.seconds, 1.) < most_seconds));
-    fmt::print("{}\n",
+    const bool enough = !is_compared || all.compared >= least_compared_share * (all.finished + all.inverted);
+    fmt::print("{} of {} answers compared: {}\n",
+               all.compared,
+               all.finished + all.inverted,
                !kept            ? "THE PROMISE IS NOT KEPT"
+               : !enough        ? "TOO FEW, THIS PROVES NOTHING"
                : all.n < fewest ? "no answer is wrong"
                                 : "the promise is kept");
-    return kept;
+    return kept && enough;
   }
 } // namespace
 
@@ -467,11 +477,12 @@ main(int argc, char **argv)
   }
   if (n_numbers < 1)
   {
-    fmt::print(stderr, "random_extremes FIRST-LAST OUT.csv [seconds]\nrandom_extremes NUMBER --prm\n");
+    fmt::print(stderr, "random_extremes FIRST-LAST OUT.csv [steps [steps]]\nrandom_extremes NUMBER --prm\n");
     return 2;
   }
   last                               = std::max(first, last);
-  const double limit                 = argc > 3 ? std::stod(argv[3]) : 3.;
+  const unsigned long limit          = argc > 3 ? std::stoul(argv[3]) : second_limit,
+                      most_steps     = argc > 4 ? std::stoul(argv[4]) : own_limit;
   const std::filesystem::path folder = std::filesystem::path(argv[2]).replace_extension("");
   std::ofstream out(argv[2]);
   out << "number,kind,form,accuracy,status,reason,seconds,displacement,bound,inversion,second,second displacement,"
@@ -480,7 +491,7 @@ main(int argc, char **argv)
   std::vector<Row> rows;
   for (unsigned int number = first; number <= last; ++number)
   {
-    rows.push_back(answer(number, folder, limit));
+    rows.push_back(answer(number, folder, limit, most_steps));
     const Row &r = rows.back();
     out << fmt::format("{},{},{},{:.3g},{},{},{:.4g},{:.15g},{:.3g},{:.10g},{},{:.15g},{:.3g},{:.10g},\"{}\",{}\n",
                        r.number,
@@ -505,5 +516,5 @@ main(int argc, char **argv)
     std::fflush(stdout);
   }
   const bool is_one_without_answer = first == last && rows.front().has_failed();
-  return print_summary(rows) && !is_one_without_answer ? 0 : 1;
+  return print_summary(rows, limit > 0) && !is_one_without_answer ? 0 : 1;
 }

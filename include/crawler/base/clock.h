@@ -1,14 +1,35 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <chrono>
+#include <functional>
 
 namespace crawler
 {
-  /// Seconds of a clock that only goes forward, for differences.
-  inline double
-  now()
+  /// Seconds of a clock that only goes forward, for differences. Every limit of time and every time that is printed
+  /// comes from it.
+  double
+  now();
+
+  /// Seconds since it was made.
+  class Stopwatch
   {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-  }
+  public:
+    double
+    seconds() const
+    {
+      return now() - start_;
+    }
+
+  private:
+    double start_ = now();
+  };
+
+  /// Another clock in place of now(), for tests of limits of time, as long as this lives.
+  class ClockOfTest
+  {
+  public:
+    explicit ClockOfTest(std::function<double()> clock);
+    ~ClockOfTest();
+    ClockOfTest(const ClockOfTest &) = delete;
+  };
 } // namespace crawler

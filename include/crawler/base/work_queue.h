@@ -3,7 +3,6 @@
 
 #include <mpi.h>
 
-#include <chrono>
 #include <optional>
 
 namespace crawler
@@ -55,12 +54,11 @@ namespace crawler
       completed  = 1,
       failures   = 2
     };
-    using Clock = std::chrono::steady_clock;
 
     const MPI_Comm communicator_;
     const unsigned long size_;
     const bool is_owner_, has_others_;
-    Clock::time_point served_;
+    double served_           = 0.;      ///< when
     unsigned long *counters_ = nullptr; ///< on rank 0
     MPI_Win window_          = MPI_WIN_NULL;
   };

@@ -12,12 +12,12 @@ namespace crawler
     FormulaInput
     input_of(const ExpressionParameters &parameters)
     {
-      const std::string section = "Active stress/Expression/";
+      const std::string expression_section = "Active stress/Expression/";
       return {"active stress",
               parameters.active_stress,
               parameters.constants,
-              section + "Active stress",
-              section + "Constants"};
+              expression_section + "Active stress",
+              expression_section + "Constants"};
     }
   } // namespace
 

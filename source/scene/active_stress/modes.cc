@@ -13,7 +13,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr double pi = std::numbers::pi;
+    using std::numbers::pi;
 
     /// 1, sin x, cos x, sin 2x, ... at x = 2 pi @p turns.
     void

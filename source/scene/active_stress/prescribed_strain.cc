@@ -19,7 +19,7 @@ namespace crawler
 {
   namespace
   {
-    const std::string section = "Active stress/Prescribed strain/";
+    const std::string prescribed_strain_section = "Active stress/Prescribed strain/";
 
     using Strains = StrainByEvaluators::Evaluators;
 
@@ -110,13 +110,13 @@ namespace crawler
             fmt::format("Given by is {}, but there the active stress depends on the stretch; a generator that "
                         "is a function of s and t is expected",
                         parameters.given_by),
-            section + "Given by");
+            prescribed_strain_section + "Given by");
         if (!generator->rate_at({0.}))
           throw InputError(
             fmt::format("Given by is {}, which does not know its rate of change here; a strain that can be "
                         "differentiated in time is expected",
                         parameters.given_by),
-            section + "Given by");
+            prescribed_strain_section + "Given by");
         return strain_by([generator](const std::vector<double> &points) -> Strains {
           return {generator->at(points), generator->rate_at(points)};
         });
@@ -124,11 +124,14 @@ namespace crawler
       if (parameters.given_by == "wave")
         return wave_strain(parameters, length);
       if (parameters.given_by == "table")
-        return std::make_unique<StrainTable>(parameters.file, length, end_time, section + "File");
-      return formula_strain(
-        read_formula({"strain", parameters.strain, parameters.constants, section + "Strain", section + "Constants"},
-                     length,
-                     end_time));
+        return std::make_unique<StrainTable>(parameters.file, length, end_time, prescribed_strain_section + "File");
+      return formula_strain(read_formula({"strain",
+                                          parameters.strain,
+                                          parameters.constants,
+                                          prescribed_strain_section + "Strain",
+                                          prescribed_strain_section + "Constants"},
+                                         length,
+                                         end_time));
     }
   } // namespace
 
@@ -216,7 +219,7 @@ namespace crawler
                     given_by_,
                     variable,
                     place),
-        section + "Given by");
+        prescribed_strain_section + "Given by");
     };
     for (const double t : facts_.breaks_in_time)
     {
@@ -257,10 +260,10 @@ namespace crawler
     constexpr unsigned int n = 161;
     extremes_                = find_extremes(*history_, scene_->body.length, end_time, n, n);
     const auto &[e, s, t]    = extremes_.smallest;
-    const std::string entry  = section + (given_by_ == "wave"    ? "Amplitude"
-                                          : given_by_ == "table" ? "File"
-                                          : generator_           ? "Given by"
-                                                                 : "Strain");
+    const std::string entry  = prescribed_strain_section + (given_by_ == "wave"    ? "Amplitude"
+                                                            : given_by_ == "table" ? "File"
+                                                            : generator_           ? "Given by"
+                                                                                   : "Strain");
     if (!std::isfinite(e))
       throw InputError(fmt::format("the strain is {} at s = {:.6g}, t = {:.6g}; a finite number is expected", e, s, t),
                        entry);

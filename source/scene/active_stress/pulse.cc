@@ -14,7 +14,7 @@ namespace crawler
 {
   namespace
   {
-    const std::string section = "Active stress/Pulse/";
+    const std::string pulse_section = "Active stress/Pulse/";
 
     /// Beyond this multiple of its width a Gaussian is below round-off of its top, 2e-16.
     constexpr double gaussian_reach = 6.;
@@ -66,7 +66,7 @@ namespace crawler
     , period_(parameters.repetition_period)
     , start_(parameters.start_position.value_or(sign_of(parameters.direction) > 0. ? -reach_ : length + reach_))
     , length_(length)
-    , envelope_(parameters.envelope, section, length)
+    , envelope_(parameters.envelope, pulse_section, length)
   {
     require_reachable_body(end_time);
     if (amplitude_ != 0. && period_ != 0.)
@@ -83,7 +83,7 @@ namespace crawler
       throw InputError(
         fmt::format(
           "the pulse is {:g} wide, but at least {:g} is expected, a ten thousandth of the body", width_, least_width),
-        section + "Width");
+        pulse_section + "Width");
     if (period_ > 0.)
     {
       const double distance = std::abs(velocity_) * period_;
@@ -92,8 +92,8 @@ namespace crawler
                                      "repetition period, but at least their width, {:g}, is expected",
                                      distance,
                                      width_),
-                         section + "Repetition period");
-      require_countable_periods(1. / period_, end_time, false, section + "Repetition period");
+                         pulse_section + "Repetition period");
+      require_countable_periods(1. / period_, end_time, false, pulse_section + "Repetition period");
       return;
     }
     const double end = start_ + velocity_ * end_time;
@@ -103,7 +103,7 @@ namespace crawler
                                    start_,
                                    end,
                                    length_),
-                       section + (velocity_ == 0. ? "Start position" : "Speed"));
+                       pulse_section + (velocity_ == 0. ? "Start position" : "Speed"));
   }
 
   std::unique_ptr<ActiveStressAtPoints>

@@ -14,7 +14,7 @@ namespace crawler
 {
   namespace
   {
-    const std::string section = "Active stress/Segments/";
+    const std::string segments_section = "Active stress/Segments/";
 
     constexpr double round_off = 1e-12;
 
@@ -74,7 +74,7 @@ namespace crawler
   Segments::Segments(const SegmentsParameters &parameters, const double length, const double end_time)
     : parameters_(parameters)
     , length_(length)
-    , envelope_({{}, {}, /*window_edge=*/0., parameters.ramp_duration}, section, length)
+    , envelope_({{}, {}, /*window_edge=*/0., parameters.ramp_duration}, segments_section, length)
   {
     const auto &p  = parameters_;
     const double D = p.duty_cycle;
@@ -84,7 +84,7 @@ namespace crawler
         fmt::format("the list of amplitudes has {} numbers, but 1 or {}, one for each segment, are expected",
                     p.amplitude.size(),
                     n),
-        section + "Amplitude");
+        segments_section + "Amplitude");
     if (p.switching == "smooth")
     {
       const double most = std::min(D, 1. - D);
@@ -94,7 +94,7 @@ namespace crawler
                                      p.front_width,
                                      most,
                                      D),
-                         section + "Front width");
+                         segments_section + "Front width");
       smooth_.emplace(D, p.front_width);
       require_smooth_rate();
     }
@@ -155,13 +155,13 @@ namespace crawler
     phases                = distinct(std::move(phases));
     constexpr double most = 1e6;
     const double periods = p.frequency * end_time, n_breaks = static_cast<double>(phases.size()) * periods;
-    require_countable_periods(p.frequency, end_time, false, section + "Frequency");
+    require_countable_periods(p.frequency, end_time, false, segments_section + "Frequency");
     if (n_breaks > most)
       throw InputError(fmt::format("the segments switch at {:.3g} different times until the end time, but at most {:g} "
                                    "are expected",
                                    n_breaks,
                                    most),
-                       section + "Frequency");
+                       segments_section + "Frequency");
     std::vector<double> times;
     for (double period = 0.; period <= periods && !phases.empty(); ++period)
       for (const double x : phases)
@@ -190,10 +190,10 @@ namespace crawler
                     "expected; make \"{}Front width\" {:.6g} or more, or \"{}Switching\" square",
                     largest,
                     *parameters_.rate_limit,
-                    section,
+                    segments_section,
                     parameters_.front_width * largest / *parameters_.rate_limit,
-                    section),
-        section + "Rate limit");
+                    segments_section),
+        segments_section + "Rate limit");
   }
 
   double

@@ -17,7 +17,7 @@ namespace crawler
 {
   namespace
   {
-    const std::string section = "Active stress/Optimal wave/";
+    const std::string shaped_wave_section = "Active stress/Optimal wave/";
 
     /// Panels of the polynomials through a formula are at most this part of the body long.
     constexpr double longest_panel = 1. / 16.;
@@ -33,12 +33,12 @@ namespace crawler
                        const double from,
                        const double to)
     {
-      const std::string entry = section + "Shape formula";
+      const std::string entry = shaped_wave_section + "Shape formula";
       const auto formula      = read_formula({.quantity        = "shape",
                                               .formula         = parameters.shape_formula,
                                               .constants       = parameters.shape_constants,
                                               .formula_entry   = entry,
-                                              .constants_entry = section + "Shape constants",
+                                              .constants_entry = shaped_wave_section + "Shape constants",
                                               .variables       = {"x", "t"}},
                                         length,
                                         end_time);
@@ -60,7 +60,7 @@ namespace crawler
     ShapeFunction
     shape_from_table(const std::string &name, const double from, const double to)
     {
-      const std::string entry = section + "Shape file";
+      const std::string entry = shaped_wave_section + "Shape file";
       const CsvNumbers numbers =
         read_csv_numbers(name, {"x", "f"}, "the name of a CSV file with the header x,f", entry);
       const std::vector<double> &x = numbers.columns[0], &f = numbers.columns[1];
@@ -97,17 +97,18 @@ namespace crawler
           fmt::format("the wave is chosen by energy, but with Shape = {} only wave speed is expected: the "
                       "waves of one energy are known for Fourier coefficients only",
                       parameters.shape),
-          section + "Choose wave by");
+          shaped_wave_section + "Choose wave by");
       const double c = parameters.wave_speed, way = c * end_time;
       if (c == 0.)
-        throw InputError("the wave speed is 0, but a number that is not 0 is expected", section + "Wave speed");
+        throw InputError("the wave speed is 0, but a number that is not 0 is expected",
+                         shaped_wave_section + "Wave speed");
       if (!(std::abs(way) <= most_lengths * body.length))
         throw InputError(fmt::format("the wave runs {:.3g} body lengths until the end time, but at most {:g} are "
                                      "expected with Shape = {}",
                                      std::abs(way) / body.length,
                                      most_lengths,
                                      parameters.shape),
-                         section + "Wave speed");
+                         shaped_wave_section + "Wave speed");
       const double from = std::min(0., way), to = body.length + std::max(0., way);
       return parameters.shape == "table" ? shape_from_table(parameters.shape_file, from, to)
                                          : shape_from_formula(parameters, body.length, end_time, from, to);

@@ -15,7 +15,8 @@ namespace crawler
 {
   namespace
   {
-    const std::string section = "Active stress/Strain feedback/", formula_entry = section + "Active stress";
+    const std::string strain_feedback_section = "Active stress/Strain feedback/",
+                      formula_entry           = strain_feedback_section + "Active stress";
 
     /// Numbers of the variables of the formula.
     enum Variable : unsigned int
@@ -66,31 +67,35 @@ namespace crawler
 
   StrainFeedback::StrainFeedback(const StrainFeedbackParameters &parameters, const double length, const double end_time)
   {
-    const FormulaInput input = {
-      "active stress", parameters.active_stress, parameters.constants, formula_entry, section + "Constants", names};
-    const auto formula  = read_formula(input, length, end_time);
-    const double sensor = parameters.sensor_length;
+    const FormulaInput input = {"active stress",
+                                parameters.active_stress,
+                                parameters.constants,
+                                formula_entry,
+                                strain_feedback_section + "Constants",
+                                names};
+    const auto formula       = read_formula(input, length, end_time);
+    const double sensor      = parameters.sensor_length;
     if (formula->uses(w_near) && !(sensor == 0. || (sensor >= 1e-6 * length && sensor <= length)))
       throw InputError(
         fmt::format("the formula uses w_near and Sensor length is {:g}, but 0, or a number from 1e-6 L to "
                     "L, L = {:g}, is expected",
                     sensor,
                     length),
-        section + "Sensor length");
+        strain_feedback_section + "Sensor length");
     if (formula->uses(w_near) &&
         !((parameters.distance != 0. || sensor > 0.) && std::abs(parameters.distance) < length))
       throw InputError(fmt::format("the formula uses w_near and Distance is {:g}, but a number other than 0 between -L "
                                    "and L, L = {:g}, or a Sensor length, is expected",
                                    parameters.distance,
                                    length),
-                       section + "Distance");
+                       strain_feedback_section + "Distance");
     if (formula->uses(w_delayed) && !(parameters.delay >= 1e-6 * end_time))
       throw InputError(
         fmt::format("the formula uses w_delayed and Delay is {:g}, but at least 1e-6 of the End time, {:g}, "
                     "is expected",
                     parameters.delay,
                     end_time),
-        section + "Delay");
+        strain_feedback_section + "Delay");
     const KnownFeedback::Facts facts = {.uses_rate     = formula->uses(w_t),
                                         .distance      = formula->uses(w_near) ? parameters.distance : 0.,
                                         .delay         = formula->uses(w_delayed) ? parameters.delay : 0.,

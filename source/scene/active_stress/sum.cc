@@ -276,7 +276,7 @@ namespace crawler
       std::vector<Part> parts_;
     };
 
-    const std::string section = "Active stress/Sum/";
+    const std::string sum_section = "Active stress/Sum/";
 
     /// What the feedbacks of all terms use; one distance, delay and sensor for all.
     KnownFeedback::Facts
@@ -299,7 +299,7 @@ namespace crawler
                           value,
                           known,
                           name),
-              fmt::format("{}Term {}/Generator", section, i + 1));
+              fmt::format("{}Term {}/Generator", sum_section, i + 1));
           known = value;
         };
         common.uses_rate = common.uses_rate || feedback->uses_rate();
@@ -343,7 +343,8 @@ namespace crawler
       throw InputError("the sum has no terms; a subsection \"Term 1\" in the subsection Sum is expected",
                        "Active stress/Generator");
     if (std::all_of(terms_.begin(), terms_.end(), [](const SumTerm &term) { return term.multiplies; }))
-      throw InputError("all terms of the sum multiply; at least one that adds is expected", section + "Term 1/Combine");
+      throw InputError("all terms of the sum multiply; at least one that adds is expected",
+                       sum_section + "Term 1/Combine");
     if (std::any_of(
           terms_.begin(), terms_.end(), [](const SumTerm &term) { return term.stress->feedback() != nullptr; }))
       feedback_ = std::make_unique<KnownFeedback>(common_facts(terms_), [this](const std::vector<double> &points) {

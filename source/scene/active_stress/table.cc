@@ -14,7 +14,7 @@ namespace crawler
 {
   namespace
   {
-    const std::string section = "Active stress/Table/", file_entry = section + "File";
+    const std::string table_section = "Active stress/Table/", table_file_entry = table_section + "File";
 
     double
     largest(const std::vector<double> &values)
@@ -37,8 +37,8 @@ namespace crawler
                                      values.front(),
                                      values.back(),
                                      end,
-                                     section),
-                         file_entry);
+                                     table_section),
+                         table_file_entry);
     }
 
     /// The last samples in time become the first ones, from which they may differ by round-off.
@@ -62,7 +62,7 @@ namespace crawler
               grid.t.front(),
               grid.values[last + i],
               grid.t.back()),
-            section + "Outside");
+            table_section + "Outside");
         grid.values[last + i] = grid.values[i];
       }
     }
@@ -70,10 +70,10 @@ namespace crawler
     GridTable
     read(const TableParameters &p, const double length, const double end_time)
     {
-      GridTable grid          = read_grid_table(p.file, "m", file_entry);
+      GridTable grid          = read_grid_table(p.file, "m", table_file_entry);
       const std::size_t least = p.interpolation == "cubic" ? 4 : 2;
-      require_number_of_values(grid.s, least, "s", p.file, file_entry);
-      require_number_of_values(grid.t, least, "t", p.file, file_entry);
+      require_number_of_values(grid.s, least, "s", p.file, table_file_entry);
+      require_number_of_values(grid.t, least, "t", p.file, table_file_entry);
       for (double &s : grid.s)
         s *= p.unit_of_s;
       for (double &t : grid.t)
@@ -81,11 +81,11 @@ namespace crawler
       for (double &m : grid.values)
         m *= p.unit_of_m;
       if (p.outside_in_s == "error")
-        require_reach(grid.s, length, "s", "body", p.file, section + "Outside in s");
+        require_reach(grid.s, length, "s", "body", p.file, table_section + "Outside in s");
       else
         require_overlap(grid.s, length, "s", p.file);
       if (p.outside == "error")
-        require_reach(grid.t, end_time, "t", "duration", p.file, section + "Outside");
+        require_reach(grid.t, end_time, "t", "duration", p.file, table_section + "Outside");
       else if (p.outside == "hold")
         require_overlap(grid.t, end_time, "t", p.file);
       else
@@ -279,6 +279,6 @@ namespace crawler
       out << fmt::format("Note: the table reaches to s = {:g}, but the body ends at {:g}; check \"{}Unit of s\"\n",
                          grid.s.back(),
                          length_,
-                         section);
+                         table_section);
   }
 } // namespace crawler

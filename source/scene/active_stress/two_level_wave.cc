@@ -14,7 +14,7 @@ namespace crawler
 {
   namespace
   {
-    const std::string section = "Active stress/Two-level wave/";
+    const std::string two_level_wave_section = "Active stress/Two-level wave/";
 
     /// The frequency of the wave that does the work W = gamma c^2 L T X [1/time].
     double
@@ -24,16 +24,16 @@ namespace crawler
         throw InputError(
           "the body is not the same everywhere, but no profile is expected where the work is given, since "
           "that of others depends on the phase",
-          section + "Given by");
+          two_level_wave_section + "Given by");
       if (p.wave_number != std::round(p.wave_number))
         throw InputError(fmt::format("the wave number is {:g}, but a whole one is expected where the work is given, "
                                      "since that of others depends on the phase",
                                      p.wave_number),
-                         section + "Given by");
+                         two_level_wave_section + "Given by");
       if (p.ramp_duration > 0.)
         throw InputError("there is a ramp, but Ramp duration = 0 is expected where the work is given, since the work "
                          "of the ramp depends on the phase",
-                         section + "Given by");
+                         two_level_wave_section + "Given by");
       const double L = scene.body.length,
                    c = std::sqrt(p.work / (scene.body.friction_coefficient * L * scene.end_time * X));
       return p.wave_number * c / L;
@@ -50,7 +50,7 @@ namespace crawler
         throw InputError(fmt::format("the friction law has no positive value at the stretch {:.6g}, which is between "
                                      "both strains; smaller ones, or another law, are expected",
                                      *stretch),
-                         section + "Largest strain");
+                         two_level_wave_section + "Largest strain");
       const auto friction = [&](const double w) {
         double g = 0.;
         scene.friction->values({&w, 1}, {&g, 1});
@@ -59,7 +59,7 @@ namespace crawler
       if (!(low < high))
         throw InputError(
           fmt::format("the largest strain is {:g}, but one above the smallest, {:g}, is expected", high, low),
-          section + "Largest strain");
+          two_level_wave_section + "Largest strain");
       const double share = p.share.value_or(1. / (1. + std::sqrt(friction(1. + high) / friction(1. + low))));
       double mean = 0., g_sum = 0., ge = 0., gee = 0.;
       const auto add = [&](const double weight, const double level) { // from -1/2, emin, to 1/2, emax
@@ -145,9 +145,9 @@ namespace crawler
                               : parameters.given_by == "wave speed" ? "Wave speed"
                                                                     : "Work";
     throw InputError(error.what(),
-                     error.entry.starts_with(section)      ? error.entry
-                     : error.entry.ends_with("/Frequency") ? section + speed
-                                                           : section + "Front width");
+                     error.entry.starts_with(two_level_wave_section) ? error.entry
+                     : error.entry.ends_with("/Frequency")           ? two_level_wave_section + speed
+                                                                     : two_level_wave_section + "Front width");
   }
 
   void

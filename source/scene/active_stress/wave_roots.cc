@@ -14,7 +14,7 @@ namespace crawler
 {
   namespace
   {
-    constexpr double pi = std::numbers::pi;
+    using std::numbers::pi;
 
     /// Never list more waves than this, however many there are.
     constexpr std::size_t most_roots = 100000;

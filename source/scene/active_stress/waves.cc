@@ -13,7 +13,7 @@ namespace crawler
   namespace
   {
     const std::string travelling_section = "Active stress/Travelling wave/";
-    constexpr double pi                  = std::numbers::pi;
+    using std::numbers::pi;
 
     /// f [1/time]
     double

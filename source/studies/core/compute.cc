@@ -11,7 +11,6 @@
 #include <crawler/time/failure.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -44,25 +43,12 @@ namespace crawler
       return task.gait ? Simulation::GaitWish::declared : Simulation::GaitWish::none;
     }
 
-    class Clock
-    {
-    public:
-      double
-      seconds() const
-      {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-      }
-
-    private:
-      const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    };
-
     /// A part of the work for one task: its time is taken. What it throws is how the task ended, unless the user has to
     /// mend it; that is kept.
     void
     guarded(Task &task, const std::function<void()> &work)
     {
-      const Clock clock;
+      const Stopwatch clock;
       try
       {
         work();
@@ -88,7 +74,7 @@ namespace crawler
     prepare(Task &task, const double time_limit, const std::function<bool()> &interrupted)
     {
       guarded(task, [&]() {
-        const Clock clock;
+        const Stopwatch clock;
         task.scene.emplace(task.parameters.create_scene());
         const auto keep_going = [&]() {
           task.is_out_of_time = clock.seconds() > time_limit;
@@ -222,7 +208,7 @@ namespace crawler
         if (members.empty())
           continue;
         const double n = static_cast<double>(members.size());
-        const Clock clock;
+        const Stopwatch clock;
         try
         {
           compute_members(members, options_of_batch(*members.front().task), [&]() {
@@ -242,7 +228,7 @@ namespace crawler
     finish(Task &task, const double time_limit, const std::function<bool()> &interrupted)
     {
       const double before = task.seconds;
-      const Clock clock;
+      const Stopwatch clock;
       const auto keep_going = [&]() {
         task.is_out_of_time = before + clock.seconds() > time_limit;
         return !task.is_out_of_time && !interrupted();

@@ -11,14 +11,14 @@ namespace crawler
 {
   namespace
   {
-    constexpr std::array<const char *, n_gait_numbers> names = {{"displacement",
-                                                                 "work",
-                                                                 "positive work",
-                                                                 "mean-square strain",
-                                                                 "speed",
-                                                                 "T/(gamma L)",
-                                                                 "dissipation",
-                                                                 "efficiency"}};
+    constexpr std::array<const char *, n_gait_numbers> words_of_numbers = {{"displacement",
+                                                                            "work",
+                                                                            "positive work",
+                                                                            "mean-square strain",
+                                                                            "speed",
+                                                                            "T/(gamma L)",
+                                                                            "dissipation",
+                                                                            "efficiency"}};
 
     /// A number that is checked: its value, and its derivative by a variable.
     struct Checked
@@ -59,7 +59,7 @@ namespace crawler
     std::vector<Checked> list;
     for (std::size_t k = 0; k < n_gait_numbers; ++k)
       if (wishes.numbers[k])
-        list.push_back({names[k],
+        list.push_back({words_of_numbers[k],
                         [k](const GaitValues &there) { return there.numbers[k]; },
                         [k](const GaitValues &there, const std::size_t i) { return there.gradients[k][i]; }});
     if (wishes.strain && std::ranges::find(here.strain_by_differences, true) == here.strain_by_differences.end())

@@ -33,7 +33,6 @@
 #include <petscsys.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 
@@ -161,7 +160,6 @@ namespace crawler
   run_input(MPI_Comm communicator, const CommandOptions &options, ParameterFile file)
   {
     const StopSignal stop_signal; // from here on a signal ends the run in order
-    const auto start = std::chrono::steady_clock::now();
     if (options.resume && options.overwrite)
       throw InputError("--resume and --overwrite contradict each other; one of them is expected");
     const double begin = now();
@@ -247,7 +245,7 @@ namespace crawler
       lock.reset();
       CommandOptions its_options = options;
       its_options.overwrite      = options.overwrite || options.resume;
-      return run_reduced_model(communicator, its_options, input, *model, stop_signal, start, log);
+      return run_reduced_model(communicator, its_options, input, *model, stop_signal, begin, log);
     }
     guarded([&]() {
       input.parameters.model = model->model;
@@ -334,7 +332,7 @@ namespace crawler
         observers.push_back(std::make_unique<RunProgress>(log, input.scene, kymograph, n_rows));
       return observers;
     };
-    const double setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double setup_seconds = now() - begin;
     unsigned int n_runs        = 0;
     TimeOutcome latest;
     const Simulation::Options run_options = {.energy_balance = output.energy_balance,
@@ -477,17 +475,13 @@ namespace crawler
                     const Input &input,
                     const ModelChoice &choice,
                     const StopSignal &stop_signal,
-                    const std::chrono::steady_clock::time_point start,
+                    const double begin,
                     Log &log)
   {
     const OutputParameters &output = input.parameters.output;
     const auto folder              = output_folder(options.output, options.file);
     int code                       = 0;
     on_first_rank(communicator, [&]() {
-      using Clock             = std::chrono::steady_clock;
-      const auto seconds_from = [](const Clock::time_point from) {
-        return std::chrono::duration<double>(Clock::now() - from).count();
-      };
       const FolderLock lock(folder, options.overwrite);
       begin_files(log, input, folder);
       report_scene(log, input);
@@ -495,7 +489,7 @@ namespace crawler
 
       Parameters parameters = input.parameters;
       parameters.model      = choice.model;
-      const double setup    = seconds_from(start);
+      const double setup    = now() - begin;
       SimulationResult result;
       result.model = choice.model;
       try
@@ -512,11 +506,11 @@ namespace crawler
         if (!input.sensitivities.empty() && !differentiate(log, input, {}, folder, is_stopped, result))
           result.time.status = Status::stopped;
 
-        const auto before = Clock::now();
+        const Stopwatch output_watch;
         if (result.error && (output.has_snapshots() || output.statistics) &&
             !write_pictures(level, input, folder, stop_signal, options.watch ? &log : nullptr))
           result.time.status = Status::stopped;
-        result.output_seconds = seconds_from(before);
+        result.output_seconds = output_watch.seconds();
       }
       catch (...)
       {

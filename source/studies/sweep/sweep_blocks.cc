@@ -95,6 +95,16 @@ namespace crawler
 
   namespace
   {
+    /// Unknowns times steps of the run; none on levels without a mesh, infinite where nothing is known.
+    double
+    work_of(const Task &task)
+    {
+      const SimulationResult &result = task.computed.result;
+      if (task.error || result.time.status != Status::finished)
+        return HUGE_VAL;
+      return result.mesh ? static_cast<double>(result.mesh->n_unknowns) * result.time.steps : 0.;
+    }
+
     /// The rows of these points, those in succession at once.
     template <typename Point>
     void
@@ -247,10 +257,10 @@ namespace crawler
     for (const Point &point : shared)
       std::erase(missing, point.number);
 
-    // The rest a few at a time, or one by one where one takes long: what is finished shall be on the disk soon. With a
-    // time limit for each, no one may use up that of its neighbours.
+    // The rest a few at a time, or one by one where one takes much work: what is finished shall be on the disk soon.
+    // With a time limit for each, no one may use up that of its neighbours.
     const std::size_t most_together = std::isfinite(time_limit_) ? 1 : 8;
-    constexpr double long_time      = 1.; // seconds
+    constexpr double much           = 1e6; // unknowns times steps
     std::size_t together            = most_together;
     for (std::size_t from = 0, to = 0; from < missing.size(); from = to)
     {
@@ -258,11 +268,10 @@ namespace crawler
       std::vector<Task> few;
       for (std::size_t i = from; i < to; ++i)
         few.push_back(numerics_.task(missing[i]));
-      const double before = now();
       compute_all(few, time_limit_, interrupted);
       if (interrupted())
         return false;
-      together = (now() - before) / static_cast<double>(to - from) > long_time ? 1 : most_together;
+      together = std::ranges::any_of(few, [&](const Task &one) { return work_of(one) > much; }) ? 1 : most_together;
       std::vector<Point> ready;
       for (std::size_t i = from; i < to; ++i)
         ready.push_back({missing[i], std::move(few[i - from])});

@@ -17,8 +17,6 @@ namespace crawler
 {
   namespace
   {
-    constexpr double gap = std::numeric_limits<double>::quiet_NaN();
-
     struct Line
     {
       std::string text;

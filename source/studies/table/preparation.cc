@@ -18,7 +18,6 @@ namespace crawler
 {
   namespace
   {
-    constexpr double gap           = std::numeric_limits<double>::quiet_NaN();
     constexpr std::size_t least    = 4; // samples of a spline
     constexpr double much_of_noise = 5.;
 

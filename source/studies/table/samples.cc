@@ -21,8 +21,6 @@ namespace crawler
 {
   namespace
   {
-    constexpr double gap = std::numeric_limits<double>::quiet_NaN();
-
     std::string
     lower(std::string text)
     {

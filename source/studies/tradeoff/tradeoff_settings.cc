@@ -24,7 +24,7 @@ namespace crawler
     /// On a mesh with the relative error e, tolerances above this times e are left out.
     constexpr double loosest_over_mesh_error = 1e4;
     /// An error that changes by less than this part of itself, so many times, is that of the mesh.
-    constexpr double settled                = 0.1;
+    constexpr double settled_change         = 0.1;
     constexpr std::size_t settled_changes   = 2;
     constexpr std::size_t failures_in_a_row = 3;
     /// First steps, relative to the duration, as numerics_choice.cc has them.
@@ -307,7 +307,7 @@ namespace crawler
       return std::nullopt;
     std::size_t changes = 0;
     while (changes + 1 < n && std::abs(tried[n - 1 - changes].displacement - tried[n - 2 - changes].displacement) <
-                                settled * error(n - 1 - changes))
+                                settled_change * error(n - 1 - changes))
       ++changes;
     return changes >= settled_changes ? std::nullopt : std::optional(n);
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/clock.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/run/run_journal.h>
 
@@ -99,5 +100,22 @@ namespace
   {
     RunJournal journal(0., {});
     EXPECT_THROW(journal.load(left_in_the_second_run().substr(1)), FileError);
+  }
+
+  TEST(RunJournal, WritesStatesAtItsIntervalAndNotTooOften)
+  {
+    double time = 0.;
+    const ClockOfTest clock([&]() { return time; });
+    RunJournal journal(10., [&](const std::string &) { time += 1.; }); // a state costs a second
+    EXPECT_FALSE(journal.begin("run"));
+    time = 9.;
+    EXPECT_FALSE(journal.is_due());
+    time = 10.;
+    EXPECT_TRUE(journal.is_due());
+    journal.keep("state"); // until 11
+    time = 25.;
+    EXPECT_FALSE(journal.is_due()); // 5 % of the time at most
+    time = 31.;
+    EXPECT_TRUE(journal.is_due());
   }
 } // namespace

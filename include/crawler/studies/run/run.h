@@ -10,7 +10,6 @@
 
 #include <mpi.h>
 
-#include <chrono>
 
 namespace crawler
 {
@@ -28,14 +27,14 @@ namespace crawler
   class StopSignal;
 
   /// What `crawler run` does on a level that needs no mesh (collective; the first rank computes and writes all files,
-  /// whose names and contents are those of any run). @p start is when the program started.
+  /// whose names and contents are those of any run). @p begin (base/clock.h) is when the program began.
   ExitCode
   run_reduced_model(MPI_Comm communicator,
                     const CommandOptions &options,
                     const Input &input,
                     const ModelChoice &choice,
                     const StopSignal &stop_signal,
-                    std::chrono::steady_clock::time_point start,
+                    double begin,
                     Log &log);
 
   /// The same for `crawler check`.

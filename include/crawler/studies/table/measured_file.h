@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace crawler
 {
+  /// A sample that is missing.
+  inline constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+
   /// The text of a table of numbers as instruments and spreadsheets write it. What is missing is not a number.
   struct MeasuredFile
   {

@@ -16,7 +16,7 @@ using namespace crawler;
 
 namespace
 {
-  constexpr double pi = std::numbers::pi, gap = std::numeric_limits<double>::quiet_NaN();
+  constexpr double pi = std::numbers::pi;
 
   /// Samples of f(s,t) for 0 <= s <= 1.
   Samples

@@ -3,10 +3,11 @@
 """The scripts in contrib/paraview draw a run of either format, in ParaView itself: the body is where the files have it
 and has the colours of its stretch, and a film has a picture for each frame.
 
-    python3 paraview_films.py PATH_TO_CRAWLER PATH_TO_PVBATCH      needs ParaView, ffmpeg, python3-matplotlib, Xvfb
+    python3 paraview_films.py PATH_TO_CRAWLER PATH_TO_PVBATCH      77 without ParaView, ffmpeg or Xvfb
 """
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -40,6 +41,10 @@ def coloured(picture):
 
 def main():
     """Draws one run in both formats, on a screen of its own, whose number the X server chooses."""
+    missing = [name for name in (sys.argv[2], "Xvfb", "ffmpeg") if shutil.which(name) is None]
+    if missing:
+        print(f"not installed: {', '.join(missing)} (Debian: python3-paraview, not beside python3-vtk9; xvfb, ffmpeg)")
+        sys.exit(77)
     with tempfile.TemporaryDirectory() as name, subprocess.Popen(
             ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x1024x24"], stdout=subprocess.PIPE, text=True) as server:
         try:

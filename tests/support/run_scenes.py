@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs that are disturbed and go on with --resume: the scenes that a run can have, and whether its files are those of an
+undisturbed run.
+"""
+import json
+import pathlib
+import shutil
+
+import h5py
+import numpy as np
+
+from program import call
+
+WAVE = """
+set Accuracy = 1e-7
+subsection Body
+  set Anchoring exponent = 2
+end
+subsection Active stress
+  set Generator = expression
+  subsection Expression
+    set Active stress = 0.15*sin(2*pi*(s+t))
+  end
+end
+subsection Output
+  set Number of snapshots = 10
+end
+"""
+SEGMENTS = """
+set Accuracy = 1e-4
+subsection Active stress
+  set Generator = segments
+  subsection Segments
+    set Number of segments = 8
+    set Amplitude          = 0.1
+    set Phase lag          = 0.125
+  end
+end
+subsection Output
+  set Number of snapshots = 10
+end
+"""
+FEEDBACK = """
+set Accuracy = 1e-4
+subsection Body
+  set Elastic modulus = 0.1
+  set Initial stretch = 1+0.01*exp(-((s-0.425)/0.05)^2)
+end
+subsection Active stress
+  set Generator = strain feedback
+  subsection Strain feedback
+    set Active stress = A*tanh(g*(w_%s-1)/A)
+    set Constants     = A=0.05, g=0.5
+    %s
+  end
+end
+subsection Output
+  set Number of snapshots = 5
+end
+"""
+FINE = ["Discretization/Number of cells=40", "Time/Tolerance=1e-8", "Time/Integrator=radau 9"]
+COARSE = ["Discretization/Number of cells=12", *FINE[1:]]
+# What a run can be: a scene, and entries that are set, its end time among them, where it is to be long and where it is
+# to be short.
+SCENES = {
+    "lanes": (WAVE, [*FINE, "Time/End time=1000"], [*COARSE, "Time/End time=20"]),
+    "jumps": (SEGMENTS, [*FINE[1:], "Discretization/Number of cells=24", "Time/End time=60"],
+              ["Time/Tolerance=1e-6", "Time/Integrator=radau 5", "Discretization/Number of cells=8", "Time/End time=2"]),
+    "petsc": (WAVE, [*FINE, "Time/Engine=petsc", "Time/End time=150"], [*COARSE, "Time/Engine=petsc", "Time/End time=5"]),
+    "bdf": (WAVE, ["Time/Integrator=bdf", "Time/End time=800", "Accuracy=1e-4"],
+            ["Time/Integrator=bdf", "Time/End time=20", "Accuracy=1e-4"]),
+    "linear": (WAVE, ["Body/Anchoring exponent=1", "Model=linear", "Time/End time=3000"],
+               ["Body/Anchoring exponent=1", "Model=linear", "Time/End time=20"]),
+    "stretch form": (WAVE, ["Discretization/Formulation=stretch", "Time/End time=200", "Accuracy=1e-5"],
+                     ["Discretization/Formulation=stretch", "Time/End time=10", "Accuracy=1e-4"]),
+    "adaptive": (WAVE, ["Discretization/Mesh=adaptive", "Time/End time=200", "Accuracy=1e-5"],
+                 ["Discretization/Mesh=adaptive", "Time/End time=10", "Accuracy=1e-4"]),
+    "feedback": (FEEDBACK % ("near", "set Distance = -0.25\n    set Sensor length = 0.2"), ["Time/End time=3"],
+                 ["Time/End time=1", "Accuracy=1e-3"]),
+    "delay": (FEEDBACK % ("delayed", "set Delay = 0.3"),
+              ["Discretization/Number of cells=8", "Accuracy=1e-3", "Time/End time=1"],
+              ["Discretization/Number of cells=4", "Accuracy=1e-3", "Time/End time=1"]),
+    "xdmf": (WAVE, [*FINE, "Output/Snapshot format=xdmf", "Time/End time=600"],
+             [*COARSE, "Output/Snapshot format=xdmf", "Time/End time=10"]),
+    "finer mesh of the user": (WAVE, ["Discretization/Number of cells=12", "Time/Tolerance=1e-9", "Time/Integrator=radau 5",
+                                      "Time/End time=20"],
+                               ["Discretization/Number of cells=12", "Time/Tolerance=1e-8", "Time/Integrator=radau 5",
+                                "Time/End time=5"]),
+}
+GOES_ON = "goes on from the state"
+STATES = ["--set", "Time/Checkpoint interval=0"]  # written as often as possible, the first at once
+# Multistep methods start anew, so their results differ by the error of the steps.
+STARTS_ANEW = {"bdf"}
+
+
+class Scene:
+    """A scene in a folder of its own, with the files of an undisturbed run in "whole"."""
+
+    def __init__(self, program, place, name, checks, extra=(), before=(), is_long=False):
+        text, long, short = SCENES[name]
+        self.program, self.place, self.name, self.checks, self.before = program, place, name, checks, before
+        self.file = place / "scene.prm"
+        self.entries = [*(long if is_long else short), *extra]
+        place.mkdir()
+        self.file.write_text(text, encoding="utf-8")
+        self.expect("whole", [], 0)
+
+    def command(self, folder, options=()):
+        """Its words."""
+        sets = [word for entry in self.entries for word in ("--set", entry)]
+        return [*self.before, self.program, "run", self.file, "--output", self.place / folder, "--quiet", *sets, *options]
+
+    def run(self, folder, options=(), stop_at=None):
+        """The finished process."""
+        return call(self.command(folder, options), stop_at=stop_at)
+
+    def expect(self, folder, options, code, *words, stop_at=None):
+        """Runs it; it must end so, and say these words."""
+        done = self.run(folder, options, stop_at)
+        self.checks.expect(done.returncode == code and all(word in done.stderr for word in words),
+                           f"{self.name}, {options}, stopped at {stop_at}: exit code {done.returncode}, {done.stderr[:500]!r}")
+        return done
+
+    def copy(self, folder, other):
+        """Another one that is the same."""
+        shutil.rmtree(self.place / other, ignore_errors=True)
+        shutil.copytree(self.place / folder, self.place / other)
+
+    def went_on(self, folder):
+        """How often this run went on from a state."""
+        log = self.place / folder / "log.txt"
+        return log.read_text(encoding="utf-8").count(GOES_ON) if log.exists() else 0
+
+    def compare(self, folder, what, other="whole"):
+        """All files of two folders, but for times and what tells one run from another."""
+        one, two = self.place / folder, self.place / other
+        if self.name in STARTS_ANEW:
+            ends = [json.loads((place / "summary.json").read_text(encoding="utf-8")) for place in (one, two)]
+            self.checks.expect(abs(ends[0]["displacement"] - ends[1]["displacement"]) <= ends[1]["displacement_error"]["total"],
+                               f"{self.name}, {what}: the displacement is another one after a resume")
+            return
+        own = {"log.txt", "restart.dat", "restart.old.dat", "original.prm", "parameters.prm"}
+        names = [{str(file.relative_to(place)) for file in place.rglob("*") if file.is_file()} - own for place in (one, two)]
+        self.checks.expect(names[0] == names[1] and "summary.json" in names[0],
+                           f"{self.name}, {what}: other files after a resume: {sorted(names[0] ^ names[1])[:5]}")
+        for name in sorted(names[0] & names[1]):
+            self.checks.expect(same_content(one / name, two / name), f"{self.name}, {what}: {name} is another one")
+
+
+def same_content(one, two):
+    """Is it the same in two files, but for times, the command and the number of ranks?"""
+    if one.name == "summary.json":
+        return plain(json.loads(one.read_text(encoding="utf-8"))) == plain(json.loads(two.read_text(encoding="utf-8")))
+    if one.suffix == ".h5":
+        return same_data(one, two)
+    return pathlib.Path(one).read_bytes() == pathlib.Path(two).read_bytes()
+
+
+def plain(summary):
+    """Without times, the command and the number of ranks."""
+    return {key: value for key, value in summary.items() if key not in ("seconds", "command_line", "versions", "ranks")}
+
+
+def same_data(one, two):
+    """Are all numbers of two HDF5 files the same?"""
+    with h5py.File(one) as first, h5py.File(two) as second:
+        names = []
+        first.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
+        return bool(names) and all(name in second and np.array_equal(first[name][()], second[name][()], equal_nan=True)
+                                   for name in names)
