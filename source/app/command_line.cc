@@ -5,6 +5,7 @@
 #include <crawler/base/files.h>
 #include <crawler/base/petsc_object.h>
 #include <crawler/base/plain_numbers.h>
+#include <crawler/base/process.h>
 #include <crawler/base/standard_output.h>
 #include <crawler/lanes/forced_instruction_set.h>
 #include <crawler/time/failure.h>

@@ -9,6 +9,7 @@
 #include <crawler/app/templates.h>
 #include <crawler/app/usage_errors.h>
 #include <crawler/base/communication.h>
+#include <crawler/base/process.h>
 #include <crawler/base/versions.h>
 #include <crawler/studies/atlas/atlas.h>
 #include <crawler/studies/optimize/optimize.h>

@@ -28,15 +28,6 @@ namespace crawler
     return static_cast<unsigned int>(size);
   }
 
-  unsigned int
-  rank_of_launcher()
-  {
-    for (const char *const name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
-      if (const char *const rank = std::getenv(name); rank != nullptr)
-        return static_cast<unsigned int>(std::strtoul(rank, nullptr, 10));
-    return 0;
-  }
-
   bool
   is_true_anywhere(const bool is_true, MPI_Comm communicator)
   {

@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 
 namespace crawler
 {
@@ -31,6 +32,15 @@ namespace crawler
       }
     }
   } // namespace
+
+  unsigned int
+  rank_of_launcher()
+  {
+    for (const char *const name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"})
+      if (const char *const rank = std::getenv(name); rank != nullptr)
+        return static_cast<unsigned int>(std::strtoul(rank, nullptr, 10));
+    return 0;
+  }
 
   ProgramEnd
   run_program(const std::vector<std::string> &command, const bool shown)

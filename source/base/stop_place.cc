@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/process.h>
 #include <crawler/base/stop_place.h>
 
 #include <fmt/format.h>

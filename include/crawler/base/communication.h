@@ -15,11 +15,6 @@ namespace crawler
   unsigned int
   size_of(MPI_Comm communicator);
 
-  /// Number of this process as its launcher (mpirun, srun) says in the environment, before MPI is started; 0 without
-  /// one.
-  unsigned int
-  rank_of_launcher();
-
   /// Is it so on any rank? (collective)
   bool
   is_true_anywhere(bool is_true, MPI_Comm communicator);

@@ -7,6 +7,11 @@
 
 namespace crawler
 {
+  /// Number of this process as its launcher (mpirun, srun) says in the environment, before MPI is started; 0 without
+  /// one.
+  unsigned int
+  rank_of_launcher();
+
   /// How another program ended.
   struct ProgramEnd
   {

@@ -30,6 +30,7 @@ TEST(StopPlace, HasANumberASignalAndARank)
 
 TEST(StopPlace, OthersAreRefused)
 {
-  for (const char *text : {"", "KILL", "row", "rows:KILL", "row:KILLED", "row:0:KILL", "row:-1:KILL", "row:1:2:KILL", "write:KILL"})
+  for (const char *text :
+       {"", "KILL", "row", "rows:KILL", "row:KILLED", "row:0:KILL", "row:-1:KILL", "row:1:2:KILL", "write:KILL"})
     EXPECT_THROW(stop_wish(text), InputError) << text;
 }

@@ -1,0 +1,308 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Studies that are killed at random places and resumed lose nothing and compute nothing twice; many ranks, little memory.
+
+    python3 study_kills.py PATH_TO_CRAWLER MPIRUN [KILLS [SEED]]
+
+KILLS: so many of a sweep (default: 20), and a quarter of it of an atlas, a tradeoff and an optimisation: of one rank, of
+mpirun, by SIGTERM. tests/cli/sweep.py, atlas.py, tradeoff.py and optimize.py are the short versions. Some minutes.
+"""
+import ctypes
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, PATIENCE, call, environment, on_ranks  # noqa: E402
+from tables import csv_rows, h5_columns, json_of, same_columns  # noqa: E402
+
+CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
+BODY = """
+set Accuracy = 1e-4
+subsection Active stress
+  subsection Optimal wave
+    set Perturbation parameter = 0.4
+    set Choose wave by = wave speed
+  end
+end
+subsection Atlas
+  set First axis  = Active stress/Optimal wave/Perturbation parameter : linspace(0.1, 0.3, 60)
+  set Second axis = Body/Anchoring exponent : linspace(0, 2, 2)
+end
+subsection Tradeoff
+  set Integrators     = radau 5, bdf
+  set Degrees         = 2, 6
+  set Cells           = 3, 8
+  set Mesh tolerances = 1e-3
+  set Tolerances      = logspace(-2, -8, 4)
+  set Repetitions     = 1
+end
+"""
+PROGRAM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
+PRM = pathlib.Path(__file__).resolve().parents[2] / "prm" / "studies"
+N_KILLS, SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 20, int(sys.argv[4]) if len(sys.argv) > 4 else 7
+# Runs a command that stops at its place, sends mpirun the signal instead, and lets the command go on.
+KILLER = """
+import os, signal, subprocess, sys
+rank = subprocess.Popen(sys.argv[2:])
+if os.WIFSTOPPED(os.waitpid(rank.pid, os.WUNTRACED)[1]):
+    os.kill(os.getppid(), int(sys.argv[1]))
+    rank.send_signal(signal.SIGCONT)
+"""
+checks = Checks()
+expect = checks.expect
+
+
+class Study:
+    """One of the studies: how it is started, which files it makes, and what is kept of an unfinished one."""
+
+    def __init__(self, command, files, most_rows):
+        self.command, self.files, self.most_rows = command, files, most_rows
+
+    def start(self, output, *more, ranks=1, stop_at=None):
+        """To its end."""
+        return call([*on_ranks(MPIRUN, ranks), PROGRAM, *self.command, "--output", output.name, *more], output.parent, stop_at)
+
+    def done(self, output):
+        """What is computed: {row: its seconds}."""
+        raise NotImplementedError
+
+    def answers(self, output):
+        """What does not depend on who computed it, and when."""
+        raise NotImplementedError
+
+
+class PointStudy(Study):
+    """A sweep or an atlas."""
+
+    def __init__(self, command, table, group, status, seconds):
+        super().__init__(command, ("original.prm", "parameters.prm", f"{table}.h5", f"{table}.csv", "summary.json"), 300)
+        self.table, self.group, self.status, self.seconds = table, group, status, seconds
+
+    def columns(self, output):
+        """Of the table, if there is one."""
+        file = output / f"{self.table}.h5"
+        return h5_columns(file, self.group) if file.exists() else None
+
+    def done(self, output):
+        rows = self.columns(output)
+        return {i: rows[self.seconds][i] for i, status in enumerate(rows[self.status]) if status} if rows else {}
+
+    def answers(self, output):
+        return {name: column if isinstance(column, list) else column.tobytes() for name, column in self.columns(output).items()
+                if not name.endswith("seconds")}
+
+
+class TradeoffStudy(Study):
+    """Rows in lines of JSON; the last one of a rank may be cut off."""
+
+    def done(self, output):
+        rows = {}
+        for file in (output / "rows").glob("*.jsonl"):
+            for line in file.read_text(encoding="utf-8").splitlines():
+                row = json.loads(line)
+                rows[row["index"]] = row["seconds"]
+        return rows
+
+    def answers(self, output):
+        own = ("model", "formulation", "mesh", "engine", "integrator", "degree", "cells", "mesh tolerance", "tolerance",
+               "status", "reason", "displacement", "error", "shown error", "below bar", "steps")
+        return sorted([row[name] for name in own] for row in csv_rows(output / "tradeoff.csv"))
+
+
+class OptimizeStudy(Study):
+    """A file for each start that is done."""
+
+    def done(self, output):
+        return {file.name: file.read_bytes() for file in (output / "starts").glob("*.json")}
+
+    def answers(self, output):
+        return [{name: value for name, value in row.items() if name != "seconds"} for row in csv_rows(output / "results.csv")]
+
+
+class Chance:
+    """Random places; numbers that are not reached are followed by smaller ones."""
+
+    def __init__(self, study):
+        self.random, self.study, self.most = random.Random(SEED), study, {"row": study.most_rows, "step": 4096}
+
+    def place(self):
+        """PLACE, and PLACE:NUMBER."""
+        what = self.random.choice(("row", "row", "step", "write") if self.study.most_rows else ("write",))
+        if what == "write":
+            return what, f"write:{self.random.choice(self.study.files)}"
+        return what, f"{what}:{int(self.most[what] ** self.random.random())}"
+
+    def too_late(self, what):
+        """The study did not come there."""
+        if what in self.most:
+            self.most[what] = max(1, self.most[what] * 2 // 3)
+
+
+def disturbed(study, output, victim, n, rank, place):
+    """Starts the study on n ranks, of which one comes to the place. Gives the exit code when all of its processes have ended."""
+    own = [PROGRAM, *study.command, "--output", output.name, "--resume"]
+    if victim == "rank":
+        chosen = ["env", f"CRAWLER_STOP_AT={place}:KILL", *own]
+    elif victim == "one signal":
+        chosen = ["env", f"CRAWLER_STOP_AT={place}:TERM", *own]
+    else:
+        number = {"mpirun": signal.SIGKILL, "mpirun in order": signal.SIGTERM}[victim]
+        chosen = ["env", f"CRAWLER_STOP_AT={place}:STOP", sys.executable, "-c", KILLER, int(number), *own]
+    words = [MPIRUN, "--oversubscribe"]
+    for i in range(n):
+        words += [":"] * (i > 0) + ["-n", 1] + (chosen if i == rank else own)
+    process = subprocess.Popen([str(word) for word in words], cwd=output.parent, env=environment(), stdin=subprocess.DEVNULL,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    signal.alarm(PATIENCE)  # ends what hangs
+    code = process.wait()
+    try:
+        while True:
+            os.wait()  # the ranks of an mpirun that was killed
+    except ChildProcessError:
+        signal.alarm(0)
+    return code
+
+
+def kills(name, study, folder, n_kills):
+    """The study is stopped so often, resumed each time; in the end it is what it would be without."""
+    whole = study.start(folder / "whole")
+    expect(whole.returncode == 0, f"{name}: an unbroken one {whole.stderr}")
+    reference, chance, hits, output, before = study.answers(folder / "whole"), Chance(study), 0, folder / "killed", {}
+    for _ in range(20 * n_kills):
+        if hits == n_kills:
+            break
+        victim = chance.random.choice(("rank", "rank", "mpirun", "mpirun in order", "one signal"))
+        n = chance.random.choice((2, 2, 3, 4))
+        what, place = chance.place()
+        rank = 0 if what == "write" and study.most_rows else chance.random.randrange(n)
+        code = disturbed(study, output, victim, n, rank, place)
+        where = f"{name}: {victim} at {place} of rank {rank} of {n}: exit code {code}, {len(before)} rows before"
+        if code == 0:  # too late
+            expect(study.answers(output) == reference, f"{where}: another table")
+            chance.too_late(what)
+            shutil.rmtree(output)
+            before = {}
+            continue
+        hits += 1
+        expect(code in {"rank": (128 + signal.SIGKILL,), "mpirun": (-signal.SIGKILL,), "one signal": (5,)}.get(victim, (code,)),
+               where)
+        now = study.done(output)
+        lost = [row for row, seconds in before.items() if now.get(row) != seconds]
+        expect(not lost, f"{where}: lost or computed again: {lost[:9]}")
+        before = now
+    expect(hits == n_kills, f"{name}: {hits} of {n_kills} kills hit")
+    last = study.start(output, "--resume", ranks=3)
+    now = study.done(output)
+    expect(last.returncode == 0 and study.answers(output) == reference and all(now[row] == before[row] for row in before),
+           f"{name}: in the end it is the unbroken one {last.stderr}")
+
+
+def write(folder, axes, more=""):
+    """scene.prm with these axes."""
+    (folder / "scene.prm").write_text(BODY + f"subsection Sweep\n set Axes = {axes}\n {more}\nend\n", encoding="utf-8")
+
+
+def test_kills(folder):
+    """Of each study."""
+    point_study = {"sweep": PointStudy(("sweep", "scene.prm"), "results", "results", "status", "seconds"),
+                   "atlas": PointStudy(("atlas", "scene.prm", "--set", "Accuracy=1e-3"), "atlas", "atlas", "outcome",
+                                       "run seconds")}
+    budgets = ("--set", "Sweep/Axes=Optimize/Work : 0.001, 0.003", "--set", "Optimize/Objective=displacement",
+               "--set", "Optimize/Starts=3")
+    starts = [f"{case}-{start}.json" for case in (1, 2) for start in range(3)]
+    studies = {**point_study,
+               "tradeoff": TradeoffStudy(("tradeoff", "scene.prm"), ("original.prm", "tradeoff.csv", "summary.json"), 60),
+               "optimize": OptimizeStudy(("optimize", PRM / "optimize_harmonics.prm", *budgets), starts, 0)}
+    for name, study in studies.items():
+        (folder / name).mkdir()
+        write(folder / name, f"{P} : linspace(1.5, 4, 16); {CHI} : linspace(0.05, 0.5, 48)")
+        kills(name, study, folder / name, N_KILLS if name == "sweep" else max(1, N_KILLS // 4))
+
+
+def test_error_bars(folder):
+    """Of many points, against answers that are 1e4 times as accurate."""
+    write(folder, f"{P} : linspace(1.5, 4, 16); {CHI} : linspace(0.05, 0.5, 48)")
+    tables = []
+    for accuracy in ("1e-4", "1e-8"):
+        done = call([PROGRAM, "sweep", "scene.prm", "--output", accuracy, "--set", f"Accuracy={accuracy}"], folder)
+        expect(done.returncode == 0, f"a sweep with {accuracy}: {done.stderr}")
+        tables.append(h5_columns(folder / accuracy / "results.h5", "results"))
+    error, bars = np.abs(tables[0]["displacement"] - tables[1]["displacement"]), tables[0]["displacement_error.total"]
+    covered = np.mean(error <= bars)
+    expect(covered >= 0.99 and np.all(bars <= 1e-4 * np.abs(tables[0]["displacement"])),
+           f"{100 * covered:.2f} % of the points are within their error bounds, all bars within Accuracy")
+
+
+def test_many_ranks(folder):
+    """More ranks than points give the same table."""
+    write(folder, f"{P} : 0, 2, 3; {CHI} : 0.1, 0.4")
+    few = ("--set", f"Atlas/First axis={CHI} : 0.1, 0.2, 0.3", "--set", "Accuracy=1e-3")
+    for study, table, ranks, more in (("sweep", "results", 16, ()), ("atlas", "atlas", 8, few)):
+        tables = []
+        for n in (1, ranks):
+            output = folder / f"{study}-{n}"
+            done = call([*on_ranks(MPIRUN, n), PROGRAM, study, "scene.prm", "--output", output, *more], folder)
+            expect(done.returncode == 0, f"{study} on {n} ranks {done.stderr}")
+            tables.append(h5_columns(output / f"{table}.h5", table))
+        expect(len(tables[0]["index"]) == 6 and same_columns(*tables), f"{study}: {ranks} ranks give the same table, bit for bit")
+
+
+def test_out_of_memory(folder):
+    """What a run throws is how it ends: with a reason, a summary and exit code 3; in a sweep it is a row."""
+    cells = "Discretization/Number of cells"
+    limited = ("sh", "-c", 'ulimit -v 1600000; exec "$@"', "sh", PROGRAM)
+    write(folder, f"{cells} : 4, 10000000, 5")
+    for tolerance in ((), ("--set", "Time/Tolerance=1e-3")):  # in a pilot run, and in the run itself
+        result = call([*limited, "run", "scene.prm", "--output", "large", "--overwrite", "--quiet", "--set",
+                       f"{cells}=10000000", *tolerance], folder)
+        file = folder / "large" / "summary.json"
+        summary = json_of(file) if file.is_file() else {}
+        expect(result.returncode == 3 and summary.get("status") == "failed" and summary.get("reason") == "out_of_memory" and
+               "out_of_memory" in result.stderr, f"a run that needs too much memory says so: {result}")
+    result = call([*limited, "sweep", "scene.prm", "--output", "memory"], folder)
+    rows = h5_columns(folder / "memory" / "results.h5", "results")
+    expect(result.returncode == 0 and rows["reason"] == ["", "out_of_memory", ""] and
+           rows["status"] == ["finished", "failed", "finished"], f"in a sweep it is a row {rows['reason']} {result.stderr}")
+
+
+def test_more_bad_axes(folder):
+    """Like those of tests/cli/sweep.py."""
+    (folder / "good.csv").write_text("p\n2\n", encoding="utf-8")
+    (folder / "binary.csv").write_bytes(bytes(range(256)) * 20)
+    for axes, words in ((f"{P} : 4, column(good.csv, p)", ("column(good.csv, p)", "nothing beside it")),
+                        (f"{P} : linspace(1, 2)", ("linspace(first, last, count)",)),
+                        (f"{P} : uniforms(2, 3)", ('nearest is "uniform"',)),
+                        (f"{P} 1, 2", ("VALUES",)),
+                        ("File : linspace(1, 2, 2)", ("linspace(1, 2, 2)", "names of parameter files")),
+                        (f"{P} : linspace(2, 3, 2) Body/Length: linspace(1, 2, 2)", ("semicolon missing",)),
+                        (f"{P} : column(binary.csv, p)", ("row 1", "not text")),
+                        ("File : missing.prm", ("missing.prm", "No such file"))):
+        write(folder, axes)
+        result = call([PROGRAM, "sweep", "scene.prm", "--output", "bad"], folder)
+        expect(result.returncode == 2 and len(result.stderr.splitlines()) == 1 and not (folder / "bad").exists()
+               and all(word in result.stderr for word in (*words, "Sweep/Axes")), f'"{axes}": {result}')
+
+
+def main():
+    """Each test in a folder of its own."""
+    print(f"{N_KILLS} kills, seed {SEED}", flush=True)
+    ctypes.CDLL(None).prctl(36, 1)  # PR_SET_CHILD_SUBREAPER: the ranks of a killed mpirun become children of this process
+    with tempfile.TemporaryDirectory() as name:
+        for test in (test_more_bad_axes, test_many_ranks, test_out_of_memory, test_error_bars, test_kills):
+            folder = pathlib.Path(name, test.__name__)
+            folder.mkdir()
+            test(folder)
+    checks.end()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,259 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Commands that cannot write: what tests of full disks do with every command, and what they expect of it."""
+import csv
+import os
+import pathlib
+import resource
+import shutil
+import subprocess
+
+from program import Paused, call
+
+PAGE = 4096
+RUN = """set Accuracy = 1e-3
+subsection Active stress
+  set Generator = expression
+  subsection Expression
+    set Active stress = 0.15*sin(2*pi*(s+t))
+  end
+end
+subsection Time
+  set Engine = petsc
+end
+subsection Output
+  set Number of snapshots = 3
+  set Active stress table = 4, 4
+  set Sensitivities       = Body/Elastic modulus
+end
+"""
+QUICK = """set Model = kinematic
+subsection Active stress
+  set Generator = prescribed strain
+  subsection Prescribed strain
+    set Given by = wave
+  end
+end
+subsection Output
+  set Number of snapshots = 2
+end
+"""
+SWEEP = QUICK + """subsection Sweep
+  set Axes = Active stress/Prescribed strain/Amplitude : linspace(0.05, 0.3, 16)
+  set Keep fields = 1, 8
+end
+"""
+ATLAS = """set Accuracy = 1e-3
+subsection Active stress
+  subsection Optimal wave
+    set Choose wave by = wave speed
+  end
+end
+subsection Atlas
+  set First axis  = Active stress/Optimal wave/Perturbation parameter : 0.1, 0.2
+  set Second axis = Body/Anchoring exponent : linspace(0, 2, 2)
+end
+"""
+TRADEOFF = """subsection Active stress
+  subsection Optimal wave
+    set Perturbation parameter = 0.4
+    set Choose wave by = wave speed
+  end
+end
+subsection Tradeoff
+  set Integrators = radau 5
+  set Degrees     = 2
+  set Cells       = 3
+  set Tolerances  = 1e-2, 1e-3
+  set Repetitions = 1
+end
+"""
+SAMPLES = "s,t,m\n" + "".join(f"{s / 4},{t / 8},{(s - t) % 3}\n" for t in range(9) for s in range(5))
+TIMES = ("seconds", "cost", "memory", "speed", "time of")  # in names of columns that differ from run to run
+
+
+def content(folder):
+    """All files by name; the folder itself, which some name, is FOLDER."""
+    return {str(path.relative_to(folder)): path.read_bytes().replace(str(folder).encode(), b"FOLDER")
+            for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+class Case:
+    """A command. {out}: where its results go, a folder or a file; {in}: a folder with inputs."""
+
+    program = None  # the path to crawler
+
+    def __init__(self, name, words, resumes=True, prepared=None, to_screen=False, place="out"):
+        self.name, self.words, self.resumes, self.prepared = name, words, resumes, prepared
+        self.to_screen, self.place = to_screen, place
+
+    def start(self, out, inputs, options=(), largest=None):
+        """The finished process; out is where results go, largest the size of the largest file in bytes."""
+        words = [str(word).replace("{out}", str(out)).replace("{in}", str(inputs)) for word in self.words]
+
+        def limit():
+            if largest is not None:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))
+
+        command, more = [self.program, *words, *options], {"variables": {"MPLCONFIGDIR": str(inputs / "matplotlib")}}
+        if not self.to_screen:
+            return call(command, preexec_fn=limit, **more)
+        try:
+            with open(out, "w", encoding="utf-8") as file:
+                return call(command, preexec_fn=limit, stdout=file, **more)
+        except OSError:  # no room for the name of the file: that is the shell's affair
+            return None
+
+
+def without_times(text):
+    """The rows of a table without columns that differ from run to run."""
+    rows = list(csv.reader(text.decode().splitlines()))
+    kept = [i for i, name in enumerate(rows[0]) if not any(word in name for word in TIMES)]
+    return [[row[i] for i in kept] for row in rows]
+
+
+class Faults:
+    """Counts commands that were disturbed, and judges them."""
+
+    def __init__(self, checks):
+        self.checks, self.n = checks, 0
+
+    def compare(self, case, folder, whole, what):
+        """Are these the files of an undisturbed command?"""
+        ours = content(folder) if folder.is_dir() else {"": folder.read_bytes()}
+        free = {"log.txt", "restart.dat", "restart.old.dat"}
+        self.checks.expect(set(ours) - free == set(whole) - free, f"{what}: other files: {sorted(set(ours) ^ set(whole))}")
+        for name in set(ours) & set(whole) - free:
+            if name.endswith("results.csv") or name.endswith("atlas.csv") or name.endswith(("starts.csv", "optima.csv")):
+                same = without_times(ours[name]) == without_times(whole[name])
+            elif name.endswith(".prm") and "recommendations" not in name:  # comments stand behind names of folders
+                same = ours[name].split() == whole[name].split()
+            elif name.endswith((".vtu", ".vts", ".pvd", "sensitivity_body.csv", "statistics.csv", "stress.csv")):
+                same = ours[name] == whole[name]
+            else:  # times are in them
+                same = abs(len(ours[name]) - len(whole[name])) < 0.2 * len(whole[name]) + 200
+            self.checks.expect(same, f"{what}: {name} is another one")
+
+    def judge(self, done, out, before, what):
+        """A command that could not write: exit code, sentence, older files. Returns whether it had room enough."""
+        if done is None:
+            return False
+        self.n += done.returncode != 0
+        if done.returncode == 0:
+            return True
+        words = done.stderr
+        self.checks.expect(done.returncode == 6, f"{what}: exit code {done.returncode}, {words[:400]!r}")
+        self.checks.expect(words.count("\n") == 1 and words.startswith("crawler: ") and len(words) < 1000 and
+                           any(text in words for text in ("disk", '"', "standard output")), f"{what}: {words[:600]!r} is not one sentence")
+        for path, text in before.items():
+            self.checks.expect(path.read_bytes() == text, f"{what}: {path.name}, which is older, was damaged")
+        parts = [path.name for path in (out.rglob("*") if out.is_dir() else out.parent.glob("*.part"))
+                 if path.name.endswith(".part")]
+        self.checks.expect(not parts, f"{what}: {parts} are left")
+        return False
+
+    def resumed(self, case, out, inputs, whole, what):
+        """With room enough, the command goes on to the end."""
+        options = ["--resume"] if case.resumes else []
+        if not case.resumes and case.prepared is None:
+            out.unlink(missing_ok=True)
+        done = case.start(out, inputs, options)
+        self.checks.expect(done.returncode == 0, f"{what}, then with room: exit code {done.returncode}, {done.stderr[:400]!r}")
+        if done.returncode == 0:
+            self.compare(case, out, whole, what)
+
+    def taken_away(self, place, command, stop_at):
+        """The folder {out} of a run or study is removed, renamed or replaced while it waits."""
+        for how in ("removed", "renamed", "replaced"):
+            out, other = place / "taken", place / "other"
+            for folder in (out, other):
+                shutil.rmtree(folder, ignore_errors=True)
+            what = f"{command[1]}, its folder {how}"
+            with Paused([*command, "--output", out], stop_at) as paused:
+                self.checks.expect((out / "study.lock").exists(), f"{what}: it has not begun, {list(out.rglob('*'))}")
+                if how == "removed":
+                    shutil.rmtree(out)
+                else:
+                    out.rename(other)
+                if how == "replaced":
+                    out.mkdir()
+                    (out / "mine").write_text("mine", encoding="utf-8")
+                done = paused.go_on()
+            self.n += 1
+            self.checks.expect(done.returncode == 6 and done.stderr.count("\n") == 1 and str(out) in done.stderr,
+                               f"{what}: exit code {done.returncode}, {done.stderr[:400]!r}")
+            if how == "replaced":
+                self.checks.expect(content(out) == {"mine": b"mine"}, f"{what}: written into the other folder: {list(content(out))}")
+
+
+class Disk:
+    """A tmpfs of some size."""
+
+    def __init__(self, place):
+        self.place = place
+        place.mkdir()
+
+    def room(self):
+        """All that may ever be needed."""
+        return self.mount("size=64M")
+
+    def used(self):
+        """Pages."""
+        return sum(-(-path.stat().st_size // PAGE) for path in self.place.rglob("*") if path.is_file())
+
+    def mount(self, options):
+        """Whether that is possible."""
+        mounted = ["-o", "remount," + options] if os.path.ismount(self.place) else ["-t", "tmpfs", "-o", options, "tmpfs"]
+        return subprocess.run(["mount", *mounted, str(self.place)], capture_output=True, check=False).returncode == 0
+
+    def unmount(self):
+        """Whatever was there."""
+        if os.path.ismount(self.place):
+            subprocess.run(["umount", str(self.place)], check=True)
+
+
+def fresh(case, out, inputs):
+    """The place of the results as it is before the command, and the older files in it."""
+    shutil.rmtree(out, ignore_errors=True)
+    out.unlink(missing_ok=True)
+    if case.prepared is not None:
+        shutil.copytree(inputs / case.prepared, out)
+    return {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} if out.is_dir() else {}
+
+
+def prepare(program, prm, inputs):
+    """The commands; their parameter files are written."""
+    Case.program = program
+    inputs.mkdir()
+    for file, text in [("run.prm", RUN), ("quick.prm", QUICK), ("sweep.prm", SWEEP), ("atlas.prm", ATLAS),
+                       ("tradeoff.prm", TRADEOFF), ("samples.csv", SAMPLES)]:
+        (inputs / file).write_text(text, encoding="utf-8")
+    optimize = prm / "studies" / "optimize_harmonics.prm"
+    return [Case("run", ["run", "{in}/run.prm", "--output", "{out}", "--quiet"]),
+            Case("run xdmf", ["run", "{in}/run.prm", "--output", "{out}", "--quiet", "--set",
+                               "Output/Snapshot format=xdmf", "--set", "Output/Sensitivities="]),
+            Case("run without a mesh", ["run", "{in}/quick.prm", "--output", "{out}", "--quiet"]),
+            Case("sweep", ["sweep", "{in}/sweep.prm", "--output", "{out}", "--quiet"]),
+            Case("atlas", ["atlas", "{in}/atlas.prm", "--output", "{out}", "--quiet"]),
+            Case("tradeoff", ["tradeoff", "{in}/tradeoff.prm", "--output", "{out}", "--quiet"]),
+            Case("optimize", ["optimize", optimize, "--output", "{out}", "--quiet", "--set", "Optimize/Starts=1"]),
+            Case("report", ["report", "{out}", "--quiet"], resumes=False, prepared="whole_run"),
+            Case("plot", ["plot", "{out}"], resumes=False, prepared="whole_run"),
+            Case("table", ["table", "{in}/samples.csv", "{out}", "--quiet", "--overwrite"], resumes=False,
+                  place="out.csv"),
+            Case("init", ["init", "robot", "--output", "{out}"], resumes=False),
+            Case("parameters", ["parameters"], resumes=False, to_screen=True),
+            Case("check", ["check", "{in}/run.prm"], resumes=False, to_screen=True)]
+
+
+# Runs and studies whose folders are taken away: without pilot runs, and with so much to do that they do not end before.
+LONG_RUN = ["--set", "Time/End time=60", "--set", "Output/Sensitivities=", "--set", "Output/Active stress table=", "--set",
+            "Output/Number of snapshots=0", "--set", "Time/Tolerance=1e-9", "--set", "Time/Integrator=radau 5", "--set",
+            "Discretization/Number of cells=8", "--set", "Time/Cycle stop=off", "--set", "Time/Checkpoint interval=0", "--quiet"]
+LONG_SWEEP = ["--set", "Sweep/Axes=Active stress/Prescribed strain/Amplitude : linspace(0.05, 0.3, 20000)", "--set",
+              "Sweep/Keep fields=", "--quiet"]
+
+
+def take_folders_away(program, faults, place, inputs):
+    """Of a run and of a sweep."""
+    faults.taken_away(place, [program, "run", inputs / "run.prm", *LONG_RUN], "step:300:STOP")
+    faults.taken_away(place, [program, "sweep", inputs / "sweep.prm", *LONG_SWEEP], "row:3:STOP")
