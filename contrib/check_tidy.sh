@@ -27,13 +27,16 @@ if [ $headers = yes ]; then
     sed 's/.*/#include <&>/' >"$work/headers.cc"
   files+=("$work/headers.cc" source/lanes/lanes.cc)
 fi
-# The compile commands, that of headers.cc like that of main.cc, without the options of g++ that clang does not know.
-python3 - "$build/compile_commands.json" "$work" <<'END'
-import json, sys
+# The compile commands without the options of g++ that clang does not know. headers.cc, and sources that are compiled
+# together with others of their room, take that of main.cc.
+python3 - "$build/compile_commands.json" "$work" "${files[@]}" <<'END'
+import json, os, sys
 commands = json.load(open(sys.argv[1]))
 main = next(c for c in commands if c["file"].endswith("source/main.cc"))
-headers = sys.argv[2] + "/headers.cc"
-commands.append(main | {"file": headers, "command": main["command"].replace(main["file"], headers)})
+known = {c["file"] for c in commands}
+for file in map(os.path.abspath, sys.argv[3:]):
+    if file not in known:
+        commands.append(main | {"file": file, "command": main["command"].replace(main["file"], file)})
 lanes = [c for c in commands if c["file"].endswith("/lanes.cc")]
 commands = [c for c in commands if c not in lanes[1:]]  # of one instruction set
 for c in commands:

@@ -18,7 +18,7 @@ namespace crawler
   std::filesystem::path
   temporary_file(const std::filesystem::path &path)
   {
-    const std::filesystem::path temporary = path.string() + ".part";
+    std::filesystem::path temporary = path.string() + ".part";
     std::error_code error;
     std::filesystem::remove(temporary, error);
     if (error)

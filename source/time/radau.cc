@@ -291,6 +291,11 @@ namespace crawler
       const std::size_t size      = radau.n_owned;
       const ReadAccess b(B);
       const WriteAccess x(X);
+      if (!radau.factors_ok) // PETSc applies it once before it asks why the set-up failed
+      {
+        std::fill(x.span.begin(), x.span.end(), 0.);
+        return 0;
+      }
       const int s = radau.n_stages(), n = radau.n();
       radau.work.resize(size);
       radau.complex_work.resize(tableau.n_pairs() * size);
@@ -381,6 +386,11 @@ namespace crawler
       Radau &radau        = data(ts);
       const bool settling = radau.steps < radau::settling_steps;
       PetscErrorCode code = 0;
+      if (!radau.factors_ok)
+      {
+        radau.error = hopeless_error;
+        return 0;
+      }
       {
         const ReadAccess z(radau.z.get());
         const WriteAccess y_dot(radau.y_dot.get());

@@ -187,7 +187,8 @@ def zsh(folder, *lines):
     def read_until(mark):
         text = ""
         while not re.search(mark, text):
-            check(select.select([main], [], [], PATIENCE)[0], f"zsh hangs behind {text!r}")
+            if not select.select([main], [], [], PATIENCE)[0]:
+                raise TimeoutError(f"zsh hangs behind {text!r}")
             text += os.read(main, 65536).decode("utf-8", errors="replace")
         return text
 

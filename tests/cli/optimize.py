@@ -163,10 +163,11 @@ def test_stops(place):
             expect(state["status"] == "stopped" and state["reason"] == "signal" and "--resume" in done.stderr
                    and (folder / "best-1" / "summary.json").exists(), f"a signal ends with the best so far: {done.stderr}")
         if code != 0:
-            kept = {file: file.read_bytes() for file in (folder / "starts").glob("*.json")}
+            kept = {file: file.read_bytes() for file in (folder / "starts").glob("*.json")
+                    if not json_of(file)["was_interrupted"]}
             resumed = run("optimize_harmonics", folder, *BUDGETS, options=["--resume"])
-            expect(resumed.returncode == 0 and (ranks > 1 or kept) and (code == 5 or all(  # which keeps parts of starts, too
-                file.read_bytes() == text for file, text in kept.items())), f"{name}, and resumed: {resumed.stderr}")
+            expect(resumed.returncode == 0 and (ranks > 1 or kept) and all(
+                file.read_bytes() == text for file, text in kept.items()), f"{name}, and resumed: {resumed.stderr}")
         expect(rows(folder) == rows(place / "one"), f"{name}: the table of one in one go")
 
     # Within the first start there is a best so far, too.
@@ -176,7 +177,7 @@ def test_stops(place):
     for limit, code in (("0.001", 5), ("1e6", 0)):
         limited = run("optimize_harmonics", place / "limited", f"Optimize/Time limit={limit}", options=["--resume"])
         expect(limited.returncode == code and ("Time limit" in limited.stderr) == (code == 5)
-               and bool(rows(place / "limited")) == (code == 0), f"time limit {limit}: {limited.returncode}, {limited.stderr}")
+               and (code == 5 or rows(place / "limited")), f"time limit {limit}: {limited.returncode}, {limited.stderr}")
 
 
 def test_starts(place):

@@ -2,19 +2,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reads the files of a run the way ParaView does, with VTK's own readers and filters, and checks what they hold.
 
-    python3 paraview_files.py PATH_TO_CRAWLER          needs python3-vtk9 and mpirun
+    python3 paraview_files.py PATH_TO_CRAWLER MPIEXEC          needs python3-vtk9
 
 The same scene is run on one rank and on two, and as XDMF; all must give the same fields. An adaptive mesh, a level
 without a mesh and a run that is killed must leave whole animations, too.
 """
 import json
-import os
 import pathlib
 import signal
-import subprocess
 import sys
 import tempfile
-import time
 from xml.etree import ElementTree
 
 try:
@@ -24,6 +21,9 @@ try:
     from vtk.util.numpy_support import vtk_to_numpy
 except ImportError as error:
     sys.exit(f"{error}; the Debian packages python3-vtk9 and python3-h5py are expected (and /usr/bin/python3)")
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call, on_ranks  # noqa: E402
 
 # The points of the VTU files are then every fourth of the 201 points of the kymograph, and frames are every 16th row.
 LENGTH, END_TIME, FRAMES, CELLS, DEGREE = 2.0, 1.5, 8, 10, 5
@@ -59,14 +59,8 @@ REST_THICKNESS = LENGTH / 10
 ROUND_OFF = 1e-13  # of sums of two numbers of size 1
 NINE_DIGITS = 1e-8
 
-failures = []
-
-
-def check(condition, what):
-    """Notes a failure and goes on."""
-    if not condition:
-        failures.append(what)
-        print(f"FAILED: {what}")
+checks = Checks()
+check = checks.expect
 
 
 def close(found, wanted, tolerance):
@@ -82,12 +76,7 @@ def run(folder, name, command, entries=()):
     command = [*command, "run", str(file), "--quiet", "--output", str(output)]
     for entry in entries:
         command += ["--set", entry]
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
-    try:
-        done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                              timeout=120)
-    except (OSError, subprocess.TimeoutExpired) as problem:
-        sys.exit(f"{name}: {problem}")
+    done = call(command)
     if done.returncode != 0:
         sys.exit(f"{name}: exits with {done.returncode}: {done.stderr[-2000:]}")
     return output
@@ -297,14 +286,8 @@ def check_killed(folder, program):
     file.write_text("subsection Discretization\n set Number of cells = 50\nend\n"
                     "subsection Time\n set Step control = fixed\n set Initial step = 1e-6\nend\n"
                     "subsection Output\n set Number of snapshots = 2000\n set Snapshot format = xdmf\nend\n")
-    with subprocess.Popen([program, "run", str(file), "--quiet", "--output", str(output)]) as process:
-        deadline = time.monotonic() + 100
-        while time.monotonic() < deadline and process.poll() is None:
-            if (output / "line.xdmf").is_file() and (output / "line.xdmf").read_text().count("<Time") > 20:
-                break
-            time.sleep(0.01)
-        check(process.poll() is None, "the run to be killed is still running")
-        process.send_signal(signal.SIGKILL)
+    done = call([program, "run", file, "--quiet", "--output", output], stop_at="step:15000:KILL")
+    check(done.returncode == -signal.SIGKILL, f"the run to be killed: {done.returncode}, {done.stderr}")
     grids = ElementTree.parse(output / "solution.xdmf").getroot().findall("Domain/Grid/Grid")
     with h5py.File(output / "solution.h5") as data:
         check(len(grids) > 20, "frames of the run that was killed")
@@ -324,15 +307,15 @@ def vtu_frames(output):
 
 
 def main():
-    """Runs on one and two ranks; 1 if any check failed."""
-    if len(sys.argv) != 2:
-        sys.exit("usage: paraview_files.py PATH_TO_CRAWLER")
+    """Runs on one and two ranks."""
+    if len(sys.argv) != 3:
+        sys.exit("usage: paraview_files.py PATH_TO_CRAWLER MPIEXEC")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         serial = check_run("one rank", run(folder, "one", [sys.argv[1]]))
         script = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "plot" / "kymograph.py"
-        subprocess.run([sys.executable, script, folder / "one"], cwd=folder, stdout=subprocess.DEVNULL, check=True)
-        check((folder / "one" / "kymograph.png").is_file(), "the picture of a run is beside its files")
+        done = call([sys.executable, script, folder / "one"], folder)
+        check(done.returncode == 0 and (folder / "one" / "kymograph.png").is_file(), "the picture of a run is beside its files")
         check_xdmf("XDMF", run(folder, "xdmf", [sys.argv[1]], XDMF), serial[0])
         check(sorted(path.name for path in (folder / "xdmf").glob("*solution*")) == ["solution.h5", "solution.xdmf"],
               "XDMF: one pair of files")
@@ -342,15 +325,15 @@ def main():
                 check(len({len(frame["s"]) for frame in frames}) > 1, "the mesh changes between frames")
             check_xdmf(name, run(folder, name + " XDMF", [sys.argv[1]], more + XDMF), frames)
         check_killed(folder, sys.argv[1])
-        two = check_run("two ranks", run(folder, "two", ["mpirun", "--oversubscribe", "-n", "2", sys.argv[1]]))
+        two = check_run("two ranks", run(folder, "two", [*on_ranks(sys.argv[2], 2), sys.argv[1]]))
     for i, (a, b) in enumerate(zip(serial[0], two[0])):
         for field in a:
             check(close(a[field], b[field], 1e-9), f"frame {i}: {field} is the same on one and two ranks")
     for field, values in serial[1].items():
         check(close(values, two[1][field], NINE_DIGITS), f"kymograph: {field} is the same on one and two ranks")
-    print(f"{len(serial[0])} frames and a kymograph on one and on two ranks: {len(failures)} checks failed")
-    return 1 if failures else 0
+    print(f"{len(serial[0])} frames and a kymograph on one and on two ranks")
+    checks.end()
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -4,15 +4,24 @@
 missing. Each picture must have names, symbols and units on its axes, and a part of the time must be that part.
 
     python3 plot.py PATH_TO_CRAWLER
+
+Each script is called by the program once; in most checks of pictures it runs in a fork of this process, which has loaded
+matplotlib already.
 """
 import os
 import pathlib
 import re
-import subprocess
+import runpy
 import sys
 import tempfile
+import traceback
 
+import h5py  # noqa: F401
 import matplotlib.image
+import matplotlib.pyplot
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call  # noqa: E402
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -61,32 +70,61 @@ WORDS = [
     ("optimum", [], ["strain $w-1$ [1]", "active stress $m$ [force]", "merit [1]", "time $t$ [time]"]),
     ("scaling", ["--kind", "scaling"], ["mass $M$ [g]", r"stride frequency $\nu$ [1/s]", "speed $U L$ [mm/s]"]),
     ("calibration.csv", [], ["true error / displacement $D$ [1]", "reported error / true error [1]"])]
+# The script of a folder or file; with --kind it is that one.
+SCRIPTS = {"run": "kymograph", "no_stride": "kymograph", "sweep": "sweep", "atlas": "atlas", "tradeoff": "tradeoff",
+           "optimum": "optimize", "scaling": "sweep", "calibration.csv": "calibration"}
 # Arguments of crawler plot, exit code, what the one sentence has.
 REFUSED = [
     ([], 2, "the folder is missing"), (["nowhere"], 2, '"nowhere" is not a folder'),
     (["empty"], 2, "has nothing to draw"), (["run", "--kind", "kymogaph"], 2, '"kymograph"'),
+    (["run", "--", "-ts_monitor"], 2, "no use for PETSc options"), (["run", "--lastt-stride"], 2, "--lastt-stride"),
+    (["run", "--output", "no/picture.png"], 6, "no/picture.png")]
+# The same of scripts.
+REFUSED_BY_SCRIPTS = [
     (["run", "--kind", "sweep"], 2, "results.h5"), (["sweep", "--kind", "kymograph"], 2, "kymograph.vts"),
-    (["run", "--lastt-stride"], 2, "--lastt-stride"), (["run", "--from", "soon"], 2, "soon"),
-    (["run", "--from", "2", "--to", "1"], 2, "from 2 to 1"), (["run", "--to", "4"], 2, "from 0 to 4"),
-    (["run", "--from", "1", "--to", "1.001"], 2, "has 1 times"), (["run", "--last-stride", "--to", "1"], 2, "one of the two ways"),
-    (["no_stride", "--last-stride"], 2, "has no stride"),
-    (["run", "--output", "picture.doc"], 2, ".png, .svg or .pdf"), (["run", "--output", "no/picture.png"], 6, "no/picture.png"),
-    (["optimum", "--optimum", "2"], 2, "the number of a case is expected: 1"), (["run", "--", "-ts_monitor"], 2, "no use for PETSc options"),
-    (["calibration.csv", "--value", "x"], 2, "--value")]
-failures = []
+    (["run", "--from", "soon"], 2, "soon"), (["run", "--from", "2", "--to", "1"], 2, "from 2 to 1"),
+    (["run", "--to", "4"], 2, "from 0 to 4"), (["run", "--from", "1", "--to", "1.001"], 2, "has 1 times"),
+    (["run", "--last-stride", "--to", "1"], 2, "one of the two ways"), (["no_stride", "--last-stride"], 2, "has no stride"),
+    (["run", "--output", "picture.doc"], 2, ".png, .svg or .pdf"),
+    (["optimum", "--optimum", "2"], 2, "the number of a case is expected: 1"), (["calibration.csv", "--value", "x"], 2, "--value")]
+checks = Checks()
+check = checks.expect
 
 
-def check(condition, what):
-    """Prints what was checked and keeps failures."""
-    if not condition:
-        failures.append(what)
-    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
-
-
-def crawler(*arguments, **environment):
+def crawler(*arguments, **variables):
     """Runs the program."""
-    return subprocess.run([PROGRAM, *map(str, arguments)], env={**os.environ, **environment}, capture_output=True, text=True,
-                          timeout=300, check=False)
+    return call([PROGRAM, *arguments], variables=variables)
+
+
+def drawn(folder, *options):
+    """What crawler plot would start, in a fork: its exit code and what it printed."""
+    options = list(options)
+    kind = SCRIPTS[folder]
+    if "--kind" in options:
+        at = options.index("--kind")
+        kind = options[at + 1]
+        del options[at:at + 2]
+    script = ROOT / "contrib" / "plot" / f"{kind}.py"
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            with open("printed.txt", "w", encoding="utf-8") as file:
+                os.dup2(file.fileno(), 1)
+                os.dup2(file.fileno(), 2)
+                sys.argv = [str(script), folder, *options]
+                sys.path.insert(0, str(script.parent))
+                runpy.run_path(str(script), run_name="__main__")
+                code = 0
+        except SystemExit as end:
+            code = end.code or 0
+        except BaseException:  # pylint: disable=broad-except
+            traceback.print_exc()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
+    code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    return code, pathlib.Path("printed.txt").read_text(encoding="utf-8")
 
 
 def words(picture):
@@ -117,14 +155,18 @@ def test_pictures():
         check(end.returncode == 0 and end.stdout.splitlines()[: len(said)] == said, f"plot {folder}: {end.stdout} {end.stderr}")
         image = matplotlib.image.imread(f"{folder}/{pictures[0]}")[:, :, :3]
         check(image.shape[1] > 700 and image.std() > 0.05, f"{folder}/{pictures[0]} is not blank: {image.shape}, {image.std():.2f}")
-    check("--kind sensitivity" in crawler("plot", "run").stdout, "the other picture of a run is named")
+        check(folder != "run" or "--kind sensitivity" in end.stdout, "the other picture of a run is named")
     end = crawler("plot", "calibration.csv")
     check(end.returncode == 0 and pathlib.Path("calibration.png").is_file(), f"calibration.png lies beside its table {end.stderr}")
     for folder, options, wanted in WORDS:
-        end = crawler("plot", folder, *options, "--output", "picture.svg")
-        texts = words("picture.svg") if end.returncode == 0 else []
+        own = STUDIES.get(folder, ((), (), (), ()))[3]
+        if not options and f"{own[-1:]}".count(".svg"):  # it has been drawn already
+            code, printed, texts = 0, "", words(f"{folder}/{own[-1]}")
+        else:
+            code, printed = drawn(folder, *options, "--output", "picture.svg")
+            texts = words("picture.svg") if code == 0 else []
         missing = [word for word in wanted if not any(word in text for text in texts)]
-        check(end.returncode == 0 and not missing, f"plot {folder} {' '.join(options)}: without {missing} {end.stderr.strip()}")
+        check(code == 0 and not missing, f"plot {folder} {' '.join(options)}: without {missing} {printed}")
 
 
 def test_times():
@@ -133,23 +175,25 @@ def test_times():
                                  (["--from", "0.5", "--to", "1.5"], ("0.6", "1.4"), ("2.0", "2.5")),
                                  (["--to", "2"], ("0.5", "1.5"), ("2.5", "3.0"))):
         for kind in ("kymograph", "sensitivity"):
-            end = crawler("plot", "run", "--kind", kind, *options, "--output", "part.svg")
-            texts = words("part.svg") if end.returncode == 0 else []
+            code, printed = drawn("run", "--kind", kind, *options, "--output", "part.svg")
+            texts = words("part.svg") if code == 0 else []
             numbers = {float(text) for text in texts if re.fullmatch(r"[\d.]+", text)}
-            check(end.returncode == 0 and all(float(number) in numbers for number in there),
-                  f"{kind} {' '.join(options)} has the times {there}: {end.stderr}")
+            check(code == 0 and all(float(number) in numbers for number in there),
+                  f"{kind} {' '.join(options)} has the times {there}: {printed}")
             if kind == "kymograph":
                 check(not any(number in texts for number in away), f"{kind} {' '.join(options)} has not the times {away}")
 
 
 def test_part_of_its_own():
-    """The picture of a part leaves that of the whole as it is."""
-    crawler("plot", "run")
+    """The picture of a part leaves that of the whole as it is; the program passes on the options."""
     before = pathlib.Path("run/kymograph.png").read_bytes()
-    for options, name in ((["--last-stride"], "kymograph_last_stride.png"),
-                          (["--from", "0.5", "--to", "1.5"], "kymograph_from_0.5_to_1.5.png")):
-        end = crawler("plot", "run", *options)
-        check(end.returncode == 0 and pathlib.Path("run", name).is_file(), f"{' '.join(options)} is {name}: {end.stderr}")
+    end = crawler("plot", "run", "--last-stride")
+    check(end.returncode == 0 and pathlib.Path("run/kymograph_last_stride.png").is_file(), f"--last-stride: {end.stderr}")
+    code, printed = drawn("run", "--from", "0.5", "--to", "1.5")
+    check(code == 0 and pathlib.Path("run/kymograph_from_0.5_to_1.5.png").is_file(), f"--from 0.5 --to 1.5: {printed}")
+    end = crawler("plot", "run", "--kind", "sensitivity", "--output", "passed.svg")
+    check(end.returncode == 0 and any("change of the displacement" in text for text in words("passed.svg")),
+          f"--kind: {end.stderr}")
     check(pathlib.Path("run/kymograph.png").read_bytes() == before, "the picture of the whole run stays")
 
 
@@ -160,14 +204,20 @@ def test_bad_input():
         lines = end.stderr.splitlines()
         check(end.returncode == code and len(lines) == 1 and word in lines[0] and lines[0].startswith("crawler: ")
               and "wrote" not in end.stdout, f"plot {' '.join(arguments)}: {end.returncode} {end.stderr.strip()[-300:]}")
-    for arguments, word in (([], "--kind"), (["run"], "--last-stride"), (["sweep"], "--where")):
+    for arguments, code, word in REFUSED_BY_SCRIPTS:
+        found, printed = drawn(*arguments)
+        check(found == code and printed.count("\n") == 1 and word in printed and re.match(r"\w+\.py: ", printed),
+              f"{' '.join(arguments)}: {found} {printed[-300:]}")
+    for arguments, word in (([], "--kind"), (["sweep"], "--where")):
         end = crawler("plot", *arguments, "--help")
         check(end.returncode == 0 and word in end.stdout, f"plot {' '.join(arguments)} --help tells of {word}")
+    code, printed = drawn("run", "--help")
+    check(code == 0 and "--last-stride" in printed, f"help of a run: {printed}")
 
 
 def test_python(folder):
     """A Python without modules hands over to Debian's; if that lacks one too, both are named."""
-    subprocess.run([sys.executable, "-m", "venv", "--without-pip", "bare"], check=True)
+    check(call([sys.executable, "-m", "venv", "--without-pip", "bare"]).returncode == 0, "a Python without modules is made")
     bare = f"{folder}/bare/bin"
     pathlib.Path("run/kymograph.png").unlink()
     end = crawler("plot", "run", PATH=f"{bare}:{os.environ['PATH']}")
@@ -197,7 +247,7 @@ def main():
         test_bad_input()
         test_python(folder)
         os.chdir("/")
-    sys.exit("\n".join(failures) or 0)
+    checks.end()
 
 
 if __name__ == "__main__":

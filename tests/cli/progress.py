@@ -113,7 +113,8 @@ def run(folder):
     slow = [PROGRAM, "run", PRM / "examples/earthworm.prm", "--set", "Accuracy=1e-9", "--set", "Time/Engine=petsc"]
     screen, code = on_terminal([*slow, "--output", "bar", "--set", "Time/End time=1e4"], folder,
                                stop=(signal.SIGTERM, lambda screen: len(set(percents(screen))) > 2))
-    check(code == 5 and not any(BAR.match(row) for row in screen.seen[-1]), f"a run that is stopped leaves no bar: {screen.seen[-1]}")
+    check(code == 5 and not any(BAR.match(row) for row in screen.seen[-1]),
+          f"a run that is stopped leaves no bar: {code}, {screen.seen[-1]}")
     grows = percents(screen)
     check(len(set(grows)) > 2 and grows == sorted(grows) and grows[-1] <= 100, f"the bar grows: {grows}")
     check(max(len(row) for row in shown(screen) if BAR.match(row)) <= WIDTH, "no bar is wider than the terminal")

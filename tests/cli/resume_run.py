@@ -103,7 +103,8 @@ def damaged(scene):
             content[chance.randrange(len(content))] ^= 1 << chance.randrange(8)
             file.write_bytes(content[:len(content) // 2] if cut and name == "restart.dat" else content)
         scene.expect("copy", [*STATES, "--resume"], 0, *names)
-        expect(scene.went_on("copy") == (2 if len(names) == 1 else 0), f"damaged {names}: {scene.went_on('copy')} times from a state")
+        expect(scene.went_on("copy") == (2 if len(names) == 1 else 0),
+               f"damaged {names}: {scene.went_on('copy')} times from a state")
         scene.compare("copy", f"damaged {names}")
 
 

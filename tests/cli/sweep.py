@@ -365,21 +365,17 @@ def test_kills(folder):
     whole = sweep(folder, "whole", "--overwrite")
     reference = table(folder / "whole")
     expect(whole.returncode == 0 and computed(reference).all(), "an unbroken sweep")
-    sweep(folder, "accurate", "--set", "Accuracy=1e-8")
-    error = np.abs(reference["displacement"] - table(folder / "accurate")["displacement"])
-    wanted = np.all(reference["displacement_error.total"] <= 1e-4 * np.abs(reference["displacement"]))
-    expect(np.all(error <= reference["displacement_error.total"]) and wanted,
-           "the points are within their error bounds, and all bars within Accuracy")
+    expect(np.all(reference["displacement_error.total"] <= 1e-4 * np.abs(reference["displacement"])),
+           "all bars are within Accuracy")
     begun = sweep(folder, "begun", stop_at="row:8:KILL")
     before = table(folder / "begun")
     done = np.flatnonzero(computed(before))
     expect(begun.returncode == -signal.SIGKILL and 8 <= len(done) < 144 and (folder / "begun" / "study.lock").exists(),
            f"the only process is killed behind {len(done)} rows: {begun.returncode}")
     command = [PROGRAM, "sweep", "sweep.prm", "--output", "killed", "--resume"]
-    killed_rank = 128 + signal.SIGKILL  # the exit code of mpirun
+    killed_rank = 128 + signal.SIGKILL  # the exit code of mpirun; rank 0 waits from its first row on, until mpirun ends it
     for what, words, place, code in (
             ("rank 1 of two is killed", ranks_that_stop(MPIRUN, command, "row:1:STOP", "row:5:KILL"), None, killed_rank),
-            ("rank 0 of two is killed", ranks_that_stop(MPIRUN, command, "row:5:KILL", "row:1:STOP"), None, killed_rank),
             ("SIGTERM", command, "row:8:TERM", 5),
             ("rank 1 of two gets Ctrl-C", [*on_ranks(MPIRUN, 2), *command], "step:1:INT:1", 5)):
         shutil.rmtree(folder / "killed", ignore_errors=True)
@@ -388,7 +384,7 @@ def test_kills(folder):
         now = table(folder / "killed")
         n = np.count_nonzero(computed(now))
         expect(result.returncode == code and n >= len(done) + (8 if "row:8" in str(place) else 0)
-               and (n < 144 or code == killed_rank) and (folder / "killed" / "study.lock").exists() == (code != 5),
+               and (n < 144 or "rank" in what) and (folder / "killed" / "study.lock").exists() == (code != 5),
                f"{what}: {result.returncode}, {n} rows {result.stderr}")
         again = sweep(folder, "killed", "--resume")
         rest = table(folder / "killed")
@@ -434,47 +430,27 @@ def test_full_disk(folder):
 
 
 def test_bad_input(folder):
-    """Wrong names and values are found before the first solve. (The words of one axis: unit/parameters/axis_test.cc.)"""
+    """Wrong names and values are found before the first solve. (More in tests/long/study_kills.py.)"""
     (folder / "empty.csv").write_text("", encoding="utf-8")
-    (folder / "remarks.csv").write_text("# nothing but a remark\n", encoding="utf-8")
-    (folder / "names.csv").write_text("p,chi\n", encoding="utf-8")
     (folder / "good.csv").write_text("# a remark\np,chi\n2,0.1\n# another\n2.0,0.2\n", encoding="utf-8")
-    (folder / "wide.csv").write_text(",".join(f"name{i}" for i in range(40)) + "\n", encoding="utf-8")
-    (folder / "twice.csv").write_text("p,q,p\n1,2,3\n", encoding="utf-8")
     (folder / "short.csv").write_text("p,q\n1,2\n\n3\n", encoding="utf-8")
-    (folder / "long.csv").write_text("p,q\n1,2,3\n", encoding="utf-8")
-    (folder / "quote.csv").write_text('p,q\n1,"a\nb"\n', encoding="utf-8")
     (folder / "utf16.csv").write_text("p,q\n1,2\n", encoding="utf-16")
     (folder / "measured.prm").write_text("set Accuracy = 1e-4\n", encoding="utf-8")
-    (folder / "a_folder").mkdir()
     cases = {
         "": ("",),
         "Body/Anchoring exponnt : 1, 2": ("Anchoring exponent",),
         f"{P} : uniform(1, 2)": ("random",),
         f"{P} : colum(good.csv, p)": ('"colum"', '"linspace"', '"logspace"', '"column"', '"uniform"', '"loguniform"',
                                       'nearest is "column"'),
-        "File : uniform(1, 2)": ("uniform(1, 2)", "names of parameter files"),
         f"{P} : 2, 3 Body/Length : 1, 2": ('"3 Body/Length : 1"', "semicolon missing"),
         f"{P} : column(good.csv, p)": ("the value 2.0 occurs twice", '"p"', "good.csv"),
-        f"{P} : column(nothing.csv, p)": ("nothing.csv", "No such file or directory", "CSV file"),
         f"{P} : column(god.csv, p)": ('nearest name is "good.csv"',),
-        f"{P} : column(a_folder, p)": ("a_folder", "is a folder"),
         f"{P} : column(empty.csv, p)": ("empty.csv", "is empty"),
-        f"{P} : column(remarks.csv, p)": ("remarks.csv", "is empty"),
-        f"{P} : column(names.csv, p)": ("names.csv", "no rows"),
-        f"{P} : column(good.csv)": ("column(file.csv, name)",),
         f"{P} : column(good.csv, chj)": ('"p" or "chi"', 'nearest is "chi"'),
-        f"{P} : column(wide.csv, nme39)": ("40 columns", '"name0"', '"name9", ...', 'nearest is "name39"'),
-        f"{P} : column(twice.csv, p)": ("more than one column",),
         f"{P} : column(short.csv, p)": ("row 4", "1 value,"),
-        f"{P} : column(long.csv, p)": ("row 2", "3 values,"),
-        f"{P} : column(quote.csv, p)": ("row 2", "not closed"),
         f"{P} : column(utf16.csv, p)": ("row 1", "not text"),
         f"{P} : 1, 2; {P} : 3, 4": ("twice",),
-        "Sweep/Seed : 1, 2": ("cannot vary",),
         "File : measured.prm, mesured.prm": ("mesured.prm", 'nearest name is "measured.prm"'),
-        "File : a_folder": ("a_folder", "is a folder"),
-        "Body/Friction profile : 1, 1+x": ("1+x",),
         "Active stress/Generator : optimal wave, plse": ("pulse",),
     }
     for axes, words in cases.items():
@@ -492,9 +468,8 @@ def test_damaged_table(folder):
     sweep(folder, "damaged")
     file = folder / "damaged" / "results.h5"
     whole = file.read_bytes()
-    for content, word in ((whole[:len(whole) // 2], "cannot be read"), (whole[:100], "cannot be read"), (b"", "no HDF5"),
-                          (b"garbage" * 1000, "no HDF5"), (whole.replace(b"scene files", b"Scene files"), "no attribute"),
-                          (whole.replace(b"results", b"Results"), "results")):
+    for content, word in ((whole[:len(whole) // 2], "cannot be read"), (b"garbage" * 1000, "no HDF5"),
+                          (whole.replace(b"scene files", b"Scene files"), "no attribute")):
         file.write_bytes(content)
         refused(folder, "damaged", ("results.h5", word, "damaged"), f"a table of {len(content)} bytes")
     file.unlink()

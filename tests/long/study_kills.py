@@ -67,9 +67,9 @@ class Study:
     def __init__(self, command, files, most_rows):
         self.command, self.files, self.most_rows = command, files, most_rows
 
-    def start(self, output, *more, ranks=1, stop_at=None):
+    def start(self, output, *more, ranks=1):
         """To its end."""
-        return call([*on_ranks(MPIRUN, ranks), PROGRAM, *self.command, "--output", output.name, *more], output.parent, stop_at)
+        return call([*on_ranks(MPIRUN, ranks), PROGRAM, *self.command, "--output", output.name, *more], output.parent)
 
     def done(self, output):
         """What is computed: {row: its seconds}."""
@@ -97,15 +97,17 @@ class PointStudy(Study):
         return {i: rows[self.seconds][i] for i, status in enumerate(rows[self.status]) if status} if rows else {}
 
     def answers(self, output):
-        return {name: column if isinstance(column, list) else column.tobytes() for name, column in self.columns(output).items()
-                if not name.endswith("seconds")}
+        return {name: column if isinstance(column, list) else column.tobytes()
+                for name, column in self.columns(output).items() if not name.endswith("seconds")}
 
 
 class TradeoffStudy(Study):
-    """Rows in lines of JSON; the last one of a rank may be cut off."""
+    """Rows in lines of JSON while it is under way, and a table at the end."""
 
     def done(self, output):
-        rows = {}
+        file = output / "tradeoff.csv"
+        rows = {int(row["index"]): float(row["seconds"]) if row["seconds"] else None
+                for row in (csv_rows(file) if file.exists() else [])}
         for file in (output / "rows").glob("*.jsonl"):
             for line in file.read_text(encoding="utf-8").splitlines():
                 row = json.loads(line)
@@ -119,13 +121,15 @@ class TradeoffStudy(Study):
 
 
 class OptimizeStudy(Study):
-    """A file for each start that is done."""
+    """A file for each start; one that was stopped goes on."""
 
     def done(self, output):
-        return {file.name: file.read_bytes() for file in (output / "starts").glob("*.json")}
+        texts = {file.name: file.read_text(encoding="utf-8") for file in (output / "starts").glob("*.json")}
+        return {name: text for name, text in texts.items() if not json.loads(text)["was_interrupted"]}
 
     def answers(self, output):
-        return [{name: value for name, value in row.items() if name != "seconds"} for row in csv_rows(output / "results.csv")]
+        return [{name: value for name, value in row.items() if name != "seconds"}
+                for row in csv_rows(output / "results.csv")]
 
 
 class Chance:
@@ -148,7 +152,7 @@ class Chance:
 
 
 def disturbed(study, output, victim, n, rank, place):
-    """Starts the study on n ranks, of which one comes to the place. Gives the exit code when all of its processes have ended."""
+    """The study on n ranks, of which one comes to the place: its exit code when all of its processes have ended."""
     own = [PROGRAM, *study.command, "--output", output.name, "--resume"]
     if victim == "rank":
         chosen = ["env", f"CRAWLER_STOP_AT={place}:KILL", *own]
@@ -193,8 +197,8 @@ def kills(name, study, folder, n_kills):
             before = {}
             continue
         hits += 1
-        expect(code in {"rank": (128 + signal.SIGKILL,), "mpirun": (-signal.SIGKILL,), "one signal": (5,)}.get(victim, (code,)),
-               where)
+        wanted = {"rank": 128 + signal.SIGKILL, "mpirun": -signal.SIGKILL, "one signal": 5}
+        expect(code == wanted.get(victim, code), where)
         now = study.done(output)
         lost = [row for row, seconds in before.items() if now.get(row) != seconds]
         expect(not lost, f"{where}: lost or computed again: {lost[:9]}")
@@ -253,7 +257,8 @@ def test_many_ranks(folder):
             done = call([*on_ranks(MPIRUN, n), PROGRAM, study, "scene.prm", "--output", output, *more], folder)
             expect(done.returncode == 0, f"{study} on {n} ranks {done.stderr}")
             tables.append(h5_columns(output / f"{table}.h5", table))
-        expect(len(tables[0]["index"]) == 6 and same_columns(*tables), f"{study}: {ranks} ranks give the same table, bit for bit")
+        expect(len(tables[0]["index"]) == 6 and same_columns(*tables),
+               f"{study}: {ranks} ranks give the same table, bit for bit")
 
 
 def test_out_of_memory(folder):
@@ -274,22 +279,48 @@ def test_out_of_memory(folder):
            rows["status"] == ["finished", "failed", "finished"], f"in a sweep it is a row {rows['reason']} {result.stderr}")
 
 
-def test_more_bad_axes(folder):
-    """Like those of tests/cli/sweep.py."""
-    (folder / "good.csv").write_text("p\n2\n", encoding="utf-8")
+def test_more_bad_input(folder):
+    """Axes and tables like those of tests/cli/sweep.py."""
+    files = {"good": "p,chi\n2,0.1\n", "remarks": "# nothing but a remark\n", "names": "p,chi\n", "long": "p,q\n1,2,3\n",
+             "quote": 'p,q\n1,"a\nb"\n', "wide": ",".join(f"name{i}" for i in range(40)) + "\n", "twice": "p,q,p\n1,2,3\n"}
+    for name, text in files.items():
+        (folder / f"{name}.csv").write_text(text, encoding="utf-8")
     (folder / "binary.csv").write_bytes(bytes(range(256)) * 20)
+    (folder / "a_folder").mkdir()
     for axes, words in ((f"{P} : 4, column(good.csv, p)", ("column(good.csv, p)", "nothing beside it")),
                         (f"{P} : linspace(1, 2)", ("linspace(first, last, count)",)),
                         (f"{P} : uniforms(2, 3)", ('nearest is "uniform"',)),
                         (f"{P} 1, 2", ("VALUES",)),
                         ("File : linspace(1, 2, 2)", ("linspace(1, 2, 2)", "names of parameter files")),
+                        ("File : uniform(1, 2)", ("uniform(1, 2)", "names of parameter files")),
+                        ("File : missing.prm", ("missing.prm", "No such file")),
+                        ("File : a_folder", ("a_folder", "is a folder")),
                         (f"{P} : linspace(2, 3, 2) Body/Length: linspace(1, 2, 2)", ("semicolon missing",)),
+                        (f"{P} : column(nothing.csv, p)", ("nothing.csv", "No such file or directory", "CSV file")),
+                        (f"{P} : column(a_folder, p)", ("a_folder", "is a folder")),
+                        (f"{P} : column(remarks.csv, p)", ("remarks.csv", "is empty")),
+                        (f"{P} : column(names.csv, p)", ("names.csv", "no rows")),
+                        (f"{P} : column(good.csv)", ("column(file.csv, name)",)),
+                        (f"{P} : column(wide.csv, nme39)", ("40 columns", '"name0"', '"name9", ...', 'nearest is "name39"')),
+                        (f"{P} : column(twice.csv, p)", ("more than one column",)),
+                        (f"{P} : column(long.csv, p)", ("row 2", "3 values,")),
+                        (f"{P} : column(quote.csv, p)", ("row 2", "not closed")),
                         (f"{P} : column(binary.csv, p)", ("row 1", "not text")),
-                        ("File : missing.prm", ("missing.prm", "No such file"))):
+                        ("Sweep/Seed : 1, 2", ("cannot vary",)),
+                        ("Body/Friction profile : 1, 1+x", ("1+x",))):
         write(folder, axes)
         result = call([PROGRAM, "sweep", "scene.prm", "--output", "bad"], folder)
         expect(result.returncode == 2 and len(result.stderr.splitlines()) == 1 and not (folder / "bad").exists()
                and all(word in result.stderr for word in (*words, "Sweep/Axes")), f'"{axes}": {result}')
+    write(folder, f"{P} : 2, 3")
+    call([PROGRAM, "sweep", "scene.prm", "--output", "damaged"], folder)
+    file = folder / "damaged" / "results.h5"
+    whole = file.read_bytes()
+    for content, word in ((whole[:100], "cannot be read"), (b"", "no HDF5"), (whole.replace(b"results", b"Results"), "results")):
+        file.write_bytes(content)
+        result = call([PROGRAM, "sweep", "scene.prm", "--output", "damaged", "--resume"], folder)
+        expect(result.returncode == 2 and len(result.stderr.splitlines()) == 1 and "results.h5" in result.stderr
+               and word in result.stderr and file.read_bytes() == content, f"a table of {len(content)} bytes: {result}")
 
 
 def main():
@@ -297,7 +328,7 @@ def main():
     print(f"{N_KILLS} kills, seed {SEED}", flush=True)
     ctypes.CDLL(None).prctl(36, 1)  # PR_SET_CHILD_SUBREAPER: the ranks of a killed mpirun become children of this process
     with tempfile.TemporaryDirectory() as name:
-        for test in (test_more_bad_axes, test_many_ranks, test_out_of_memory, test_error_bars, test_kills):
+        for test in (test_more_bad_input, test_many_ranks, test_out_of_memory, test_error_bars, test_kills):
             folder = pathlib.Path(name, test.__name__)
             folder.mkdir()
             test(folder)

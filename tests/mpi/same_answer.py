@@ -5,17 +5,16 @@
     python3 same_answer.py PATH_TO_CRAWLER MPIRUN
 """
 import json
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from program import Checks, call, on_ranks  # noqa: E402
 
 TOLERANCE = 1e-10  # relative
 SAME = ("displacement", "stress_power", "dissipation", "elastic_energy", "paper_energy", "positive_power")
 PLACES = ("min_stretch", "max_stretch")
-ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
-                   OPENBLAS_NUM_THREADS="1")
 
 # Coarse in time, so few steps: communication is slow where there are fewer processors than ranks.
 SHARED = {"Discretization/Share cells": "yes"}
@@ -31,39 +30,22 @@ BAD_VALUE = {**WAVE, "Body/Length": -1}
 UNKNOWN = {**WAVE, "Body/Lenght": 1}
 INCONSISTENT = {**WAVE, "Active stress/Optimal wave/Wave speed": 0}  # found while the scene is built
 
-failures = 0
-
-
-def check(condition, what):
-    """Prints what was checked and counts failures."""
-    global failures
-    failures += not condition
-    print(f"{'ok    ' if condition else 'FAILED'} {what}", flush=True)
+checks = Checks()
+check = checks.expect
 
 
 def run(program, mpirun, folder, ranks, scene):
     """Runs the scene; returns exit code, summary (None if there is none) and the lines of the program's messages."""
     file, output = pathlib.Path(folder, "scene.prm"), pathlib.Path(folder, "output")
     file.write_text("set Model = nonlinear\n")
-    command = [mpirun, "--oversubscribe", "-n", str(ranks), program] if ranks > 1 else [program]
-    command += ["run", str(file), "--quiet", "--overwrite", "--output", str(output)]
+    command = [*on_ranks(mpirun, ranks), program, "run", file, "--quiet", "--overwrite", "--output", output]
     for name, value in scene.items():
         command += ["--set", f"{name}={value}"]
     summary = output / "summary.json"
     summary.unlink(missing_ok=True)
-    with subprocess.Popen(command, env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True) as process:
-        try:
-            out, errors = process.communicate(timeout=120)
-        except subprocess.TimeoutExpired:
-            process.terminate()  # mpirun then ends its ranks
-            try:
-                process.communicate(timeout=10)
-            except subprocess.TimeoutExpired:
-                process.kill()
-            sys.exit(f"FAILED: no end within 120 s: {' '.join(command)}")
-    messages = [line for line in (out + errors).splitlines() if line.startswith("crawler: ")]
-    return process.returncode, json.loads(summary.read_text()) if summary.exists() else None, messages
+    done = call(command)
+    messages = [line for line in (done.stdout + done.stderr).splitlines() if line.startswith("crawler: ")]
+    return done.returncode, json.loads(summary.read_text()) if summary.exists() else None, messages
 
 
 def same_answer(name, scene, ranks, *where):
@@ -87,7 +69,7 @@ def same_answer(name, scene, ranks, *where):
 
 
 def main():
-    """1 if any check failed."""
+    """All of it."""
     if len(sys.argv) != 3:
         sys.exit("usage: same_answer.py PATH_TO_CRAWLER MPIRUN")
     with tempfile.TemporaryDirectory() as folder:
@@ -112,9 +94,8 @@ def main():
         for name, scene in bad.items():
             code, _, messages = run(*where, 2, scene)
             check(code == 2 and len(messages) == 1, f"{name}: exit code {code} on 2 ranks, messages {messages}")
-    print(f"{failures} checks failed")
-    return 1 if failures else 0
+    checks.end()
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -111,6 +111,7 @@ def check_signals(folder):
     """Ctrl-C in the middle of whatever computes is a KeyboardInterrupt; afterwards all is as before."""
     script = """
 import crawler, signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # whoever started the test may ignore it
 handler = signal.getsignal(signal.SIGINT)
 try:
     {action}
@@ -164,7 +165,8 @@ def check_memory():
     script = f"""
 import crawler, ctypes, gc
 class Info(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_size_t) for name in "arena ordblks smblks hblks hblkhd usmblks fsmblks uordblks fordblks keepcost".split()]
+    _fields_ = [(name, ctypes.c_size_t) for name in ("arena", "ordblks", "smblks", "hblks", "hblkhd", "usmblks", "fsmblks",
+                                                     "uordblks", "fordblks", "keepcost")]
 mallinfo2 = ctypes.CDLL(None).mallinfo2
 mallinfo2.restype = Info
 def used(n):

@@ -7,9 +7,8 @@ import select
 import shutil
 import subprocess
 import tempfile
-import time
 
-PATIENCE = 60  # seconds
+from program import PATIENCE
 
 
 class Browser:
@@ -54,9 +53,8 @@ class Browser:
 
     def message(self):
         """The next message of the browser; what pages complain about is kept."""
-        end = time.monotonic() + PATIENCE
         while b"\0" not in self.buffer:
-            if not select.select([self.read], [], [], max(0, end - time.monotonic()))[0]:
+            if not select.select([self.read], [], [], PATIENCE)[0]:
                 raise RuntimeError("the browser does not answer")
             part = os.read(self.read, 1 << 20)
             if not part:
@@ -105,7 +103,11 @@ class Browser:
 
     def settle(self):
         """Waits until everything is drawn."""
-        self.ask("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 50))))")
+        self.ask("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done))))")
+
+    def wait_for(self, condition):
+        """Until this expression is true in the page, which looks at it whenever it draws."""
+        self.ask(f"new Promise(done => {{ const look = () => {condition} ? done() : requestAnimationFrame(look); look(); }})")
 
     def ask(self, expression):
         """The value of an expression in the page."""

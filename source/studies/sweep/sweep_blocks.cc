@@ -25,8 +25,7 @@ namespace crawler
   } // namespace
 
   SweepBlocks::SweepBlocks(const SweepDesign &design)
-    : row_(1)
-    , rows_(design.run_length() > 1 ? design.run_length() : design.n_points())
+    : rows_(design.run_length() > 1 ? design.run_length() : design.n_points())
   {
     const std::size_t n_axes = design.axes().size();
     if (design.run_length() > 1 && rows_ <= most / 2 && n_axes > 1 && is_smooth(design.axes()[n_axes - 2]))

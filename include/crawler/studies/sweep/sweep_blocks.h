@@ -34,7 +34,7 @@ namespace crawler
     operator[](unsigned long number) const;
 
   private:
-    unsigned long row_, rows_, n_runs_, parts_of_run_; ///< points in a row, rows in a run, which is cut into parts
+    unsigned long row_ = 1, rows_, n_runs_, parts_of_run_; ///< points in a row, rows in a run, which is cut into parts
   };
 
   /**
@@ -72,19 +72,19 @@ namespace crawler
     /// Takes the rows of points in succession, from the one with this number on.
     using WriteRows = std::function<void(unsigned long first, std::span<const RowFile::Row> rows)>;
 
-    /// Computes the points of a part that have no row yet (@p done), and gives their rows to @p write. Calls @p see
-    /// when rows have been written, with their number and how many of these did not finish. Returns false if it was
-    /// interrupted. Throws what @p write throws.
+    /// Computes the points of the part @p number that have no row yet (@p done), and gives their rows to @p write.
+    /// Calls @p see when rows have been written, with their number and how many of these did not finish. Returns false
+    /// if it was interrupted. Throws what @p write throws.
     bool
-    compute(unsigned long part,
+    compute(unsigned long number,
             const std::vector<bool> &done,
             const WriteRows &write,
             const std::function<bool()> &interrupted,
             const std::function<void(unsigned long n, unsigned long failed)> &see);
 
-    /// The answers of the points of a part, without files; their number.
+    /// The answers of the points of the part @p number, without files; their number.
     unsigned long
-    try_out(unsigned long part);
+    try_out(unsigned long number);
 
   private:
     SweepBlock
