@@ -425,20 +425,3 @@ TEST(HardAnswers, FirstStridesChooseForLongRuns)
       expect_within(answer_to(settings(on_ground, accuracy)), exact.displacement, std::stod(accuracy), what);
   }
 }
-
-/// A soft body in the position form, whose Jacobian has a zero pivot at one of the steps that are tried: the factors of
-/// the complex systems were used without having been made. Whatever comes of the run, it has a status and a reason.
-TEST(HardAnswers, AJacobianWithoutFactorsIsNoCrash)
-{
-  const SimulationResult result =
-    answer_to({{"Accuracy", "1e-9"},
-               {"Model", "nonlinear"},
-               {"Body/Anchoring exponent", "4.56492031122711"},
-               {"Body/Elastic modulus", "0.00022440197039794163"},
-               {"Active stress/Generator", "optimal wave"},
-               {"Active stress/Optimal wave/Choose wave by", "wave speed"},
-               {"Active stress/Optimal wave/Perturbation parameter", "0.2503528712827582"},
-               {"Active stress/Optimal wave/Wave speed", "1.3"},
-               {"Discretization/Formulation", "position"}});
-  EXPECT_TRUE(result.time.status == Status::finished || !result.time.reason.empty());
-}
