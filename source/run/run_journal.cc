@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/archive.h>
 #include <crawler/base/clock.h>
-#include <crawler/base/stop_place.h>
 #include <crawler/run/run_journal.h>
 
 #include <algorithm>
@@ -103,10 +102,10 @@ namespace crawler
     Archive archive;
     std::string state = state_.value_or("");
     archive(ended_, identity_, state, end_, prolongs_);
-    write_(archive.bytes());
+    if (!write_(archive.bytes()))
+      return;
     last_        = now();
     cost_        = last_ - begin;
     was_written_ = true;
-    reach(StopPlace::state);
   }
 } // namespace crawler

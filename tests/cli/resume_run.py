@@ -28,9 +28,9 @@ PLACES["feedback"] = PLACES["delay"] = (["write:000002.vtu:KILL"], 1)
 PLACES["adaptive"] = (["pilot:20:KILL", "write:000003.vtu:KILL"], 1)
 PLACES["xdmf"] = (["step:200:KILL"], 1)
 PLACES["lanes"] = (["write:original.prm:KILL", "write:parameters.prm:KILL",  # from the first picture on with a state
-                    "write:restart.dat.new:KILL", "write:restart.dat:KILL", "write:000001.vtu:KILL",
+                    "state:1:KILL", "write:restart.dat.new:KILL", "write:restart.dat:KILL", "write:000001.vtu:KILL",
                     "write:restart.dat.new:KILL", "write:restart.dat:KILL", "write:000006.vtu:KILL",
-                    "write:kymograph.vts:KILL", "write:summary.json:KILL"], 6)
+                    "write:kymograph.vts:KILL", "write:summary.json:KILL"], 9)
 NEVER = ["--set", "Time/Checkpoint interval=1e6"]
 checks = Checks()
 expect = checks.expect

@@ -34,7 +34,10 @@ namespace
       parameters = test::parameters_with(all);
       scene.emplace(parameters.create_scene());
       numerics = choose_numerics(MPI_COMM_SELF, parameters, *scene)->numerics;
-      RunJournal journal(0., [&](const std::string &bytes) { left = bytes; });
+      RunJournal journal(0., [&](const std::string &bytes) {
+        left = bytes;
+        return true;
+      });
       go(journal, 5);
       journal.write();
       fuzz::require(!left.empty(), "the run was stopped before its end");

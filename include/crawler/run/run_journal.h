@@ -20,7 +20,7 @@ namespace crawler
   class RunJournal
   {
   public:
-    using Write = std::function<void(const std::string &bytes)>;
+    using Write = std::function<bool(const std::string &bytes)>; ///< false: it could not be kept yet
 
     /// @p write keeps all that is known; it is called after each @p interval [s] of wall time, and at stop(). Empty: of
     /// a rank that writes nothing.

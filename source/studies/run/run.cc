@@ -194,10 +194,12 @@ namespace crawler
     RunJournal journal(
       parameters.time.checkpoint_interval, !first ? RunJournal::Write() : [&](const std::string &all) {
         if (!has_files)
-          return;
+          return false;
         lock->require_in_place();
         checkpoint.journal = all;
         write_checkpoint(folder, checkpoint);
+        reach(StopPlace::state);
+        return true;
       });
     const bool goes_on = resumption.kind == Resumption::goes_on || resumption.kind == Resumption::prolongs;
     if (goes_on)

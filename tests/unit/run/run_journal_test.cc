@@ -23,7 +23,10 @@ namespace
   left_in_the_second_run()
   {
     std::string written;
-    RunJournal journal(1e9, [&](const std::string &bytes) { written = bytes; });
+    RunJournal journal(1e9, [&](const std::string &bytes) {
+      written = bytes;
+      return true;
+    });
     EXPECT_FALSE(journal.begin("pilot"));
     journal.end(a_result(0.25));
     EXPECT_FALSE(journal.begin("run"));
@@ -74,7 +77,10 @@ namespace
   TEST(RunJournal, ProlongsTheMainRunAlone)
   {
     std::string written;
-    RunJournal journal(0., [&](const std::string &bytes) { written = bytes; });
+    RunJournal journal(0., [&](const std::string &bytes) {
+      written = bytes;
+      return true;
+    });
     journal.begins_main();
     journal.begin("run");
     ASSERT_TRUE(journal.wants_end());
@@ -102,11 +108,35 @@ namespace
     EXPECT_THROW(journal.load(left_in_the_second_run().substr(1)), FileError);
   }
 
+  /// There is no folder yet: the first state is due as soon as there is one.
+  TEST(RunJournal, WhatIsNotKeptDoesNotCount)
+  {
+    double time = 0.;
+    const ClockOfTest clock([&]() { return time; });
+    bool has_folder = false;
+    RunJournal journal(0., [&](const std::string &) {
+      time += 10.;
+      return has_folder;
+    });
+    EXPECT_FALSE(journal.begin("pilot"));
+    journal.end(a_result(0.25));
+    EXPECT_FALSE(journal.was_written());
+    EXPECT_TRUE(journal.is_due());
+    has_folder = true;
+    EXPECT_FALSE(journal.begin("run"));
+    journal.keep("state");
+    EXPECT_TRUE(journal.was_written());
+    EXPECT_FALSE(journal.is_due());
+  }
+
   TEST(RunJournal, WritesStatesAtItsIntervalAndNotTooOften)
   {
     double time = 0.;
     const ClockOfTest clock([&]() { return time; });
-    RunJournal journal(10., [&](const std::string &) { time += 1.; }); // a state costs a second
+    RunJournal journal(10., [&](const std::string &) {
+      time += 1.;
+      return true;
+    }); // a state costs a second
     EXPECT_FALSE(journal.begin("run"));
     time = 9.;
     EXPECT_FALSE(journal.is_due());
