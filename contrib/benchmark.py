@@ -132,7 +132,7 @@ def main():
     arguments = parser.parse_args()
     program = (arguments.build / "tests/benchmark/crawler_benchmark").resolve()
     if not program.exists():
-        sys.exit(f"{program} does not exist; contrib/run_tests.sh builds it (needs Google Benchmark)")
+        sys.exit(f"{program} does not exist; cmake --build build --target studies makes it (needs Google Benchmark)")
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     if os.geteuid() == 0:
         os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")

@@ -44,7 +44,7 @@ def main():
     empty, crawler = arguments.build / "tests/benchmark/empty_program", arguments.build / "crawler"
     for needed in (empty, crawler, arguments.file):
         if not needed.exists():
-            sys.exit(f"{needed} does not exist; contrib/run_tests.sh builds the programs")
+            sys.exit(f"{needed} does not exist; cmake --build build --target studies makes the programs")
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     if os.geteuid() == 0:
         os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")

@@ -293,7 +293,7 @@ def main():
         for row, columns in measure_crawler(o.build, cases, exact).items():
             results[row].update({f"crawler, {column}": value for column, value in columns.items()})
     elif not program.exists():
-        print(f"{program} does not exist: crawler is skipped (contrib/setup.sh tests builds it)")
+        print(f"{program} does not exist: crawler is skipped (cmake --build build --target studies makes it)")
     made = (f"Seconds of processor time a run on one core of {processor()}, {platform.freedesktop_os_release()['PRETTY_NAME']}, "
             f"{datetime.date.today()}." + (f" Not installed: {', '.join(skipped)}." if skipped else ""))
     text = made + "\n\n" + table(results, names)
