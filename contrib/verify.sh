@@ -12,4 +12,4 @@ case " $* " in
     cmake --build build --target studies
     ;;
 esac
-exec python3 contrib/verify.py "$@"
+exec /usr/bin/python3 contrib/verify.py "$@"
