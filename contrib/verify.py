@@ -11,8 +11,8 @@ agrees if one of these rounds to it, or, for what is measured (a share, an error
 check allows. What is not found is printed with its nearest neighbour. Numbers of one or two digits are found everywhere
 and prove nothing, so they are left out.
 
-FOLDER (default: BUILD/verify) has the output of each command, drift.csv and done.json: what is done is not done again
-after a break unless the program has changed or --again is given. contrib/verify.sh builds and installs what the checks
+FOLDER (default: BUILD/verify) has the output of each command, drift.csv and done.json: what has passed is not done
+again after a break unless the program has changed or --again is given. contrib/verify.sh builds and installs what the checks
 need. All of it takes some four hours on 2 cores.
 
 Ends with 0 if all is as expected, 7 if a number has drifted, 2 for a bad input, 3 if a command failed.
@@ -184,7 +184,8 @@ class Runs:
         """Exit code, minutes, what the command printed, and what its files have in them."""
         command = re.sub(r"\{([a-z]+)\}", lambda name: str(self.places[name[1]]), check.command)
         log = self.out / f"{check.name}.log"
-        if self.done.get(check.name, {}).get("command") != command or not log.is_file():
+        known = self.done.get(check.name, {})
+        if known.get("command") != command or known.get("code") != 0 or not log.is_file():  # what failed is tried again
             words = shlex.split(command)
             words = [sys.executable, *words] if words[0].endswith(".py") else words
             begin = time.monotonic()
