@@ -14,7 +14,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 
 import h5py
 import numpy as np
@@ -93,7 +92,7 @@ def sweep(folder, nodes, *options):
     """Starts the sweep on some nodes."""
     hosts = ",".join(f"{NET}.{i + 1}:{RANKS_OF_NODE}" for i in nodes)
     words = [MPIEXEC, "--host", hosts, "-n", str(RANKS_OF_NODE * len(nodes)), "--oversubscribe", "--bind-to", "none",
-             "--mca", "plm_rsh_agent", str(folder / "agent"), "--mca", "btl", "tcp,self", "--mca", "pml", "ob1",
+             "--mca", "plm_rsh_agent", str(folder / "remote_shell"), "--mca", "btl", "tcp,self", "--mca", "pml", "ob1",
              "--mca", "oob_tcp_if_include", f"{NET}.0/24", "--mca", "btl_tcp_if_include", f"{NET}.0/24",
              "--mca", "orte_keep_fqdn_hostnames", "1", "--mca", "mpi_yield_when_idle", "1",
              PROGRAM, "sweep", "sweep.prm", "--output", "nodes", *options]
@@ -129,7 +128,6 @@ def wait_for_rows(process, folder, n):
     while process.poll() is None:
         if finished_rows(folder) >= n:
             return True
-        time.sleep(0.05)
     return False
 
 
@@ -142,10 +140,10 @@ def main():
     with tempfile.TemporaryDirectory() as place:
         folder = pathlib.Path(place)
         (folder / "sweep.prm").write_text(SCENE)
-        agent = folder / "agent"  # what mpirun calls in the place of ssh: agent HOST COMMAND...
-        agent.write_text("#!/bin/sh\nnode=$1; shift; i=$((${node##*.} - 1))\n"
-                         f"exec ip netns exec {NAME}n$i unshare --uts sh -c \"hostname node$i; $*\"\n")
-        agent.chmod(0o755)
+        remote_shell = folder / "remote_shell"  # what mpirun calls in the place of ssh: remote_shell HOST COMMAND...
+        remote_shell.write_text("#!/bin/sh\nnode=$1; shift; i=$((${node##*.} - 1))\n"
+                                f"exec ip netns exec {NAME}n$i unshare --uts sh -c \"hostname node$i; $*\"\n")
+        remote_shell.chmod(0o755)
         try:
             try:
                 make_nodes()
