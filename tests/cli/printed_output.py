@@ -88,7 +88,7 @@ class Place:
         """A command, and which exit code it has."""
         command = [*(MPIEXEC + ["-n", str(ranks)] if ranks > 1 else []), CRAWLER, *words]
         done = subprocess.run(command, cwd=self.folder, env=self.environment, capture_output=True, text=True,
-                              timeout=120, check=False)
+                              timeout=600, check=False)
         if done.returncode != code:
             sys.exit(f"{' '.join(words)} ends with {done.returncode}: {done.stdout}{done.stderr}")
         self.output += done.stdout + done.stderr

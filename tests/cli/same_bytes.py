@@ -6,14 +6,15 @@ agree within the error bounds; a set that is not there is refused.
     python3 same_bytes.py PATH_TO_CRAWLER
 """
 import json
-import os
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
 import h5py
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+import program  # noqa: E402
 
 CRAWLER = pathlib.Path(sys.argv[1]).resolve()
 BASE = """
@@ -49,12 +50,9 @@ def check(condition, what):
 
 def call(folder, command, entries, output, instruction_set=None):
     """Runs the command; its exit code and errors."""
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
-    if instruction_set is not None:
-        environment["CRAWLER_INSTRUCTION_SET"] = instruction_set
     sets = [word for entry in entries for word in ("--set", entry)]
-    return subprocess.run([CRAWLER, command, "scene.prm", "--quiet", "--output", output, *sets], cwd=folder, env=environment,
-                          capture_output=True, text=True, timeout=300, check=False)
+    return program.call([CRAWLER, command, "scene.prm", "--quiet", "--output", output, *sets], folder,
+                        variables={} if instruction_set is None else {"CRAWLER_INSTRUCTION_SET": instruction_set})
 
 
 def without_seconds(value):

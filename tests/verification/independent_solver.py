@@ -31,7 +31,7 @@ SCENES = {
 
 def call(*arguments):
     """Calls a program, which must succeed."""
-    done = subprocess.run(arguments, capture_output=True, text=True, timeout=120,
+    done = subprocess.run(arguments, capture_output=True, text=True, timeout=600,
                           env=dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1"))
     if done.returncode != 0:
         sys.exit(f"{' '.join(arguments)}\nexits with {done.returncode}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")

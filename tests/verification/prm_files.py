@@ -45,7 +45,7 @@ def expectation(text):
 
 def crawler(*arguments):
     """Calls the program, which must succeed."""
-    done = subprocess.run(arguments, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(arguments, capture_output=True, text=True, timeout=600)
     if done.returncode != 0:
         reason = (done.stderr.strip() or done.stdout.strip() or "no message").splitlines()[-1]
         raise Problem(f"{arguments[1]} exits with {done.returncode}: {reason}")

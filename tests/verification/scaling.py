@@ -26,7 +26,7 @@ def check(condition, what):
 
 def call(*command, env=None):
     """Runs a command in the root of the repository, whose paths the study has."""
-    return subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True, timeout=200, check=False)
+    return subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True, timeout=600, check=False)
 
 
 def main():
