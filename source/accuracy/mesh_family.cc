@@ -31,8 +31,9 @@ namespace crawler
         , keep_going_(keep_going)
         , accuracy_(parameters.accuracy)
       {
-        answer_.choice      = choice;
-        options_.resolution = ResolutionWish::size; // the size of the deformation
+        answer_.choice          = choice;
+        options_.resolution     = ResolutionWish::size; // the size of the deformation
+        options_.energy_balance = true;                 // the works tell whether displacements agree by chance
         if (options_.cycles)
           options_.cycles->accuracy *= 0.1; // displacements are compared
       }
@@ -223,12 +224,14 @@ namespace crawler
         if (!levels_.empty() && !are_alike(result, levels_.back().result)) // what was believed before is not true
           levels_.clear();
         Level now{result, *value(result)};
+        now.work = work_of(result);
         if (!levels_.empty())
         {
           const Level &before = levels_.back();
           const double change = std::abs(*value(result) - *value(before.result));
           extrapolate(before.result);
           now.value   = *value(extrapolated_);
+          now.work    = work_of(extrapolated_);
           now.change  = change;
           now.settled = std::abs(now.value - before.value);
           if (levels_.size() > 1) // two displacements may agree by chance
@@ -240,7 +243,8 @@ namespace crawler
       struct Level
       {
         SimulationResult result;
-        double value; ///< extrapolated
+        double value;        ///< extrapolated
+        double work    = 0.; ///< of the active stress, extrapolated; 0 if it was not looked at
         double change  = 0.,
                settled = HUGE_VAL; ///< of the value itself and of the extrapolated one since the last level
       };
@@ -265,11 +269,25 @@ namespace crawler
           return std::max(now.settled, now.change / (std::exp2(order) - 1.));
         if (order > largest_order)
           return std::max(now.settled, now.change / 3.);
-        if (levels_.size() == 2)
-          return now.settled;
+        if (levels_.size() == 2) // two of the first displacements may agree by chance; their works do not, too
+          return std::max(now.settled, unsettled_work(before, now) * now.change);
         return before.settled > fast * now.settled && std::abs(order - 2.) < clean
                  ? std::max(now.settled, before.settled / fastest) / credited
                  : std::max(now.settled, before.settled / fastest);
+      }
+
+      static double
+      work_of(const SimulationResult &result)
+      {
+        return result.energy_balance ? result.energy_balance->stress_work : 0.;
+      }
+
+      /// The change of the extrapolated work since the level before, relative to that of the work itself.
+      double
+      unsettled_work(const Level &before, const Level &now) const
+      {
+        const double change = std::abs(work_of(now.result) - work_of(before.result));
+        return finished(now.result) && change > 0. ? std::abs(now.work - before.work) / change : 0.;
       }
 
       /// Near an inversion the last of the stretch may be fed by tiny flows, and the time converges slowly; what the
@@ -397,6 +415,12 @@ namespace crawler
                    const KeepGoing &keep_going)
   {
     Answer answer = Family(parameters, scene, choice, options, keep_going).compute();
+    if (!options.energy_balance) // nobody asked for it
+    {
+      answer.result.energy_balance.reset();
+      if (answer.result.gait)
+        answer.result.gait->energy_balance.reset();
+    }
     if (!simulate || answer.result.time.status == Status::stopped)
       return answer;
     const SimulationResult files = simulate(answer.choice);

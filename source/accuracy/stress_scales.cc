@@ -413,7 +413,9 @@ namespace crawler
       L,
       0.,
       P,
-      [&](const double from, const double to) { return std::max(usual, samples.largest_rate(from, to)); },
+      [&](const double from, const double to) {
+        return rates_explain * std::max(usual, samples.largest_rate(from, to));
+      },
       samples.largest);
     changes.insert(changes.end(), found.list.begin(), found.list.end());
     std::sort(changes.begin(), changes.end(), [](const FastChange &a, const FastChange &b) { return a.from < b.from; });
@@ -455,7 +457,7 @@ namespace crawler
       longest = std::max(longest, limit.longest);
     const double usual      = longest > 0. ? largest / longest : 0.;
     const FastChanges found = find_fast_changes(
-      stress, L, 0., P, [usual](double, double) { return usual; }, largest);
+      stress, L, 0., P, [usual](double, double) { return rates_explain * usual; }, largest);
     if (found.list.empty())
       return known.empty() ? known : std::vector<StepLimit>{{0., longest}};
     return step_limits(found.list, largest, usual, P, T);

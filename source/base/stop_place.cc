@@ -26,7 +26,7 @@ namespace crawler
     constexpr std::string_view places[]                  = {"step", "pilot", "state", "row"};
     constexpr std::string_view write_prefix              = "write:";
     constexpr std::pair<std::string_view, int> signals[] = {
-      {"KILL", SIGKILL}, {"TERM", SIGTERM}, {"INT", SIGINT}, {"USR1", SIGUSR1}, {"STOP", SIGSTOP}};
+      {"KILL", SIGKILL}, {"TERM", SIGTERM}, {"INT", SIGINT}, {"USR1", SIGUSR1}, {"STOP", SIGSTOP}, {"SEGV", SIGSEGV}};
 
     std::optional<unsigned long>
     whole_number(const std::string &text)
@@ -91,7 +91,7 @@ namespace crawler
     const auto refuse = [&]() {
       return InputError(
         fmt::format("the environment variable {} is \"{}\"; PLACE[:NUMBER]:SIGNAL[:RANK] is expected, with "
-                    "the place {} or write:NAME, and the signal KILL, TERM, INT, USR1 or STOP",
+                    "the place {} or write:NAME, and the signal KILL, TERM, INT, USR1, STOP or SEGV",
                     variable_name,
                     text,
                     fmt::join(places, ", ")));

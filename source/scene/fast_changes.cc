@@ -10,27 +10,27 @@ namespace crawler
 {
   namespace
   {
-    /// A bound of so many times a rate is explained by it.
-    constexpr double explained = 4., explained_by_point = 16.;
-    /// A change of less than this part of the largest |m| is none; one of less than the second is no jump.
-    constexpr double negligible = 1e-4, least_jump = 0.05;
+    /// A bound of so many times the rate at a point of the box is explained by it.
+    constexpr double explained_by_point = 16.;
+    /// A change of less than this part of the largest |m| is none.
+    constexpr double negligible = 1e-4;
     /// In a time that is put on the list m changes by at most so many times the largest |m|; longer ones are halved.
     constexpr double most_changes = 64.;
     /// Relative to the whole time.
     constexpr double shortest = 1e-9;
-    /// So many bounds are asked for.
-    constexpr unsigned int most_bounds = 20000;
 
     class Search
     {
     public:
       Search(const ActiveStress &stress,
              const double duration,
-             const std::function<double(double, double)> &known,
+             const std::function<double(double, double)> &explained,
+             const FastChangeLimits &limits,
              double &largest)
         : stress_(stress)
         , duration_(duration)
-        , known_(known)
+        , explained_(explained)
+        , limits_(limits)
         , largest_(largest)
       {
       }
@@ -43,7 +43,7 @@ namespace crawler
         if (!bounds)
           return result;
         boxes_.push_back({all, bounds->rate, /*in_s=*/true});
-        for (; !boxes_.empty() && n_bounds_ < most_bounds; boxes_.pop_front())
+        for (; !boxes_.empty() && n_bounds_ < limits_.most_bounds; boxes_.pop_front())
           look_at(boxes_.front(), result.list);
         result.is_complete = boxes_.empty();
         for (const Part &part : boxes_)
@@ -67,7 +67,7 @@ namespace crawler
       {
         const ActiveStress::Box box = part.box;
         const double bound = part.bound, time = box.t_to - box.t_from;
-        const double admitted = explained * known_(box.t_from, box.t_to);
+        const double admitted = explained_(box.t_from, box.t_to);
         if (bound <= admitted || bound * time <= negligible * largest_)
           return;
         const double rate = rate_in(box);
@@ -82,7 +82,7 @@ namespace crawler
         }
         if (time <= shortest * duration_)
         {
-          if (const double change = see_values(box); change >= least_jump * largest_ && change > 0.)
+          if (const double change = see_values(box); change >= limits_.least_jump * largest_ && change > 0.)
             list.push_back({box.t_from, box.t_to, change / time});
           return;
         }
@@ -151,7 +151,8 @@ namespace crawler
 
       const ActiveStress &stress_;
       const double duration_;
-      const std::function<double(double, double)> &known_;
+      const std::function<double(double, double)> &explained_;
+      const FastChangeLimits limits_;
       double &largest_;
       std::deque<Part> boxes_;
       unsigned int n_bounds_ = 0;
@@ -163,9 +164,10 @@ namespace crawler
                     const double length,
                     const double from,
                     const double to,
-                    const std::function<double(double, double)> &known,
-                    double &largest)
+                    const std::function<double(double, double)> &explained,
+                    double &largest,
+                    const FastChangeLimits &limits)
   {
-    return Search(stress, to - from, known, largest).look({0., length, from, to});
+    return Search(stress, to - from, explained, limits, largest).look({0., length, from, to});
   }
 } // namespace crawler

@@ -15,40 +15,207 @@ namespace crawler
 {
   namespace
   {
-    constexpr unsigned int few_times = 256, many_times = 1024, n_places = 5, n_random = 64;
+    constexpr unsigned int few_times = 256, many_times = 1024, n_random = 64;
     /// A change from one time to the next below this part of the largest |m| means that m is smooth on this grid.
     constexpr double smooth = 0.2;
     /// Two values are the same if they differ by less than this part of the largest |m|.
     constexpr double same = 1e-10;
-    /// A start that takes a larger part of the duration is not looked behind.
-    constexpr double longest_start = 0.25;
+    /// Parts of the duration behind which m may repeat. A start is often shorter than the first of them.
+    constexpr double first_start = 0.25, starts[] = {0., first_start, 0.5, 0.75};
 
-    class PeriodSearch
+    /// The active stress at both ends, and at places that no wave has its nodes at.
+    class StressAtPlaces
     {
     public:
-      /// From @p begin to @p end_time.
-      PeriodSearch(const ActiveStress &stress,
-                   const double length,
-                   const double begin,
-                   const double end_time,
-                   const unsigned int n_times)
-        : owner_(stress)
+      static constexpr unsigned int n = 5;
+      using Values                    = std::array<double, n>;
+
+      StressAtPlaces(const ActiveStress &stress, const double length)
+        : stress_(stress.at({0., 0.1837 * length, 0.4142 * length, 0.7321 * length, length}))
+      {
+      }
+
+      Values
+      at(const double t)
+      {
+        Values m;
+        stress_->values(t, m);
+        return m;
+      }
+
+      static double
+      size(const Values &m)
+      {
+        return difference(m, Values{});
+      }
+
+      static double
+      difference(const Values &a, const Values &b)
+      {
+        double largest = 0.;
+        for (unsigned int p = 0; p < n; ++p)
+          largest = std::max(largest, std::abs(a[p] - b[p]));
+        return largest;
+      }
+
+    private:
+      const std::unique_ptr<ActiveStressAtPoints> stress_;
+    };
+
+    /// Whether an active stress repeats after a time P, all the time from @p begin to @p end_time.
+    class PeriodTest
+    {
+    public:
+      PeriodTest(const ActiveStress &stress, const double length, const double begin, const double end_time)
+        : stress_(stress)
         , length_(length)
         , begin_(begin)
         , end_(end_time)
-        , T_(end_time - begin)
+        , m_(stress, length)
+      {
+      }
+
+      /// At random times, where m is faster than it is in a period, and at many times in each period. What cannot be
+      /// searched for the fast does not repeat; and what repeats but for something after some times P does so after no
+      /// other time, either.
+      bool
+      holds(const double P)
+      {
+        std::mt19937 generator(20220610);
+        largest_          = largest_in_first(P);
+        const double last = end_ - begin_ - P;
+        if (n_misses_ >= most_misses)
+          return false;
+        for (unsigned int i = 0; i < n_random; ++i)
+          if (!is_same_after(begin_ + static_cast<double>(generator()) / 4294967296. * last, P))
+            return false;
+        const bool repeats =
+          (!stress_.bounds({0., length_, begin_, end_}) || fast_changes_repeat(P)) && all_periods_are_the_same(P);
+        if (!repeats)
+          ++n_misses_;
+        return repeats;
+      }
+
+    private:
+      bool
+      is_same_after(const double t, const double P)
+      {
+        return StressAtPlaces::difference(m_.at(t), m_.at(t + P)) <= same * largest_;
+      }
+
+      bool
+      all_periods_are_the_same(const double P)
+      {
+        constexpr double in_period = 16.18, most = 65536.; // not at the same times of each
+        const double last = end_ - begin_ - P;
+        const auto n =
+          static_cast<unsigned int>(std::clamp(in_period * last / P, static_cast<double>(many_times), most));
+        // Not where pulses may start and end: there round-off decides.
+        for (unsigned int i = 0; i < n; ++i)
+          if (!is_same_after(begin_ + (i + 0.381966) / n * last, P))
+            return false;
+        return true;
+      }
+
+      double
+      largest_in_first(const double P)
+      {
+        double largest = 0.;
+        for (unsigned int i = 0; i < n_random; ++i)
+          largest = std::max(largest, StressAtPlaces::size(m_.at(begin_ + (i + 0.381966) / n_random * P)));
+        return largest;
+      }
+
+      /// A bound of |m_t| in the period that begins at @p from, but for the parts of it where m jumps.
+      double
+      rate_in_period(const double from, const double P) const
+      {
+        const auto bound = [&](const double start, const double end) {
+          return stress_.bounds({0., length_, from + start * P, from + end * P})->rate;
+        };
+        if (const double rate = bound(0., 1.); std::isfinite(rate))
+          return rate;
+        constexpr unsigned int n_parts = 64;
+        double largest                 = 0.;
+        for (unsigned int i = 0; i < n_parts; ++i)
+          if (const double rate = bound(1. * i / n_parts, (i + 1.) / n_parts); std::isfinite(rate))
+            largest = std::max(largest, rate);
+        return largest;
+      }
+
+      /// The smallest such bound of the first period, one in the middle and the last: an event may be in one of them.
+      double
+      rate_in_period(const double P) const
+      {
+        const double later = std::floor((end_ - begin_) / P * (1. + 1e-12)) - 1.;
+        double least       = HUGE_VAL;
+        for (const double period : {0., std::floor(later / 2.), later})
+          least = std::min(least, rate_in_period(begin_ + period * P, P));
+        return least;
+      }
+
+      bool
+      fast_changes_repeat(const double P)
+      {
+        constexpr unsigned int most_bounds = 200000;
+        constexpr double round_off = 1e-6, times_in_change = 8., least_times = 3., most_times = 1024.;
+        const double explained    = rate_in_period(P) * (1. + round_off);
+        double largest            = largest_;
+        const FastChanges changes = find_fast_changes(
+          stress_, length_, begin_, end_, [=](double, double) { return explained; }, largest, {most_bounds, same});
+        for (const FastChange &change : changes.list)
+        {
+          // And beside it: behind a jump m is another one.
+          const double time = 3. * (change.to - change.from), from = change.from - time / 3.;
+          const auto n = static_cast<unsigned int>(
+            std::ceil(std::clamp(times_in_change * time * change.rate / largest, least_times, most_times)));
+          for (unsigned int i = 0; i < n; ++i)
+          {
+            const double t = std::clamp(from + (i + 0.381966) / n * time, begin_, end_);
+            if ((t + P <= end_ && !is_same_after(t, P)) || (t - P >= begin_ && !is_same_after(t - P, P)))
+              return false;
+          }
+        }
+        if (!changes.is_complete)
+          n_misses_ = most_misses;
+        return changes.is_complete;
+      }
+
+      const ActiveStress &stress_;
+      const double length_, begin_, end_;
+      StressAtPlaces m_;
+      double largest_                           = 0.; ///< |m|
+      unsigned int n_misses_                    = 0;  ///< times after which m repeats but for something
+      static constexpr unsigned int most_misses = 2;
+    };
+
+    /// Looks where the samples of a grid repeat.
+    class PeriodSearch
+    {
+    public:
+      /// From @p begin to @p end, in a run until @p end_time.
+      PeriodSearch(const ActiveStress &stress,
+                   const double length,
+                   const double begin,
+                   const double end,
+                   const unsigned int n_times,
+                   const double end_time)
+        : m_(stress, length)
+        , begin_(begin)
+        , T_(end - begin)
+        , end_time_(end_time)
         , n_times_(n_times)
-        , stress_(stress.at(places(length)))
         , grid_(n_times_ + 1)
       {
         for (unsigned int i = 0; i <= n_times_; ++i)
         {
-          grid_[i] = at(begin_ + T_ * i / n_times_);
-          for (const double value : grid_[i])
-            largest_ = std::max(largest_, std::abs(value));
+          grid_[i] = m_.at(begin_ + T_ * i / n_times_);
+          largest_ = std::max(largest_, StressAtPlaces::size(grid_[i]));
           if (i > 0)
-            step_ = std::max(step_, difference(grid_[i - 1], grid_[i]));
+            step_ = std::max(step_, StressAtPlaces::difference(grid_[i - 1], grid_[i]));
         }
+        if (const auto bounds = stress.bounds({0., length, begin_, end}))
+          rate_ = bounds->rate;
         mean_step_ = HUGE_VAL;
         mean_step_ = mismatch(1);
       }
@@ -74,80 +241,28 @@ namespace crawler
       {
         return step_ <= same * largest_;
       }
+      /// A wave that nearly comes round from one time to the next looks smooth, too; what bounds of |m_t| admit does
+      /// not.
       bool
       is_smooth() const
       {
-        return step_ <= smooth * largest_;
+        constexpr double too_large = 4.; // bounds
+        return step_ <= smooth * largest_ && rate_ * T_ / n_times_ <= too_large * smooth * largest_;
       }
 
-      /// The smallest period near one of the candidates.
+      /// The smallest period near one of the candidates that passes the test.
       std::optional<double>
-      smallest(const std::vector<unsigned int> &candidates, const double longest)
+      smallest(const std::vector<unsigned int> &candidates, const double longest, PeriodTest &test)
       {
         constexpr std::size_t most_candidates = 64;
         for (std::size_t i = 0; i < std::min(candidates.size(), most_candidates); ++i)
           for (const double P : guesses(candidates[i]))
-            if (P > 0. && P <= longest && is_period(P))
+            if (P > 0. && P <= longest && test.holds(P))
               return P;
         return std::nullopt;
       }
 
-      /// At random times, at as many equally spaced ones as the grid has, and where m is faster than the grid shows.
-      bool
-      is_period(const double P)
-      {
-        std::mt19937 generator(20220610);
-        const auto is_same_after = [&](const double t) { return difference(at(t), at(t + P)) <= same * largest_; };
-        const double last        = T_ - P;
-        for (unsigned int i = 0; i < n_random; ++i)
-          if (!is_same_after(begin_ + static_cast<double>(generator()) / 4294967296. * last))
-            return false;
-        // Not where pulses may start and end: there round-off decides.
-        for (unsigned int i = 0; i < n_times_; ++i)
-          if (!is_same_after(begin_ + (i + 0.381966) / n_times_ * last))
-            return false;
-        const double known = step_ * n_times_ / T_;
-        double largest     = largest_;
-        for (const FastChange &change :
-             find_fast_changes(
-               owner_, length_, begin_, end_, [known](double, double) { return known; }, largest)
-               .list)
-          for (const double part : {0.27, 0.5, 0.81})
-          {
-            const double t = change.from + part * (change.to - change.from);
-            if ((t + P <= end_ && !is_same_after(t)) || (t >= begin_ + P && !is_same_after(t - P)))
-              return false;
-          }
-        return true;
-      }
-
     private:
-      using Values = std::array<double, n_places>;
-
-      /// At both ends, and at places that no wave has its nodes at.
-      static std::vector<double>
-      places(const double length)
-      {
-        return {0., 0.1837 * length, 0.4142 * length, 0.7321 * length, length};
-      }
-
-      Values
-      at(const double t)
-      {
-        Values m;
-        stress_->values(t, m);
-        return m;
-      }
-
-      static double
-      difference(const Values &a, const Values &b)
-      {
-        double largest = 0.;
-        for (unsigned int p = 0; p < n_places; ++p)
-          largest = std::max(largest, std::abs(a[p] - b[p]));
-        return largest;
-      }
-
       /// The mean of |m(t + P) - m(t)| for P of j steps of the grid, which jumps spoil less than the largest value;
       /// infinite if it is much larger than that for one step.
       double
@@ -156,7 +271,7 @@ namespace crawler
         const double n = n_times_ + 1 - j, most = 2. * mean_step_ * n;
         double sum = 0.;
         for (unsigned int i = 0; i + j <= n_times_ && sum <= most; ++i)
-          for (unsigned int p = 0; p < n_places; ++p)
+          for (unsigned int p = 0; p < StressAtPlaces::n; ++p)
             sum += std::abs(grid_[i + j][p] - grid_[i][p]);
         return sum <= most ? sum / n : HUGE_VAL;
       }
@@ -167,7 +282,7 @@ namespace crawler
       {
         const double near = T_ * j / n_times_, around = T_ / n_times_;
         // A whole part of the duration, or the shortest decimal number; the only ways to find the period of pulses.
-        std::vector<double> list = {end_ / std::round(end_ / near)};
+        std::vector<double> list = {end_time_ / std::round(end_time_ / near)};
         for (int digits = 1; digits < 8; ++digits)
         {
           const double decimal = std::stod(fmt::format("{:.{}e}", near, digits - 1));
@@ -194,9 +309,10 @@ namespace crawler
           double r_d = 0., d_d = 0.;
           for (unsigned int i = 0; i < n; ++i)
           {
-            const double t   = begin_ + (i + 0.37) / n * (T_ - near - around);
-            const Values now = at(t), later = at(t + P), before = at(t + P - delta), after = at(t + P + delta);
-            for (unsigned int p = 0; p < n_places; ++p)
+            const double t                   = begin_ + (i + 0.37) / n * (T_ - near - around);
+            const StressAtPlaces::Values now = m_.at(t), later = m_.at(t + P), before = m_.at(t + P - delta),
+                                         after = m_.at(t + P + delta);
+            for (unsigned int p = 0; p < StressAtPlaces::n; ++p)
             {
               const double slope = (after[p] - before[p]) / (2. * delta);
               r_d += (later[p] - now[p]) * slope;
@@ -214,13 +330,13 @@ namespace crawler
         return P;
       }
 
-      const ActiveStress &owner_;
-      const double length_;
-      const double begin_, end_, T_; ///< times, and how long it is between them
+      StressAtPlaces m_;
+      const double begin_, T_;
+      const double end_time_; ///< of the run
       const unsigned int n_times_;
-      const std::unique_ptr<ActiveStressAtPoints> stress_;
-      std::vector<Values> grid_;
+      std::vector<StressAtPlaces::Values> grid_;
       double largest_ = 0., step_ = 0., mean_step_ = 0.; ///< |m|; change over a step of the grid
+      double rate_ = 0.;                                 ///< a bound of |m_t|, if there is one
     };
   } // namespace
 
@@ -229,27 +345,54 @@ namespace crawler
     std::optional<double>
     find_period(const ActiveStress &stress, const double length, const double begin, const double end_time)
     {
-      const double longest = (end_time - begin) / 2.;
-      const PeriodSearch coarse(stress, length, begin, end_time, few_times);
-      if (coarse.is_smooth() && (coarse.is_steady() || coarse.candidates(longest).empty()))
-        return std::nullopt;
-      PeriodSearch fine(stress, length, begin, end_time, many_times);
-      return fine.is_steady() ? std::nullopt : fine.smallest(fine.candidates(longest), longest);
+      PeriodTest test(stress, length, begin, end_time);
+      bool is_smooth = false;
+      // From begin on, in the time of a window; what a grid finds there has to hold in the time of the test.
+      const auto look = [&](const double window, PeriodTest &repeats) -> std::optional<double> {
+        const double end = begin + window, longest = window / 2.;
+        const PeriodSearch coarse(stress, length, begin, end, few_times, end_time);
+        is_smooth = coarse.is_smooth();
+        if (is_smooth && (coarse.is_steady() || coarse.candidates(longest).empty()))
+          return std::nullopt;
+        PeriodSearch fine(stress, length, begin, end, many_times, end_time);
+        is_smooth = fine.is_smooth();
+        return fine.is_steady() ? std::nullopt : fine.smallest(fine.candidates(longest), longest, repeats);
+      };
+      double window = end_time - begin;
+      auto found    = look(window, test);
+      // A grid that is not fine enough shows none of many periods, or several as one.
+      constexpr double shorter         = 0.25;
+      constexpr unsigned int n_shorter = 6;
+      for (unsigned int i = 0; i < n_shorter && !found && !is_smooth; ++i)
+        found = look(window *= shorter, test);
+      while (found && !is_smooth)
+      {
+        PeriodTest in_two(stress, length, begin, begin + 2. * *found);
+        const auto part = look(2. * *found, in_two);
+        if (!part || *part > 0.75 * *found)
+          break;
+        found = part;
+      }
+      return found;
     }
   } // namespace
 
   std::optional<ActiveStress::Repetition>
   find_repetition(const ActiveStress &stress, const double length, const double end_time)
   {
-    if (const auto P = find_period(stress, length, 0., end_time))
-      return ActiveStress::Repetition{*P, 0.};
-    const auto P = find_period(stress, length, longest_start * end_time, end_time);
-    if (!P)
-      return std::nullopt;
-    double from = longest_start * end_time;
-    while (from / 2. > *P / 2. && PeriodSearch(stress, length, from / 2., end_time, many_times).is_period(*P))
-      from /= 2.;
-    return ActiveStress::Repetition{*P, from};
+    for (const double part : starts)
+      if (const auto P = find_period(stress, length, part * end_time, end_time))
+      {
+        double from       = part * end_time;
+        const auto before = [&](const double earlier) {
+          return PeriodTest(stress, length, earlier, end_time).holds(*P);
+        };
+        if (part == first_start)
+          while (from / 2. > *P / 2. && before(from / 2.))
+            from /= 2.;
+        return ActiveStress::Repetition{*P, from};
+      }
+    return std::nullopt;
   }
 
   std::optional<double>

@@ -18,12 +18,67 @@ namespace crawler
 {
   namespace
   {
+    /// Where a function, of which @p values(places, results) gives the values, jumps in [0, @p length]: the difference
+    /// of neighbours of a sampling that does not become smaller when these come closer. Only the first jump between
+    /// two samples is found, and none that is less than 1e-3 of the largest value.
+    template <typename Values>
+    std::vector<double>
+    jumps_of(const Values &values, const double length)
+    {
+      constexpr unsigned int n = 1024, n_bisections = 50;
+      constexpr double least     = 1e-3;
+      constexpr std::size_t most = 64; // more are no jumps of a material
+      std::vector<double> places(n + 1), f(n + 1);
+      for (unsigned int i = 0; i <= n; ++i)
+        places[i] = length * i / n;
+      values(places, f);
+      double largest = 0.;
+      for (const double one : f)
+        largest = std::max(largest, std::abs(one));
+      std::vector<double> jumps;
+      for (unsigned int i = 0; i < n; ++i)
+      {
+        double left = places[i], right = places[i + 1], f_left = f[i], f_right = f[i + 1];
+        for (unsigned int j = 0; j < n_bisections && std::abs(f_right - f_left) > least * largest; ++j)
+        {
+          const double middle = 0.5 * (left + right);
+          double f_middle     = 0.;
+          values({&middle, 1}, {&f_middle, 1});
+          const bool in_left           = std::abs(f_middle - f_left) > std::abs(f_right - f_middle);
+          (in_left ? right : left)     = middle;
+          (in_left ? f_right : f_left) = f_middle;
+        }
+        if (std::abs(f_right - f_left) > least * largest)
+          jumps.push_back(0.5 * (left + right));
+      }
+      return jumps.size() <= most ? jumps : std::vector<double>();
+    }
+
     class FormulaProfile : public Profile
     {
     public:
-      explicit FormulaProfile(std::shared_ptr<const Formula> formula)
+      /// Its jumps and kinks are looked for in [0, @p length], nowhere if this is 0.
+      FormulaProfile(std::shared_ptr<const Formula> formula, const double length)
         : gradient_(std::move(formula))
       {
+        if (!(length > 0.))
+          return;
+        using Places = std::span<const double>;
+        using Values = std::span<double>;
+        breaks_      = jumps_of([&](const Places x, const Values f) { values(x, f); }, length);
+        std::vector<double> f;
+        const auto slopes = [&](const Places x, const Values slope) {
+          f.resize(x.size());
+          values_and_slopes(x, f, slope);
+        };
+        const std::vector<double> kinks = jumps_of(slopes, length);
+        breaks_.insert(breaks_.end(), kinks.begin(), kinks.end());
+      }
+
+      std::vector<double>
+      breaks() const override
+      {
+        return breaks_;
       }
 
     private:
@@ -36,6 +91,7 @@ namespace crawler
       }
 
       mutable FormulaGradient gradient_; ///< has room for intermediate values
+      std::vector<double> breaks_;
     };
 
     /// Linear or cubic interpolation of samples.
@@ -204,7 +260,8 @@ namespace crawler
     if (text.ends_with(".csv"))
       return read_table(input);
     return std::make_shared<FormulaProfile>(
-      read_formula({input.quantity, text, "", input.entry, input.entry, {input.variable}}, length, end_time));
+      read_formula({input.quantity, text, "", input.entry, input.entry, {input.variable}}, length, end_time),
+      input.variable == "s" ? length : 0.);
   }
 
   std::shared_ptr<const Profile>

@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace crawler
 {
@@ -44,6 +48,35 @@ namespace crawler
       }
       return best;
     }
+
+    /// Points of a grid, @p n_s in each row, that no neighbour is beyond, towards smaller values if @p sign > 0: some
+    /// of those that go furthest, by parabolas through them and their neighbours.
+    std::vector<std::size_t>
+    peaks(const std::vector<double> &e, const std::size_t n_s, const double sign)
+    {
+      constexpr std::size_t most = 8;
+      const std::size_t n_t      = e.size() / n_s;
+      std::vector<std::pair<double, std::size_t>> list;
+      const auto gain = [&](const double before, const double here, const double after) {
+        const double slope = 0.5 * (after - before), curvature = sign * (after - 2. * here + before);
+        return curvature > 0. ? 0.5 * slope * slope / curvature : 0.;
+      };
+      for (std::size_t j = 0; j < n_t; ++j)
+        for (std::size_t i = 0; i < n_s; ++i)
+        {
+          const std::size_t k    = j * n_s + i;
+          const std::size_t left = i > 0 ? k - 1 : k, right = i + 1 < n_s ? k + 1 : k;
+          const std::size_t before = j > 0 ? k - n_s : k, after = j + 1 < n_t ? k + n_s : k;
+          const auto is_beyond = [&](const std::size_t other) { return sign * e[other] < sign * e[k]; };
+          if (!is_beyond(left) && !is_beyond(right) && !is_beyond(before) && !is_beyond(after))
+            list.emplace_back(sign * e[k] - gain(e[left], e[k], e[right]) - gain(e[before], e[k], e[after]), k);
+        }
+      const auto end = list.begin() + static_cast<std::ptrdiff_t>(std::min(most, list.size()));
+      std::partial_sort(list.begin(), end, list.end());
+      std::vector<std::size_t> best;
+      std::transform(list.begin(), end, std::back_inserter(best), [](const auto &one) { return one.second; });
+      return best;
+    }
   } // namespace
 
   StrainExtremes
@@ -53,29 +86,33 @@ namespace crawler
                 const unsigned int n_s,
                 const unsigned int n_t)
   {
-    std::vector<double> points(n_s), e(n_s);
+    std::vector<double> points(n_s), e(1ul * n_s * n_t);
     for (unsigned int i = 0; i < n_s; ++i)
       points[i] = i + 1 == n_s ? length : length * i / (n_s - 1);
-    const auto at = history.at(points);
-    StrainExtremes extremes{{HUGE_VAL, 0., 0.}, {-HUGE_VAL, 0., 0.}};
+    const auto time = [&](const unsigned int j) { return j + 1 == n_t ? end_time : end_time * j / (n_t - 1); };
+    const auto at   = history.at(points);
     for (unsigned int j = 0; j < n_t; ++j)
     {
-      const double t = j + 1 == n_t ? end_time : end_time * j / (n_t - 1);
-      at->strain(t, e);
+      const std::span row(e.data() + 1ul * j * n_s, n_s);
+      at->strain(time(j), row);
       for (unsigned int i = 0; i < n_s; ++i)
-      {
-        const StrainExtreme here{e[i], points[i], t};
-        if (!std::isfinite(e[i]))
+        if (const StrainExtreme here{row[i], points[i], time(j)}; !std::isfinite(row[i]))
           return {here, here};
-        if (e[i] < extremes.smallest.strain)
-          extremes.smallest = here;
-        if (e[i] > extremes.largest.strain)
-          extremes.largest = here;
-      }
     }
     const double ds = length / (n_s - 1), dt = end_time / (n_t - 1);
-    return {refined(history, length, end_time, extremes.smallest, 1., ds, dt),
-            refined(history, length, end_time, extremes.largest, -1., ds, dt)};
+    // Which of several peaks is the highest shows between the points of the grid.
+    const auto extreme = [&](const double sign) {
+      StrainExtreme best{sign * HUGE_VAL, 0., 0.};
+      for (const std::size_t k : peaks(e, n_s, sign))
+      {
+        const StrainExtreme one = refined(
+          history, length, end_time, {e[k], points[k % n_s], time(static_cast<unsigned int>(k / n_s))}, sign, ds, dt);
+        if (sign * one.strain < sign * best.strain)
+          best = one;
+      }
+      return best;
+    };
+    return {extreme(1.), extreme(-1.)};
   }
 
   std::optional<StrainJump>

@@ -359,6 +359,35 @@ def test_signals(folder):
            "and --resume makes the rest")
 
 
+def test_crashes(folder):
+    """A fault of the program: the points at work are tried once more, alone, and then given up by name."""
+    write(folder, f"{P} : linspace(1.5, 4, 12)")
+    expect(sweep(folder, "whole").returncode == 0, "a sweep that does not crash")
+    note = folder / "crash" / "crashes.txt"
+    first = sweep(folder, "crash", stop_at="row:4:SEGV")
+    once = [int(point) for point in note.read_text().split()]
+    done = computed(table(folder / "crash"))
+    expect(first.returncode == -signal.SIGSEGV and once and np.count_nonzero(done) >= 4,
+           f"the first crash: {first.returncode}, points {once}, {np.count_nonzero(done)} rows")
+    left = [point for point in once if not done[point]]
+    second = sweep(folder, "crash", "--resume", stop_at="step:5:SEGV")
+    lines = [[int(point) for point in line.split()] for line in note.read_text().splitlines()]
+    expect(second.returncode == -signal.SIGSEGV and len(lines) == 2, f"the second crash: {lines}")
+    third = sweep(folder, "crash", "--resume")
+    rows, reference = table(folder / "crash"), table(folder / "whole")
+    twice = {point for point in lines[1] if point in left}
+    given_up = {i for i, reason in enumerate(rows["reason"]) if reason == "crashed"}
+    expect(third.returncode == 0 and given_up == twice and computed(rows).all(), f"{given_up}, expected {twice}")
+    expect(all(rows["status"][i] == "failed" and np.isnan(rows["displacement"][i]) for i in given_up)
+           and all(abs(rows["displacement"][i] - reference["displacement"][i]) <= rows["displacement_error.total"][i]
+                   + reference["displacement_error.total"][i] for i in range(12) if i not in given_up),
+           "points that crashed once are computed, alone")
+    alone = sweep(folder, "crash", "--resume", stop_at="step:5:SEGV")
+    expect(alone.returncode == 0, "nothing is left to crash at")
+    anew = sweep(folder, "crash", "--overwrite")
+    expect(anew.returncode == 0 and not note.exists(), "a new sweep knows nothing of it")
+
+
 def test_kills(folder):
     """kill -9 of the only process and of one rank of two, SIGTERM and Ctrl-C: nothing is lost, nothing computed twice."""
     write(folder, f"{P} : linspace(1.5, 4, 12); {CHI} : linspace(0.05, 0.5, 12)")
@@ -482,7 +511,7 @@ def main():
     """Each test in a folder of its own."""
     with tempfile.TemporaryDirectory() as name:
         for test in (test_bad_input, test_damaged_table, test_grid, test_designs, test_places_of_files, test_rows_that_fail,
-                     test_time_limits, test_changed_inputs, test_killed_at_files, test_two_at_once, test_signals, test_kills,
+                     test_time_limits, test_changed_inputs, test_killed_at_files, test_two_at_once, test_signals, test_crashes, test_kills,
                      test_full_disk):
             folder = pathlib.Path(name, test.__name__)
             folder.mkdir()

@@ -425,3 +425,49 @@ TEST(HardAnswers, FirstStridesChooseForLongRuns)
       expect_within(answer_to(settings(on_ground, accuracy)), exact.displacement, std::stod(accuracy), what);
   }
 }
+
+/// On three meshes their displacements agree by chance (reference: the position form at 1e-9).
+TEST(HardAnswers, SoftBodyWhoseDisplacementsAgreeByChance)
+{
+  const double chi = 0.42837859564282343;
+  auto settings    = test::wave(1. - 2.4090827519256672, chi, 1., 1., 0.0009221434024891147);
+  settings.emplace_back("Accuracy", "1e-4");
+  expect_within(answer_to(settings), 0.1993760, 1e-4, "K = 9.2e-4, chi = 0.43");
+}
+
+/// A thousand strides and a single event in them; and three thousand, of which a grid over the duration shows 40 as
+/// one.
+TEST(HardAnswers, FormulasInLongRuns)
+{
+  const std::string wave = "0.2*sin(2*pi*(s+t))";
+  const auto long_run    = [](const std::string &formula, const double end_time, const std::string &accuracy) {
+    return answer_to({{"Active stress/Generator", "expression"},
+                      {"Active stress/Expression/Active stress", formula},
+                      {"Time/End time", test::text(end_time)},
+                      {"Accuracy", accuracy}});
+  };
+  const auto with_event = long_run(wave + "+0.5*sin(pi*s)*sin(2*pi*s)*exp(-((t-530.126)/0.01)^2)", 1000., "1e-5");
+  expect_within(with_event, 17.788083, 1e-5, "an event in 1000 strides");
+  const auto all_alike = long_run(wave, 3000., "1e-4");
+  for (const SimulationResult &result : {with_event, all_alike})
+  {
+    ASSERT_TRUE(result.gait && result.gait->wave_speed());
+    EXPECT_NEAR(result.gait->period, 1., 1e-12);
+    EXPECT_NEAR(*result.gait->wave_speed(), -0.9827, 1e-3);
+    EXPECT_NEAR(*result.gait->slip(), 0.9819, 1e-3);
+  }
+}
+
+/// Two materials: cells end where they meet, so that the automatic numerics are as good as eight cells.
+TEST(HardAnswers, ModulusThatJumpsInAFormula)
+{
+  expect_within(answer_to({{"Accuracy", "1e-4"},
+                           {"Body/Anchoring exponent", "2"},
+                           {"Body/Elastic modulus profile", "s < 0.5 ? 1 : 3"},
+                           {"Active stress/Generator", "expression"},
+                           {"Active stress/Expression/Active stress", "0.3*(1-exp(-5*t))"},
+                           {"Time/End time", "5"}}),
+                -0.00327110,
+                1e-4,
+                "modulus 1 and 3");
+}

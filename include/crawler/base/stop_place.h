@@ -12,7 +12,7 @@ namespace crawler
    *
    *     CRAWLER_STOP_AT=PLACE[:NUMBER]:SIGNAL[:RANK]
    *
-   * raises SIGNAL (KILL, TERM, INT, USR1, or STOP, which waits for CONT) in the process that reaches PLACE for the
+   * raises SIGNAL (KILL, TERM, INT, USR1, SEGV, or STOP, which waits for CONT) in the process that reaches PLACE for the
    * NUMBER-th time (default 1), if it has this RANK of mpirun (default: any). PLACE is one of
    *
    * | place | reached |

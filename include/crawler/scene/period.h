@@ -11,9 +11,10 @@ namespace crawler
   /**
    * How an active stress over a body of this @p length [length] and the duration T = @p end_time [time] repeats,
    * nothing if it does not: the smallest period P <= T/2 with m(s,t+P) = m(s,t) to 1e-10 of the largest |m| at five
-   * places, at 1024 equally spaced and 64 other times in [0, T-P]; where there is none, one that is found as well from
-   * T/4 on, and the smallest of T/4, T/8, ... from which on it holds. What the stress knows to be faster
-   * (fast_changes.h) must repeat, too. What does not depend on time does not repeat.
+   * places, at 64 random times in [0, T-P] and at some 16 equally spaced ones in each period (at least 1024, at most
+   * 65536); where there is none, one that is found as well from T/4 on, and the smallest of T/4, T/8, ... from which on
+   * it holds. Where |m_t| may be larger than in one period (fast_changes.h) m must repeat, too; if there are more such
+   * times than can be searched it does not. What does not depend on time does not repeat.
    */
   std::optional<ActiveStress::Repetition>
   find_repetition(const ActiveStress &stress, double length, double end_time);

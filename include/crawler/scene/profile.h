@@ -27,7 +27,7 @@ namespace crawler
       evaluate(x, f, slope);
     }
 
-    /// Where the factor is known to have a kink [length].
+    /// Where the factor is known to have a jump or a kink [length].
     virtual std::vector<double>
     breaks() const
     {

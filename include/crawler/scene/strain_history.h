@@ -62,8 +62,8 @@ namespace crawler
   find_jump(const StrainHistory &history, double length, double end_time);
 
   /// Looked for on a grid of @p n_s times @p n_t points over the whole body and 0 <= t <= @p end_time, its ends
-  /// included, and from there by a search with steps that become smaller (to 1e-4 of those of the grid).
-  /// A strain that is not a finite number somewhere is the smallest and the largest.
+  /// included, and from its eight highest peaks by a search with steps that become smaller (to 1e-4 of those of the
+  /// grid). A strain that is not a finite number somewhere is the smallest and the largest.
   StrainExtremes
   find_extremes(const StrainHistory &history, double length, double end_time, unsigned int n_s, unsigned int n_t);
 } // namespace crawler

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/file_lock.h>
+#include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/output_folder.h>
 
 #include <fmt/format.h>
@@ -54,6 +55,7 @@ namespace crawler
                                                 "optima.csv",
                                                 "optimize.png",
                                                 "reference.json",
+                                                crash_file,
                                                 report_name};
     /// What a run writes while it goes on: the fields and the statistics.
     const std::vector<std::string> names_of_fields = {"statistics.csv",

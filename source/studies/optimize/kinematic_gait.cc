@@ -386,7 +386,7 @@ namespace crawler
   KinematicGait::extreme_strains(const std::vector<double> &x)
   {
     const State state(family_.parameters(x));
-    const StrainExtremes extremes = find_extremes(*state.reduced.strain(), 1., 1., 8 * n_space_ + 1, 8 * n_time_ + 1);
+    const StrainExtremes extremes = find_extremes(*state.reduced.strain(), 1., 1., 16 * n_space_ + 1, 16 * n_time_ + 1);
     return {extremes.smallest.strain, extremes.largest.strain};
   }
 

@@ -60,6 +60,18 @@ namespace crawler
       return closer(parameters.largest_strain, wanted.largest_strain, extremes.second) || is_lower;
     }
 
+    /// Of the extreme strains over the limits, relative to these.
+    double
+    excess(const OptimizeParameters &wanted, const std::pair<double, double> &extremes)
+    {
+      double largest = 0.;
+      if (wanted.smallest_strain && *wanted.smallest_strain != 0.)
+        largest = std::max(largest, (*wanted.smallest_strain - extremes.first) / std::abs(*wanted.smallest_strain));
+      if (wanted.largest_strain && *wanted.largest_strain != 0.)
+        largest = std::max(largest, (extremes.second - *wanted.largest_strain) / std::abs(*wanted.largest_strain));
+      return largest;
+    }
+
     /// The rounds of one start. Each is an optimisation; the next one knows better where to look.
     class Search
     {
@@ -140,10 +152,17 @@ namespace crawler
           }
           if (is_fine && !is_rough && !result_.is_admissible())
             return; // closer limits would not help
-          const bool exceeds = is_fine && !is_rough && (wanted_.smallest_strain || wanted_.largest_strain) &&
-                               tighten(parameters_, wanted_, model->extreme_strains(x_));
-          if (is_fine && !exceeds && !is_rough)
-            return;
+          if (is_fine && !is_rough)
+          {
+            if (!wanted_.smallest_strain && !wanted_.largest_strain)
+              return;
+            const auto extremes = model->extreme_strains(x_);
+            if (!tighten(parameters_, wanted_, extremes))
+            {
+              result_.best.violation = std::max(result_.best.violation, excess(wanted_, extremes));
+              return;
+            }
+          }
           is_rough = is_rough && !is_fine;
         }
         result_.has_converged = false;

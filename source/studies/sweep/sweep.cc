@@ -7,6 +7,7 @@
 #include <crawler/base/stop_signal.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/compute.h>
+#include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/progress.h>
@@ -109,6 +110,8 @@ namespace crawler
     {
       SweepWork own(points, size_of(communicator));
       RowFile results(communicator, folder / table.file, table.group, table.written_columns());
+      const auto crashes = crashes_in(folder);
+      CrashNote note(folder);
       return share_work(
         communicator,
         {own.n_parts(),
@@ -119,6 +122,8 @@ namespace crawler
            return own.compute(
              number,
              done,
+             crashes,
+             note,
              [&](const unsigned long first, const std::span<const RowFile::Row> rows) { results.write(first, rows); },
              stops,
              see);

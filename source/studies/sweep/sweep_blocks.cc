@@ -104,6 +104,18 @@ namespace crawler
       return result.mesh ? static_cast<double>(result.mesh->n_unknowns) * result.time.steps : 0.;
     }
 
+    /// In place of the answer at a point that killed its process twice.
+    Task
+    crashed_task()
+    {
+      Task task;
+      TimeOutcome &time = task.computed.result.time;
+      time.status       = Status::failed;
+      time.reason       = "crashed";
+      time.message      = "the program crashed twice at this point; it is a fault of the program, please report it";
+      return task;
+    }
+
     /// The rows of these points, those in succession at once.
     template <typename Point>
     void
@@ -239,15 +251,28 @@ namespace crawler
   bool
   SweepWork::compute(const unsigned long number,
                      const std::vector<bool> &done,
+                     const std::map<unsigned long, unsigned int> &crashes,
+                     CrashNote &note,
                      const WriteRows &write,
                      const std::function<bool()> &interrupted,
                      const std::function<void(unsigned long n, unsigned long failed)> &see)
   {
     const SweepBlock own = part(number);
-    std::vector<unsigned long> missing;
+    std::vector<unsigned long> missing, died_once;
+    std::vector<Point> died_twice;
     for (unsigned long point = own.first; point < own.first + own.size; ++point)
       if (!done[point])
-        missing.push_back(point);
+      {
+        const auto died = crashes.find(point);
+        if (died == crashes.end())
+          missing.push_back(point);
+        else if (died->second == 1)
+          died_once.push_back(point);
+        else
+          died_twice.push_back({point, crashed_task()});
+      }
+    write_rows(died_twice, points_.sensitivities(), write, see);
+    note.at_work_on(missing);
     auto shared = compute_shared(block_of(number), missing, interrupted);
     differentiate(shared, interrupted);
     if (interrupted())
@@ -261,9 +286,12 @@ namespace crawler
     const std::size_t most_together = std::isfinite(time_limit_) ? 1 : 8;
     constexpr double much           = 1e6; // unknowns times steps
     std::size_t together            = most_together;
+    const std::size_t alone         = missing.size(); // from here on
+    missing.insert(missing.end(), died_once.begin(), died_once.end());
     for (std::size_t from = 0, to = 0; from < missing.size(); from = to)
     {
-      to = std::min(from + together, missing.size());
+      to = from < alone ? std::min(from + together, alone) : from + 1;
+      note.at_work_on(std::span(missing).subspan(from, to - from));
       std::vector<Task> few;
       for (std::size_t i = from; i < to; ++i)
         few.push_back(numerics_.task(missing[i]));
@@ -279,6 +307,7 @@ namespace crawler
         return false;
       write_rows(ready, points_.sensitivities(), write, see);
     }
+    note.at_work_on({});
     return true;
   }
 } // namespace crawler

@@ -27,7 +27,12 @@ namespace
   {
     double largest = 0.1;
     return find_fast_changes(
-      *scene.active_stress, scene.body.length, 0., scene.end_time, [known](double, double) { return known; }, largest);
+      *scene.active_stress,
+      scene.body.length,
+      0.,
+      scene.end_time,
+      [known](double, double) { return rates_explain * known; },
+      largest);
   }
 
   /// The shortest limit that a step meets which starts at this time.

@@ -2,6 +2,7 @@
 #include "../../support/with_breaks.h"
 
 #include <crawler/scene/active_stress/none.h>
+#include <crawler/scene/profile.h>
 #include <crawler/scene/scene.h>
 
 #include <gtest/gtest.h>
@@ -82,4 +83,27 @@ TEST(Breaks, PiecesAreEvaluatedInside)
   const Scene plain = in_units(scene, units);
   plain.active_stress->at({0.5})->values(0.25, {&m, 1});
   EXPECT_EQ(m, 0.5);
+}
+
+/// Jumps and kinks of a formula, whatever its units; a front that a mesh can follow is neither.
+TEST(Breaks, OfFormulasOfTheBody)
+{
+  const auto of = [](const std::string &formula) {
+    const auto profile = read_profile({"friction", "s", formula, "cubic", "hold", "Body/Friction profile"}, 2., 1.);
+    return distinct_breaks_in_space(profile->breaks(), 2.);
+  };
+  const auto expect = [&](const std::string &formula, const std::vector<double> &places) {
+    const std::vector<double> found = of(formula);
+    ASSERT_EQ(found.size(), places.size()) << formula;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      EXPECT_NEAR(found[i], places[i], 1e-12) << formula;
+  };
+  expect("s<0.571*L ? 1 : 0.325", {1.142});
+  expect("1+(s>0.3)*(s<0.7)+0.1*sin(40*s)", {0.3, 0.7});
+  expect("1+abs(s-0.77)", {0.77});
+  expect("1+0.01*(s>1)", {1.});
+  expect("max(1,2*s)", {0.5});
+  expect("2+tanh((s-1)/0.01)", {});
+  expect("1+0.9*sin(50*s)", {});
+  expect("exp(-8*s)", {});
 }

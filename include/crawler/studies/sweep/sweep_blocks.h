@@ -2,9 +2,11 @@
 #pragma once
 
 #include <crawler/base/row_file.h>
+#include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/sweep/sweep_numerics.h>
 
 #include <functional>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -73,11 +75,15 @@ namespace crawler
     using WriteRows = std::function<void(unsigned long first, std::span<const RowFile::Row> rows)>;
 
     /// Computes the points of the part @p number that have no row yet (@p done), and gives their rows to @p write.
-    /// Calls @p see when rows have been written, with their number and how many of these did not finish. Returns false
-    /// if it was interrupted. Throws what @p write throws.
+    /// Those at which a process died before (@p crashes) come last and alone; those at which it died twice are not
+    /// computed, and their rows say so. @p note is told which are computed. Calls @p see when rows have been written,
+    /// with their number and how many of these did not finish. Returns false if it was interrupted. Throws what @p
+    /// write throws.
     bool
     compute(unsigned long number,
             const std::vector<bool> &done,
+            const std::map<unsigned long, unsigned int> &crashes,
+            CrashNote &note,
             const WriteRows &write,
             const std::function<bool()> &interrupted,
             const std::function<void(unsigned long n, unsigned long failed)> &see);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <span>
+
+namespace crawler
+{
+  /// A file of the folder of a study in which a process says, when it dies of a fault of its own (SIGSEGV, SIGBUS,
+  /// SIGFPE, SIGILL, SIGABRT), on which points of the table it was at work.
+  extern const std::string crash_file;
+
+  /**
+   * Writes that file: from now on until this is gone, signals of faults write a line of points before they end the
+   * process as they always do. One object at a time.
+   */
+  class CrashNote
+  {
+  public:
+    explicit CrashNote(const std::filesystem::path &folder);
+    ~CrashNote();
+    CrashNote(const CrashNote &) = delete;
+    CrashNote &
+    operator=(const CrashNote &) = delete;
+
+    /// These points, none if there are none, are computed from now on.
+    void
+    at_work_on(std::span<const unsigned long> points);
+  };
+
+  /// How often a process died at work on each point; points at which none did are not there. Throws FileError.
+  std::map<unsigned long, unsigned int>
+  crashes_in(const std::filesystem::path &folder);
+} // namespace crawler

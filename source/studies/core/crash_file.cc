@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/files.h>
+#include <crawler/studies/core/crash_file.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <iterator>
+#include <sstream>
+#include <unistd.h>
+
+namespace crawler
+{
+  const std::string crash_file = "crashes.txt";
+
+  namespace
+  {
+    constexpr int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+
+    /// What the signal's function needs, where it may not ask for memory.
+    struct Prepared
+    {
+      std::array<char, 4096> path{};
+      std::array<char, 4096> line{};
+      std::array<char, 65536> stack{}; ///< the own one may be what was used up
+      volatile std::size_t size = 0;   ///< of the line
+      stack_t stack_before{};
+      struct sigaction before[std::size(faults)] = {};
+    } prepared;
+
+    /// Calls only what is admitted in a signal's function (signal-safety(7)).
+    void
+    write_line(const int signal)
+    {
+      if (prepared.size > 0)
+        if (const int file = open(prepared.path.data(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644); file >= 0)
+        {
+          [[maybe_unused]] const auto written = write(file, prepared.line.data(), prepared.size);
+          close(file);
+        }
+      raise(signal); // which is as it was before, and comes when this function has ended
+    }
+  } // namespace
+
+  CrashNote::CrashNote(const std::filesystem::path &folder)
+  {
+    const std::string path = std::filesystem::absolute(folder / crash_file).string();
+    prepared.size          = 0;
+    if (path.size() >= prepared.path.size())
+      throw FileError(fmt::format("the name of the folder \"{}\" is too long", folder.string()));
+    std::strcpy(prepared.path.data(), path.c_str());
+    const stack_t stack = {.ss_sp = prepared.stack.data(), .ss_flags = 0, .ss_size = prepared.stack.size()};
+    sigaltstack(&stack, &prepared.stack_before);
+    struct sigaction action = {};
+    action.sa_handler       = write_line;
+    action.sa_flags         = static_cast<int>(SA_ONSTACK | SA_RESETHAND);
+    for (std::size_t i = 0; i < std::size(faults); ++i)
+      sigaction(faults[i], &action, &prepared.before[i]);
+  }
+
+  CrashNote::~CrashNote()
+  {
+    prepared.size = 0;
+    for (std::size_t i = 0; i < std::size(faults); ++i)
+      sigaction(faults[i], &prepared.before[i], nullptr);
+    sigaltstack(&prepared.stack_before, nullptr);
+  }
+
+  void
+  CrashNote::at_work_on(const std::span<const unsigned long> points)
+  {
+    const std::string line = fmt::format("{}\n", fmt::join(points, " "));
+    prepared.size          = 0;
+    if (points.empty() || line.size() > prepared.line.size())
+      return;
+    std::ranges::copy(line, prepared.line.begin());
+    prepared.size = line.size();
+  }
+
+  std::map<unsigned long, unsigned int>
+  crashes_in(const std::filesystem::path &folder)
+  {
+    std::map<unsigned long, unsigned int> times;
+    if (!std::filesystem::exists(folder / crash_file))
+      return times;
+    std::istringstream text(read_whole_file(folder / crash_file));
+    for (unsigned long point = 0; text >> point;)
+      ++times[point];
+    return times;
+  }
+} // namespace crawler
