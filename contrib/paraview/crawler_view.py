@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What the scripts of this folder share: the command line's errors, a view, films. Needs ParaView's Python."""
+import ctypes
+import os
 import pathlib
 import re
 import shutil
@@ -9,6 +11,7 @@ import tempfile
 
 try:
     from paraview import simple
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
 except ImportError:
     sys.exit(f"{sys.argv[0]}: this Python has no ParaView; call the script with pvbatch or pvpython (Debian: "
              f"apt install paraview python3-paraview): pvbatch {sys.argv[0]} RUN")
@@ -32,8 +35,21 @@ def size(text):
     return [int(match[1]) // 2 * 2, int(match[2]) // 2 * 2]
 
 
+def require_screen():
+    """Ends in a sentence where VTK would abort: a ParaView that draws in windows of X11 needs a display that answers."""
+    if vtkRenderWindow().GetClassName() != "vtkXOpenGLRenderWindow":
+        return
+    open_display = ctypes.CDLL("libX11.so.6").XOpenDisplay
+    open_display.restype = ctypes.c_void_p
+    if not open_display(None):
+        display = os.environ.get("DISPLAY")
+        fail(f"there is no screen to draw on ({f'DISPLAY={display} does not answer' if display else 'DISPLAY is not set'}"
+             f"); xvfb-run draws without one (Debian: apt install xvfb): xvfb-run -a pvbatch {sys.argv[0]} ...")
+
+
 def new_view(pixels):
     """A white view of these pixels, without axes."""
+    require_screen()
     view = simple.CreateView("RenderView")
     view.ViewSize = pixels
     view.UseColorPaletteForBackground = 0

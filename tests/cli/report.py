@@ -257,6 +257,10 @@ BLANK = """charts.filter(one => one.context && one.box.isConnected && !one.box.h
   one.paint = paint;
   one.draw();
   return painted.filter((colour, i) => colour !== blank[i]).length < 50; }).length"""
+# How many vertical axes have numbers that reach into the title beside them.
+CRAMPED = """charts.filter(one => one.axes && one.context && one.box.isConnected && !one.box.hidden && one.width > 60).filter(one => {
+  const {y} = one.axes(), texts = one.ticksOf(y, one.height - one.margin.bottom - one.margin.top, 36).map(([, text]) => text);
+  return !y.texts && y.title && Math.max(...texts.map(text => one.context.measureText(text).width)) + 26 > one.margin.left; }).length"""
 BRIGHTNESS = """(() => { const c = getComputedStyle(document.documentElement).backgroundColor.match(/\\d+/g).map(Number);
   return (c[0] + c[1] + c[2]) / 3; })()"""
 
@@ -273,6 +277,7 @@ def test_in_browser(browser, folder):
             check(browser.ask("document.documentElement.scrollWidth") <= width, f"{way}: nothing is cut off")
             check(browser.ask(BLANK) == 0 and browser.ask("document.querySelectorAll('.chart').length") > 0, f"{way}: no blank picture")
             check((browser.ask(BRIGHTNESS) < 60) == dark, f"{way}: colours")
+            check(browser.ask(CRAMPED) == 0, f"{way}: titles of axes have room")
         check(browser.ask("window.broken") is None and browser.ask("document.querySelectorAll('img, h1 b').length") == 0,
               f"{name}: texts stay texts")
         check(all(url.startswith("file:") for url in browser.requests), f"{name}: nothing is loaded")

@@ -58,6 +58,9 @@ function showWith(value, bound) {
 const boundKey = key => ({displacement: 'displacement_error.total', 'inversion.t': 'inversion.error'})[key]
   ?? 'errors.' + key.replace(/\.value$/, '');
 
+/** A path that may go on in the next line behind its slashes. */
+const brokenAtSlashes = path => path.split(/(?<=\/)/).flatMap(word => [word, el('wbr')]);
+
 /** A number that can be read exactly by programs, too. */
 const exactly = (value, text) => known(value) ? el('data', {value: String(value)}, text ?? show(value)) : show(value);
 

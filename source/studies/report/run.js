@@ -98,7 +98,7 @@ function showSensitivities(parent, run) {
   parent.append(el('h2', {}, 'What matters'), el('p', {}, 'How the displacement changes with an entry: the derivative, and by how many per cent for one per cent of the entry.'));
   const most = Math.max(...list.map(([, one]) => Math.abs(one.elasticity ?? 0))) || 1, body = el('tbody');
   for (const [entry, one] of list)
-    body.append(el('tr', {}, el('td', {class: 'entry'}, entry), el('td', {class: 'value'}, ...(known(one.value) ? [exactly(one.value, showWith(one.value, one.error)), ` ± ${show(one.error, 2)}`] : ['not known'])),
+    body.append(el('tr', {}, el('td', {class: 'entry'}, ...brokenAtSlashes(entry)), el('td', {class: 'value'}, ...(known(one.value) ? [exactly(one.value, showWith(one.value, one.error)), ` ± ${show(one.error, 2)}`] : ['not known'])),
       el('td', {class: 'value'}, known(one.elasticity) ? show(one.elasticity, 3) + ' %' : '–'),
       el('td', {class: 'wide-only', style: 'min-width:10rem'}, known(one.elasticity) ? el('span', {class: one.elasticity < 0 ? 'bar minus' : 'bar', style: `width:${Math.abs(one.elasticity) / most * 10}rem`}) : one.reason ?? '')));
   parent.append(el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, ...['entry', 'dD / d entry', 'per %', ''].map((name, i) => el('th', {class: i === 3 && 'wide-only'}, name)))), body)));
