@@ -16,6 +16,9 @@ except ImportError:
     sys.exit(f"{sys.argv[0]}: this Python has no ParaView; call the script with pvbatch or pvpython (Debian: "
              f"apt install paraview python3-paraview): pvbatch {sys.argv[0]} RUN")
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "plot"))
+from plotting import unit_names, with_own_units  # noqa: E402
+
 UNITS = {"stretch": "1", "position": "length", "displacement": "length", "velocity": "length/time",
          "active_stress": "force", "elastic_stress": "force", "friction_force": "force/length"}
 TEXT = [0.1, 0.1, 0.1]
@@ -68,8 +71,8 @@ def look_at(view, x, y, height):
     view.CameraParallelScale = height / 2
 
 
-def colour(display, view, field, limits):
-    """Colours by a field, with a bar that names it and its unit; grey is what does not deform."""
+def colour(display, view, field, limits, run):
+    """Colours by a field of a run, with a bar that names it and its unit; grey is what does not deform."""
     simple.ColorBy(display, ("POINTS", field))
     display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the bar, without light
     table = simple.GetColorTransferFunction(field)
@@ -81,7 +84,7 @@ def colour(display, view, field, limits):
     table.ApplyPreset("Cool to Warm (Extended)" if low < middle < high else "Viridis (matplotlib)", True)
     table.RescaleTransferFunction(*((middle - half, middle + half) if low < middle < high else (low, high)))
     bar = simple.GetScalarBar(table, view)
-    bar.Title, bar.ComponentTitle = f"{field.replace('_', ' ')} [{UNITS[field]}]", ""
+    bar.Title, bar.ComponentTitle = with_own_units(f"{field.replace('_', ' ')} [{UNITS[field]}]", unit_names(run)), ""
     bar.TitleColor = bar.LabelColor = TEXT
     bar.Orientation, bar.WindowLocation = "Horizontal", "Upper Right Corner"
     bar.ScalarBarLength, bar.ScalarBarThickness = 0.3, 12

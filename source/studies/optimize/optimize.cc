@@ -146,7 +146,11 @@ namespace crawler
     /// The optimum as a parameter file, and its run in a folder of its own. Returns the summary of the run, and whether
     /// it ended as it should.
     std::pair<std::string, bool>
-    run_optimum(OptimizeCases &cases, const StartResult &start, const fs::path &folder, const CommandOptions &options)
+    run_optimum(OptimizeCases &cases,
+                const StartResult &start,
+                const std::string &effective,
+                const fs::path &folder,
+                const CommandOptions &options)
     {
       const auto family           = cases.family(start.number_of_case);
       const Parameters parameters = family->parameters(start.best.x);
@@ -154,7 +158,10 @@ namespace crawler
       std::ostringstream text;
       Declarations &entries = family->form().declarations;
       entries.set("Sweep/Axes", "");
-      entries.print_prm(text);
+      const fs::path file = folder / ("optimum" + number + ".prm"), place = folder / ("best" + number);
+      write_file(file,
+                 "# The best gait: what differs from the file that was optimised.\ninclude parameters.prm\n" +
+                   changes(entries, ParameterFile::from_text(effective, "parameters.prm")));
       entries.set("Sweep/Axes", parameters.sweep.axes);
       const fs::path file = folder / ("optimum" + number + ".prm"), place = folder / ("best" + number);
       write_file(file, text.str());
@@ -218,7 +225,7 @@ namespace crawler
         const StartResult &best       = results.starts[results.best[i]];
         is_admissible                 = is_admissible && best.is_admissible();
         has_converged                 = has_converged && best.has_converged;
-        const auto [summary, is_good] = run_optimum(cases, best, folder, options);
+        const auto [summary, is_good] = run_optimum(cases, best, effective, folder, options);
         summaries.push_back(summary);
         runs = runs && is_good;
       }

@@ -23,9 +23,12 @@ function at(object, key) {
   return object ?? null;
 }
 
-/** "force length" as people write it; nothing for the unit 1. */
-const unitText = unit => !unit || unit === '1' ? '' : unit.replace(/ /g, '·').replace(/·per·.*/, ' per unit of the entry');
+/** "force length" as people write it, with the user's units; nothing for the unit 1. */
+const unitText = unit => !unit || unit === '1' ? ''
+  : unit.replace(/ /g, '·').replace(/·per·.*/, ' per unit of the entry').replace(/[a-z]+/g, word => page.units?.[word] ?? word);
 const withUnit = (name, unit) => unitText(unit) ? `${name} [${unitText(unit)}]` : name;
+/** A unit behind a number in a sentence, if the user has named units. */
+const unitBehind = unit => Object.entries(page.units ?? {}).some(([word, name]) => word !== name) ? ' ' + unitText(unit) : '';
 /** The key of a number as a name. */
 const nameOf = key => key.replace(/\.value$/, '').replace(/^errors\./, 'bound of ').replace(/_/g, ' ').replace(/\./g, ', ');
 /** The last words of an entry's path. */

@@ -124,7 +124,7 @@ function answersOf(explorer, row) {
   const value = name => explorer.columns.get(name)?.value(row) ?? null;
   const body = ['run', 'position', 'stretch', 'refined'].filter(name => value(`${name} status`)).map(name => el('tr', {}, el('td', {}, name), el('td', {}, value(`${name} status`), value(`${name} reason`) ? `: ${value(`${name} reason`)}` : ''),
     ...['displacement', 'promised error', 'measured error', 'inversion t', 'min stretch'].map(number => el('td', {class: 'value'}, exactly(value(`${name} ${number}`), show(value(`${name} ${number}`), number.includes('error') ? 2 : 8))))));
-  return el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, ...['answer', 'status', 'displacement [length]', 'promised error', 'measured error', 'inverted at t', 'least stretch'].map(name => el('th', {}, name)))), el('tbody', {}, ...body)));
+  return el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, ...['answer', 'status', withUnit('displacement', 'length'), 'promised error', 'measured error', 'inverted at t', 'least stretch'].map(name => el('th', {}, name)))), el('tbody', {}, ...body)));
 }
 
 function showPoints() {
