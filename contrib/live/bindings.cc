@@ -35,12 +35,17 @@ namespace crawler
       Json notes      = input.notes;
       RunInMemory run = run_in_memory(std::move(input), model, std::nullopt, []() { return false; });
       kymograph       = std::move(run.kymograph);
+      Json shown      = Json::object();
+      for (const FieldName &field : field_names)
+        if (kymograph && field.in_kymograph)
+          shown[field.name] = kymograph->shown(field);
       return {{"summary", summary_of(run.result)},
               {"length", length},
               {"end_time", end_time},
               {"model", model.explanation},
               {"notes", std::move(notes)},
-              {"times", kymograph ? Json(kymograph->times()) : Json::array()}};
+              {"times", kymograph ? Json(kymograph->times()) : Json::array()},
+              {"shown", std::move(shown)}};
     }
 
     /// Lives until the next call.

@@ -85,7 +85,7 @@ class Core {
 class LiveFields extends Fields {
   constructor(run, places, fields) {
     super({...run, kymograph: {places, times: run.times.map(t => t / run.end_time), fields: {}}});
-    this.fields = fields;
+    Object.assign(this, {fields, shown: run.shown});
     this.fields.position = fields.displacement.map((u, i) => u + this.places[i % this.n]);
   }
 }

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What the scripts of this folder share: the command line's errors, a view, films. Needs ParaView's Python."""
+import ctypes
+import os
 import pathlib
 import re
 import shutil
@@ -9,9 +11,13 @@ import tempfile
 
 try:
     from paraview import simple
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
 except ImportError:
     sys.exit(f"{sys.argv[0]}: this Python has no ParaView; call the script with pvbatch or pvpython (Debian: "
              f"apt install paraview python3-paraview): pvbatch {sys.argv[0]} RUN")
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "plot"))
+from plotting import unit_names, with_own_units  # noqa: E402
 
 UNITS = {"stretch": "1", "position": "length", "displacement": "length", "velocity": "length/time",
          "active_stress": "force", "elastic_stress": "force", "friction_force": "force/length"}
@@ -32,8 +38,21 @@ def size(text):
     return [int(match[1]) // 2 * 2, int(match[2]) // 2 * 2]
 
 
+def require_screen():
+    """Ends in a sentence where VTK would abort: a ParaView that draws in windows of X11 needs a display that answers."""
+    if vtkRenderWindow().GetClassName() != "vtkXOpenGLRenderWindow":
+        return
+    open_display = ctypes.CDLL("libX11.so.6").XOpenDisplay
+    open_display.restype = ctypes.c_void_p
+    if not open_display(None):
+        display = os.environ.get("DISPLAY")
+        fail(f"there is no screen to draw on ({f'DISPLAY={display} does not answer' if display else 'DISPLAY is not set'}"
+             f"); xvfb-run draws without one (Debian: apt install xvfb): xvfb-run -a pvbatch {sys.argv[0]} ...")
+
+
 def new_view(pixels):
     """A white view of these pixels, without axes."""
+    require_screen()
     view = simple.CreateView("RenderView")
     view.ViewSize = pixels
     view.UseColorPaletteForBackground = 0
@@ -52,8 +71,8 @@ def look_at(view, x, y, height):
     view.CameraParallelScale = height / 2
 
 
-def colour(display, view, field, limits):
-    """Colours by a field, with a bar that names it and its unit; grey is what does not deform."""
+def colour(display, view, field, limits, run):
+    """Colours by a field of a run, with a bar that names it and its unit; grey is what does not deform."""
     simple.ColorBy(display, ("POINTS", field))
     display.Ambient, display.Diffuse = 1.0, 0.0  # colours as in the bar, without light
     table = simple.GetColorTransferFunction(field)
@@ -65,7 +84,7 @@ def colour(display, view, field, limits):
     table.ApplyPreset("Cool to Warm (Extended)" if low < middle < high else "Viridis (matplotlib)", True)
     table.RescaleTransferFunction(*((middle - half, middle + half) if low < middle < high else (low, high)))
     bar = simple.GetScalarBar(table, view)
-    bar.Title, bar.ComponentTitle = f"{field.replace('_', ' ')} [{UNITS[field]}]", ""
+    bar.Title, bar.ComponentTitle = with_own_units(f"{field.replace('_', ' ')} [{UNITS[field]}]", unit_names(run)), ""
     bar.TitleColor = bar.LabelColor = TEXT
     bar.Orientation, bar.WindowLocation = "Horizontal", "Upper Right Corner"
     bar.ScalarBarLength, bar.ScalarBarThickness = 0.3, 12

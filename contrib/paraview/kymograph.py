@@ -42,7 +42,8 @@ def main():
     view = look.new_view(options.size)
     display = simple.Show(source, view)
     display.Representation = "Surface"
-    look.colour(display, view, options.colour, grid.GetPointData().GetArray(options.colour).GetRange())
+    shown = grid.GetFieldData().GetArray(f"shown_{options.colour}")
+    look.colour(display, view, options.colour, [shown.GetValue(i) for i in range(2)], options.run)
     axes = view.AxesGrid
     axes.Visibility = 1
     axes.XTitle, axes.YTitle, axes.ZTitle = f"{names['X']} (L = {units['L']:g})", f"{names['Y']} (T = {units['T']:g})", ""

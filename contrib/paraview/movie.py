@@ -79,7 +79,7 @@ def main():
     display.Representation = "Surface"
     display.SetScalarBarVisibility(view, False)
     limits = first["scale"].GetPointData().GetArray(options.colour).GetRange()
-    look.colour(display, view, options.colour, limits)
+    look.colour(display, view, options.colour, limits, options.run)
     display.AmbientColor = display.DiffuseColor = [0.35, 0.35, 0.35]
     clock = look.label(view, "", "Upper Left Corner")
 

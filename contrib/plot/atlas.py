@@ -200,7 +200,7 @@ def main():
     options = parser(__doc__, "atlas.png, atlas.svg").parse_args()
     pictures = [options.output] if options.output else [options.folder / name for name in ("atlas.png", "atlas.svg")]
     try:
-        save(draw(options.folder), *pictures, dpi=200)
+        save(draw(options.folder), *pictures, study=options.folder, dpi=200)
     except (KeyError, ValueError) as error:
         raise Problem(f"{options.folder / 'atlas.csv'} is not a table of crawler atlas ({error})") from None
 

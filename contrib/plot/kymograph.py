@@ -21,7 +21,8 @@ def read_statistics(folder):
     """Time and displacement of every step and snapshot."""
     path = existing(folder / "statistics.csv", "the output folder of a run with Output/Statistics = true")
     try:
-        return np.array([[float(row["time [time]"]), float(row["displacement [length]"])] for row in read_rows(path)]).T
+        rows = [{name.split(" [")[0]: cell for name, cell in row.items()} for row in read_rows(path)]
+        return np.array([[float(row["time"]), float(row["displacement"])] for row in rows]).T
     except (KeyError, TypeError, ValueError) as error:
         raise Problem(f"{path} has no column {error}") from None
 
@@ -60,7 +61,7 @@ def main():
     own = parser(__doc__, "kymograph.png", time=True)
     own.add_argument("--stress", action="store_true", help="draws the active stress as well")
     options = own.parse_args()
-    save(draw(options), picture_of(options, "kymograph.png"), dpi=120, few_colours=True)
+    save(draw(options), picture_of(options, "kymograph.png"), study=options.folder, dpi=120, few_colours=True)
 
 
 if __name__ == "__main__":

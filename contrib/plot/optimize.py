@@ -257,7 +257,7 @@ def main():
         figure = draw(options)
     except KeyError as missing:
         raise Problem(f"{options.folder} has no {missing}; the output folder of crawler optimize is expected") from None
-    save(figure, picture_of(options, "optimize.png"), dpi=100, few_colours=True)
+    save(figure, picture_of(options, "optimize.png"), study=options.folder, dpi=100, few_colours=True)
 
 
 if __name__ == "__main__":

@@ -198,6 +198,20 @@ class Parameters:
             raise Problem(f"{self.path} has no number {name}") from None
 
 
+def unit_names(folder):
+    """What the user of a study calls length, time and force (section Units); itself where that is not known."""
+    path = folder / "parameters.prm"
+    known = Parameters(path).values if path.is_file() else {}
+    names = {word: known.get(f"Units/{word.capitalize()}", word) for word in ("length", "time", "force")}
+    return names if all(word == name for word, name in names.items()) else \
+        {**names, "energy": f"{names['force']} {names['length']}"}
+
+
+def with_own_units(text, names):
+    """A text with units in brackets, "time $t$ [time]", with those of the user."""
+    return re.sub(r"\[[^\[\]]*\]", lambda unit: re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit[0]), text)
+
+
 def label(entry, unit, short=None):
     """The name of an axis: the last words of an entry or result, its symbol and its unit."""
     words = short or entry.split("/")[-1].replace("_", " ").replace(".", ", ")
@@ -313,8 +327,15 @@ def write_whole(path, content):
         raise Unwritable(f'cannot write "{path}": {error.strerror or error}') from None
 
 
-def save(figure, *pictures, dpi=160, few_colours=False):
-    """Writes a figure under each of the names and says so. With few colours a .png is less than half as large."""
+def save(figure, *pictures, study=None, dpi=160, few_colours=False):
+    """Writes a figure under each of the names, with the units of the study's folder if there is one. With few colours a
+    .png is less than half as large."""
+    if study is not None:
+        from matplotlib.text import Text
+        names = unit_names(study)
+        for text in figure.findobj(Text):
+            if "[" in text.get_text():
+                text.set_text(with_own_units(text.get_text(), names))
     for picture in map(pathlib.Path, pictures):
         known = figure.canvas.get_supported_filetypes()
         if picture.suffix[1:].lower() not in known:

@@ -77,7 +77,7 @@ def draw(options):
 def main():
     """Command line."""
     options = parser(__doc__, "sensitivity.png", time=True).parse_args()
-    save(draw(options), picture_of(options, "sensitivity.png"), dpi=100, few_colours=True)
+    save(draw(options), picture_of(options, "sensitivity.png"), study=options.folder, dpi=100, few_colours=True)
 
 
 if __name__ == "__main__":

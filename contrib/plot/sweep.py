@@ -574,7 +574,8 @@ def main():
     for condition in options.where:
         sweep.where(condition)
     figure = draw(sweep, options)
-    save(figure, *([options.output] if options.output else [options.folder / name for name in ("results.png", "results.svg")]))
+    pictures = [options.output] if options.output else [options.folder / name for name in ("results.png", "results.svg")]
+    save(figure, *pictures, study=options.folder)
 
 
 if __name__ == "__main__":

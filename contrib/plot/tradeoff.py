@@ -144,7 +144,7 @@ def main():
     """Command line."""
     options = parser(__doc__, "tradeoff.png, tradeoff.svg").parse_args()
     pictures = [options.output] if options.output else [options.folder / name for name in ("tradeoff.png", "tradeoff.svg")]
-    save(draw(options.folder), *pictures, dpi=200)
+    save(draw(options.folder), *pictures, study=options.folder, dpi=200)
 
 
 if __name__ == "__main__":

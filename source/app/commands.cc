@@ -213,7 +213,9 @@ namespace crawler
       options_.command_line += " " + quoted(word);
     options_.petsc_options = fmt::format("{}", fmt::join(petsc_options, " "));
     if (!petsc_options.empty())
-      options_.command_line += " -- " + options_.petsc_options;
+      options_.command_line += " --";
+    for (const std::string &word : petsc_options)
+      options_.command_line += " " + quoted(word);
     // They would be lines of their own in the files and messages that repeat them.
     for (const std::string &word : arguments)
       if (std::any_of(

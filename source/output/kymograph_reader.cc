@@ -66,6 +66,12 @@ namespace crawler
           if (kymograph.fields.back().second.size() != n_places * n_rows)
             throw InputError("a field of another size than its grid");
         }
+      for (const auto &[word, array] : file.get_child("VTKFile.StructuredGrid.FieldData"))
+        if (const auto name = array.get<std::string>("<xmlattr>.Name", ""); name.starts_with(shown_prefix))
+        {
+          const auto range                                  = decoded(array);
+          kymograph.shown[name.substr(shown_prefix.size())] = {range.at(0), range.at(1)};
+        }
       return kymograph;
     }
     catch (const std::exception &)

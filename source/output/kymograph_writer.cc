@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
+#include <crawler/output/kymograph_reader.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/vtk_xml.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace crawler
 {
@@ -83,16 +85,41 @@ namespace crawler
       }
   }
 
+  FieldRange
+  Kymograph::shown(const FieldName &field) const
+  {
+    const std::vector<double> &values = rows_.*field.values;
+    FieldRange all                    = {0., 0.};
+    bool is_first                     = true;
+    for (const double value : values)
+      if (std::isfinite(value))
+      {
+        all = is_first ? FieldRange(value, value) : FieldRange(std::min(all.first, value), std::max(all.second, value));
+        is_first = false;
+      }
+    if (!field.has_peaks)
+      return all;
+    UsualSize size;
+    for (std::size_t i = 0; i < times_.size(); ++i)
+      size.add(times_[i], std::span(values).subspan(i * n_points, n_points));
+    return size.within(all);
+  }
+
   void
   KymographWriter::end()
   {
     if (rows().stretch.empty() || times().size() < 2)
       return;
     const std::size_t n_times = times().size();
-    std::string fields;
+    std::string fields, shown_ranges;
     for (const FieldName &field : field_names)
       if (field.in_kymograph)
+      {
+        const auto [low, high] = shown(field);
         fields += vtk_array(field.name, rows().*field.values, 1, field.unit);
+        shown_ranges +=
+          vtk_array(std::string(shown_prefix) + field.name, std::vector<double>{low, high}, 1, field.unit);
+      }
     std::vector<double> points;
     for (const double time : times())
       for (unsigned int i = 0; i < n_points; ++i)
@@ -105,7 +132,8 @@ namespace crawler
                   n_times - 1,
                   vtk_text("AxisTitleForX", "s/L") + vtk_text("AxisTitleForY", "t/T") +
                     vtk_array("L", std::vector<double>{length_}, 1, "length") +
-                    vtk_array("T", std::vector<double>{end_time_}, 1, "time") + vtk_text("units", units_of_fields()),
+                    vtk_array("T", std::vector<double>{end_time_}, 1, "time") + vtk_text("units", units_of_fields()) +
+                    shown_ranges,
                   fields,
                   vtk_array("Points", points, 3)));
     write_file(folder_ / "kymograph.vts", text);

@@ -30,6 +30,11 @@ namespace crawler
     declarations.numbers("Active stress table", active_stress_table, "")
       .means("Numbers of samples over s and over t, like 65, 129, of the active stress that are written to "
              "active_stress.csv, which the generator table reads. Nothing: no such file.");
+    declarations.whole_number("Segment table", segment_table, 0, 1000000)
+      .means(
+        "For the controller of a robot (Generator = segments): segments.csv has the active stress of each segment at "
+        "the ends of so many equal parts of the duration and wherever it jumps, segment_switching.csv when each of "
+        "them is switched on and off. 0: no such files.");
     declarations.text("Sensitivities", sensitivities, "a list Section/Entry, Section/Entry, or the word \"all\"")
       .means("Entries by which displacement and works are differentiated, numbers of the body, the ground, the active "
              "stress or "

@@ -12,11 +12,11 @@ namespace crawler
     // Fractions of the length of the body.
     constexpr double rest_thickness = 0.1, largest_thickness = 1.;
     constexpr double margin = 0.15, strip = 0.015, tick_end = 0.035, tick_width = 0.008, finest_tick = 0.1;
-    constexpr double arrow_y = -0.07, arrow_width = 0.035, arrow_length = 0.15, longest_arrow = 1.5;
+    constexpr double arrow_y = -0.07, arrow_width = 0.035, arrow_length = 0.15;
     constexpr double scale_top = -0.13, scale_bottom = -0.16, scale_length = 0.5;
 
-    constexpr double infinity           = std::numeric_limits<double>::infinity();
-    constexpr Scenery::Range no_numbers = {infinity, -infinity};
+    constexpr double infinity       = std::numeric_limits<double>::infinity();
+    constexpr FieldRange no_numbers = {infinity, -infinity};
 
     void
     add_rectangle(Corners &corners, const double left, const double right, const double bottom, const double top)
@@ -27,7 +27,7 @@ namespace crawler
     /// Makes @p drawn the larger range @p seen with @p more on the sides that have grown. True if it has grown by more
     /// than a tenth.
     bool
-    grow(Scenery::Range &drawn, const Scenery::Range &seen, const double more)
+    grow(FieldRange &drawn, const FieldRange &seen, const double more)
     {
       const double slack = 0.1 * (drawn.second - drawn.first);
       bool grown         = drawn.first > drawn.second; // nothing has been seen before
@@ -44,6 +44,25 @@ namespace crawler
         grown        = true;
       }
       return grown;
+    }
+
+    /// A field at equidistant s.
+    std::vector<double>
+    at_grips(const Frame &frame, const double length, const std::vector<double> &values)
+    {
+      std::vector<double> all;
+      for (unsigned int i = 0; i < n_grips; ++i)
+      {
+        const double s = length * (i + 0.5) / n_grips;
+        const auto after =
+          std::clamp<std::ptrdiff_t>(std::upper_bound(frame.s.begin(), frame.s.end(), s) - frame.s.begin(),
+                                     1,
+                                     static_cast<std::ptrdiff_t>(frame.s.size()) - 1);
+        const auto b = static_cast<std::size_t>(after), a = b - 1;
+        const double part = (s - frame.s[a]) / (frame.s[b] - frame.s[a]);
+        all.push_back(values[a] + part * (values[b] - values[a]));
+      }
+      return all;
     }
   } // namespace
 
@@ -79,19 +98,11 @@ namespace crawler
   std::vector<Grip>
   grips(const Frame &frame, const double length)
   {
+    const std::vector<double> positions = at_grips(frame, length, frame.fields.position),
+                              forces    = at_grips(frame, length, frame.fields.friction_force);
     std::vector<Grip> all;
     for (unsigned int i = 0; i < n_grips; ++i)
-    {
-      const double s = length * (i + 0.5) / n_grips;
-      const auto after =
-        std::clamp<std::ptrdiff_t>(std::upper_bound(frame.s.begin(), frame.s.end(), s) - frame.s.begin(),
-                                   1,
-                                   static_cast<std::ptrdiff_t>(frame.s.size()) - 1);
-      const auto b = static_cast<std::size_t>(after), a = b - 1;
-      const double part = (s - frame.s[a]) / (frame.s[b] - frame.s[a]);
-      const auto at     = [&](const std::vector<double> &values) { return values[a] + part * (values[b] - values[a]); };
-      all.push_back({at(frame.fields.position), at(frame.fields.friction_force)});
-    }
+      all.push_back({positions[i], forces[i]});
     return all;
   }
 
@@ -113,23 +124,32 @@ namespace crawler
       const auto &values             = frame.fields.*field_names[f].values;
       const auto [smallest, largest] = std::minmax_element(values.begin(), values.end());
       seen_[f]                       = {std::min(seen_[f].first, *smallest), std::max(seen_[f].second, *largest)};
-      changed                        = grow(drawn_[f], seen_[f], 0.) || changed;
+      if (field_names[f].has_peaks)
+      {
+        sizes_[f].add(frame.time, at_grips(frame, length_, values));
+        const FieldRange now = shown(f);
+        if (drawn_[f].second - drawn_[f].first > 2. * (now.second - now.first)) // a peak was all that had been seen
+          drawn_[f] = no_numbers;
+      }
+      changed = grow(drawn_[f], shown(f), 0.) || changed;
       if (field_names[f].values == &Fields::position)
         seen_path_ = {seen_[f].first - margin * length_, seen_[f].second + margin * length_};
-      if (field_names[f].values == &Fields::friction_force)
-      {
-        const double force = std::max(-*smallest, *largest);
-        frame_forces_.insert(std::ranges::upper_bound(frame_forces_, force), force);
-      }
     }
     return grow(path_, seen_path_, seen_path_.second - seen_path_.first) || changed;
+  }
+
+  FieldRange
+  Scenery::shown(const std::size_t field) const
+  {
+    return field_names[field].has_peaks ? sizes_[field].within(seen_[field]) : seen_[field];
   }
 
   void
   Scenery::finish()
   {
-    drawn_ = seen_;
-    path_  = seen_path_;
+    for (std::size_t f = 0; f < drawn_.size(); ++f)
+      drawn_[f] = shown(f);
+    path_ = seen_path_;
   }
 
   double
@@ -161,12 +181,11 @@ namespace crawler
   {
     Corners corners;
     const double y = arrow_y * length_, half = arrow_width * length_ / 2.;
-    double typical = frame_forces_.empty() ? 0. : frame_forces_[3 * (frame_forces_.size() - 1) / 4];
-    if (typical == 0. && !frame_forces_.empty())
-      typical = frame_forces_.back();
+    constexpr auto is_friction = [](const FieldName &field) { return field.values == &Fields::friction_force; };
+    const double usual         = sizes_[std::ranges::find_if(field_names, is_friction) - field_names].value();
     for (const Grip &grip : grips)
     {
-      const double share = typical > 0. ? std::clamp(grip.friction_force / typical, -longest_arrow, longest_arrow) : 0.,
+      const double share = usual > 0. ? std::clamp(grip.friction_force / usual, -1., 1.) : 0.,
                    size  = -arrow_length * length_ * share;
       const double x     = grip.position;
       corners.insert(corners.end(), {x, y - half, 0., x + size, y, 0., x, y + half, 0.});

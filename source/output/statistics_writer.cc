@@ -84,9 +84,11 @@ namespace crawler
   StatisticsWriter::StatisticsWriter(const double length,
                                      const bool is_first_rank,
                                      const std::filesystem::path &folder,
-                                     const bool with_energy_balance)
+                                     const bool with_energy_balance,
+                                     const UnitNames &units)
     : Statistics(length, with_energy_balance)
     , writes_(is_first_rank)
+    , units_(units)
     , path_(folder / "statistics.csv")
   {
   }
@@ -95,7 +97,7 @@ namespace crawler
   StatisticsWriter::open()
   {
     out_.open(path_);
-    out_ << fmt::format("{}\n", fmt::join(column_names(), ","));
+    out_ << units_.in_brackets(fmt::format("{}\n", fmt::join(column_names(), ",")));
     require_written();
   }
 

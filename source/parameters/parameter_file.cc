@@ -160,8 +160,8 @@ namespace crawler
         if (equals == std::string::npos || trimmed(rest.substr(0, equals)).empty())
           throw InputError(fmt::format("{}: found \"{}\", but \"set Entry = value\" is expected", place, statement));
         const Assignment assignment{
-          path(trimmed(rest.substr(0, equals))), trimmed(rest.substr(equals + 1)), place, false, folder};
-        if (const Assignment *const other = assignment_of(assignment.path))
+          path(trimmed(rest.substr(0, equals))), trimmed(rest.substr(equals + 1)), place, false, folder, depth};
+        if (const Assignment *const other = assignment_of(assignment.path); other != nullptr && other->depth <= depth)
           throw InputError(fmt::format(
             "{}: \"{}\" is set a second time (first in {}); once is expected", place, assignment.path, other->place));
         add(assignment);

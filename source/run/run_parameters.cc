@@ -206,6 +206,7 @@ namespace crawler
     scene.active_stress = create_active_stress(active_stress, scene);
     require_computable_stress(scene);
     require_table_fits(output.active_stress_table, *scene.active_stress);
+    require_segment_table_fits(output.segment_table, *scene.active_stress);
     if (!scene.is_plain())
       require_general(*this, scene);
     if (discretization.formulation == FormulationEntry::stretch)

@@ -20,33 +20,38 @@ namespace crawler
     using Json = nlohmann::ordered_json;
 
     void
-    add_gait_lines(const SimulationResult &result, std::vector<std::string> &lines)
+    add_gait_lines(const SimulationResult &result, const UnitNames &units, std::vector<std::string> &lines)
     {
       if (!result.gait)
         return;
       const Gait &gait = *result.gait;
-      lines.push_back(
-        fmt::format("  stride            period {:.6g}{}, displacement {:.6g} ({:.4g} body lengths), speed {:.4g}",
-                    gait.period,
-                    gait.is_declared ? "" : " (found in the stretch)",
-                    gait.displacement,
-                    gait.body_lengths(),
-                    gait.speed()));
+      lines.push_back(fmt::format(
+        "  stride            period {:.6g}{}{}, displacement {:.6g}{} ({:.4g} body lengths), speed {:.4g}{}",
+        gait.period,
+        units.behind("time"),
+        gait.is_declared ? "" : " (found in the stretch)",
+        gait.displacement,
+        units.behind("length"),
+        gait.body_lengths(),
+        gait.speed(),
+        units.behind("length/time")));
       if (gait.wave)
-        lines.push_back(fmt::format("  wave              {}{}, coherence {:.3g}{}",
-                                    gait.direction(),
-                                    gait.wave_speed() ? fmt::format(", speed {:.4g}", *gait.wave_speed()) : "",
-                                    gait.wave->coherence,
-                                    gait.slip() ? fmt::format(", slip {:.4g}", *gait.slip()) : ""));
+        lines.push_back(fmt::format(
+          "  wave              {}{}, coherence {:.3g}{}",
+          gait.direction(),
+          gait.wave_speed() ? fmt::format(", speed {:.4g}{}", *gait.wave_speed(), units.behind("length/time")) : "",
+          gait.wave->coherence,
+          gait.slip() ? fmt::format(", slip {:.4g}", *gait.slip()) : ""));
       if (!gait.energy_balance)
         return;
       const auto cost = gait.cost_of_transport(gait.energy_balance->stress_work);
       if (!cost)
         return;
       const auto positive = gait.cost_of_transport(gait.energy_balance->positive_work);
-      lines.push_back(fmt::format("  cost of transport {:.4g}{} (work per distance{})",
+      lines.push_back(fmt::format("  cost of transport {:.4g}{}{} (work per distance{})",
                                   *cost,
                                   error_bound_in_words(result, "gait.cost_of_transport.stress_power"),
+                                  units.behind("force"),
                                   positive ? fmt::format("; {:.4g} if it cannot be recovered", *positive) : ""));
     }
     void
@@ -111,34 +116,41 @@ namespace crawler
   }
 
   std::vector<std::string>
-  summary_lines(const SimulationResult &result)
+  summary_lines(const SimulationResult &result, const UnitNames &units)
   {
     std::vector<std::string> lines;
     const auto &time = result.time;
     const std::string steps =
       time.steps > 0 ? fmt::format(" after {} steps ({} rejected)", time.steps, time.rejected_steps) : "";
-    lines.push_back(fmt::format("{} at t = {:g}{}, {:.3g} s",
+    lines.push_back(fmt::format("{} at t = {:g}{}{}, {:.3g} s",
                                 time.status == Status::finished   ? "Finished"
                                 : time.status == Status::inverted ? "Inverted"
                                 : time.status == Status::stopped  ? "Stopped"
                                                                   : "FAILED (" + time.reason + ")",
                                 time.time,
+                                units.behind("time"),
                                 steps,
                                 result.solve_seconds + result.output_seconds));
     std::string displacement =
       std::isfinite(result.displacement) ? fmt::format("{:.10g}", result.displacement) : "unknown";
-    if (result.error && std::isfinite(result.error->total) && !std::isfinite(result.error->space))
-      displacement += fmt::format(" +- {:.2g} (space and time together)", result.error->total);
-    else if (result.error && std::isfinite(result.error->total))
-      displacement += fmt::format(" +- {:.2g} (space {:.2g}, time {:.2g}, model {:.2g})",
+    if (!result.error || !std::isfinite(result.error->total))
+      displacement += units.behind("length");
+    else if (!std::isfinite(result.error->space))
+      displacement +=
+        fmt::format(" +- {:.2g}{} (space and time together)", result.error->total, units.behind("length"));
+    else
+      displacement += fmt::format(" +- {:.2g}{} (space {:.2g}, time {:.2g}, model {:.2g})",
                                   result.error->total,
+                                  units.behind("length"),
                                   result.error->space,
                                   result.error->time,
                                   result.error->model);
     lines.push_back("  displacement      " + displacement);
     if (result.corrected)
-      lines.push_back(fmt::format(
-        "  corrected         {:.12g} +- {:.2g} (by the adjoint)", result.corrected->value, result.corrected->error));
+      lines.push_back(fmt::format("  corrected         {:.12g} +- {:.2g}{} (by the adjoint)",
+                                  result.corrected->value,
+                                  result.corrected->error,
+                                  units.behind("length")));
     if (result.cycles)
       lines.push_back(
         fmt::format("  cycles            {} of period {:.6g} computed, {} extrapolated with an error of at "
@@ -149,10 +161,12 @@ namespace crawler
                     result.cycles->bound));
     if (result.energy_balance)
     {
-      lines.push_back(fmt::format("  stress power      {:.10g}{}",
+      lines.push_back(fmt::format("  stress power      {:.10g}{}{}",
                                   result.energy_balance->stress_work,
-                                  error_bound_in_words(result, "stress_power")));
-      lines.push_back(fmt::format("  dissipation       {:.10g}", result.energy_balance->dissipation));
+                                  error_bound_in_words(result, "stress_power"),
+                                  units.behind("force length")));
+      lines.push_back(
+        fmt::format("  dissipation       {:.10g}{}", result.energy_balance->dissipation, units.behind("force length")));
       lines.push_back(fmt::format(
         "  ledger residual   {:.2e} (relative), net friction {}",
         result.energy_balance->residual(),
@@ -166,7 +180,7 @@ namespace crawler
                   result.max_stretch.value,
                   result.max_stretch.s,
                   result.max_stretch.t));
-    add_gait_lines(result, lines);
+    add_gait_lines(result, units, lines);
     if (result.gait_efficiency)
       lines.push_back(
         fmt::format("  efficiency        reaches {:.3g} % of what any gait with this {} and these strains could{}",

@@ -535,13 +535,14 @@ TEST_F(Commands, AMillionCells)
 TEST_F(Commands, UnusedPetscOptionsAreReported)
 {
   const ProgramResult result =
-    run({"--set", "Output/Statistics=false", "--", "-ts_adapt_clp", "0.1,2", "-ts_type", "bdf"});
+    run({"--set", "Output/Statistics=false", "--", "-ts_adapt_clp", "0.1;2", "-ts_type", "bdf"});
   EXPECT_EQ(result.exit_code, 0);
   const std::string warning = "warning: nothing used the PETSc option -ts_adapt_clp\n";
   EXPECT_EQ(result.err, "crawler: " + warning);
   EXPECT_TRUE(contains(read_text(results / "log.txt"), warning));
-  EXPECT_EQ(summary_of(results).at("command_line"),
-            "crawler run scene.prm --output results --set Output/Statistics=false -- -ts_adapt_clp 0.1,2 -ts_type bdf");
+  EXPECT_EQ(
+    summary_of(results).at("command_line"),
+    "crawler run scene.prm --output results --set Output/Statistics=false -- -ts_adapt_clp '0.1;2' -ts_type bdf");
 }
 
 /// For -1 < a < 0 only the stretch form is believed when it says that a body inverts.

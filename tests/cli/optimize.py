@@ -134,6 +134,29 @@ def test_cases(place):
            f"a damaged file: {damaged.returncode}, {damaged.stderr}")
 
 
+def test_neighbours(place):
+    """Cases that are one problem with three starts, of which two end in local optima: neighbours lead them to the best."""
+    starts = ('"0, 0.2, 0.001, 0.01, 0.02"', '"0, 0.2, 0.001, -0.05, -0.05"', '"0, 0.05, 0.001, 0.2, 0"')
+    alone = [run("optimize_harmonics", place / f"alone-{i}", f"{MODES}Coefficients={start[1:-1]}")
+             for i, start in enumerate(starts)]
+    own = [optima(place / f"alone-{i}")[0]["objective"] for i in range(3)]
+    expect(own[0] > own[1] * 1.01 and own[0] > own[2] * 1.01 and all("may be a local one" in one.stdout for one in alone),
+           f"local optima: {own}")
+    settings = [f"Sweep/Axes={MODES}Coefficients : {', '.join(starts)}"]
+    together = run("optimize_harmonics", place / "neighbours", *settings)
+    found = [o["objective"] for o in optima(place / "neighbours")]
+    expect(together.returncode == 0 and all(abs(one / own[0] - 1) < 1e-3 for one in found), f"neighbours: {own}, {found}")
+    expect("gaits of neighbours" in together.stdout, f"neighbours are named: {together.stdout}")
+    before = rows(place / "neighbours")
+    resumed = run("optimize_harmonics", place / "neighbours", *settings, options=["--resume"])
+    expect(resumed.returncode == 0 and rows(place / "neighbours") == before, f"resumed: {resumed.stderr}")
+    several = run("optimize_harmonics", place / "several", "Optimize/Starts=2")
+    expect("may be a local one" not in several.stdout, f"two starts: {several.stdout}")
+    # The optimum is the file that was optimised but for the variables.
+    text = (place / "alone-0" / "optimum.prm").read_text(encoding="utf-8")
+    expect("include parameters.prm" in text and text.count(" set ") == 1 and "set Coefficients" in text, f"optimum: {text}")
+
+
 def test_stops(place):
     """Several limits of work and starts, on one rank and on two, killed, stopped and resumed: the same table."""
     run("optimize_harmonics", place / "one", *BUDGETS)
@@ -299,8 +322,8 @@ def main():
         (place / "no_python").mkdir()
         (place / "no_python" / "python3").write_text("#!/bin/sh\nexit 0\n", encoding="utf-8")
         (place / "no_python" / "python3").chmod(0o755)
-        for test in (test_merits, test_theorem, test_simulations, test_cases, test_stops, test_starts, test_gradients,
-                     test_uneven, test_obstacles, test_bad_input):
+        for test in (test_merits, test_theorem, test_simulations, test_cases, test_neighbours, test_stops, test_starts,
+                     test_gradients, test_uneven, test_obstacles, test_bad_input):
             test(place)
     checks.end()
 

@@ -12,6 +12,7 @@ import os
 import pathlib
 import re
 import runpy
+import shutil
 import sys
 import tempfile
 import traceback
@@ -71,7 +72,7 @@ WORDS = [
     ("scaling", ["--kind", "scaling"], ["mass $M$ [g]", r"stride frequency $\nu$ [1/s]", "speed $U L$ [mm/s]"]),
     ("calibration.csv", [], ["true error / displacement $D$ [1]", "reported error / true error [1]"])]
 # The script of a folder or file; with --kind it is that one.
-SCRIPTS = {"run": "kymograph", "no_stride": "kymograph", "sweep": "sweep", "atlas": "atlas", "tradeoff": "tradeoff",
+SCRIPTS = {"run": "kymograph", "named": "kymograph", "no_stride": "kymograph", "sweep": "sweep", "atlas": "atlas", "tradeoff": "tradeoff",
            "optimum": "optimize", "scaling": "sweep", "calibration.csv": "calibration"}
 # Arguments of crawler plot, exit code, what the one sentence has.
 REFUSED = [
@@ -184,6 +185,44 @@ def test_times():
                 check(not any(number in texts for number in away), f"{kind} {' '.join(options)} has not the times {away}")
 
 
+def test_units():
+    """Units that the user has named stand at the axes."""
+    shutil.copytree("run", "named")
+    path = pathlib.Path("named/parameters.prm")
+    before, units = path.read_text(encoding="utf-8").split("subsection Units")
+    for word, name in (("length", "mm"), ("time", "s"), ("force", "mN")):
+        units = re.sub(rf"= {word}\b", f"= {name}", units)
+    path.write_text(f"{before}subsection Units{units}", encoding="utf-8")
+    code, printed = drawn("named", "--stress", "--output", "named.svg")
+    texts = " ".join(words("named.svg")) if code == 0 else ""
+    check(code == 0 and all(word in texts for word in ("[mm]", "time $t$ [s]", "active stress $m$ [mN]")) and "[time]" not in texts,
+          f"units of the user: {texts} {printed}")
+
+
+def test_copied_program():
+    """A copy of the program alone says where its scripts are looked for."""
+    shutil.copy(PROGRAM, "copied")
+    end = call(["./copied", "plot", "run"])
+    check(end.returncode == 2 and "kymograph.py is neither " in end.stderr and f"{pathlib.Path.cwd()}/plot/kymograph.py" in end.stderr
+          and end.stderr.count("\n") == 1, f"a copied program: {end.returncode} {end.stderr.strip()}")
+    pathlib.Path("copied").unlink()
+
+
+def test_screen():
+    """ParaView's scripts say that there is no screen, where VTK would abort; both are played here."""
+    for path, text in (("paraview/__init__.py", ""), ("paraview/simple.py", ""), ("vtkmodules/__init__.py", ""),
+                       ("vtkmodules/vtkRenderingCore.py", "class vtkRenderWindow:\n    def GetClassName(self):\n"
+                                                          "        return 'vtkXOpenGLRenderWindow'\n")):
+        pathlib.Path("played", path).parent.mkdir(parents=True, exist_ok=True)
+        pathlib.Path("played", path).write_text(text, encoding="utf-8")
+    folders = f"{pathlib.Path.cwd()}/played:{ROOT / 'contrib/paraview'}"
+    for display, word in (("", "DISPLAY is not set"), (":4711", "DISPLAY=:4711 does not answer")):
+        end = call(["/usr/bin/python3", "-B", "-c", "import ctypes.util; assert ctypes.util.find_library('X11'), 'no X11'\n"
+                    "import crawler_view; crawler_view.new_view([640, 480])"], variables={"PYTHONPATH": folders, "DISPLAY": display})
+        check("no X11" in end.stderr or (end.returncode == 2 and word in end.stderr and "xvfb-run -a pvbatch" in end.stderr
+                                         and end.stderr.count("\n") == 1), f"no screen: {end.returncode} {end.stderr.strip()}")
+
+
 def test_part_of_its_own():
     """The picture of a part leaves that of the whole as it is; the program passes on the options."""
     before = pathlib.Path("run/kymograph.png").read_bytes()
@@ -244,6 +283,9 @@ def main():
         test_pictures()
         test_times()
         test_part_of_its_own()
+        test_units()
+        test_copied_program()
+        test_screen()
         test_bad_input()
         test_python(folder)
         os.chdir("/")

@@ -3,9 +3,9 @@
 """What the user guide prints as output of the program is what the program prints: the files that stand in the guide are
 run as the guide says, and each line of output in it is looked for in what comes out.
 
-    python3 printed_output.py PATH_TO_CRAWLER MPIEXEC...
+    python3 printed_output.py [--write] PATH_TO_CRAWLER MPIEXEC...
 
-Words must be the same; numbers of many digits to 1e-5 of their size, others to 1e-2, errors and residuals to a factor of
+With --write the lines of the guide that differ become those that the program prints. Words must be the same; numbers of many digits to 1e-5 of their size, others to 1e-2, errors and residuals to a factor of
 two. Times and numbers of points per second may be any.
 """
 import os
@@ -17,7 +17,9 @@ import tempfile
 
 from documentation import ROOT, split_blocks
 
-CRAWLER, MPIEXEC = str(pathlib.Path(sys.argv[1]).resolve()), sys.argv[2:]
+WRITES = sys.argv[1] == "--write"
+CRAWLER, *MPIEXEC = sys.argv[2 if WRITES else 1:]
+CRAWLER = str(pathlib.Path(CRAWLER).resolve())
 GUIDE = ROOT / "doc" / "user_guide.md"
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:e[-+]?\d+)?(?![\w])")
 TIMES = re.compile(r"[\d.]+(?:e[-+]\d+)? (s|ms|points/s)(?![\w])")
@@ -58,18 +60,24 @@ def are_close(text, other):
     return abs(a - b) <= (1e-5 if digits >= 6 else 1e-2) * size
 
 
+def likeness(line, other):
+    """How much a printed line is like one of the guide: first its words, then its beginning, then its numbers."""
+    (words, numbers), (others, values) = pattern(line), pattern(other)
+    close = [are_close(a, b) for a, b in zip(numbers, values)]
+    return words == others, len(os.path.commonprefix([words, others])), close[:1] == [True], sum(close)
+
+
 def differences(part, output):
-    """Lines of output in a part of the guide that the program does not print."""
+    """Lines of output in a part of the guide that the program does not print, each with that which it prints instead."""
     printed = [pattern(line) for line in output.splitlines()]
     lines = [line for _, line in split_blocks(part)[0] if line.startswith("    ")]
     lines = [line for line in lines if line.strip().startswith(BEGINNINGS) or PROGRESS.match(line.strip())]
     if len(lines) < 10:
-        yield f"only {len(lines)} lines of output were found"
+        sys.exit(f"only {len(lines)} lines of output were found")
     for line in lines:
         words, numbers = pattern(line)
         if not any(words == other and all(map(are_close, numbers, others)) for other, others in printed):
-            near = [f"{other}  {' '.join(others)}" for other, others in printed if other[:20] == words[:20]]
-            yield f"the program does not print \"{line.strip()}\"; near it: {near[:2]}"
+            yield line, "    " + max(output.splitlines(), key=lambda other: likeness(line, other))
 
 
 class Place:
@@ -95,7 +103,7 @@ class Place:
 
 
 def main():
-    """Prints what differs, and returns how much."""
+    """Prints what differs, and returns how much; or writes it into the guide."""
     guide = GUIDE.read_text(encoding="utf-8")
     problems = []
     with tempfile.TemporaryDirectory() as folder:
@@ -119,8 +127,14 @@ def main():
         place.give(0, "run", "first.prm")
         place.give(2, "run", "first.prm")
         problems += differences(part, place.output)
-    print("\n".join(problems) if problems else "the guide prints what the program prints")
-    return len(problems)
+    for line, instead in problems:
+        print(f"the guide has    {line.strip()}\nthe program says {instead.strip()}")
+        guide = guide.replace(line + "\n", instead + "\n")
+    if WRITES:
+        GUIDE.write_text(guide, encoding="utf-8")
+    elif not problems:
+        print("the guide prints what the program prints")
+    return 0 if WRITES else len(problems)
 
 
 if __name__ == "__main__":

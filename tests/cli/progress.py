@@ -208,12 +208,26 @@ def sweep(folder):
               not any(BAR.match(row) for row in last), f"the version first, the folder last: {last[-1]}")
 
 
+def optimise(folder):
+    """The bar of a single start counts its evaluations, with the best so far."""
+    def seen(screen):
+        return [int(match[1]) for match in map(re.compile(r"(\d+) evaluations, best displacement 0\.\d+").search, shown(screen))
+                if match]
+
+    screen, code = on_terminal([PROGRAM, "optimize", str(PRM / "studies/optimize_from_rest.prm"), "--output", "optimised"],
+                               folder, stop=(signal.SIGUSR1, lambda screen: len(set(seen(screen))) > 3))
+    found = seen(screen)
+    check(code == 5 and len(set(found)) > 3 and found == sorted(found), f"evaluations of a start: {code}, {found}")
+    check(not any("of 1 starts" in row for row in shown(screen)), "a single start is not counted")
+
+
 def main():
     """All of it."""
     with tempfile.TemporaryDirectory() as folder:
         run(pathlib.Path(folder))
         watch(pathlib.Path(folder))
         sweep(pathlib.Path(folder))
+        optimise(pathlib.Path(folder))
     checks.end()
 
 

@@ -93,6 +93,8 @@ def make_studies(program):
     program.study("optimize", STRAIN, "optimisation")
     program.study("run", WAVE.replace("wave speed", "wave speed # <b>"), "<b>inverted", Body__Anchoring_exponent="0",
                   **{CHI.replace("/", "__").replace(" ", "_"): "0.6"})
+    program.study("run", FORMULAS, "sudden", Active_stress__Expression__Active_stress="0.2*sin(2*pi*(s+t))",
+                  Units__Length="mm", Units__Time="s")
     program.study("sweep", FORMULAS, "formulas",
                   Sweep__Axes='Active stress/Expression/Active stress : "0.1*sin(2*pi*(s+t))*(s<2)", "0.2*sin(2*pi*(s+t))*(s<2)"')
 
@@ -145,6 +147,25 @@ def test_content(program):
         check(good and data[name]["table"]["all_rows"] == len(rows), f"the table of the {name}")
     check([one["title"] for one in data["sweep"]["runs"]] == ["points/5"]
           and [one["title"] for one in data["optimisation"]["runs"]] == ["best"], "runs within studies")
+
+
+def test_sudden_start(program):
+    """The instant of large forces at a sudden start leaves the rest of the run to be seen; units have the user's names."""
+    result = program("report", "sudden")
+    data = page_data(program.folder / "sudden")
+    kymograph = data["runs"][0]["kymograph"]
+    times, n = np.array(kymograph["times"]), len(kymograph["places"])
+    for name in ("friction_force", "velocity"):
+        field = kymograph["fields"][name]
+        values = np.frombuffer(base64.b64decode(field["floats"]), np.float32).reshape(-1, n)
+        shown = max(map(abs, field["shown"]))
+        longer = np.diff(times)[:, None] * (np.abs(values[1:]) > shown)
+        check(np.abs(values).max() > 3 * shown > 0 and longer.sum() / n < 0.03 * times[-1]
+              and np.median(np.abs(values)) > 0.05 * shown, f"{name} of a sudden start: shown to {shown} of {np.abs(values).max()}")
+    check(data["units"] == {"length": "mm", "time": "s", "force": "force", "energy": "force mm"}, f"units {data['units']}")
+    header = (program.folder / "sudden/statistics.csv").read_text(encoding="utf-8").splitlines()[0]
+    check(result.returncode == 0 and "time [s],step size [s],displacement [mm]" in header and "[force mm]" in header
+          and re.search(r"displacement .* [+]- \S+ mm ", (program.folder / "sudden/log.txt").read_text(encoding="utf-8")), f"units of the user: {header}")
 
 
 def test_refused(program):
@@ -236,13 +257,17 @@ BLANK = """charts.filter(one => one.context && one.box.isConnected && !one.box.h
   one.paint = paint;
   one.draw();
   return painted.filter((colour, i) => colour !== blank[i]).length < 50; }).length"""
+# How many vertical axes have numbers that reach into the title beside them.
+CRAMPED = """charts.filter(one => one.axes && one.context && one.box.isConnected && !one.box.hidden && one.width > 60).filter(one => {
+  const {y} = one.axes(), texts = one.ticksOf(y, one.height - one.margin.bottom - one.margin.top, 36).map(([, text]) => text);
+  return !y.texts && y.title && Math.max(...texts.map(text => one.context.measureText(text).width)) + 26 > one.margin.left; }).length"""
 BRIGHTNESS = """(() => { const c = getComputedStyle(document.documentElement).backgroundColor.match(/\\d+/g).map(Number);
   return (c[0] + c[1] + c[2]) / 3; })()"""
 
 
 def test_in_browser(browser, folder):
     """Each page in all four ways."""
-    for name in (*FOLDERS, "<b>inverted", "formulas", "killed run", "killed sweep"):
+    for name in (*FOLDERS, "<b>inverted", "sudden", "formulas", "killed run", "killed sweep"):
         for width, dark in ((1280, False), (1280, True), (360, False), (360, True)):
             browser.complaints.clear()
             browser.requests.clear()
@@ -252,6 +277,7 @@ def test_in_browser(browser, folder):
             check(browser.ask("document.documentElement.scrollWidth") <= width, f"{way}: nothing is cut off")
             check(browser.ask(BLANK) == 0 and browser.ask("document.querySelectorAll('.chart').length") > 0, f"{way}: no blank picture")
             check((browser.ask(BRIGHTNESS) < 60) == dark, f"{way}: colours")
+            check(browser.ask(CRAMPED) == 0, f"{way}: titles of axes have room")
         check(browser.ask("window.broken") is None and browser.ask("document.querySelectorAll('img, h1 b').length") == 0,
               f"{name}: texts stay texts")
         check(all(url.startswith("file:") for url in browser.requests), f"{name}: nothing is loaded")
@@ -353,6 +379,7 @@ def main():
         program = Program(str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(name))
         make_studies(program)
         test_content(program)
+        test_sudden_start(program)
         test_refused(program)
         test_unfinished(program)
         with Browser() as browser:

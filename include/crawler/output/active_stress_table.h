@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/scene/active_stress.h>
+#include <crawler/scene/unit_names.h>
 
 #include <filesystem>
 #include <string>
@@ -26,4 +27,20 @@ namespace crawler
                             double end_time,
                             unsigned int n_s,
                             unsigned int n_t);
+
+  /// Throws InputError if Output/Segment table asks for @p n_parts and the active stress has no segments, or too many.
+  void
+  require_segment_table_fits(unsigned int n_parts, const ActiveStress &stress);
+
+  /**
+   * Writes what a controller of segments needs: segments.csv has a column with the active stress of each segment, and
+   * rows at the ends of @p n_parts equal parts of the duration and at all jumps, two there; segment_switching.csv has a
+   * row for each time at which a segment is switched on or off. Throws FileError.
+   */
+  void
+  write_segment_tables(const std::filesystem::path &folder,
+                       const ActiveStress &stress,
+                       double end_time,
+                       unsigned int n_parts,
+                       const UnitNames &units);
 } // namespace crawler

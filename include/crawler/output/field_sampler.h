@@ -18,15 +18,16 @@ namespace crawler
     const char *name, *unit;
     std::vector<double> Fields::*values;
     bool in_kymograph;
+    bool has_peaks; ///< a jump of the active stress makes it large for an instant
   };
   constexpr FieldName field_names[] = {
-    {"stretch", "1", &Fields::stretch, true},
-    {"position", "length", &Fields::position, false},
-    {"displacement", "length", &Fields::displacement, true},
-    {"velocity", "length/time", &Fields::velocity, true},
-    {"active_stress", "force", &Fields::active_stress, true},
-    {"elastic_stress", "force", &Fields::elastic_stress, false},
-    {"friction_force", "force/length", &Fields::friction_force, true},
+    {"stretch", "1", &Fields::stretch, true, false},
+    {"position", "length", &Fields::position, false, false},
+    {"displacement", "length", &Fields::displacement, true, false},
+    {"velocity", "length/time", &Fields::velocity, true, true},
+    {"active_stress", "force", &Fields::active_stress, true, false},
+    {"elastic_stress", "force", &Fields::elastic_stress, false, false},
+    {"friction_force", "force/length", &Fields::friction_force, true, true},
   };
 
   /// Evaluates the fields at points inside this rank's cells.

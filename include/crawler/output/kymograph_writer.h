@@ -3,6 +3,7 @@
 
 #include <crawler/output/field_sampler.h>
 #include <crawler/output/observer.h>
+#include <crawler/output/usual_size.h>
 
 #include <filesystem>
 #include <vector>
@@ -35,6 +36,9 @@ namespace crawler
     {
       return rows_;
     }
+    /// What pictures show of a field that is in_kymograph: all, or its usual size if it has peaks. On rank 0.
+    FieldRange
+    shown(const FieldName &field) const;
 
   private:
     std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number

@@ -33,8 +33,9 @@ namespace crawler
     bool energy_balance            = true;
     std::optional<double> energy_balance_tolerance;
     std::vector<double> active_stress_table; ///< numbers of samples over s and t; empty: no table
-    std::string sensitivities = "";          ///< entries, or "all" (studies/core/sensitivity_entries.h)
-    std::string uncertainty   = "";          ///< entries and their standard deviations (the same)
+    unsigned int segment_table = 0;          ///< parts of the duration; 0: no table
+    std::string sensitivities  = "";         ///< entries, or "all" (studies/core/sensitivity_entries.h)
+    std::string uncertainty    = "";         ///< entries and their standard deviations (the same)
 
     /// Are derivatives by entries wanted?
     bool

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/output/field_sampler.h>
+#include <crawler/output/usual_size.h>
 
 #include <array>
 #include <iterator>
@@ -73,19 +74,17 @@ namespace crawler
     double
     tick_distance() const;
 
-    /// Triangles, an arrow for each place: forces of the ground on the body. 0.15 L long is the largest force of a
-    /// frame that three of four frames so far do not exceed, so that a sudden start leaves arrows to be seen; no arrow
-    /// is longer than 1.5 times that.
+    /// Triangles, an arrow for each place: forces of the ground on the body. 0.15 L long is the usual size of the
+    /// frames so far; no arrow is longer.
     Corners
     arrows(const std::vector<Grip> &grips) const;
 
     /// A quadrilateral below the left end of the ground; the fields go from their smallest value on its left to their
-    /// largest one.
+    /// largest one, those with peaks within their usual size.
     Corners
     scale() const;
-    using Range = std::pair<double, double>;
     /// In the order of field_names.
-    const std::array<Range, std::size(field_names)> &
+    const std::array<FieldRange, std::size(field_names)> &
     ranges() const
     {
       return drawn_;
@@ -94,13 +93,17 @@ namespace crawler
     void
     exchange(Archive &archive)
     {
-      archive(frame_forces_, seen_, drawn_, seen_path_, path_);
+      archive(sizes_, seen_, drawn_, seen_path_, path_);
     }
 
   private:
     double length_;
-    std::vector<double> frame_forces_;                       ///< the largest of each frame, sorted
-    std::array<Range, std::size(field_names)> seen_, drawn_; ///< of the fields; the path is that of the position
-    Range seen_path_, path_;
+    std::array<UsualSize, std::size(field_names)> sizes_;         ///< of the fields with peaks
+    std::array<FieldRange, std::size(field_names)> seen_, drawn_; ///< of the fields; the path is that of the position
+    FieldRange seen_path_, path_;
+
+    /// What is drawn of a field.
+    FieldRange
+    shown(std::size_t field) const;
   };
 } // namespace crawler

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/output/observer.h>
+#include <crawler/scene/unit_names.h>
 
 #include <filesystem>
 #include <fstream>
@@ -57,7 +58,11 @@ namespace crawler
   {
   public:
     /// The file is made with the first row.
-    StatisticsWriter(double length, bool is_first_rank, const std::filesystem::path &folder, bool with_energy_balance);
+    StatisticsWriter(double length,
+                     bool is_first_rank,
+                     const std::filesystem::path &folder,
+                     bool with_energy_balance,
+                     const UnitNames &units);
 
     void
     observe(const Snapshot &snapshot) override;
@@ -75,6 +80,7 @@ namespace crawler
     require_written() const;
 
     const bool writes_;
+    const UnitNames units_;
     const std::filesystem::path path_;
     std::ofstream out_;
   };

@@ -20,12 +20,14 @@ namespace crawler
     std::string place;            ///< for messages: "fig_2.prm, line 12" or "--set ..."
     bool is_override;             ///< of --set, which is stronger than all files
     std::filesystem::path folder; ///< from which the name of a file in the value counts
+    unsigned int depth = 0;       ///< of the file: 0, or more if it is included
   };
 
   /**
    * A parameter file in deal.II's .prm format (subsection ... end, set name = value, # comments, \ at a
-   * line's end continues it, include FILE) and the overrides that stand above it. All reading of input
-   * goes through here, so that every error names its file and line.
+   * line's end continues it, include FILE) and the overrides that stand above it. What stands below an include
+   * replaces what the included file sets. All reading of input goes through here, so that every error names its
+   * file and line.
    */
   class ParameterFile
   {

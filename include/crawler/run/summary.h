@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/run/simulation_result.h>
+#include <crawler/scene/unit_names.h>
 
 #include <string>
 #include <vector>
@@ -14,5 +15,5 @@ namespace crawler
 
   /// The same for people, in a few lines.
   std::vector<std::string>
-  summary_lines(const SimulationResult &result);
+  summary_lines(const SimulationResult &result, const UnitNames &units = {});
 } // namespace crawler

@@ -170,6 +170,38 @@ namespace crawler
     return times;
   }
 
+  std::vector<double>
+  Segments::middles() const
+  {
+    std::vector<double> list;
+    for (const Segment &segment : segments_)
+      list.push_back(0.5 * (segment.first + segment.last));
+    return list;
+  }
+
+  std::vector<Segments::SwitchingTime>
+  Segments::switching_times(const double end_time) const
+  {
+    std::vector<SwitchingTime> list;
+    for (unsigned int i = 0; i < segments_.size(); ++i)
+    {
+      const double f = parameters_.frequency, D = parameters_.duty_cycle, phase = fraction(segments_[i].phase);
+      if (segments_[i].amplitude == 0.)
+        continue;
+      if (phase > 0. && phase < D)
+        list.push_back({0., i, true});
+      for (const auto &[x, on] : {std::pair(0., true), std::pair(D, false)})
+        for (double period = 0., t = 0.; t <= end_time; period += 1.)
+        {
+          t = (period + x - phase) / f;
+          if (t >= 0. && t <= end_time)
+            list.push_back({t, i, on});
+        }
+    }
+    std::ranges::stable_sort(list, {}, &SwitchingTime::time);
+    return list;
+  }
+
   void
   Segments::require_smooth_rate() const
   {

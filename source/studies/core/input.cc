@@ -85,6 +85,7 @@ namespace crawler
     form.declarations.print_prm(effective);
     try
     {
+      parameters.units.require_plain();
       Scene scene = parameters.create_scene();
       auto notes  = settings_without_effect(file, parameters, form.declarations);
       for (const std::string &note : profiles_beyond_the_body(scene))

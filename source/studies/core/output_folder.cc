@@ -30,6 +30,8 @@ namespace crawler
                                                 "restart.dat.new",
                                                 "restart.old.dat",
                                                 "stop",
+                                                "segments.csv",
+                                                "segment_switching.csv",
                                                 "kymograph.png",
                                                 "sensitivity_body.csv",
                                                 "sensitivity_stress.csv",

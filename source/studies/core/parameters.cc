@@ -148,5 +148,6 @@ namespace crawler
     atlas.add_parameters(declarations);
     tradeoff.add_parameters(declarations);
     optimize.add_parameters(declarations);
+    units.add_parameters(declarations);
   }
 } // namespace crawler

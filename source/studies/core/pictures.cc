@@ -5,31 +5,45 @@
 #include <crawler/studies/core/pictures.h>
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <sysexits.h>
 
 namespace crawler
 {
   namespace
   {
-    /// The path of a script in contrib/plot.
-    std::filesystem::path
-    plot_script(const std::string &name)
+    /// Where a script of contrib/plot is looked for: where it is installed with the program, and in the build folder,
+    /// which has a link to contrib/plot.
+    std::array<std::filesystem::path, 2>
+    places_of_script(const std::string &name)
     {
-      // Where it is installed with the program, else in the build folder, which has a link to contrib/plot.
       std::error_code ignored;
-      const auto folder    = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
-      const auto installed = folder.parent_path() / CRAWLER_INSTALLED_PLOTS / name;
-      return std::filesystem::exists(installed, ignored) ? installed : folder / "plot" / name;
+      const auto folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+      return {{folder.parent_path() / CRAWLER_INSTALLED_PLOTS / name, folder / "plot" / name}};
     }
   } // namespace
 
   PictureEnd
   call_plot_script(const std::string &name, const std::vector<std::string> &arguments, const bool shown)
   {
+    const auto places = places_of_script(name);
+    std::error_code ignored;
+    const auto script =
+      std::ranges::find_if(places, [&](const auto &place) { return std::filesystem::exists(place, ignored); });
+    if (script == places.end())
+      return {
+        EX_UNAVAILABLE,
+        fmt::format("the script {} is neither {} nor {}; a copy of the program alone draws nothing, the installed "
+                    "one and that of the build folder do",
+                    name,
+                    places[0].lexically_normal().string(),
+                    places[1].string())};
     // If this Python lacks a module, the script itself goes on with Debian's (contrib/plot/plotting.py).
     for (const std::string python : {"python3", "/usr/bin/python3"})
     {
-      std::vector<std::string> command = {python, plot_script(name).string()};
+      std::vector<std::string> command = {python, script->string()};
       command.insert(command.end(), arguments.begin(), arguments.end());
       if (const ProgramEnd end = run_program(command, shown); end.started)
         return {end.status, trimmed(end.errors)};

@@ -191,21 +191,25 @@ namespace crawler
   }
 
   void
-  StudyProgress::report(const unsigned long done, const std::string &remark)
+  StudyProgress::report(const unsigned long done, const std::string &remark, const std::string &state)
   {
+    const bool is_single = n_parts_ == 1 && !state.empty();
     const double seconds = bar_.seconds(), rate = done / seconds;
-    const std::string words = fmt::format("{} of {} {}, {:.3g} {}/s", done, n_parts_, parts_, rate, parts_);
+    const std::string words =
+      is_single ? state : fmt::format("{} of {} {}, {:.3g} {}/s", done, n_parts_, parts_, rate, parts_);
+    const std::string end = remark + (is_single || state.empty() ? "" : "; this one: " + state);
     if (is_line_due())
     {
       last_line_ = now();
-      log_.progress(
-        fmt::format("  {:3.0f} %  {}, {}{}",
-                    100. * done / n_parts_,
-                    words,
-                    done > 0 ? duration_in_words((n_parts_ - done) / rate) + " left" : "time left not known yet",
-                    remark));
+      log_.progress(is_single ? fmt::format("  {}, {}", words, duration_in_words(seconds))
+                              : fmt::format("  {:3.0f} %  {}, {}{}",
+                                            100. * done / n_parts_,
+                                            words,
+                                            done > 0 ? duration_in_words((n_parts_ - done) / rate) + " left"
+                                                     : "time left not known yet",
+                                            end));
     }
     if (bar_.is_due())
-      bar_.show(static_cast<double>(done) / n_parts_, words + remark);
+      bar_.show(is_single ? std::nullopt : std::optional(static_cast<double>(done) / n_parts_), words + end);
   }
 } // namespace crawler

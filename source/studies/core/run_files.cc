@@ -15,13 +15,17 @@ namespace crawler
   report_scene(Log &log, const Input &input)
   {
     const Parameters &p = input.parameters;
-    log.line(fmt::format("Body L = {:g}, k = {:g}, gamma = {:g}, p = {:g} (a = {:g}), end time {:g}",
+    log.line(fmt::format("Body L = {:g}{}, k = {:g}{}, gamma = {:g}{}, p = {:g} (a = {:g}), end time {:g}{}",
                          p.body.length,
+                         p.units.behind("length"),
                          p.body.elastic_modulus,
+                         p.units.behind("force"),
                          p.body.friction_coefficient,
+                         p.units.behind("force time/length^2"),
                          p.body.anchoring_exponent,
                          p.body.friction_exponent(),
-                         p.time.end_time));
+                         p.time.end_time,
+                         p.units.behind("time")));
     if (!input.scene.is_plain())
       log.line("Besides: " + input.scene.general_features());
     std::ostringstream wave;
@@ -49,6 +53,9 @@ namespace crawler
     std::error_code error;
     std::filesystem::remove(folder / "stop", error);
     log.open(folder / "log.txt", /*append=*/goes_on);
+    if (output.segment_table > 0)
+      write_segment_tables(
+        folder, *input.scene.active_stress, input.scene.end_time, output.segment_table, input.parameters.units);
     const std::vector<double> &size = output.active_stress_table;
     if (size.empty())
       return;
@@ -65,11 +72,12 @@ namespace crawler
   ExitCode
   report_end(Log &log,
              const SimulationResult &result,
+             const UnitNames &units,
              const std::filesystem::path &folder,
              const std::string &animation)
   {
     const TimeOutcome &outcome = result.time;
-    for (const std::string &line : summary_lines(result))
+    for (const std::string &line : summary_lines(result, units))
       log.line(line);
     if (outcome.status != Status::finished)
       log.warn(outcome.reason + ": " + outcome.message);

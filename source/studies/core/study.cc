@@ -101,7 +101,8 @@ namespace crawler
         if (rank_of(communicator) != 0 || !progress.is_due())
           return;
         const auto all = queue.so_far();
-        progress.report(all.done, all.failed > 0 ? fmt::format(", {} not finished", all.failed) : "");
+        progress.report(
+          all.done, all.failed > 0 ? fmt::format(", {} not finished", all.failed) : "", work.state ? work.state() : "");
       };
       const auto stops = [&]() {
         queue.serve();

@@ -22,26 +22,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
-#include <sstream>
+#include <span>
 
 namespace crawler
 {
   namespace
   {
     namespace fs = std::filesystem;
+    using Json   = nlohmann::ordered_json;
 
     constexpr double accuracy_of_check = 1e-7; ///< of simulations, for --check-gradient
 
-    /// A case and a start.
+    /// A case and a start: of its own, or the best gait of a neighbour of the case.
     struct Part
     {
       unsigned long number_of_case, start;
+      std::optional<unsigned long> neighbour = {};
+      std::vector<double> x                  = {}; ///< the gait of the neighbour
 
       fs::path
       file(const fs::path &folder) const
       {
-        return folder / "starts" / fmt::format("{}-{}.json", number_of_case + 1, start);
+        return folder / "starts" /
+               (neighbour ? fmt::format("{}-from-{}-{:08x}.json", number_of_case + 1, *neighbour + 1, mark())
+                          : fmt::format("{}-{}.json", number_of_case + 1, start));
+      }
+
+    private:
+      /// A number that another gait does not have (FNV-1a).
+      std::uint32_t
+      mark() const
+      {
+        std::uint32_t sum = 2166136261u;
+        for (const std::byte byte : std::as_bytes(std::span(x)))
+          sum = (sum ^ std::to_integer<std::uint32_t>(byte)) * 16777619u;
+        return sum;
       }
     };
 
@@ -80,6 +98,97 @@ namespace crawler
     {
       const auto found = earlier(part, folder);
       return found && !found->was_interrupted;
+    }
+
+    /// What the parts have found so far.
+    OptimizeResults
+    results_of(OptimizeCases &cases, std::vector<Part> parts, const fs::path &folder)
+    {
+      std::ranges::stable_sort(parts, {}, &Part::number_of_case);
+      std::vector<StartResult> starts;
+      for (const Part &part : parts)
+        if (auto start = earlier(part, folder))
+          starts.push_back(std::move(*start));
+      return {cases, std::move(starts)};
+    }
+
+    /// The gait @p x in a case, if it keeps to all limits and is better than @p own by more than the optimiser's
+    /// tolerance.
+    std::optional<GaitRecord>
+    better_gait(OptimizeCases &cases, const StartResult &own, const std::vector<double> &x)
+    {
+      constexpr double more = 10.;
+      const auto family     = cases.family(own.number_of_case);
+      const auto &variables = family->variables();
+      for (std::size_t i = 0; i < x.size(); ++i)
+        if (x[i] < variables[i].from || x[i] > variables[i].to)
+          return std::nullopt;
+      const OptimizeParameters wishes = family->form().parameters.optimize;
+      try
+      {
+        const auto model = make_gait_model(*family, x, []() { return false; });
+        GaitProblem problem(*model, wishes, variables, x, []() { return false; });
+        const GaitRecord record = problem.record(problem.to_y(x));
+        if (!record.problem.empty() || record.violation > problem.admissible())
+          return std::nullopt;
+        const std::vector<GaitRecord> both = {own.best, record};
+        const bool is_better               = &GaitProblem::best_of(both, wishes, problem.admissible()) == &both[1] &&
+                               (!own.is_admissible() || std::abs(record.objective - own.best.objective) >
+                                                          more * problem.admissible() * std::abs(own.best.objective));
+        return is_better ? std::optional(record) : std::nullopt;
+      }
+      catch (const InputError &) // here it is no gait
+      {
+        return std::nullopt;
+      }
+    }
+
+    /// Of each case whose best gait is beaten by that of a neighbour the best one of these, to go on from there.
+    std::vector<Part>
+    parts_from_neighbours(OptimizeCases &cases, const std::vector<Part> &parts, const fs::path &folder, Log &log)
+    {
+      const OptimizeResults results = results_of(cases, parts, folder);
+      const auto best_of            = [&](const unsigned long number) -> const StartResult            *{
+        for (const std::size_t i : results.best)
+          if (results.starts[i].number_of_case == number)
+            return &results.starts[i];
+        return nullptr;
+      };
+      std::vector<Part> more;
+      for (unsigned long number = 0; number < cases.size(); ++number)
+      {
+        const StartResult *const own = best_of(number);
+        if (own == nullptr)
+          continue;
+        StartResult leader = *own;
+        std::optional<Part> found;
+        for (const unsigned long neighbour : cases.neighbours(number))
+        {
+          const StartResult *const other = best_of(neighbour);
+          if (other == nullptr || results.cases[neighbour].paths != results.cases[number].paths)
+            continue;
+          const std::vector<double> &x = other->best.x;
+          const bool is_known =
+            std::ranges::any_of(parts, [&](const Part &part) { return part.number_of_case == number && part.x == x; });
+          const auto record = is_known ? std::nullopt : better_gait(cases, leader, x);
+          if (!record)
+            continue;
+          leader.best = *record;
+          const auto n_own =
+            std::ranges::count_if(parts, [&](const Part &part) { return part.number_of_case == number; });
+          found = {number, static_cast<unsigned long>(n_own), neighbour, x};
+        }
+        if (!found)
+          continue;
+        log.line(
+          fmt::format("With {} the gait of {} is better ({:.6g}) than its own ({:.6g}): the search goes on there.",
+                      cases.in_words(number),
+                      cases.in_words(*found->neighbour),
+                      leader.best.objective,
+                      own->best.objective));
+        more.push_back(*found);
+      }
+      return more;
     }
 
     /// The parameter files and runs of an earlier study, but for files that are not the program's.
@@ -146,18 +255,22 @@ namespace crawler
     /// The optimum as a parameter file, and its run in a folder of its own. Returns the summary of the run, and whether
     /// it ended as it should.
     std::pair<std::string, bool>
-    run_optimum(OptimizeCases &cases, const StartResult &start, const fs::path &folder, const CommandOptions &options)
+    run_optimum(OptimizeCases &cases,
+                const StartResult &start,
+                const std::string &effective,
+                const fs::path &folder,
+                const CommandOptions &options)
     {
       const auto family           = cases.family(start.number_of_case);
       const Parameters parameters = family->parameters(start.best.x);
       const std::string number    = !cases.axes().empty() ? fmt::format("-{}", start.number_of_case + 1) : "";
-      std::ostringstream text;
-      Declarations &entries = family->form().declarations;
+      Declarations &entries       = family->form().declarations;
       entries.set("Sweep/Axes", "");
-      entries.print_prm(text);
-      entries.set("Sweep/Axes", parameters.sweep.axes);
       const fs::path file = folder / ("optimum" + number + ".prm"), place = folder / ("best" + number);
-      write_file(file, text.str());
+      write_file(file,
+                 "# The best gait: what differs from the file that was optimised.\ninclude parameters.prm\n" +
+                   changes(entries, ParameterFile::from_text(effective, "parameters.prm")));
+      entries.set("Sweep/Axes", parameters.sweep.axes);
       CommandOptions one = options;
       one.file           = file.string();
       one.output         = place.string();
@@ -202,12 +315,8 @@ namespace crawler
                   const fs::path &folder,
                   Log &log)
     {
-      std::vector<StartResult> starts;
-      for (const Part &part : parts)
-        if (auto start = earlier(part, folder))
-          starts.push_back(std::move(*start));
-      const OptimizeResults results(cases, std::move(starts));
-      const Table evaluations = evaluation_table(results);
+      const OptimizeResults results = results_of(cases, parts, folder);
+      const Table evaluations       = evaluation_table(results);
       write_file(folder / "results.csv", csv(evaluations));
       write_hdf5(folder / "results.h5", "optimize", evaluations, provenance(effective, options.command_line));
       write_file(folder / "starts.csv", csv(start_table(results)));
@@ -218,7 +327,7 @@ namespace crawler
         const StartResult &best       = results.starts[results.best[i]];
         is_admissible                 = is_admissible && best.is_admissible();
         has_converged                 = has_converged && best.has_converged;
-        const auto [summary, is_good] = run_optimum(cases, best, folder, options);
+        const auto [summary, is_good] = run_optimum(cases, best, effective, folder, options);
         summaries.push_back(summary);
         runs = runs && is_good;
       }
@@ -235,7 +344,7 @@ namespace crawler
       const double seconds     = now() - begin; // pictures are no part of it
       write_file(folder / "summary.json",
                  optimize_json(results, summaries, status, why, seconds, options.command_line));
-      for (const std::string &line : in_words(results, summaries))
+      for (const std::string &line : in_words(results, summaries, cases.parameters().units))
         log.line(line);
       if (!results.best.empty())
         draw("optimize.py", folder, log);
@@ -253,9 +362,15 @@ namespace crawler
           : why == "best_run_failed" ? "the run of a best gait did not end as it should; its log.txt says why"
                                      : "the optimiser did not converge; the lines above say why");
       const std::string number = !cases.axes().empty() ? "-N" : "";
-      log.line(fmt::format("{} evaluations from {}, {:.1f} s. {}",
+      const auto n_neighbours =
+        std::ranges::count_if(parts, [](const Part &part) { return part.neighbour.has_value(); });
+      if (cases.parameters().optimize.n_starts == 1 && !results.best.empty())
+        log.line(fmt::format("{}1 start: the optimum may be a local one; Optimize/Starts = 8 looks from others, too.",
+                             cases.axes().empty() ? "" : "Each case had "));
+      log.line(fmt::format("{} evaluations from {}{}, {:.1f} s. {}",
                            std::get<std::vector<double>>(evaluations.front().values).size(),
-                           counted(results.starts.size(), "start"),
+                           counted(results.starts.size() - static_cast<std::size_t>(n_neighbours), "start"),
+                           n_neighbours > 0 ? " and " + counted(n_neighbours, "gait") + " of neighbours" : "",
                            seconds,
                            results.best.empty() ? fmt::format("Tables are in {}/.", folder.string())
                                                 : fmt::format("The best gait is in {0}/optimum{1}.prm, its run in "
@@ -329,33 +444,58 @@ namespace crawler
     {
       throw file.with_place(error);
     }
-    const std::vector<Part> parts = parts_of(cases);
-    const std::string effective   = cases.effective();
-    const fs::path path           = output_folder(options.output, options.file);
+    std::vector<Part> parts     = parts_of(cases);
+    const std::string effective = cases.effective();
+    const fs::path path         = output_folder(options.output, options.file);
     StudyFolder folder({"optimization", {"starts"}, {"Optimize/Time limit", "Optimize/Starts"}}, path, options, log);
     begin_or_resume(communicator, folder, file, effective);
 
     const std::function<bool()> interrupted = [&]() {
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - begin > *own.time_limit);
     };
-    const auto n_missing =
-      static_cast<unsigned long>(std::ranges::count_if(parts, [&](const Part &part) { return !is_done(part, path); }));
-    const bool is_whole      = share_work(communicator,
-                                     {parts.size(),
-                                           n_missing,
-                                           "starts",
-                                           interrupted,
-                                           [&](const unsigned long number, const auto &stops, const auto &see) {
-                                        const Part &part = parts[number];
-                                        if (is_done(part, path))
-                                          return true;
-                                        const StartResult result = search(
-                                          *cases.family(part.number_of_case), part.number_of_case, part.start, stops);
-                                        write_file(part.file(path), pack(result));
-                                        see(1, result.has_converged ? 0 : 1);
-                                        return !result.was_interrupted;
-                                      }},
-                                     log);
+    SearchState state;
+    const auto search_all = [&](const std::vector<Part> &some) {
+      const auto n_missing =
+        static_cast<unsigned long>(std::ranges::count_if(some, [&](const Part &part) { return !is_done(part, path); }));
+      return share_work(communicator,
+                        {some.size(),
+                         n_missing,
+                         "starts",
+                         interrupted,
+                         [&](const unsigned long number, const auto &stops, const auto &see) {
+                           const Part &part = some[number];
+                           if (is_done(part, path))
+                             return true;
+                           const auto family = cases.family(part.number_of_case);
+                           const auto x = part.neighbour ? part.x : start_values(own, family->variables(), part.start);
+                           const StartResult result = search(*family, part.number_of_case, part.start, x, state, stops);
+                           write_file(part.file(path), pack(result));
+                           see(1, result.has_converged ? 0 : 1);
+                           return !result.was_interrupted;
+                         },
+                         [&]() {
+                           return fmt::format(
+                             "{}, best {} {:.6g}", counted(state.evaluations, "evaluation"), own.objective, state.best);
+                         }},
+                        log);
+    };
+    bool is_whole = search_all(parts);
+    for (unsigned long round = 0; is_whole && round < cases.size(); ++round)
+    {
+      const std::string more = on_first_rank(communicator, [&]() {
+        Json list = Json::array();
+        for (const Part &part : parts_from_neighbours(cases, parts, path, log))
+          list.push_back({part.number_of_case, part.start, *part.neighbour, part.x});
+        return list.dump();
+      });
+      std::vector<Part> added;
+      for (const Json &part : Json::parse(more))
+        added.push_back({part[0], part[1], part[2].get<unsigned long>(), part[3]});
+      if (added.empty())
+        break;
+      parts.insert(parts.end(), added.begin(), added.end());
+      is_whole = search_all(added);
+    }
     const std::string reason = is_whole ? "" : stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
     const std::string code   = on_first_rank(communicator, [&]() {
       folder.require_in_place();

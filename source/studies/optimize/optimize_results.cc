@@ -272,7 +272,7 @@ namespace crawler
   }
 
   std::vector<std::string>
-  in_words(const OptimizeResults &results, const std::vector<std::string> &summaries)
+  in_words(const OptimizeResults &results, const std::vector<std::string> &summaries, const UnitNames &units)
   {
     constexpr std::size_t most_variables = 12;
     constexpr double near_inversion      = 0.02;
@@ -282,10 +282,11 @@ namespace crawler
       const StartResult &start         = results.starts[results.best[i]];
       const OptimizeResults::Case &its = results.cases[start.number_of_case];
       lines.push_back(fmt::format(
-        "Best {}{}: {:.8g}{}{}",
+        "Best {}{}: {:.8g}{}{}{}",
         results.objective,
         its.words.empty() ? "" : fmt::format(" with {}", its.words),
         start.best.objective,
+        units.behind(results.unit),
         start.is_admissible() ? ""
                               : fmt::format(" ({} is EXCEEDED, by {:.2g} %: no gait that keeps to all limits "
                                             "was found)",

@@ -79,12 +79,16 @@ namespace crawler
       Search(SceneFamily &family,
              const unsigned long number_of_case,
              const unsigned long start,
+             const std::vector<double> &x,
+             SearchState &state,
              const std::function<bool()> &stops)
         : family_(family)
+        , state_(state)
         , stops_(stops)
         , wanted_(family.form().parameters.optimize)
         , parameters_(wanted_)
-        , x_(start_values(wanted_, family.variables(), start))
+        , start_(x)
+        , x_(x)
       {
         result_.number_of_case = number_of_case;
         result_.start          = start;
@@ -146,7 +150,7 @@ namespace crawler
             comparable_ = result_.records.size();
             if (!model->evaluate(x_, /*with_gradients=*/false).problem.empty()) // between the former places
             {
-              x_ = start_values(wanted_, family_.variables(), result_.start);
+              x_ = start_;
               multipliers_.clear();
             }
           }
@@ -175,7 +179,14 @@ namespace crawler
       improve(GaitModel &model, const bool is_rough)
       {
         constexpr double roughly = 1e-3, most_unused = 0.01;
-        GaitProblem problem(model, parameters_, family_.variables(), x_, stops_);
+        const GaitProblem *current = nullptr;
+        const auto stops           = [&]() {
+          if (current != nullptr)
+            see(*current);
+          return stops_();
+        };
+        GaitProblem problem(model, parameters_, family_.variables(), x_, stops);
+        current         = &problem;
         const auto keep = [&](const GaitRecord *const optimum) {
           result_.records.insert(result_.records.end(), problem.records().begin(), problem.records().end());
           result_.best =
@@ -219,6 +230,15 @@ namespace crawler
         }
       }
 
+      /// For whoever watches.
+      void
+      see(const GaitProblem &problem)
+      {
+        state_.evaluations = result_.records.size() + problem.records().size();
+        if (!problem.records().empty())
+          state_.best = GaitProblem::best_of(problem.records(), wanted_, problem.admissible()).objective;
+      }
+
       bool
       nothing_moves_the_body() const
       {
@@ -259,9 +279,11 @@ namespace crawler
       }
 
       SceneFamily &family_;
+      SearchState &state_;
       const std::function<bool()> &stops_;
       OptimizeParameters wanted_;
       OptimizeParameters parameters_; ///< with limits of strain that may be tightened
+      const std::vector<double> start_;
       std::vector<double> x_, multipliers_;
       double scale_           = 1.; ///< of the objective, for the multipliers
       std::size_t comparable_ = 0;  ///< the first record whose limits were looked at where they are now
@@ -330,8 +352,11 @@ namespace crawler
   search(SceneFamily &family,
          const unsigned long number_of_case,
          const unsigned long start,
+         const std::vector<double> &x,
+         SearchState &state,
          const std::function<bool()> &stops)
   {
-    return Search(family, number_of_case, start, stops).make();
+    state = {};
+    return Search(family, number_of_case, start, x, state, stops).make();
   }
 } // namespace crawler

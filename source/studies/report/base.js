@@ -23,9 +23,12 @@ function at(object, key) {
   return object ?? null;
 }
 
-/** "force length" as people write it; nothing for the unit 1. */
-const unitText = unit => !unit || unit === '1' ? '' : unit.replace(/ /g, '·').replace(/·per·.*/, ' per unit of the entry');
+/** "force length" as people write it, with the user's units; nothing for the unit 1. */
+const unitText = unit => !unit || unit === '1' ? ''
+  : unit.replace(/ /g, '·').replace(/·per·.*/, ' per unit of the entry').replace(/[a-z]+/g, word => page.units?.[word] ?? word);
 const withUnit = (name, unit) => unitText(unit) ? `${name} [${unitText(unit)}]` : name;
+/** A unit behind a number in a sentence, if the user has named units. */
+const unitBehind = unit => Object.entries(page.units ?? {}).some(([word, name]) => word !== name) ? ' ' + unitText(unit) : '';
 /** The key of a number as a name. */
 const nameOf = key => key.replace(/\.value$/, '').replace(/^errors\./, 'bound of ').replace(/_/g, ' ').replace(/\./g, ', ');
 /** The last words of an entry's path. */
@@ -57,6 +60,9 @@ function showWith(value, bound) {
 /** Where the bound of a number is. */
 const boundKey = key => ({displacement: 'displacement_error.total', 'inversion.t': 'inversion.error'})[key]
   ?? 'errors.' + key.replace(/\.value$/, '');
+
+/** A path that may go on in the next line behind its slashes. */
+const brokenAtSlashes = path => path.split(/(?<=\/)/).flatMap(word => [word, el('wbr')]);
 
 /** A number that can be read exactly by programs, too. */
 const exactly = (value, text) => known(value) ? el('data', {value: String(value)}, text ?? show(value)) : show(value);

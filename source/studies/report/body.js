@@ -16,7 +16,9 @@ class Fields {
     this.times = times.map(t => t * run.end_time);
     this.end = this.times[this.times.length - 1];
     this.n = places.length;
-    this.fields = Object.fromEntries(Object.entries(fields).map(([name, {low, high, codes}]) => {
+    this.shown = Object.fromEntries(Object.entries(fields).map(([name, {shown}]) => [name, shown]));
+    this.fields = Object.fromEntries(Object.entries(fields).map(([name, {low, high, codes, floats}]) => {
+      if (floats !== undefined) return [name, unpack(floats, Float32Array)];
       const scale = (high - low) / 65534;
       return [name, Float32Array.from(unpack(codes, Uint16Array), code => code === 65535 ? NaN : low + code * scale)];
     }));
@@ -94,9 +96,7 @@ class BodyPicture {
     this.middle = (low + high) / 2;
     this.least = range(fields.fields.stretch)[0];
     this.centres = fields.centres(this.clock.pace);
-    // A sudden start must not make all other arrows invisible.
-    const sizes = Float32Array.from(fields.fields.friction_force ?? [], Math.abs).filter(isFinite).sort();
-    this.reach = sizes.length ? sizes[Math.floor(0.98 * (sizes.length - 1))] || sizes[sizes.length - 1] : 0;
+    this.reach = Math.max(...(fields.shown.friction_force ?? [0]).map(Math.abs));
     if (run.ground) this.ground = {x: new Column(run.ground.places).numbers(), c: new Column(run.ground.factor).numbers()};
   }
   paint({context: c, width}) {
@@ -172,7 +172,7 @@ class BodyPicture {
     c.strokeStyle = c.fillStyle = ink('accent');
     c.lineWidth = 1.6;
     for (let i = 0, step = Math.max(1, Math.round(px.length / 20)); i < px.length; i += step) {
-      const size = -Math.max(-1.5, Math.min(1.5, f[i] / this.reach)) * 34, head = Math.sign(size) * Math.min(5, Math.abs(size));
+      const size = -Math.max(-1, Math.min(1, f[i] / this.reach)) * 34, head = Math.sign(size) * Math.min(5, Math.abs(size));
       if (Math.abs(size) < 1) continue;
       c.beginPath(); c.moveTo(px[i], y); c.lineTo(px[i] + size, y); c.stroke();
       c.beginPath(); c.moveTo(px[i] + size + head, y); c.lineTo(px[i] + size, y - 3.5); c.lineTo(px[i] + size, y + 3.5); c.fill();
@@ -259,7 +259,7 @@ function showBody(parent, run, clock, fields) {
     const {middle, name: words, symbol, unit} = FIELDS[name];
     body.field = map.field = name;
     restyle = () => {
-      body.colours = map.colours = colourScale(...range(fields.fields[name]), {middle});
+      body.colours = map.colours = colourScale(...fields.shown[name], {middle});
       bar.set(body.colours, withUnit(`${words} ${symbol}`, unit));
     };
     restyle();

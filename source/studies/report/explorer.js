@@ -53,7 +53,8 @@ class Explorer {
     this.order = [...list].sort((a, b) => x[a] - x[b] || y[a] - y[b]);
     this.place = new Map(this.order.map((row, i) => [row, i]));
     const what = this.cells ? 'a map' : this.lines ? 'lines' : 'dots';
-    this.caption.replaceChildren(el('b', {}, `${plural(list.length, NOUN)}, ${what}.`), ' Point at one for its numbers, click for its details; arrow keys go from one to the next.');
+    this.caption.replaceChildren(el('b', {}, list.length < this.rows ? `${list.length.toLocaleString('en')} of ${plural(this.rows, NOUN)}, ${what}.` : `${plural(list.length, NOUN)}, ${what}.`),
+      list.length < this.rows && !filters.length ? ' The others have no such number.' : '', ' Point at one for its numbers, click for its details; arrow keys go from one to the next.');
     const status = this.columns.get(this.statusName);
     this.isOpen = this.axes.length && status && this.colour !== this.statusName ? row => ![null, 'finished'].includes(status.value(row)) : () => false;
     if (list.some(this.isOpen)) this.caption.append(' Crossed out: did not finish.');
@@ -240,7 +241,7 @@ class Explorer {
     for (const column of this.columns.values()) {
       const value = column.value(row), bound = this.columns.get(boundKey(column.name))?.value(row);
       if (value === null || column === this.index || /^errors\.|^displacement_error\.total$/.test(column.name)) continue;
-      body.append(el('tr', {}, el('td', {class: 'entry'}, column.title), el('td', {class: column.isText ? '' : 'value'}, exactly(value, known(bound) ? showWith(value, bound) : show(value)), known(bound) ? ` ± ${show(bound, 2)}` : '',
+      body.append(el('tr', {}, el('td', {class: 'entry'}, ...brokenAtSlashes(column.title)), el('td', {class: column.isText ? '' : 'value'}, exactly(value, known(bound) ? showWith(value, bound) : show(value)), known(bound) ? ` ± ${show(bound, 2)}` : '',
         el('span', {class: 'unit'}, ' ' + unitText(column.unit))), el('td', {class: 'meaning wide-only'}, column.meaning)));
     }
     this.panel.hidden = false;

@@ -178,6 +178,22 @@ namespace crawler
   }
 
   Json
+  unit_data(const fs::path &folder)
+  {
+    UnitNames units;
+    if (const auto file = effective_parameters(folder))
+      for (auto *const name : {&units.length, &units.time, &units.force})
+        if (const Assignment *own = file->assignment_of(name == &units.length ? "Units/Length"
+                                                        : name == &units.time ? "Units/Time"
+                                                                              : "Units/Force"))
+          *name = own->value;
+    Json json;
+    for (const char *unit : {"length", "time", "force", "energy"})
+      json[unit] = units.of(unit);
+    return json;
+  }
+
+  Json
   run_data(const fs::path &folder, const std::string &title, const std::size_t most_rows)
   {
     constexpr std::size_t most_steps = 2000;

@@ -110,10 +110,19 @@ namespace crawler
       return list;
     }
 
+    /// What pictures show of a field.
+    FieldRange
+    shown_range(const KymographTable &kymograph, const std::string &name, const std::vector<double> &values)
+    {
+      const auto known = kymograph.shown.find(name);
+      return known != kymograph.shown.end() ? known->second : range_of(values);
+    }
+
     KymographTable
     part_of(const KymographTable &whole, const std::vector<std::size_t> &rows, const std::vector<std::size_t> &places)
     {
       KymographTable part;
+      part.shown = whole.shown;
       for (const std::size_t i : places)
         part.places.push_back(whole.places[i]);
       for (const std::size_t j : rows)
@@ -142,7 +151,8 @@ namespace crawler
                         other_step = in_time ? 1 : n_places;
       for (const auto &[name, values] : kymograph.fields)
       {
-        const auto [low, high] = range_of(values);
+        const auto [low, high] = shown_range(kymograph, name, values);
+        const auto seen = [low = low, high = high](const double x) { return x < low ? low : x > high ? high : x; };
         for (std::size_t k = 1; k + 1 < axis.size(); k += 2)
         {
           const double part = (axis[k] - axis[k - 1]) / (axis[k + 1] - axis[k - 1]);
@@ -150,7 +160,7 @@ namespace crawler
           {
             const double *here = &values[k * step + l * other_step];
             const double line  = here[-static_cast<std::ptrdiff_t>(step)] * (1. - part) + here[step] * part;
-            if (!(std::abs(*here - line) <= tolerance * (high - low)))
+            if (!(std::abs(seen(*here) - seen(line)) <= tolerance * (high - low)))
               return false;
           }
         }
@@ -198,12 +208,19 @@ namespace crawler
       const auto [low, high] = range_of(values);
       if (low > high)
         continue;
+      const auto [from, to] = shown_range(small, name, values);
+      json["fields"][name]  = {{"shown", {from, to}}};
+      if (high - low > 2. * (to - from)) // codes would be too coarse for what is shown
+      {
+        json["fields"][name]["floats"] = base64(std::vector<float>(values.begin(), values.end()));
+        continue;
+      }
       const double scale = high > low ? (unknown - 1) / (high - low) : 0.;
       std::vector<std::uint16_t> codes;
       for (const double value : values)
         codes.push_back(std::isfinite(value) ? static_cast<std::uint16_t>(std::lround((value - low) * scale))
                                              : unknown);
-      json["fields"][name] = {{"low", low}, {"high", high}, {"codes", base64(codes)}};
+      json["fields"][name].update({{"low", low}, {"high", high}, {"codes", base64(codes)}});
     }
     return json;
   }

@@ -80,10 +80,10 @@ class Chart {
     if (this.width < 60) return;
     this.context = this.size(this.below);
     const m = this.margin, axes = this.axes?.();
-    if (axes) { // words need more room than numbers
+    if (axes) { // long words and numbers need more room
       this.least ??= m.left;
-      const widest = Math.max(0, ...(axes.y.texts ?? []).map(text => this.context.measureText(text).width));
-      m.left = Math.max(this.least, Math.min(widest + 28, 0.35 * this.width));
+      const widest = Math.max(0, ...this.ticksOf(axes.y, this.height - m.bottom - m.top, 36).map(([, text]) => this.context.measureText(text).width));
+      m.left = Math.max(this.least, Math.min(widest + 32, 0.35 * this.width));
     }
     const inner = [m.left, this.width - m.right, this.height - m.bottom, m.top];
     if (axes) {
@@ -107,18 +107,21 @@ class Chart {
     this.top = this.size(this.above);
     this.overlay(this);
   }
+  /** Place and text of the ticks of an axis that has so many pixels, and of these so many from one to the next. */
+  ticksOf(axis, pixels, distance) {
+    if (axis.texts) return axis.texts.map((text, i) => [i, text]).slice(0, 40);
+    return ticks(axis.low, axis.high, Math.max(2, pixels / distance), axis.log).map(tick => [tick, tickText(tick, axis.log)]);
+  }
   drawAxes(x, y) {
     const c = this.context, m = this.margin, right = this.width - m.right, bottom = this.height - m.bottom;
     c.strokeStyle = ink('grid');
     c.fillStyle = ink('soft');
     c.lineWidth = 1;
-    const label = (axis, tick) => axis.texts ? axis.texts[Math.round(tick)] : tickText(tick, axis.log);
-    const all = (axis, count) => axis.texts ? axis.texts.map((_, i) => i).slice(0, 40) : ticks(axis.low, axis.high, count, axis.log);
     const line = (...points) => { c.beginPath(); c.moveTo(points[0], points[1]); c.lineTo(points[2], points[3]); c.stroke(); };
     c.textAlign = 'center';
     let end = -Infinity;
-    for (const tick of all(x, Math.max(2, (right - m.left) / 90))) {
-      const p = Math.round(this.x(tick)) + 0.5, text = label(x, tick), half = c.measureText(text).width / 2;
+    for (const [tick, text] of this.ticksOf(x, right - m.left, 90)) {
+      const p = Math.round(this.x(tick)) + 0.5, half = c.measureText(text).width / 2;
       line(p, this.axesAbove ? bottom : m.top, p, bottom + 4);
       const at = Math.min(Math.max(p, half + 2), this.width - half - 2);
       if (at - half < end + 6) continue;
@@ -126,10 +129,10 @@ class Chart {
       end = at + half;
     }
     c.textAlign = 'right';
-    for (const tick of all(y, Math.max(2, (bottom - m.top) / 36))) {
+    for (const [tick, text] of this.ticksOf(y, bottom - m.top, 36)) {
       const p = Math.round(this.y(tick)) + 0.5;
       line(m.left - 4, p, this.axesAbove ? m.left : right, p);
-      c.fillText(clipped(c, label(y, tick), m.left - 8), m.left - 8, p + 4);
+      c.fillText(clipped(c, text, m.left - 28), m.left - 8, p + 4);
     }
     c.fillStyle = ink('ink');
     c.textAlign = 'center';

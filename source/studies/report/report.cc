@@ -109,6 +109,7 @@ namespace crawler
                                  {"summary", summary_data(folder)},
                                  {"parameters", parameter_data(folder)},
                                  {"entries", result_entries()},
+                                 {"units", unit_data(folder)},
                                  {"reasons", reasons_table},
                                  {"table", nullptr},
                                  {"runs", Json::array()},

@@ -27,16 +27,16 @@ function gaitInWords(summary) {
   const gait = summary.gait, words = [];
   if (!gait || !known(gait.period)) return words;
   const d = gait.displacement, to = d === 0 ? 'does not move on' : `moves ${show(Math.abs(gait.body_lengths), 4)} body lengths towards its ${d > 0 ? 'head (larger s)' : 'tail (smaller s)'}`;
-  words.push(`In a stride of ${show(gait.period, 5)}${gait.period_from === 'stretch' ? ' (a period found in its motion)' : ''} the body ${to}; ` +
+  words.push(`In a stride of ${show(gait.period, 5)}${unitBehind('time')}${gait.period_from === 'stretch' ? ' (a period found in its motion)' : ''} the body ${to}; ` +
     `${show(gait.strides, 4)} stride${gait.strides === 1 ? ' fits' : 's fit'} into the run.`);
   const wave = gait.wave ?? {};
   const direction = {retrograde: 'The wave of stretch is retrograde: it travels against the motion, as in an earthworm.',
     prograde: 'The wave of stretch is prograde: it travels with the motion, as in a snail.', standing: 'The wave of stretch stands.'}[wave.direction];
-  if (direction) words.push(direction + (known(wave.speed) ? ` Its speed is ${show(wave.speed, 4)}, and ${show(100 * wave.coherence, 3)} % of it travels.` : '') +
+  if (direction) words.push(direction + (known(wave.speed) ? ` Its speed is ${show(wave.speed, 4)}${unitBehind('length/time')}, and ${show(100 * wave.coherence, 3)} % of it travels.` : '') +
     (known(gait.slip) ? ` A slip of ${show(gait.slip, 4)}: the body keeps ${show(100 * (1 - gait.slip), 3)} % of the speed of its wave.` : ''));
   const cost = gait.cost_of_transport ?? {};
-  if (known(cost.stress_power)) words.push(`Each unit of length costs the work ${show(cost.stress_power, 4)}` +
-    (known(cost.positive_power) ? `; ${show(cost.positive_power, 4)} if actuators cannot take energy back.` : '.'));
+  if (known(cost.stress_power)) words.push(`Each ${unitBehind('length').trim() || 'unit of length'} costs the work ${show(cost.stress_power, 4)}${unitBehind('energy')}` +
+    (known(cost.positive_power) ? `; ${show(cost.positive_power, 4)}${unitBehind('energy')} if actuators cannot take energy back.` : '.'));
   if (known(gait.efficiency)) words.push(`It goes ${show(100 * gait.efficiency, 3)} % as far as any gait could with this work and these strains.`);
   return words;
 }
@@ -98,7 +98,7 @@ function showSensitivities(parent, run) {
   parent.append(el('h2', {}, 'What matters'), el('p', {}, 'How the displacement changes with an entry: the derivative, and by how many per cent for one per cent of the entry.'));
   const most = Math.max(...list.map(([, one]) => Math.abs(one.elasticity ?? 0))) || 1, body = el('tbody');
   for (const [entry, one] of list)
-    body.append(el('tr', {}, el('td', {class: 'entry'}, entry), el('td', {class: 'value'}, ...(known(one.value) ? [exactly(one.value, showWith(one.value, one.error)), ` ± ${show(one.error, 2)}`] : ['not known'])),
+    body.append(el('tr', {}, el('td', {class: 'entry'}, ...brokenAtSlashes(entry)), el('td', {class: 'value'}, ...(known(one.value) ? [exactly(one.value, showWith(one.value, one.error)), ` ± ${show(one.error, 2)}`] : ['not known'])),
       el('td', {class: 'value'}, known(one.elasticity) ? show(one.elasticity, 3) + ' %' : '–'),
       el('td', {class: 'wide-only', style: 'min-width:10rem'}, known(one.elasticity) ? el('span', {class: one.elasticity < 0 ? 'bar minus' : 'bar', style: `width:${Math.abs(one.elasticity) / most * 10}rem`}) : one.reason ?? '')));
   parent.append(el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, ...['entry', 'dD / d entry', 'per %', ''].map((name, i) => el('th', {class: i === 3 && 'wide-only'}, name)))), body)));

@@ -64,8 +64,8 @@ function parameters() {
   if (entries.length)
     box.append(el('p', {class: 'soft small'}, 'Entries that differ from their defaults:'), el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, el('th', {}, 'entry'), el('th', {}, 'value'),
       el('th', {class: 'wide-only'}, 'default'), el('th', {class: 'wide-only'}, 'meaning'))),
-      el('tbody', {}, ...entries.map(one => el('tr', {}, el('td', {class: 'entry'}, one.entry), el('td', {class: 'entry'}, one.value, el('span', {class: 'unit'}, ' ' + unitText(one.unit))),
-        el('td', {class: 'entry wide-only soft'}, one.default), el('td', {class: 'meaning wide-only'}, one.meaning)))))));
+      el('tbody', {}, ...entries.map(one => el('tr', {}, el('td', {class: 'entry'}, ...brokenAtSlashes(one.entry)), el('td', {class: 'entry text'}, one.value, el('span', {class: 'unit'}, ' ' + unitText(one.unit))),
+        el('td', {class: 'entry text wide-only soft'}, one.default), el('td', {class: 'meaning wide-only'}, one.meaning)))))));
   for (const [name, text] of [['The parameter file (original.prm)', original], ['All entries as they were used (parameters.prm)', effective]])
     if (text) box.append(el('details', {}, el('summary', {}, name), el('pre', {tabindex: 0}, text)));
   for (const run of page.kind === 'run' || page.kind === 'optimisation' ? page.runs : [])
@@ -124,7 +124,7 @@ function answersOf(explorer, row) {
   const value = name => explorer.columns.get(name)?.value(row) ?? null;
   const body = ['run', 'position', 'stretch', 'refined'].filter(name => value(`${name} status`)).map(name => el('tr', {}, el('td', {}, name), el('td', {}, value(`${name} status`), value(`${name} reason`) ? `: ${value(`${name} reason`)}` : ''),
     ...['displacement', 'promised error', 'measured error', 'inversion t', 'min stretch'].map(number => el('td', {class: 'value'}, exactly(value(`${name} ${number}`), show(value(`${name} ${number}`), number.includes('error') ? 2 : 8))))));
-  return el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, ...['answer', 'status', 'displacement [length]', 'promised error', 'measured error', 'inverted at t', 'least stretch'].map(name => el('th', {}, name)))), el('tbody', {}, ...body)));
+  return el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, ...['answer', 'status', withUnit('displacement', 'length'), 'promised error', 'measured error', 'inverted at t', 'least stretch'].map(name => el('th', {}, name)))), el('tbody', {}, ...body)));
 }
 
 function showPoints() {
@@ -215,7 +215,7 @@ function frameOfBest(explorer, {x, y}) {
 }
 
 function showOptimum(box, one, folder, unit) {
-  const rows = (object, value) => Object.entries(object ?? {}).map(([name, x]) => el('tr', {}, el('td', {class: 'entry'}, name), ...value(x)));
+  const rows = (object, value) => Object.entries(object ?? {}).map(([name, x]) => el('tr', {}, el('td', {class: 'entry'}, ...brokenAtSlashes(name)), ...value(x)));
   box.append(el('p', {}, wordsOfCase(one) ? `With ${wordsOfCase(one)} t` : 'T', `he best ${summary.optimize.objective} is `, el('b', {'data-key': 'optimum'}, exactly(one.objective)), ` ${unitText(unit)}`.trimEnd(),
     known(one.efficiency) ? `, ${show(100 * one.efficiency, 3)} % of what any gait with this work and these strains could` : '',
     summary.optimize.objective === 'periodic merit' && known(one.stride_efficiency) ? ` (the last stride ${show(100 * one.stride_efficiency, 3)} % with its dissipation)` : '', '. ',

@@ -123,7 +123,8 @@ namespace crawler
                                               progress.step();
                                               return !is_stopped();
                                             }),
-                          folder);
+                          folder,
+                          input.parameters.units);
       return !is_stopped() ||
              std::ranges::all_of(result.sensitivities, [](const auto &one) { return one.value.has_value(); });
     }
@@ -329,7 +330,8 @@ namespace crawler
                                            ? static_cast<Kymograph *>(observers.back().get())
                                            : nullptr;
       if (writes && output.statistics)
-        observers.push_back(std::make_unique<StatisticsWriter>(length, first, folder, output.energy_balance));
+        observers.push_back(
+          std::make_unique<StatisticsWriter>(length, first, folder, output.energy_balance, input.parameters.units));
       if (writes && !options.quiet)
         observers.push_back(std::make_unique<RunProgress>(log, input.scene, kymograph, n_rows));
       return observers;
@@ -425,8 +427,11 @@ namespace crawler
       return "";
     });
     // The first rank speaks for all: a signal may have stopped some only.
-    int code = static_cast<int>(
-      report_end(log, result, folder, output.has_snapshots() ? animation_file(output.snapshot_format) : ""));
+    int code = static_cast<int>(report_end(log,
+                                           result,
+                                           input.parameters.units,
+                                           folder,
+                                           output.has_snapshots() ? animation_file(output.snapshot_format) : ""));
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);
     return static_cast<ExitCode>(code);
   }
@@ -451,7 +456,7 @@ namespace crawler
       KymographWriter kymograph(length, input.scene.end_time, folder);
       std::optional<StatisticsWriter> statistics;
       if (output.statistics)
-        statistics.emplace(length, true, folder, output.energy_balance);
+        statistics.emplace(length, true, folder, output.energy_balance, input.parameters.units);
       const bool whole = show_pictures(
         level,
         times,
@@ -525,8 +530,12 @@ namespace crawler
       }
       lock.require_in_place();
       write_file(folder / "summary.json", summary_json(result, size_of(communicator), options.command_line));
-      code = static_cast<int>(report_end(
-        log, result, folder, output.has_snapshots() && result.error ? animation_file(output.snapshot_format) : ""));
+      code = static_cast<int>(
+        report_end(log,
+                   result,
+                   input.parameters.units,
+                   folder,
+                   output.has_snapshots() && result.error ? animation_file(output.snapshot_format) : ""));
       return "";
     });
     MPI_Bcast(&code, 1, MPI_INT, 0, communicator);

@@ -13,17 +13,17 @@
 namespace crawler
 {
   void
-  write_sensitivities(const LocalSensitivity &local, const std::filesystem::path &folder)
+  write_sensitivities(const LocalSensitivity &local, const std::filesystem::path &folder, const UnitNames &units)
   {
     if (local.s.empty())
       return;
-    std::string text = "s [length],elastic modulus [1],friction [1]\n";
+    std::string text = units.in_brackets("s [length],elastic modulus [1],friction [1]\n");
     for (std::size_t i = 0; i < local.s.size(); ++i)
       fmt::format_to(std::back_inserter(text), "{},{},{}\n", local.s[i], local.elastic_modulus[i], local.friction[i]);
     write_file(folder / "sensitivity_body.csv", text);
     if (local.times.empty())
       return;
-    text = "s [length],t [time],active stress [1/(force time)]\n";
+    text = units.in_brackets("s [length],t [time],active stress [1/(force time)]\n");
     for (std::size_t j = 0; j < local.times.size(); ++j)
       for (std::size_t i = 0; i < local.s.size(); ++i)
         fmt::format_to(

@@ -359,6 +359,31 @@ namespace crawler
     return to_text(axis.is_logarithmic ? from * std::pow(to / from, x) : from + (to - from) * x);
   }
 
+  std::vector<unsigned long>
+  SweepDesign::neighbours(const unsigned long point) const
+  {
+    std::vector<unsigned long> list;
+    const auto add_both = [&](const unsigned long step, const unsigned long size) {
+      const unsigned long place = point / step % size;
+      if (place > 0)
+        list.push_back(point - step);
+      if (place + 1 < size)
+        list.push_back(point + step);
+    };
+    if (kind_ != Kind::grid)
+      add_both(1, n_points_);
+    else
+    {
+      unsigned long step = n_points_;
+      for (const SweepAxis &axis : axes_)
+      {
+        step /= axis.values.size();
+        add_both(step, axis.values.size());
+      }
+    }
+    return list;
+  }
+
   bool
   SweepDesign::varies(const std::string &entry) const
   {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <set>
 
 namespace crawler
 {
@@ -71,32 +72,36 @@ namespace crawler
       if (!name.empty() && inputs.files.count(name) == 0 && std::filesystem::is_regular_file(name, ignored))
         inputs.files.emplace(name, fingerprint(name));
     };
-    const auto values = [&](const Declarations &declarations) {
-      Texts texts;
-      for (unsigned int i = 0; i < declarations.entries().size(); ++i)
+    Texts base;
+    std::set<std::string> naming_files;
+    for (unsigned int i = 0; i < points.declarations().entries().size(); ++i)
+    {
+      const EntryInfo &entry  = points.declarations().entries()[i];
+      const std::string value = points.declarations().value(i);
+      base.emplace(entry.path, value);
+      if (!entry.names_file)
+        continue;
+      naming_files.insert(entry.path);
+      if (!points.design().varies(entry.path))
+        add_file(value);
+      for (const SweepAxis &axis : points.design().axes())
+        if (axis.entry == entry.path)
+          for (const std::string &one : axis.values)
+            add_file((points.design().folder() / one).string());
+    }
+    for (const std::string &name : points.scene_names())
+    {
+      const ParameterFile scene = points.scene(name);
+      for (const Assignment &one : scene.assignments())
       {
-        const EntryInfo &entry  = declarations.entries()[i];
-        const std::string value = declarations.value(i);
-        texts.emplace(entry.path, value);
-        if (!entry.names_file)
+        const auto found = base.find(one.path);
+        if (points.design().varies(one.path) || (found != base.end() && found->second == one.value))
           continue;
-        if (!points.design().varies(entry.path))
-          add_file(value);
-        for (const SweepAxis &axis : points.design().axes())
-          if (axis.entry == entry.path)
-            for (const std::string &one : axis.values)
-              add_file((points.design().folder() / one).string());
+        inputs.scenes[name].emplace(one.path, "\"" + one.value + "\"");
+        if (found == base.end() || naming_files.contains(one.path))
+          add_file(std::filesystem::absolute(one.folder / one.value).lexically_normal().string());
       }
-      return texts;
-    };
-    const Texts base = values(points.declarations());
-    for (const auto &[name, declarations] : points.scene_declarations())
-      for (const auto &[entry, value] : values(*declarations))
-      {
-        const auto found = base.find(entry);
-        if (!points.design().varies(entry) && (found == base.end() || found->second != value))
-          inputs.scenes[name].emplace(entry, "\"" + value + "\"");
-      }
+    }
     return inputs;
   }
 

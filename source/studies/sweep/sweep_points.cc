@@ -3,7 +3,6 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/studies/core/input.h>
 #include <crawler/studies/sweep/sweep_points.h>
 
 #include <fmt/format.h>
@@ -50,21 +49,8 @@ namespace crawler
       for (std::size_t i = 0; i < design_->axes().size(); ++i)
         if (design_->axes()[i].is_file())
           file_axis_ = i;
-      if (file_axis_ < design_->axes().size())
-        for (const std::string &name : design_->axes()[file_axis_].values)
-          if (scenes_.count(name) == 0)
-            scenes_.emplace(name, read_file(communicator, (design_->folder() / name).string(), {}));
-      forms_[""] = std::move(base);
-      for (const auto &[name, scene] : scenes_)
-      {
-        for (const Assignment &assignment : scene.assignments())
-          if (assignment.path.starts_with("Sweep/"))
-            throw InputError(fmt::format("{}: \"{}\" stands in a file of a sweep, but section Sweep belongs to {}",
-                                         assignment.place,
-                                         assignment.path,
-                                         file_.name()));
-        forms_[name] = std::make_unique<Form>(file_, &scene);
-      }
+      base_ = std::move(base);
+      require_scene_files(communicator);
       require_admissible_values();
       require_words();
       require_scene();
@@ -80,16 +66,48 @@ namespace crawler
   const Declarations &
   SweepPoints::declarations() const
   {
-    return forms_.at("")->declarations;
+    return base_->declarations;
   }
 
-  std::map<std::string, const Declarations *>
-  SweepPoints::scene_declarations() const
+  std::vector<std::string>
+  SweepPoints::scene_names() const
   {
-    std::map<std::string, const Declarations *> list;
-    for (const auto &[name, scene] : scenes_)
-      list.emplace(name, &forms_.at(name)->declarations);
-    return list;
+    if (file_axis_ == design_->axes().size())
+      return {};
+    std::vector<std::string> names = design_->axes()[file_axis_].values;
+    std::ranges::sort(names);
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+  }
+
+  ParameterFile
+  SweepPoints::scene(const std::string &name) const
+  {
+    return ParameterFile::read((design_->folder() / name).string());
+  }
+
+  /// One form serves all files: each entry is looked at by itself. A sum has entries of its own.
+  void
+  SweepPoints::require_scene_files(MPI_Comm communicator) const
+  {
+    on_first_rank(communicator, [&]() {
+      Form common(file_);
+      for (const std::string &name : scene_names())
+      {
+        const ParameterFile its = scene(name);
+        for (const Assignment &assignment : its.assignments())
+          if (assignment.path.starts_with("Sweep/"))
+            throw InputError(fmt::format("{}: \"{}\" stands in a file of a sweep, but section Sweep belongs to {}",
+                                         assignment.place,
+                                         assignment.path,
+                                         file_.name()));
+        if (!its.subsections("Active stress/Sum").empty())
+          Form(file_, &its);
+        else
+          its.apply(common.declarations);
+      }
+      return "";
+    });
   }
 
   void
@@ -162,8 +180,17 @@ namespace crawler
   Form &
   SweepPoints::form(const unsigned long point)
   {
-    const auto &axes = design_->axes();
-    Form &form       = *forms_.at(file_axis_ < axes.size() ? design_->value(file_axis_, point) : "");
+    constexpr std::size_t most_forms = 64; // a form takes half a megabyte
+    const auto &axes                 = design_->axes();
+    const auto form_of               = [&](const std::string &name) -> Form               &{
+      if (const auto known = forms_.find(name); known != forms_.end())
+        return *known->second;
+      if (forms_.size() == most_forms)
+        forms_.clear();
+      const ParameterFile its = scene(name);
+      return *(forms_[name] = std::make_unique<Form>(file_, &its));
+    };
+    Form &form = file_axis_ < axes.size() ? form_of(design_->value(file_axis_, point)) : *base_;
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (i != file_axis_)
         form.declarations.set(axes[i].entry, design_->value(i, point), design_->folder());
@@ -174,19 +201,24 @@ namespace crawler
   SweepPoints::overrides(const unsigned long point) const
   {
     std::vector<std::string> list;
-    const auto &axes         = design_->axes();
-    const std::string scene  = file_axis_ < axes.size() ? design_->value(file_axis_, point) : "";
-    const auto &declarations = forms_.at(scene)->declarations;
-    const auto add = [&](const std::string &path, const std::string &value, const std::filesystem::path &folder) {
+    const auto &axes = design_->axes();
+    const auto add   = [&](const Declarations &declarations,
+                         const std::string &path,
+                         const std::string &value,
+                         const std::filesystem::path &folder) {
       list.push_back(path + "=" + declarations.with_absolute_name(path, value, folder));
     };
-    if (!scene.empty())
-      for (const Assignment &assignment : scenes_.at(scene).assignments())
-        add(assignment.path, assignment.value, assignment.folder);
+    if (file_axis_ < axes.size())
+    {
+      const ParameterFile its = scene(design_->value(file_axis_, point));
+      const Form its_form(file_, &its); // it may have entries of its own
+      for (const Assignment &assignment : its.assignments())
+        add(its_form.declarations, assignment.path, assignment.value, assignment.folder);
+    }
     list.insert(list.end(), file_.overrides().begin(), file_.overrides().end());
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (i != file_axis_)
-        add(axes[i].entry, design_->value(i, point), design_->folder());
+        add(declarations(), axes[i].entry, design_->value(i, point), design_->folder());
     return list;
   }
 

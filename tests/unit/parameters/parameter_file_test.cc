@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "../../support/program.h"
 #include "../../support/run_text.h"
 
 #include <crawler/base/exceptions.h>
 
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 using namespace crawler;
 
@@ -52,6 +55,22 @@ TEST(ParameterFile, ReadsSectionsCommentsAndContinuedLines)
   EXPECT_EQ(parameters.accuracy, 1e-4);
   EXPECT_EQ(parameters.active_stress.optimal_wave.sine_coefficients, (std::vector<double>{1., 0.5, 0.25}));
   EXPECT_EQ(parameters.body.length, 3.);
+}
+
+TEST(ParameterFile, WhatStandsBelowAnIncludeReplacesWhatItSets)
+{
+  const test::TemporaryFolder folder;
+  const std::string body = (folder.path / "body.prm").string(), soft = (folder.path / "soft.prm").string();
+  std::ofstream(body) << "set Accuracy = 1e-4\nsubsection Body\n set Length = 3\n set Elastic modulus = 2\nend\n";
+  std::ofstream(soft) << "include body.prm\nsubsection Body\n set Elastic modulus = 0.5\nend\n";
+  const Parameters parameters = read("include " + soft + "\nsubsection Body\n set Length = 7\nend\n");
+  EXPECT_EQ(parameters.accuracy, 1e-4);
+  EXPECT_EQ(parameters.body.elastic_modulus, 0.5);
+  EXPECT_EQ(parameters.body.length, 7.);
+  // Which of these is meant nobody can tell.
+  EXPECT_NE(error_of("subsection Body\n set Length = 7\nend\ninclude " + body + "\n").find("second time"),
+            std::string::npos);
+  EXPECT_NE(error_of("include " + body + "\ninclude " + body + "\n").find("second time"), std::string::npos);
 }
 
 TEST(ParameterFile, OverridesAreStronger)

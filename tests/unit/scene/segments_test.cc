@@ -361,3 +361,32 @@ TEST(Segments, SaysWhatIsWrong)
   EXPECT_EQ(complaint({.number = 4, .frequency = 1e6, .phase_lag = 0.25}, "Frequency"),
             "the segments switch at 4e+06 different times until the end time, but at most 1e+06 are expected");
 }
+
+// What a controller is told gives back the signal: a segment is on between its switching times.
+TEST(Segments, SwitchingTimesTellWhichSegmentsAreOn)
+{
+  const SegmentsParameters settings = {.number     = 5,
+                                       .amplitude  = {0.3, 0.3, 0., 0.3, 0.3},
+                                       .frequency  = 0.8,
+                                       .phase_lag  = 0.3,
+                                       .duty_cycle = 0.35,
+                                       .phase      = 0.1};
+  const double length = 2., end_time = 6.;
+  const Segments stress(settings, length, end_time);
+  const auto times  = stress.switching_times(end_time);
+  const auto places = stress.middles();
+  ASSERT_EQ(places.size(), 5u);
+  EXPECT_GT(times.size(), 4 * 2 * 0.8 * end_time - 8);
+  std::vector<bool> on(places.size(), false);
+  std::size_t next = 0;
+  for (double t = 0.001; t < end_time; t += 0.0137)
+  {
+    for (; next < times.size() && times[next].time <= t; ++next)
+    {
+      EXPECT_NE(on[times[next].segment], times[next].on) << "at t = " << times[next].time;
+      on[times[next].segment] = times[next].on;
+    }
+    for (std::size_t i = 0; i < places.size(); ++i)
+      EXPECT_EQ(value(stress, places[i], t), on[i] ? 0.3 : 0.) << "segment " << i << " at t = " << t;
+  }
+}

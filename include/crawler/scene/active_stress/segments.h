@@ -54,6 +54,22 @@ namespace crawler
     std::optional<Bounds>
     bounds(const Box &box) const override;
 
+    /// The middles of the segments from s = 0 to s = L [length].
+    std::vector<double>
+    middles() const;
+
+    /// A segment (0 is that at s = 0) is switched on or off.
+    struct SwitchingTime
+    {
+      double time;
+      unsigned int segment;
+      bool on;
+    };
+    /// What a controller is to do until the end time, in the order of times: at t = 0 those begin that are on. With
+    /// smooth fronts these are the middles of the fronts.
+    std::vector<SwitchingTime>
+    switching_times(double end_time) const;
+
     /// Lengths, and how far a rate limit lets the segments come.
     void
     report(std::ostream &out) const override;

@@ -9,6 +9,10 @@
 
 namespace crawler
 {
+  /// The entries that are not as @p base says, as the text of a parameter file that is to include it.
+  std::string
+  changes(const Declarations &declarations, const ParameterFile &base);
+
   /// A parameter file as a form in which other values can be filled in.
   struct Form
   {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/run/run_parameters.h>
+#include <crawler/scene/unit_names.h>
 
 #include <optional>
 #include <string>
@@ -84,6 +85,7 @@ namespace crawler
     AtlasParameters atlas;
     TradeoffParameters tradeoff;
     OptimizeParameters optimize;
+    UnitNames units;
 
     void
     add_parameters(Declarations &declarations);

@@ -107,9 +107,10 @@ namespace crawler
     bool
     is_due() const;
 
-    /// @p remark stands at the end of the line.
+    /// @p remark stands at the end of the line. @p state: of the part that is under way; of a single part that is all
+    /// there is to say.
     void
-    report(unsigned long done, const std::string &remark = "");
+    report(unsigned long done, const std::string &remark = "", const std::string &state = "");
 
   private:
     bool

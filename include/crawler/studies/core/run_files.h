@@ -15,8 +15,8 @@ namespace crawler
   void
   report_scene(Log &log, const Input &input);
 
-  /// Makes the output folder with the files that a run begins with: parameters, log, and active_stress.csv if the input
-  /// asks for it. Throws FileError.
+  /// Makes the output folder with the files that a run begins with: parameters, log, and the tables of active stress
+  /// and segments if the input asks for them. Throws FileError.
   void
   begin_files(Log &log, const Input &input, const std::filesystem::path &folder, bool goes_on = false);
 
@@ -25,6 +25,7 @@ namespace crawler
   ExitCode
   report_end(Log &log,
              const SimulationResult &result,
+             const UnitNames &units,
              const std::filesystem::path &folder,
              const std::string &animation);
 } // namespace crawler

@@ -48,6 +48,8 @@ namespace crawler
                        const std::function<bool()> &stops,
                        const std::function<void(unsigned long n, unsigned long failed)> &see)>
       compute;
+    /// What rank 0 can say of the part that it computes, for whoever watches. Nothing: parts are short.
+    std::function<std::string()> state = {};
   };
 
   /// Returns false if some rank was interrupted (collective). A file that one rank cannot write ends the work of all:

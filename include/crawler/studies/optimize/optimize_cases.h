@@ -45,6 +45,13 @@ namespace crawler
     std::vector<std::string>
     values(unsigned long number) const;
 
+    /// The cases next to a case (SweepDesign::neighbours()).
+    std::vector<unsigned long>
+    neighbours(unsigned long number) const
+    {
+      return points_ ? points_->design().neighbours(number) : std::vector<unsigned long>();
+    }
+
     /// "Section/Entry = value, ..." of a case, with the last names only; empty if there are no axes.
     std::string
     in_words(unsigned long number) const;

@@ -57,5 +57,5 @@ namespace crawler
 
   /// The lines for the screen.
   std::vector<std::string>
-  in_words(const OptimizeResults &results, const std::vector<std::string> &summaries);
+  in_words(const OptimizeResults &results, const std::vector<std::string> &summaries, const UnitNames &units);
 } // namespace crawler

@@ -4,6 +4,7 @@
 #include <crawler/studies/optimize/gait_problem.h>
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,14 +42,23 @@ namespace crawler
   std::unique_ptr<GaitModel>
   make_gait_model(class SceneFamily &family, const std::vector<double> &start, const std::function<bool()> &stops);
 
+  /// How far a search is.
+  struct SearchState
+  {
+    std::size_t evaluations = 0;
+    double best             = std::numeric_limits<double>::quiet_NaN(); ///< objective of the best so far
+  };
+
   /**
-   * Looks for the best gait from one start. Where the grid of the kinematic level was too coarse for what was found,
-   * and where the strain exceeds its limits between the places at which it is limited, the search goes on from there.
-   * An interrupted one has the best so far. Throws InputError.
+   * Looks for the best gait from the values @p x, which are start number @p start. Where the grid of the kinematic
+   * level was too coarse for what was found, and where the strain exceeds its limits between the places at which it is
+   * limited, the search goes on from there. An interrupted one has the best so far. Throws InputError.
    */
   StartResult
   search(class SceneFamily &family,
          unsigned long number_of_case,
          unsigned long start,
+         const std::vector<double> &x,
+         SearchState &state,
          const std::function<bool()> &stops);
 } // namespace crawler

@@ -20,6 +20,10 @@ namespace crawler
   Json
   parameter_data(const std::filesystem::path &folder);
 
+  /// What the user calls the units: {length, time, force, energy}.
+  Json
+  unit_data(const std::filesystem::path &folder);
+
   /// A run, which is called @p title: summary, body, statistics, kymograph (of at most @p most_rows times), ground,
   /// sensitivities along the body.
   Json

@@ -19,9 +19,10 @@ namespace crawler
   Json
   packed(const Column &column, bool is_exact = false);
 
-  /// {places, times, fields: {NAME: {low, high, codes}}}: codes from 0 to 65534 for low to high, 65535 where a value is
-  /// not known. Rows and places that lines between the others give to a 256th of the range are left out; there are no
-  /// more than @p most_rows times.
+  /// {places, times, fields: {NAME: {shown, low, high, codes}}}: what pictures show (two numbers), and codes from 0 to
+  /// 65534 for low to high, 65535 where a value is not known; {shown, floats} where far more than that occurs. Rows and
+  /// places that lines between the others give to a 256th of the range are left out; there are no more than @p
+  /// most_rows times.
   Json
   packed(const KymographTable &kymograph, std::size_t most_rows);
 } // namespace crawler

@@ -23,5 +23,5 @@ namespace crawler
 
   /// Writes sensitivity_body.csv and sensitivity_stress.csv, as far as there is something in them. Throws FileError.
   void
-  write_sensitivities(const LocalSensitivity &local, const std::filesystem::path &folder);
+  write_sensitivities(const LocalSensitivity &local, const std::filesystem::path &folder, const UnitNames &units);
 } // namespace crawler

@@ -58,6 +58,10 @@ namespace crawler
       return folder_;
     }
 
+    /// The points next to a point: of a grid one step away on one axis, otherwise the one before and the one after.
+    std::vector<unsigned long>
+    neighbours(unsigned long point) const;
+
     /// Does the entry vary from point to point?
     bool
     varies(const std::string &entry) const;

@@ -18,8 +18,8 @@ namespace crawler
   class SweepPoints
   {
   public:
-    /// Reads the design and looks at all names and values (collective: rank 0 reads the files of a file axis). Throws
-    /// InputError, with the place in the file.
+    /// Reads the design and looks at all names and values (collective: rank 0 looks at the files of a file axis, which
+    /// are read again when their points need them). Throws InputError, with the place in the file.
     SweepPoints(MPI_Comm communicator, const ParameterFile &file);
     /// Another study's design; its axes come from another entry.
     SweepPoints(MPI_Comm communicator, const ParameterFile &file, const SweepParameters &design);
@@ -39,9 +39,12 @@ namespace crawler
     const Declarations &
     declarations() const;
 
-    /// Those of the files on the file axis, by their names.
-    std::map<std::string, const Declarations *>
-    scene_declarations() const;
+    /// The files on the file axis: their different names, sorted, and one of them, which is read now. Throws
+    /// InputError, FileError.
+    std::vector<std::string>
+    scene_names() const;
+    ParameterFile
+    scene(const std::string &name) const;
 
     /// All entries as they are used, but for the axes, as a .prm file.
     const std::string &
@@ -79,6 +82,8 @@ namespace crawler
     build(MPI_Comm communicator, std::unique_ptr<Form> base);
 
     void
+    require_scene_files(MPI_Comm communicator) const;
+    void
     require_admissible_values();
     void
     require_words();
@@ -91,7 +96,7 @@ namespace crawler
     std::string effective_;
     std::vector<SensitivityEntry> sensitivities_;
     std::size_t file_axis_ = 0;                          ///< number of axes: none
-    std::map<std::string, ParameterFile> scenes_;        ///< of the files on the file axis
-    std::map<std::string, std::unique_ptr<Form>> forms_; ///< for each of them, or one for ""
+    std::unique_ptr<Form> base_;                         ///< of the file itself
+    std::map<std::string, std::unique_ptr<Form>> forms_; ///< of those files of the file axis that were needed lately
   };
 } // namespace crawler

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -37,6 +38,23 @@ namespace
     EXPECT_EQ(grid.value(0, 7), "2");
     EXPECT_EQ(grid.value(1, 7), "0");
     EXPECT_EQ(grid.value(2, 7), "blue");
+  }
+
+  TEST(SweepDesign, NeighboursAreOneStepAwayOnOneAxis)
+  {
+    using List    = std::vector<unsigned long>;
+    const auto of = [](const SweepDesign &all, const unsigned long point) {
+      List list = all.neighbours(point);
+      std::ranges::sort(list);
+      return list;
+    };
+    const SweepDesign grid = design("grid", "A/x : 1, 2, 3; A/y : 0, 1, 2, 3");
+    EXPECT_EQ(of(grid, 0), (List{1, 4}));
+    EXPECT_EQ(of(grid, 5), (List{1, 4, 6, 9}));
+    EXPECT_EQ(of(grid, 11), (List{7, 10}));
+    const SweepDesign zip = design("zip", "A/x : 1, 1, 2; A/y : 5, 6, 7");
+    EXPECT_EQ(of(zip, 0), List{1});
+    EXPECT_EQ(of(zip, 1), (List{0, 2}));
   }
 
   TEST(SweepDesign, AZipTakesValuesTogether)

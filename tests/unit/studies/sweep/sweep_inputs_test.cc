@@ -72,6 +72,29 @@ namespace
     EXPECT_EQ(changes(inputs(text), kept).size(), 1u);
   }
 
+  TEST_F(Inputs, EachPointHasItsFileHoweverManyThereAre)
+  {
+    constexpr int n = 150;
+    std::string names;
+    for (int i = 0; i < n; ++i)
+    {
+      const std::string name = std::to_string(i) + ".prm";
+      write_file(name, "subsection Body\n set Length = " + std::to_string(i + 1) + "\nend\n");
+      names += (i > 0 ? ", " : "") + name;
+    }
+    const std::string text   = "subsection Sweep\n set Axes = Body/Elastic modulus : 1, 2; File : " + names + "\nend\n";
+    const ParameterFile file = ParameterFile::from_text(text, "test.prm");
+    SweepPoints points(MPI_COMM_SELF, file);
+    for (unsigned long point = 0; point < 2 * n; ++point)
+    {
+      EXPECT_EQ(points.parameters(point).body.length, static_cast<double>(point % n + 1));
+      EXPECT_EQ(points.parameters(point).body.elastic_modulus, point < n ? 1. : 2.);
+    }
+    // A mistake in any of them is found before the first point.
+    write_file("149.prm", "subsection Body\n set Longness = 1\nend\n");
+    EXPECT_THROW(SweepPoints(MPI_COMM_SELF, file), InputError);
+  }
+
   TEST_F(Inputs, FilesThatEntriesNameHaveFingerprints)
   {
     write_file("ground.csv", "x,value\n-9,1\n0,2\n2,1\n9,1\n");
