@@ -323,6 +323,8 @@ namespace crawler
       const auto start  = start_values(own, family->variables(), 0);
       const auto model  = make_gait_model(*family, start, []() { return false; });
       log.line(in_words(cases, *model));
+      for (const std::string &note : cases.notes(file))
+        log.line(note);
       model->evaluate(start, /*with_gradients=*/false).require_start();
     }
     catch (const InputError &error)
@@ -382,7 +384,11 @@ namespace crawler
         const auto start  = start_values(own, family->variables(), 0);
         const auto model  = make_gait_model(*family, start, []() { return false; });
         if (number == 0)
+        {
           log.line(in_words(cases, *model));
+          for (const std::string &note : cases.notes(file))
+            log.line(note);
+        }
         GaitProblem problem(
           *model, family->form().parameters.optimize, family->variables(), start, []() { return false; });
         const GaitRecord record = problem.record(problem.to_y(start));
