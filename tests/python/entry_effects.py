@@ -409,9 +409,27 @@ def check_channels():
     expect(len(notes) == 1 and 'section "Sweep" has no effect with "crawler run"' in notes[0], f"{notes}")
 
 
+def check_commas():
+    """A list that may be meant as a decimal is noted; one with a blank, or in a file without decimals, is a list."""
+    coefficients = OPTIMAL + "Sine coefficients"
+    for value, k, n in (("0,5", "1", 1), ("0, 5", "1", 0), ("1,5", "0.5", 1), ("1,5", "1", 0), ("0,0.5", "0.5", 0)):
+        scene = {OPTIMAL + "Choose wave by": "wave speed", OPTIMAL + "Perturbation parameter": "1e-2",
+                 BODY + "Elastic modulus": k, coefficients: value}
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            crawler.check(scene)
+        texts = [str(one.message) for one in caught]
+        expect(len(texts) == n and all("decimals are written with a point" in text for text in texts), f"{value}: {texts}")
+    file = FILES / "commas.prm"
+    file.write_text(crawler.to_prm({**scene, coefficients: "0,5"}))
+    ended = call([PROGRAM, "check", file])
+    expect("Coefficients: sine 0, 5; cosine 0, 0" in ended.stdout, f"the coefficients are not told: {ended.stdout}")
+
+
 if __name__ == "__main__":
     write_files()
     check_channels()
+    check_commas()
     check_pairs()
     check_idle(each=sys.argv[4:] == ["all"])
     shutil.rmtree(FILES)

@@ -104,6 +104,41 @@ namespace crawler
       }
       return notes;
     }
+
+    /// "0,5" where a single number would do is a list of two, but most likely meant as 0.5.
+    std::vector<std::string>
+    decimal_commas(const ParameterFile &file, const Declarations &declarations)
+    {
+      const auto is_whole = [](const std::string &text) {
+        return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+      };
+      const auto has_point = [](const Assignment &other) {
+        const auto number = to_number(other.value);
+        return number && other.value.find('.') != std::string::npos;
+      };
+      const bool has_points = std::any_of(file.assignments().begin(), file.assignments().end(), has_point);
+      std::vector<std::string> notes;
+      for (const Assignment &assignment : file.assignments())
+      {
+        const EntryValues &values = declarations.info(assignment.path).values;
+        const std::string &text   = assignment.value;
+        const auto comma          = text.find(',');
+        if (values.kind != EntryKind::numbers || values.may_be_empty || comma == std::string::npos ||
+            file.assignment_of(assignment.path) != &assignment)
+          continue;
+        const std::size_t start = text.starts_with("-") ? 1 : 0;
+        const std::string first = text.substr(start, comma - start), second = text.substr(comma + 1);
+        if (is_whole(first) && is_whole(second) && (first == "0" || has_points))
+          notes.push_back(
+            fmt::format("Note: {0}: \"{1} = {2},{3}\" is the two numbers {2} and {3}; decimals are written "
+                        "with a point, {2}.{3}",
+                        assignment.place,
+                        assignment.path,
+                        text.substr(0, comma),
+                        second));
+      }
+      return notes;
+    }
   } // namespace
 
   std::vector<std::string>
@@ -113,6 +148,9 @@ namespace crawler
                    const VariedEntries &varied,
                    const ChosenValues &chosen)
   {
-    return idle_entries(file, declarations, command, varied, chosen);
+    auto notes = idle_entries(file, declarations, command, varied, chosen);
+    for (const std::string &note : decimal_commas(file, declarations))
+      notes.push_back(note);
+    return notes;
   }
 } // namespace crawler
