@@ -154,9 +154,11 @@ namespace crawler
     check(const Source &source)
     {
       return without_lock([&](const std::function<bool()> &) {
-        const Input input = read_input(source.file());
-        choose_model(input);
-        return std::pair(input.effective, input.notes);
+        const Input input = read_input(source.file(), /*command=*/"check");
+        auto notes        = input.notes;
+        for (const std::string &note : notes_on_choice(input, choose_model(input).model))
+          notes.push_back(note);
+        return std::pair(input.effective, notes);
       });
     }
 
@@ -190,8 +192,9 @@ namespace crawler
       py::dict answer;
       answer["summary"]    = summary_text(run.result);
       answer["parameters"] = effective;
-      answer["notes"]      = notes;
-      answer["lines"]      = summary_lines(run.result);
+      notes.insert(notes.end(), run.notes.begin(), run.notes.end());
+      answer["notes"] = notes;
+      answer["lines"] = summary_lines(run.result);
       if (run.kymograph)
       {
         const Kymograph &k    = *run.kymograph;
@@ -262,16 +265,18 @@ namespace crawler
       return answers;
     }
 
-    /// The columns of `crawler sweep`, on one rank, by their names.
-    py::dict
+    /// The columns of `crawler sweep`, on one rank, by their names; and notes.
+    std::pair<py::dict, std::vector<std::string>>
     sweep_source(const Source &source)
     {
       std::vector<RowFile::Column> columns;
       std::vector<RowFile::Row> rows;
+      std::vector<std::string> notes;
       without_lock([&](const std::function<bool()> &interrupted) {
         Libraries::start();
         const ParameterFile file = source.file();
         SweepPoints points(MPI_COMM_SELF, file);
+        notes                      = points.notes();
         columns                    = sweep_columns(points);
         rows                       = std::vector<RowFile::Row>(points.design().n_points());
         const RowFile::Known known = known_columns(columns, points.design());
@@ -305,25 +310,28 @@ namespace crawler
         table[py::str(columns[c].name)] =
           columns[c].width == 0 ? py::object(array_of(numbers, {numbers.size()})) : py::object(texts);
       }
-      return table;
+      return {table, notes};
     }
 
-    /// `crawler run` or `crawler sweep` with its files; the exit code.
-    int
+    /// `crawler run` or `crawler sweep` with its files; the exit code, and notes.
+    std::pair<int, std::vector<std::string>>
     run_command(
       const std::string &name, const Source &source, const std::string &output, const bool overwrite, const bool quiet)
     {
       return without_lock([&](const std::function<bool()> &) {
         Libraries::start();
         CommandOptions options;
-        options.file         = source.text ? "-" : source.name;
-        options.overrides    = source.overrides;
-        options.output       = output;
-        options.overwrite    = overwrite;
-        options.quiet        = quiet;
-        options.command_line = "python";
-        return static_cast<int>(name == "sweep" ? sweep_input(MPI_COMM_SELF, options, source.file())
-                                                : run_input(MPI_COMM_SELF, options, source.file()));
+        options.file             = source.text ? "-" : source.name;
+        options.overrides        = source.overrides;
+        options.output           = output;
+        options.overwrite        = overwrite;
+        options.quiet            = quiet;
+        options.command_line     = "python";
+        const ParameterFile file = source.file();
+        const auto notes         = name == "sweep" ? SweepPoints(MPI_COMM_SELF, file).notes() : read_input(file).notes;
+        const ExitCode code =
+          name == "sweep" ? sweep_input(MPI_COMM_SELF, options, file) : run_input(MPI_COMM_SELF, options, file);
+        return std::pair(static_cast<int>(code), notes);
       });
     }
 

@@ -22,7 +22,7 @@ namespace crawler
     ParameterFile file = read_file(communicator, options.file, options.overrides);
     if (check_optimize(communicator, file, log) || check_sweep(communicator, file, log))
       return ExitCode::finished;
-    const Input input       = read_input(std::move(file));
+    const Input input       = read_input(std::move(file), /*command=*/"check");
     const ModelChoice model = choose_model(input);
     if (!model.needs_mesh())
       return check_reduced_model(input, model, log);

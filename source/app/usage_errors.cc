@@ -3,6 +3,7 @@
 #include <crawler/app/usage_errors.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
+#include <crawler/parameters/slips.h>
 
 #include <fmt/format.h>
 
@@ -45,6 +46,31 @@ namespace crawler
                                                    : fmt::format("one {}", argument->meaning));
       return "";
     }
+
+    /// A setting that the shell has cut at its blanks, or that has a blank for its "=".
+    void
+    require_whole_settings(const std::vector<std::string> &arguments)
+    {
+      for (std::size_t i = 1; i + 1 < arguments.size(); ++i)
+      {
+        if (arguments[i - 1] != "--set" || arguments[i].find('=') != std::string::npos)
+          continue;
+        std::string whole = arguments[i];
+        for (std::size_t j = i + 1; j < arguments.size() && !arguments[j].starts_with("-"); ++j)
+        {
+          whole += " " + arguments[j];
+          if (arguments[j].find('=') != std::string::npos)
+            throw InputError(fmt::format("\"--set {0}\" has blanks, at which a shell cuts; quotes around the whole are "
+                                         "expected: --set \"{0}\"",
+                                         whole));
+        }
+        if (!arguments[i + 1].starts_with("-") && !arguments[i + 1].ends_with(".prm"))
+          throw InputError(fmt::format("\"--set {0} {1}\" has no \"=\", but \"Section/Entry=value\" is expected: --set "
+                                       "\"{0}={1}\"",
+                                       arguments[i],
+                                       arguments[i + 1]));
+      }
+    }
   } // namespace
 
   void
@@ -56,7 +82,10 @@ namespace crawler
     if (arguments.empty())
       throw InputError("the command is missing; " + quoted_list(names) + " is expected (see crawler --help)");
     if (arguments[0].starts_with("-") || std::find(names.begin(), names.end(), arguments[0]) != names.end())
+    {
+      require_whole_settings(arguments);
       return;
+    }
     if (arguments[0].ends_with(".prm"))
       throw InputError(
         fmt::format("the command is missing before \"{0}\"; did you mean \"crawler run {0}\"?", arguments[0]));
@@ -77,6 +106,9 @@ namespace crawler
       for (const std::string &name : typed_names(*option))
         known.push_back(name);
     known.push_back("-h");
+    for (const std::string &argument : arguments)
+      if (const std::string sign = foreign_sign(argument); !sign.empty())
+        return sign;
     std::vector<std::string> words; // without the values of options
     for (std::size_t i = 0; i < arguments.size(); ++i)
     {

@@ -5,6 +5,7 @@
 #include <crawler/base/grid_table.h>
 #include <crawler/base/hdf5_handle.h>
 #include <crawler/base/hdf5_trial.h>
+#include <crawler/base/told_apart.h>
 
 #include <fmt/format.h>
 
@@ -179,13 +180,13 @@ namespace crawler
           source.refuse("{}[{}] in \"{}\" is {}, but a finite number is expected", name, i, source.file, values[i]);
       for (std::size_t i = 1; i < values.size(); ++i)
         if (!(values[i] - values[i - 1] > round_off * std::abs(values.back() - values.front())))
-          source.refuse("{0}[{1}] = {2:g} follows {0}[{3}] = {4:g} in \"{5}\", but increasing values are "
+          source.refuse("{0}[{1}] = {2} follows {0}[{3}] = {4} in \"{5}\", but increasing values are "
                         "expected",
                         name,
                         i,
-                        values[i],
+                        told_apart(values[i], {values[i - 1]}),
                         i - 1,
-                        values[i - 1],
+                        told_apart(values[i - 1], {values[i]}),
                         source.file);
     }
 
@@ -211,13 +212,16 @@ namespace crawler
       grid.t                = std::move(t.values);
       const std::size_t n_s = grid.s.size(), n_t = grid.t.size();
       if (value.extents != std::vector<hsize_t>{n_t, n_s})
-        source.refuse("{0}[{1},{2}] in \"{3}\" does not fit to s[{4}] and t[{5}]; {0}[{5},{4}] is expected",
+        source.refuse("{0}[{1},{2}] in \"{3}\" does not fit to s[{4}] and t[{5}]; {0}[{5},{4}] is expected{6}",
                       source.name,
                       value.extents[0],
                       value.extents[1],
                       source.file,
                       n_s,
-                      n_t);
+                      n_t,
+                      value.extents == std::vector<hsize_t>{n_s, n_t}
+                        ? ": the order of s and t is turned round, as MATLAB, R and Fortran store arrays"
+                        : "");
       require_increasing(grid.s, "s", source);
       require_increasing(grid.t, "t", source);
       grid.values = value.values;
@@ -267,21 +271,24 @@ namespace crawler
   }
 
   void
-  require_reach(const std::vector<double> &values,
-                const double end,
-                const std::string &name,
-                const std::string &what,
-                const std::string &file,
-                const std::string &entry)
+  reach_ends(std::vector<double> &values,
+             const double end,
+             const std::string &name,
+             const std::string &what,
+             const std::string &file,
+             const std::string &entry)
   {
-    if (values.front() > round_off * end || values.back() < end * (1. - round_off))
-      throw InputError(fmt::format("\"{}\" has {} from {:g} to {:g}, but the whole {}, from 0 to {:g}, is expected",
+    const double most = 1e-6 * end;
+    if (values.front() > most || values.back() < end - most)
+      throw InputError(fmt::format("\"{}\" has {} from {} to {}, but the whole {}, from 0 to {}, is expected",
                                    file,
                                    name,
-                                   values.front(),
-                                   values.back(),
+                                   told_apart(values.front(), {0.}),
+                                   told_apart(values.back(), {end}),
                                    what,
-                                   end),
+                                   told_apart(end, {values.back()})),
                        entry);
+    values.front() = std::min(values.front(), 0.);
+    values.back()  = std::max(values.back(), end);
   }
 } // namespace crawler

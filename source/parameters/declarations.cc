@@ -3,6 +3,7 @@
 #include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/entry_store.h>
+#include <crawler/parameters/slips.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,6 +46,8 @@ namespace crawler
     std::string
     number_hint(const std::string &text)
     {
+      if (to_number(text)) // it is one, but out of the range
+        return "";
       if (const auto comma = text.find(','); comma != std::string::npos)
         if (const std::string other = std::string(text).replace(comma, 1, "."); to_number(other))
           return fmt::format("; decimals are written with a point: {}", other);
@@ -411,6 +414,8 @@ namespace crawler
     const std::string text = trimmed(value);
     if (!entry.names_file || text.empty() || !text.ends_with(entry.file_ending))
       return text;
+    if (const std::string sign = home_sign(text); !sign.empty())
+      throw InputError(fmt::format("\"{}\": {}", entry.path, sign), entry.path);
     return std::filesystem::absolute(folder / text).lexically_normal().string();
   }
 

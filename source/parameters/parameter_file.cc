@@ -3,6 +3,7 @@
 #include <crawler/base/files.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/parameter_file.h>
+#include <crawler/parameters/slips.h>
 
 #include <fmt/format.h>
 
@@ -90,6 +91,16 @@ namespace crawler
       }
       return statements;
     }
+
+    /// The error of an assignment, with its place. What comes of a foreign sign is no error of its own.
+    InputError
+    at_place(const Assignment &assignment, const InputError &error)
+    {
+      std::string sign = foreign_sign(assignment.path);
+      if (sign.empty())
+        sign = foreign_sign(assignment.value);
+      return InputError(assignment.place + ": " + (sign.empty() ? error.what() : sign), error.entry);
+    }
   } // namespace
 
 
@@ -173,10 +184,16 @@ namespace crawler
         include(rest, folder, place, depth);
       }
       else
+      {
+        const std::string sign = foreign_sign(statement);
         throw InputError(
-          fmt::format("{}: found \"{}\", but a line begins with \"set\", \"subsection\", \"end\", \"include\" or \"#\"",
-                      place,
-                      statement.substr(0, 60)));
+          !sign.empty()
+            ? fmt::format("{}: {}", place, sign)
+            : fmt::format(
+                "{}: found \"{}\", but a line begins with \"set\", \"subsection\", \"end\", \"include\" or \"#\"",
+                place,
+                statement.substr(0, 60)));
+      }
     }
     if (!open.empty())
       throw InputError(
@@ -196,6 +213,8 @@ namespace crawler
         "{}: this is the included file number {}, but at most {} are expected", place, n_included_, most_included));
     if (file_name.empty())
       throw InputError(fmt::format("{}: \"include\" without the name of a file", place));
+    if (const std::string sign = home_sign(file_name); !sign.empty())
+      throw InputError(fmt::format("{}: {}", place, sign));
     const auto file = (folder / (file_name == "-" ? "./-" : file_name)).string(); // standard input is no part of a file
     std::string included;
     try
@@ -240,7 +259,8 @@ namespace crawler
       }
       catch (const InputError &error)
       {
-        throw InputError(section.place + ": " + error.what(), section.path);
+        const std::string sign = foreign_sign(section.path);
+        throw InputError(section.place + ": " + (sign.empty() ? error.what() : sign), section.path);
       }
     for (const Assignment &assignment : assignments_)
       try
@@ -249,7 +269,7 @@ namespace crawler
       }
       catch (const InputError &error)
       {
-        throw InputError(assignment.place + ": " + error.what(), assignment.path);
+        throw at_place(assignment, InputError(error.what(), assignment.path));
       }
   }
 
@@ -283,6 +303,6 @@ namespace crawler
   ParameterFile::with_place(const InputError &error) const
   {
     const Assignment *const assignment = assignment_of(error.entry);
-    return InputError((assignment != nullptr ? assignment->place : name_) + ": " + error.what(), error.entry);
+    return assignment != nullptr ? at_place(*assignment, error) : InputError(name_ + ": " + error.what(), error.entry);
   }
 } // namespace crawler

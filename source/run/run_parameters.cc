@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
+#include <crawler/base/told_apart.h>
 #include <crawler/equation/stretch_form.h>
 #include <crawler/output/active_stress_table.h>
 #include <crawler/parameters/declarations.h>
@@ -120,12 +121,11 @@ namespace crawler
       const double delay              = feedback != nullptr ? feedback->delay() : 0.;
       if (delay > 0. && p.time.step_control == StepControl::fixed && p.time.initial_step &&
           *p.time.initial_step > delay)
-        throw InputError(
-          fmt::format("Initial step is {:g} and Step control is fixed, but no more than the delay of the "
-                      "feedback, {:g}, is expected",
-                      *p.time.initial_step,
-                      delay),
-          "Time/Initial step");
+        throw InputError(fmt::format("Initial step is {} and Step control is fixed, but no more than the delay of the "
+                                     "feedback, {}, is expected",
+                                     told_apart(*p.time.initial_step, {delay}),
+                                     told_apart(delay, {*p.time.initial_step})),
+                         "Time/Initial step");
     }
   } // namespace
 
@@ -188,9 +188,9 @@ namespace crawler
     require_computable(time.tolerance, body.length, "Tolerance", "Length");
     require_computable(time.initial_step, time.end_time, "Initial step", "End time");
     if (discretization.smallest_cell && !(*discretization.smallest_cell < body.length))
-      throw InputError(fmt::format("Smallest cell is {:g}, but less than the Length, {:g}, is expected",
-                                   *discretization.smallest_cell,
-                                   body.length),
+      throw InputError(fmt::format("Smallest cell is {}, but less than the Length, {}, is expected",
+                                   told_apart(*discretization.smallest_cell, {body.length}),
+                                   told_apart(body.length, {*discretization.smallest_cell})),
                        "Discretization/Smallest cell");
     if (time.cycle_stop == CycleStopMode::on && output.has_snapshots())
       throw InputError("Cycle stop is on, but snapshots until the end time are wanted; 0 is expected for Output/Number "

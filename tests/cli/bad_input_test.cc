@@ -630,6 +630,54 @@ namespace
     };
   }
 
+  /// What looks right, but has another sign in it, or was cut by the shell.
+  std::vector<BadInput>
+  slips()
+  {
+    const auto set = [](const std::string &name, const Words &words, const Words &message) {
+      Words arguments = {"run", "good.prm"};
+      arguments.insert(arguments.end(), words.begin(), words.end());
+      return bad_arguments(name, arguments, message);
+    };
+    return {
+      {"NoBreakSpaceInName",
+       in_section("Body", "set Elastic\u00A0modulus = 0.5"),
+       {"bad.prm, line 2",
+        "there is a no-break space (U+00A0) in \"Body/Elastic\u00A0modulus\"",
+        "a blank is expected"}},
+      {"NoBreakSpaceBehindSet", "set\u00A0Accuracy = 1e-3\n", {"bad.prm, line 1", "a no-break space (U+00A0)"}},
+      {"NoBreakSpaceInSection",
+       in_section("Active\u00A0stress", "set Generator = none"),
+       {"a no-break space (U+00A0)"}},
+      {"TypographicMinus",
+       "set Accuracy = 1e\u22123\n",
+       {"bad.prm, line 1", "a typographic minus sign (U+2212) in \"1e\u22123\"", "\"-\" is expected"}},
+      bad_formula("DashInFormula", "0.1*(s \u2013 t)", "", {"bad.prm, line 4", "a dash (U+2013)", "\"-\" is expected"}),
+      {"TypographicQuotes",
+       in_section("Ground", "set Friction law = \u201CNewtonian\u201D"),
+       {"bad.prm, line 2", "a typographic quote (U+201C)", "the straight quote \" or none is expected"}},
+      {"HomeSign",
+       in_section("Ground", "set Profile = ~/ground.csv"),
+       {"bad.prm, line 2", "\"~/ground.csv\" begins with \"~\", which only a shell replaces"}},
+      {"SmallNumberHasNoUnit", in_section("Body", "set Length = -1e-3"), {"but a positive number is expected\n"}},
+      bad_formula("KnownNames", "0.1*velocity", "A=1", {"known are s, t, pi, L, T, A, and functions"}),
+      set("QuotesOnCommandLine",
+          {"--set", "\u201CBody/Length=2\u201D"},
+          {"a typographic quote (U+201C) in \"\u201CBody/Length\"", "the straight quote"}),
+      set("DashOnCommandLine", {"\u2014set", "Body/Length=2"}, {"a long dash (U+2014) in \"\u2014set\""}),
+      set("SettingCutAtBlank",
+          {"--set", "Body/Elastic", "modulus=2"},
+          {"has blanks, at which a shell cuts", "--set \"Body/Elastic modulus=2\""}),
+      set("SettingWithoutEquals",
+          {"--set", "Body/Length", "2"},
+          {"\"Section/Entry=value\" is expected: --set \"Body/Length=2\""}),
+      set("HomeSignOfFolder", {"--output=~/results"}, {"--output: \"~/results\" begins with \"~\""}),
+      set("KilledFolder",
+          {"--output", "killed"},
+          {"\"killed\" has a run or study that was broken off; --resume goes on"}),
+    };
+  }
+
   /// A folder with everything that the cases speak of.
   void
   fill(const std::filesystem::path &folder, const std::string &file)
@@ -643,6 +691,8 @@ namespace
     write_text(folder / "zip.csv", "PK\x03\x04");
     std::filesystem::create_directory(folder / "full");
     write_text(folder / "full" / "summary.json", "older results\n");
+    std::filesystem::create_directory(folder / "killed");
+    write_text(folder / "killed" / "study.lock", "");
     std::filesystem::create_directory(folder / "odd");
     write_text(folder / "odd" / "solution", "not a folder\n");
   }
@@ -691,6 +741,7 @@ INSTANTIATE_TEST_SUITE_P(Sums, BadInputTest, testing::ValuesIn(sums()), name_of)
 INSTANTIATE_TEST_SUITE_P(Atlases, BadInputTest, testing::ValuesIn(atlases()), name_of);
 INSTANTIATE_TEST_SUITE_P(Tradeoffs, BadInputTest, testing::ValuesIn(tradeoffs()), name_of);
 INSTANTIATE_TEST_SUITE_P(Files, BadInputTest, testing::ValuesIn(files()), name_of);
+INSTANTIATE_TEST_SUITE_P(Slips, BadInputTest, testing::ValuesIn(slips()), name_of);
 INSTANTIATE_TEST_SUITE_P(CommandLines, BadInputTest, testing::ValuesIn(command_lines()), name_of);
 
 /// A link to itself is a file that cannot be read; one without permissions can be read by root only.

@@ -130,7 +130,9 @@ def sweep(scene, axes=None, *, design=None, set=None, output=None, overwrite=Fal
         overrides.append(f"Sweep/Design={design}")
     source = _source(scene, overrides)
     if output is None:
-        return table_of(_compiled().sweep(source))
+        table, notes = _compiled().sweep(source)
+        _warn(notes)
+        return table_of(table)
     _command("sweep", source, output, overwrite, verbose)
     return read(output).table
 
@@ -232,8 +234,12 @@ def _source(scene, overrides):
 
 
 def _warn(notes):
+    """Warnings in the line that called this package."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals["__name__"] == __name__:
+        level, frame = level + 1, frame.f_back
     for note in notes:
-        warnings.warn(note.removeprefix("Note: "), stacklevel=4)
+        warnings.warn(note.removeprefix("Note: "), stacklevel=level)
 
 
 def _result(answer):
@@ -249,10 +255,12 @@ def _checked(result, check):
 
 def _command(name, source, output, overwrite, verbose):
     stopped = 5  # exit code
-    if _compiled().command(name, source, os.fspath(output), overwrite, not verbose) != stopped:
+    code, notes = _compiled().command(name, source, os.fspath(output), overwrite, not verbose)
+    _warn(notes)
+    if code != stopped:
         return
     try:
-        if read(output).reason == "time_limit":
+        if read(output).reason != "signal":
             return
     except FileError:
         pass  # stopped before there were files

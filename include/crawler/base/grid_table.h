@@ -34,11 +34,13 @@ namespace crawler
                            const std::string &entry);
 
   /// Throws InputError for @p entry unless @p values of @p name reach from 0 to @p end, the whole of @p what ("body").
+  /// What is missing by less than a millionth of it, as in single precision, is no more than round-off: the first or
+  /// the last value is moved.
   void
-  require_reach(const std::vector<double> &values,
-                double end,
-                const std::string &name,
-                const std::string &what,
-                const std::string &file,
-                const std::string &entry);
+  reach_ends(std::vector<double> &values,
+             double end,
+             const std::string &name,
+             const std::string &what,
+             const std::string &file,
+             const std::string &entry);
 } // namespace crawler

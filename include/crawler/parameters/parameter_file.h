@@ -49,7 +49,8 @@ namespace crawler
     void
     apply(Declarations &declarations) const;
 
-    /// The same error with the place of the entry that it names in front, if the entry was set at all.
+    /// The same error with the place of the entry that it names in front, if the entry was set at all. A foreign sign
+    /// there (slips.h) is named instead.
     InputError
     with_place(const InputError &error) const;
 

@@ -21,7 +21,7 @@ namespace crawler
   {
     /// What muParser has against a formula, as one sentence with a position that counts from 1.
     std::string
-    in_words(const mu::ParserError &error, const FormulaInput &input)
+    in_words(const mu::ParserError &error, const FormulaInput &input, const Formula::Constants &constants)
     {
       const std::string &formula = input.formula;
       std::string problem        = error.GetMsg();
@@ -36,12 +36,16 @@ namespace crawler
       if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !token.empty() &&
           std::isalpha(static_cast<unsigned char>(token[0])))
       {
-        std::vector<std::string> names = input.variables;
-        names.insert(names.end(), {"L",    "T",    "pi",   "sin",   "cos",  "tan",  "asin", "acos", "atan",
-                                   "sinh", "cosh", "tanh", "exp",   "log",  "sqrt", "abs",  "sign", "min",
-                                   "max",  "pow",  "mod",  "floor", "ceil", "erf",  "erfc"});
+        std::vector<std::string> names = {"sin",  "cos", "tan",   "asin", "acos", "atan", "sinh", "cosh",
+                                          "tanh", "exp", "log",   "sqrt", "abs",  "sign", "min",  "max",
+                                          "pow",  "mod", "floor", "ceil", "erf",  "erfc"};
+        std::vector<std::string> known = input.variables;
+        for (const auto &[name, value] : constants)
+          known.push_back(name);
+        names.insert(names.end(), known.begin(), known.end());
         const auto near = nearly_alike(token, names);
-        problem += near.empty() ? "" : "; the nearest name is " + quoted_list(near);
+        problem += near.empty() ? fmt::format("; known are {}, and functions", fmt::join(known, ", "))
+                                : "; the nearest name is " + quoted_list(near);
         const bool is_called =
           trimmed(formula.substr(std::min(error.GetPos() + token.size(), formula.size()))).starts_with("(");
         if (!is_called && input.constants_entry != input.formula_entry)
@@ -140,7 +144,7 @@ namespace crawler
     }
     catch (const mu::ParserError &error)
     {
-      throw InputError(in_words(error, input), input.formula_entry);
+      throw InputError(in_words(error, input, constants), input.formula_entry);
     }
   }
 

@@ -4,6 +4,7 @@
 #include <crawler/scene/active_stress/optimal_wave.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -213,6 +214,8 @@ namespace crawler
                        wave_.min_stretch,
                        wave_.max_stretch,
                        wave_.admissible() ? "" : " (NOT admissible: the body would invert)");
+    if (shape_.a.size() > 1)
+      out << fmt::format("Coefficients: sine {}; cosine {}\n", fmt::join(shape_.a, ", "), fmt::join(shape_.b, ", "));
     if (!roots_)
       return;
     const auto &list = roots_->roots;

@@ -360,8 +360,8 @@ namespace crawler
       GridTable grid = read_grid_table(name, "strain", entry);
       require_number_of_values(grid.s, 4, "s", name, entry);
       require_number_of_values(grid.t, 4, "t", name, entry);
-      require_reach(grid.s, length, "s", "body", name, entry);
-      require_reach(grid.t, end_time, "t", "duration", name, entry);
+      reach_ends(grid.s, length, "s", "body", name, entry);
+      reach_ends(grid.t, end_time, "t", "duration", name, entry);
       return grid;
     }
   } // namespace

@@ -2,6 +2,7 @@
 #include <crawler/base/csv_numbers.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/gauss_panels.h>
+#include <crawler/base/told_apart.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/active_stress/shaped_wave.h>
 #include <crawler/scene/breaks.h>
@@ -61,9 +62,9 @@ namespace crawler
     shape_from_table(const std::string &name, const double from, const double to)
     {
       const std::string entry = shaped_wave_section + "Shape file";
-      const CsvNumbers numbers =
-        read_csv_numbers(name, {"x", "f"}, "the name of a CSV file with the header x,f", entry);
-      const std::vector<double> &x = numbers.columns[0], &f = numbers.columns[1];
+      CsvNumbers numbers      = read_csv_numbers(name, {"x", "f"}, "the name of a CSV file with the header x,f", entry);
+      std::vector<double> &x  = numbers.columns[0];
+      const std::vector<double> &f = numbers.columns[1];
       for (std::size_t i = 1; i < x.size(); ++i)
         if (x[i] <= x[i - 1])
           throw InputError(fmt::format("row {} of \"{}\" has x = {:g} after x = {:g}, but increasing x are expected",
@@ -75,17 +76,18 @@ namespace crawler
       if (x.size() < 4)
         throw InputError(
           fmt::format("\"{}\" has {} rows after the header, but at least 4 are expected", name, x.size()), entry);
-      const double round_off = 1e-12 * (to - from);
-      if (x.front() > from + round_off || x.back() < to - round_off)
-        throw InputError(
-          fmt::format("\"{}\" has x from {:g} to {:g}, but the whole range from {:g} to {:g} is expected, "
-                      "which comes to the body until the end time",
-                      name,
-                      x.front(),
-                      x.back(),
-                      from,
-                      to),
-          entry);
+      const double most = 1e-6 * (to - from);
+      if (x.front() > from + most || x.back() < to - most)
+        throw InputError(fmt::format("\"{}\" has x from {} to {}, but the whole range from {} to {} is expected, "
+                                     "which comes to the body until the end time",
+                                     name,
+                                     told_apart(x.front(), {from}),
+                                     told_apart(x.back(), {to}),
+                                     told_apart(from, {x.front()}),
+                                     told_apart(to, {x.back()})),
+                         entry);
+      x.front() = std::min(x.front(), from);
+      x.back()  = std::max(x.back(), to);
       return ShapeFunction(x, f);
     }
 

@@ -81,11 +81,11 @@ namespace crawler
       for (double &m : grid.values)
         m *= p.unit_of_m;
       if (p.outside_in_s == "error")
-        require_reach(grid.s, length, "s", "body", p.file, table_section + "Outside in s");
+        reach_ends(grid.s, length, "s", "body", p.file, table_section + "Outside in s");
       else
         require_overlap(grid.s, length, "s", p.file);
       if (p.outside == "error")
-        require_reach(grid.t, end_time, "t", "duration", p.file, table_section + "Outside");
+        reach_ends(grid.t, end_time, "t", "duration", p.file, table_section + "Outside");
       else if (p.outside == "hold")
         require_overlap(grid.t, end_time, "t", p.file);
       else

@@ -157,6 +157,8 @@ namespace crawler
                          axes.n_points(),
                          counted(n_ranks, "rank"),
                          n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
+    for (const std::string &note : points.notes("atlas", "Atlas/First axis"))
+      log.line(note);
 
     const bool is_whole = compute_rows(
       communicator, path, points, table, done, [&]() { return stop_signal.arrived_anywhere(MPI_COMM_SELF); }, log);

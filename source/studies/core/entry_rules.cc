@@ -4,73 +4,219 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 
 namespace crawler
 {
   namespace
   {
-    /// The sections in @p section of generators that are not used.
-    void
-    add_rules_of_generators(const std::string &section, const ActiveStressParameters &p, std::vector<EntryRule> &rules)
+    const std::string command_entry = "crawler";
+
+    // What values a chooser needs.
+
+    auto
+    any_of(std::vector<std::string> words)
     {
-      const bool is_strain = p.generator == "prescribed strain" && p.prescribed_strain.is_generated();
-      for (const std::string &name : generator_names())
-      {
-        std::string title = name;
-        title[0]          = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-        if (!is_strain || p.prescribed_strain.given_by != name)
-          rules.push_back({section, {title + "/"}, "Generator", p.generator, {name}});
-      }
+      return [words = std::move(words)](const std::string &value) {
+        return std::find(words.begin(), words.end(), value) != words.end();
+      };
+    }
+    bool
+    is_set(const std::string &value)
+    {
+      return !value.empty() && value != "automatic";
+    }
+    auto
+    is_not(const double number)
+    {
+      return [number](const std::string &value) { return to_number(value) != number; };
+    }
+    bool
+    is_csv(const std::string &value)
+    {
+      return value.ends_with(".csv");
+    }
+    /// Is the variable @p name in the formula?
+    auto
+    has(const std::string &name)
+    {
+      return [name](const std::string &formula) {
+        const auto in_name = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+        for (auto i = formula.find(name); i != std::string::npos; i = formula.find(name, i + 1))
+          if ((i == 0 || !in_name(formula[i - 1])) &&
+              (i + name.size() == formula.size() || !in_name(formula[i + name.size()])))
+            return true;
+        return false;
+      };
     }
 
+    /// The rules within the section @p root of generators.
+    void
+    add_rules_of_generators(const std::string &root, const bool has_sum, std::vector<EntryRule> &rules)
+    {
+      const std::string strain = "Prescribed strain/";
+      for (const std::string &name : generator_names())
+      {
+        std::string section  = root + name + "/";
+        section[root.size()] = static_cast<char>(std::toupper(static_cast<unsigned char>(section[root.size()])));
+        if (name == "none" || (name == "sum" && !has_sum))
+          continue;
+        rules.push_back({{section}, {{root + "Generator", any_of({name, "prescribed strain"})}}});
+        if (name != "prescribed strain")
+          rules.push_back(
+            {{section}, {{root + "Generator", any_of({name})}, {root + strain + "Given by", any_of({name})}}});
+      }
+      /// Entries of one section that need another one of it.
+      const auto add = [&](const std::string &section,
+                           const std::vector<std::string> &entries,
+                           const std::vector<std::string> &choosers,
+                           const std::function<bool(const std::string &)> &fits) {
+        EntryRule rule;
+        for (const std::string &entry : entries)
+          rule.entries.push_back(root + section + entry);
+        for (const std::string &chooser : choosers)
+          rule.choosers.push_back({root + section + chooser, fits});
+        rules.push_back(std::move(rule));
+      };
+      const std::string optimal = "Optimal wave/", travelling = "Travelling wave/", standing = "Standing wave/",
+                        two_level = "Two-level wave/", feedback = "Strain feedback/", modes = "Modes/";
+      add(optimal, {"Sine coefficients", "Cosine coefficients"}, {"Shape"}, any_of({"Fourier"}));
+      add(optimal, {"Shape formula", "Shape constants"}, {"Shape"}, any_of({"expression"}));
+      add(optimal, {"Shape file"}, {"Shape"}, any_of({"table"}));
+      add(optimal, {"Wave speed"}, {"Choose wave by"}, any_of({"wave speed"}));
+      add(optimal, {"Energy", "Root", "Root index"}, {"Choose wave by"}, any_of({"energy"}));
+      add(optimal, {"Root index"}, {"Root"}, any_of({"index"}));
+      for (const std::string &wave : {travelling, two_level})
+      {
+        add(wave, {"Frequency"}, {"Given by"}, any_of({"frequency"}));
+        add(wave, {"Wave speed"}, {"Given by"}, any_of({"wave speed"}));
+      }
+      add(two_level, {"Work"}, {"Given by"}, any_of({"work"}));
+      for (const std::string &wave : {travelling, standing})
+      {
+        add(wave, {"Duty cycle"}, {"Profile"}, any_of({"square", "smoothed square"}));
+        add(wave, {"Front width"}, {"Profile"}, any_of({"smoothed square"}));
+      }
+      for (const std::string &wave : {travelling, standing, std::string("Pulse/")})
+        add(wave, {"Window edge"}, {"Window start", "Window end"}, is_set);
+      add("Segments/", {"Front width"}, {"Switching"}, any_of({"smooth"}));
+      add("Segments/", {"Phase lag", "Direction", "Gap"}, {"Number of segments"}, is_not(1.));
+      add(strain, {"Strain", "Constants"}, {"Given by"}, any_of({"expression"}));
+      add(strain, {"File"}, {"Given by"}, any_of({"table"}));
+      add(strain, {"Mean strain", "Amplitude", "Wave number", "Wave speed", "Phase"}, {"Given by"}, any_of({"wave"}));
+      add(feedback, {"Distance", "Sensor length"}, {"Active stress"}, has("w_near"));
+      add(feedback, {"Delay"}, {"Active stress"}, has("w_delayed"));
+      add(modes, {"Wave speed"}, {"In time"}, any_of({"travelling"}));
+      add(modes, {"Period", "Time harmonics"}, {"In time"}, any_of({"harmonics"}));
+      add(modes, {"Time cells"}, {"In time"}, any_of({"splines"}));
+      if (has_sum)
+        return;
+      for (const char *x : {"s", "t"})
+        add("", {fmt::format("Edge width in {}", x)}, {fmt::format("Window in {}", x)}, is_set);
+    }
+
+    /// The rules of what follows the active stress in the file.
+    void
+    add_rules_of_numerics(std::vector<EntryRule> &rules)
+    {
+      const auto has_equation   = any_of({"auto", "linear", "nonlinear"});
+      const auto is_not_stretch = any_of({"automatic", "position"});
+      const std::string mesh = "Discretization/", time = "Time/", output = "Output/";
+      rules.push_back({{"Error estimate",
+                        mesh,
+                        time + "Integrator",
+                        time + "Engine",
+                        time + "Order",
+                        time + "Step control",
+                        time + "Tolerance",
+                        time + "Initial step",
+                        time + "Cycle stop",
+                        time + "Maximum number of steps",
+                        time + "Wall time limit",
+                        time + "Checkpoint interval"},
+                       {{"Model", has_equation}}});
+      rules.push_back(
+        {{mesh + "Mesh tolerance", mesh + "Smallest cell"}, {{mesh + "Mesh", any_of({"adaptive", "automatic"})}}});
+      rules.push_back({{mesh + "Mesh", mesh + "Mesh tolerance", mesh + "Smallest cell", mesh + "Degree"},
+                       {{mesh + "Formulation", is_not_stretch}}});
+      rules.push_back({{time + "Order"}, {{time + "Integrator", any_of({"bdf", "automatic"})}}});
+      rules.push_back(
+        {{output + "Snapshot format", output + "Kymograph"}, {{output + "Number of snapshots", is_not(0.)}}});
+      rules.push_back({{output + "Ledger tolerance"}, {{output + "Ledger", any_of({"true"})}}});
+    }
+
+    /// The rules of the studies, and what of the rest each command does not need.
+    void
+    add_rules_of_commands(std::vector<EntryRule> &rules)
+    {
+      const auto is_random = any_of({"random", "latin hypercube"});
+      // What is there is used by the command of its section; check makes the plan of all.
+      rules.push_back({{"Sweep/"}, {{command_entry, any_of({"sweep", "optimize", "check"})}}});
+      for (const auto &[section, command] :
+           {std::pair("Atlas/", "atlas"), std::pair("Tradeoff/", "tradeoff"), std::pair("Optimize/", "optimize")})
+        rules.push_back({{section}, {{command_entry, any_of({command, "check"})}}});
+      rules.push_back({{"Sweep/Design", "Sweep/Number of points", "Sweep/Seed"}, {{"Sweep/Axes", is_set}}});
+      rules.push_back({{"Sweep/Keep fields", "Sweep/Time limit per point", "Sweep/Time limit"},
+                       {{command_entry, any_of({"sweep", "check"})}}});
+      rules.push_back({{"Sweep/Number of points", "Sweep/Seed"}, {{"Sweep/Design", is_random}}});
+      rules.push_back({{"Output/Number of snapshots",
+                        "Output/Snapshot format",
+                        "Output/Kymograph",
+                        "Output/Statistics",
+                        "Output/Active stress table",
+                        "Time/Wall time limit",
+                        "Time/Checkpoint interval"},
+                       {{command_entry, any_of({"run", "optimize", "check"})}, {"Sweep/Keep fields", is_set}}});
+      rules.push_back({{"Error estimate",
+                        "Discretization/",
+                        "Time/Integrator",
+                        "Time/Engine",
+                        "Time/Step control",
+                        "Time/Tolerance",
+                        "Time/Cycle stop"},
+                       {{command_entry, any_of({"run", "sweep", "atlas", "optimize", "check"})}}});
+      rules.push_back({{"Optimize/"}, {{"Optimize/Variables", is_set}, {command_entry, any_of({"optimize"})}}});
+      rules.push_back({{"Optimize/Start spread", "Optimize/Seed"}, {{"Optimize/Starts", is_not(1.)}}});
+    }
   } // namespace
 
-  std::vector<EntryRule>
-  entry_rules(const Parameters &p)
+  const EntryRule *
+  rule_against(const std::vector<EntryRule> &rules,
+               const std::string &path,
+               const std::function<bool(const Chooser &)> &fits)
   {
-    const std::string stress = "Active stress/", optimal = stress + "Optimal wave/",
-                      travel = stress + "Travelling wave/", stand = stress + "Standing wave/",
-                      strain = stress + "Prescribed strain/", two_level = stress + "Two-level wave/",
-                      modes           = stress + "Modes/";
-    const auto &wave                  = p.active_stress.optimal_wave;
-    const auto &travelling            = p.active_stress.travelling_wave;
-    const std::string &travel_profile = travelling.profile.profile,
-                      &given_by       = p.active_stress.prescribed_strain.given_by,
-                      &two_level_by   = p.active_stress.two_level_wave.given_by,
-                      &stand_profile  = p.active_stress.standing_wave.profile.profile;
+    const auto rule = std::find_if(rules.begin(), rules.end(), [&](const EntryRule &one) {
+      const auto is_it = [&](const std::string &entry) {
+        return entry.ends_with('/') ? path.starts_with(entry) : path == entry;
+      };
+      return std::any_of(one.entries.begin(), one.entries.end(), is_it) &&
+             std::none_of(one.choosers.begin(), one.choosers.end(), fits);
+    });
+    return rule == rules.end() ? nullptr : &*rule;
+  }
+
+  std::vector<EntryRule>
+  entry_rules(const Declarations &declarations)
+  {
+    const std::string stress = "Active stress/", generator = "/Generator", body = "Body/", ground = "Ground/";
     std::vector<EntryRule> rules;
-    add_rules_of_generators(stress, p.active_stress, rules);
-    for (std::size_t i = 0; i < p.active_stress.sum.terms.size(); ++i)
-      add_rules_of_generators(fmt::format("{}Sum/Term {}/", stress, i + 1), p.active_stress.sum.terms[i].stress, rules);
-    const std::vector<EntryRule> details = {
-      {stress + "Segments/", {"Front width"}, "Switching", p.active_stress.segments.switching, {"smooth"}},
-      {strain, {"Strain", "Constants"}, "Given by", given_by, {"expression"}},
-      {strain, {"File"}, "Given by", given_by, {"table"}},
-      {strain, {"Mean strain", "Amplitude", "Wave", "Phase"}, "Given by", given_by, {"wave"}},
-      {"Discretization/", {""}, "Model", word_of(p.model), {"auto", "linear", "nonlinear"}},
-      {optimal, {"Sine coefficients", "Cosine coefficients"}, "Shape", wave.shape, {"Fourier"}},
-      {optimal, {"Shape formula", "Shape constants"}, "Shape", wave.shape, {"expression"}},
-      {optimal, {"Shape file"}, "Shape", wave.shape, {"table"}},
-      {optimal, {"Wave speed"}, "Choose wave by", wave.choose_wave_by, {"wave speed"}},
-      {optimal, {"Energy", "Root"}, "Choose wave by", wave.choose_wave_by, {"energy"}},
-      {optimal, {"Root index"}, "Root", wave.root, {"index"}},
-      {travel, {"Frequency"}, "Given by", travelling.given_by, {"frequency"}},
-      {travel, {"Wave speed"}, "Given by", travelling.given_by, {"wave speed"}},
-      {travel, {"Duty cycle"}, "Profile", travel_profile, {"square", "smoothed square"}},
-      {travel, {"Front width"}, "Profile", travel_profile, {"smoothed square"}},
-      {two_level, {"Frequency"}, "Given by", two_level_by, {"frequency"}},
-      {two_level, {"Wave speed"}, "Given by", two_level_by, {"wave speed"}},
-      {two_level, {"Work"}, "Given by", two_level_by, {"work"}},
-      {stand, {"Duty cycle"}, "Profile", stand_profile, {"square", "smoothed square"}},
-      {stand, {"Front width"}, "Profile", stand_profile, {"smoothed square"}},
-      {modes, {"Wave speed"}, "In time", p.active_stress.modes.in_time, {"travelling"}},
-      {modes, {"Period", "Time harmonics"}, "In time", p.active_stress.modes.in_time, {"harmonics"}},
-      {modes, {"Time cells"}, "In time", p.active_stress.modes.in_time, {"splines"}},
-      {"Time/", {"Order"}, "Integrator", p.time.integrator, {"bdf", "automatic"}},
-      {"Output/", {"Ledger tolerance"}, "Ledger", p.output.energy_balance ? "true" : "false", {"true"}},
-    };
-    rules.insert(rules.end(), details.begin(), details.end());
+    add_rules_of_generators(stress, /*has_sum=*/true, rules);
+    for (const EntryInfo &entry : declarations.entries())
+      if (entry.path.starts_with(stress + "Sum/") && entry.path.ends_with(generator))
+        add_rules_of_generators(
+          entry.path.substr(0, entry.path.size() - generator.size() + 1), /*has_sum=*/false, rules);
+    rules.push_back({{body + "Anchoring exponent"}, {{ground + "Friction law", any_of({"power"})}}});
+    rules.push_back({{body + "Profile interpolation"},
+                     {{body + "Elastic modulus profile", is_csv},
+                      {body + "Friction profile", is_csv},
+                      {body + "Initial stretch", is_csv}}});
+    rules.push_back({{ground + "Profile interpolation", ground + "Outside"}, {{ground + "Profile", is_csv}}});
+    rules.push_back(
+      {{ground + "Expression", ground + "Constants"}, {{ground + "Friction law", any_of({"expression"})}}});
+    rules.push_back({{ground + "Switching velocity"}, {{ground + "Backward ratio", is_not(1.)}}});
+    add_rules_of_numerics(rules);
+    add_rules_of_commands(rules);
     return rules;
   }
 } // namespace crawler

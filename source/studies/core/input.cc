@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
-#include <crawler/base/nearest_name.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/studies/core/entry_rules.h>
+#include <crawler/studies/core/entry_notes.h>
 #include <crawler/studies/core/input.h>
 
 #include <fmt/format.h>
@@ -15,31 +14,6 @@ namespace crawler
 {
   namespace
   {
-    /// A change of an entry that has no effect is worth a word.
-    std::vector<std::string>
-    settings_without_effect(const ParameterFile &file, const Parameters &p, const Declarations &declarations)
-    {
-      const std::vector<EntryRule> rules = entry_rules(p);
-      std::vector<std::string> notes;
-      for (const Assignment &assignment : file.assignments())
-      {
-        const auto &entries = declarations.entries();
-        const auto entry =
-          std::find_if(entries.begin(), entries.end(), [&](const EntryInfo &e) { return e.path == assignment.path; });
-        if (entry == entries.end() || entry->default_value == assignment.value)
-          continue;
-        const auto rule =
-          std::find_if(rules.begin(), rules.end(), [&](const EntryRule &r) { return r.is_against(assignment.path); });
-        if (rule != rules.end())
-          notes.push_back(fmt::format("Note: {}: \"{}\" has no effect with \"{} = {}\"",
-                                      assignment.place,
-                                      assignment.path,
-                                      rule->chooser,
-                                      rule->value));
-      }
-      return notes;
-    }
-
     /// Of a table that goes on behind the end of the body most likely the unit is another one.
     std::vector<std::string>
     profiles_beyond_the_body(const Scene &scene)
@@ -71,13 +45,7 @@ namespace crawler
   }
 
   Input
-  read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides)
-  {
-    return read_input(read_file(communicator, file_name, overrides));
-  }
-
-  Input
-  read_input(ParameterFile file)
+  read_input(ParameterFile file, const std::string &command)
   {
     const Form form(file);
     const Parameters &parameters = form.parameters;
@@ -87,7 +55,7 @@ namespace crawler
     {
       parameters.units.require_plain();
       Scene scene = parameters.create_scene();
-      auto notes  = settings_without_effect(file, parameters, form.declarations);
+      auto notes  = notes_on_entries(file, form.declarations, command);
       for (const std::string &note : profiles_beyond_the_body(scene))
         notes.push_back(note);
       auto sensitivities = sensitivity_entries(form);
@@ -105,6 +73,34 @@ namespace crawler
     {
       throw file.with_place(error);
     }
+  }
+
+  std::vector<std::string>
+  notes_on_choice(const Input &input, const Model model, const Numerics *const numerics)
+  {
+    const auto is_of_numerics = [](const Assignment &assignment) {
+      return assignment.path.starts_with("Discretization/") || assignment.path.starts_with("Time/") ||
+             assignment.path == "Error estimate";
+    };
+    if (std::none_of(input.file.assignments().begin(), input.file.assignments().end(), is_of_numerics))
+      return {};
+    const Form form(input.file);
+    const Parameters &p = form.parameters;
+    ChosenValues chosen;
+    if (p.model == Model::automatic)
+      chosen["Model"] = word_of(model);
+    if (numerics != nullptr && p.discretization.formulation == FormulationEntry::automatic)
+      chosen["Discretization/Formulation"] = numerics->formulation == Formulation::stretch ? "stretch" : "position";
+    if (numerics != nullptr && p.discretization.mesh == MeshKind::automatic)
+      chosen["Discretization/Mesh"] = numerics->mesh.tolerance > 0. ? "adaptive" : "uniform";
+    if (numerics != nullptr && p.time.integrator == "automatic")
+      chosen["Time/Integrator"] = numerics->integrator.empty() ? "bdf" : numerics->integrator;
+    const std::string any_command = "check";
+    const auto known              = notes_on_entries(input.file, form.declarations, any_command);
+    auto notes                    = notes_on_entries(input.file, form.declarations, any_command, {}, chosen);
+    std::erase_if(notes,
+                  [&](const std::string &note) { return std::find(known.begin(), known.end(), note) != known.end(); });
+    return notes;
   }
 
   ModelChoice

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/exceptions.h>
 #include <crawler/base/file_lock.h>
+#include <crawler/parameters/slips.h>
 #include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/output_folder.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -91,6 +94,20 @@ namespace crawler
       }
     }
 
+    /// Was what wrote there killed (its lock or its state is left), or stopped in order?
+    bool
+    is_broken_off(const fs::path &folder)
+    {
+      std::error_code error;
+      if (fs::exists(folder / study_lock_name, error))
+        return FileLock(folder / study_lock_name).lock() == FileLock::State::mine; // else somebody is still there
+      if (fs::exists(folder / "restart.dat", error))
+        return true;
+      std::ifstream in(folder / "summary.json");
+      const auto summary = nlohmann::json::parse(in, nullptr, /*allow_exceptions=*/false);
+      return summary.is_object() && summary.value("status", nlohmann::json()) == "stopped";
+    }
+
     /// Has it nothing but perhaps a lock?
     bool
     is_free(const fs::path &folder)
@@ -104,6 +121,8 @@ namespace crawler
   fs::path
   output_folder(const std::string &option, const std::string &parameter_file)
   {
+    if (const std::string sign = home_sign(option); !sign.empty())
+      throw InputError("--output: " + sign);
     if (!option.empty())
       return option;
     return "output-" + (parameter_file == "-" ? std::string("stdin") : fs::path(parameter_file).stem().string());
@@ -134,9 +153,14 @@ namespace crawler
       throw FileError("\"" + (folder / "solution").string() +
                       "\" is not a folder, but one for the snapshots is expected");
     require_no_links(folder);
-    if (!overwrite && !fs::is_empty(folder, error))
+    if (overwrite || fs::is_empty(folder, error))
+      return;
+    if (is_broken_off(folder))
       throw InputError("the output folder \"" + folder.string() +
-                       "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
+                       "\" has a run or study that was broken off; --resume goes on with it (--overwrite begins anew, "
+                       "--output gives another folder)");
+    throw InputError("the output folder \"" + folder.string() +
+                     "\" is not empty; give another one with --output, or --overwrite to replace the results in it");
   }
 
   FolderLock::FolderLock(const fs::path &folder, const bool overwrite)

@@ -13,7 +13,7 @@ namespace crawler
   SceneNumbers::SceneNumbers(const Form &form)
     : declarations_(form.declarations)
   {
-    const auto rules = entry_rules(form.parameters);
+    const auto rules = entry_rules(declarations_);
     for (unsigned int i = 0; i < declarations_.entries().size(); ++i)
     {
       const EntryInfo &entry = declarations_.entries()[i];
@@ -30,7 +30,9 @@ namespace crawler
         for (std::ptrdiff_t n = 0; n <= std::ranges::count(value, ','); ++n)
           paths.push_back(fmt::format("{}[{}]", entry.path, n + 1));
       all_.insert(all_.end(), paths.begin(), paths.end());
-      if (std::ranges::none_of(rules, [&](const EntryRule &rule) { return rule.is_against(entry.path); }))
+      if (rule_against(rules, entry.path, [&](const Chooser &chooser) {
+            return chooser.is_command() || chooser.fits(declarations_.value(chooser.path));
+          }) == nullptr)
         effective_.insert(effective_.end(), paths.begin(), paths.end());
     }
   }

@@ -293,6 +293,20 @@ namespace crawler
       return "its objective is not known";
     }
 
+    /// The limit that the best of the gaits exceeds.
+    std::string
+    conflict(const OptimizeResults &results)
+    {
+      const auto best =
+        std::ranges::find_if(results.best, [&](const std::size_t i) { return !results.starts[i].is_admissible(); });
+      const auto &gait = results.starts[*best].best;
+      return fmt::format(
+        "no gait that keeps to all limits was found: the best one exceeds {} by {:.3g} %; the limits may "
+        "contradict each other, or the start is far from them",
+        gait.worst_limit,
+        100. * gait.violation);
+    }
+
     /// Is an evaluation better than any gait can be?
     bool
     exceeds_bound(const OptimizeResults &results)
@@ -354,13 +368,10 @@ namespace crawler
         log.warn(
           fmt::format("stopped by {}; --resume goes on", reason == "signal" ? "a signal" : "Optimize/Time limit"));
       else if (status == "failed" && !is_wrong)
-        log.warn(
-          results.best.empty() ? "no start makes a gait: " + first_problem(results)
-          : why == "limits_exceeded"
-            ? "no gait that keeps to all limits was found; the limits may contradict each other, or the start is "
-              "far from them"
-          : why == "best_run_failed" ? "the run of a best gait did not end as it should; its log.txt says why"
-                                     : "the optimiser did not converge; the lines above say why");
+        log.warn(results.best.empty()       ? "no start makes a gait: " + first_problem(results)
+                 : why == "limits_exceeded" ? conflict(results)
+                 : why == "best_run_failed" ? "the run of a best gait did not end as it should; its log.txt says why"
+                                            : "the optimiser did not converge; the lines above say why");
       const std::string number = !cases.axes().empty() ? "-N" : "";
       const auto n_neighbours =
         std::ranges::count_if(parts, [](const Part &part) { return part.neighbour.has_value(); });
@@ -438,6 +449,8 @@ namespace crawler
       const auto start  = start_values(own, family->variables(), 0);
       const auto model  = make_gait_model(*family, start, []() { return false; });
       log.line(in_words(cases, *model));
+      for (const std::string &note : cases.notes(file))
+        log.line(note);
       model->evaluate(start, /*with_gradients=*/false).require_start();
     }
     catch (const InputError &error)
@@ -522,7 +535,11 @@ namespace crawler
         const auto start  = start_values(own, family->variables(), 0);
         const auto model  = make_gait_model(*family, start, []() { return false; });
         if (number == 0)
+        {
           log.line(in_words(cases, *model));
+          for (const std::string &note : cases.notes(file))
+            log.line(note);
+        }
         GaitProblem problem(
           *model, family->form().parameters.optimize, family->variables(), start, []() { return false; });
         const GaitRecord record = problem.record(problem.to_y(start));
@@ -532,7 +549,7 @@ namespace crawler
                              record.objective,
                              record.violation <= problem.admissible()
                                ? "keeps to all limits"
-                               : fmt::format("exceeds a limit by {:.3g} %", 100. * record.violation)));
+                               : fmt::format("exceeds {} by {:.3g} %", record.worst_limit, 100. * record.violation)));
       }
     }
     catch (const InputError &error)

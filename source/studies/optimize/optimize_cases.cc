@@ -90,6 +90,16 @@ namespace crawler
     return words;
   }
 
+  std::vector<std::string>
+  OptimizeCases::notes(const ParameterFile &file)
+  {
+    VariedEntries varied = points_ ? points_->varied() : VariedEntries();
+    const auto first     = family(0);
+    for (const OptimizeVariable &variable : first->variables())
+      varied.paths.push_back(variable.path);
+    return notes_on_entries(file, declarations(), "optimize", varied);
+  }
+
   std::string
   OptimizeCases::effective() const
   {

@@ -149,6 +149,8 @@ namespace crawler
     log.line(model.explanation);
     log.line(describe(choice.numerics, input));
     log.line("  (" + choice.explanation + ")");
+    for (const std::string &note : notes_on_choice(input, model.model, &choice.numerics))
+      log.line(note);
   }
 
   ExitCode
@@ -493,6 +495,8 @@ namespace crawler
       begin_files(log, input, folder);
       report_scene(log, input);
       log.line(choice.explanation);
+      for (const std::string &note : notes_on_choice(input, choice.model))
+        log.line(note);
 
       Parameters parameters = input.parameters;
       parameters.model      = choice.model;
@@ -547,6 +551,8 @@ namespace crawler
   {
     report_scene(log, input);
     log.line(choice.explanation);
+    for (const std::string &note : notes_on_choice(input, choice.model))
+      log.line(note);
     log.line("No mesh and no time steps are needed.");
     log.line(input.file.name() + " is in order; nothing was run, and nothing was written.");
     return ExitCode::finished;

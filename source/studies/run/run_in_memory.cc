@@ -54,6 +54,7 @@ namespace crawler
                          RunInMemory &run)
     {
       const OutputParameters &output = input.parameters.output;
+      run.notes                      = notes_on_choice(input, input.parameters.model);
       ReducedModel level(input.scene, input.parameters.model);
       run.result = level.compute(input.parameters.accuracy, output.energy_balance, keep_going);
       level.describe_gait(run.result);
@@ -87,6 +88,7 @@ namespace crawler
       }
       if (!pictures.is_empty())
         prepare_for_pictures(*chosen, parameters);
+      run.notes                         = notes_on_choice(input, parameters.model, &chosen->numerics);
       const Simulation::Options options = {.energy_balance = parameters.output.energy_balance,
                                            .cycles         = cycle_wish(parameters, input.scene, !pictures.is_empty()),
                                            .gait           = Simulation::GaitWish::any};

@@ -191,6 +191,8 @@ namespace crawler
                          in_words(design, own.design),
                          counted(n_ranks, "rank"),
                          n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
+    for (const std::string &note : points.notes())
+      log.line(note);
 
     const std::function<bool()> interrupted = [&]() {
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - start > *own.time_limit);
@@ -276,6 +278,8 @@ namespace crawler
       n_computed += work.try_out((i + 1) * stride % n_parts);
     const double each = (now() - before) / static_cast<double>(n_computed);
     log.line(fmt::format("Sweep: {}.", in_words(design, points.sweep().design)));
+    for (const std::string &note : points.notes())
+      log.line(note);
     const double all = each * static_cast<double>(design.n_points());
     log.line(
       fmt::format("  About {} a point (measured on {} of them): {} on one rank{}; results.h5 will have {}, results.csv "

@@ -110,6 +110,20 @@ namespace crawler
     });
   }
 
+  VariedEntries
+  SweepPoints::varied(const std::string &by) const
+  {
+    VariedEntries varied;
+    if (const Assignment *const axes = file_.assignment_of(by))
+      varied.by = axes->place;
+    for (const SweepAxis &axis : design_->axes())
+      if (axis.is_file())
+        varied.may_be_all = true;
+      else
+        varied.paths.push_back(axis.entry);
+    return varied;
+  }
+
   void
   SweepPoints::require_admissible_values()
   {

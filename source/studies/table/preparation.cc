@@ -3,6 +3,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/base/smoothing_spline.h>
+#include <crawler/base/told_apart.h>
 #include <crawler/studies/table/marker_strain.h>
 #include <crawler/studies/table/period_search.h>
 #include <crawler/studies/table/preparation.h>
@@ -215,10 +216,11 @@ namespace crawler
         throw InputError(
           fmt::format("\"--period\" is \"{}\", but \"find\", \"whole\" or a positive number is expected", wanted));
       if (*number > duration * (1. + 1e-9))
-        throw InputError(fmt::format("\"--period\" is {:g}, but the samples last from t = {:g} to {:g} only",
-                                     *number,
+        throw InputError(fmt::format("\"--period\" is {}, but the samples last from t = {:g} to {:g} only, {} in all",
+                                     told_apart(*number, {duration}),
                                      full.t.front(),
-                                     full.t.back()));
+                                     full.t.back(),
+                                     told_apart(duration, {*number})));
       return std::min(*number, duration);
     }
 
@@ -339,10 +341,10 @@ namespace crawler
       for (std::size_t j = 1; j < t.size(); ++j)
         if (t[j] - t[j - 1] > (most + 1.5) * step)
           throw InputError(
-            fmt::format("from t = {:g} to {:g} there are no samples, {:.3g} times the usual step, but at most "
+            fmt::format("from t = {} to {} there are no samples, {:.3g} times the usual step, but at most "
                         "{} missing samples are filled (\"--gap\")",
-                        t[j - 1],
-                        t[j],
+                        told_apart(t[j - 1], {t[j]}),
+                        told_apart(t[j], {t[j - 1]}),
                         (t[j] - t[j - 1]) / step,
                         most));
     }

@@ -252,7 +252,7 @@ namespace crawler
     const double start = now();
     const bool first   = rank_of(communicator) == 0;
     Log log(first, options);
-    const Input input                       = read_input(communicator, options.file, options.overrides);
+    const Input input = read_input(read_file(communicator, options.file, options.overrides), /*command=*/"tradeoff");
     const Parameters &parameters            = input.parameters;
     const TradeoffLists lists               = lists_of(input);
     const auto folder                       = output_folder(options.output, options.file);

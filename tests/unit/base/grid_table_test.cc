@@ -210,8 +210,10 @@ TEST(GridTable, SaysWhatIsWrongInHdf5)
   EXPECT_EQ(complaint({s, t, m}), "nothing");
   EXPECT_EQ(complaint({s, m}), "FILE has no dataset t" + expected);
   EXPECT_EQ(complaint({s, t, {"m", {6}, m.values}}), "FILE has a dataset m with 1 dimensions" + expected);
-  EXPECT_EQ(complaint({s, t, {"m", {3, 2}, m.values}}),
-            "m[3,2] in FILE does not fit to s[3] and t[2]; m[2,3] is expected");
+  EXPECT_EQ(
+    complaint({s, t, {"m", {3, 2}, m.values}}),
+    "m[3,2] in FILE does not fit to s[3] and t[2]; m[2,3] is expected: the order of s and t is turned round, as "
+    "MATLAB, R and Fortran store arrays");
   EXPECT_EQ(complaint({{"s", {3}, {0., 1., 0.5}}, t, m}),
             "s[2] = 0.5 follows s[1] = 1 in FILE, but increasing values are expected");
   EXPECT_EQ(complaint({{"s", {3}, {0., 0., 1.}}, t, m}),

@@ -224,6 +224,10 @@ TEST(Table, SaysWhatIsWrong)
             "FILE has s from 0 to 0.5, but the whole body, from 0 to 1, is expected");
   EXPECT_EQ(complaint(good, {.unit_of_t = 0.5}, "Outside"),
             "FILE has t from 0 to 0.5, but the whole duration, from 0 to 1, is expected");
+  // Times in single precision may end a millionth too early.
+  EXPECT_EQ(complaint(good, {.unit_of_t = 1. - 0.9e-6}, ""), "nothing");
+  EXPECT_EQ(complaint(good, {.unit_of_t = 0.999997}, "Outside"),
+            "FILE has t from 0 to 0.999997, but the whole duration, from 0 to 1, is expected");
   EXPECT_EQ(
     complaint(late, {.outside = "hold"}, "File"),
     "FILE has t from 2 to 3, none of it between 0 and 1, where it is needed; check \"Active stress/Table/Unit of "

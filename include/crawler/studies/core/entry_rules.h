@@ -1,34 +1,43 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/studies/core/parameters.h>
+#include <crawler/parameters/declarations.h>
 
-#include <algorithm>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace crawler
 {
-  /// Some entries of a section (or the beginnings of their names) that have an effect only if another one, the
-  /// chooser, has one of certain values.
-  struct EntryRule
+  /// An entry that says whether others have an effect, and the values with which they have one. The chooser "crawler"
+  /// is the command.
+  struct Chooser
   {
-    std::string section;
-    std::vector<std::string> entries;
-    std::string chooser, value;
-    std::vector<std::string> needed;
+    std::string path;
+    std::function<bool(const std::string &value)> fits;
 
-    /// Has this entry no effect?
     bool
-    is_against(const std::string &path) const
+    is_command() const
     {
-      return std::find(needed.begin(), needed.end(), value) == needed.end() &&
-             std::any_of(entries.begin(), entries.end(), [&](const std::string &entry) {
-               return path.starts_with(section + entry);
-             });
+      return path == "crawler";
     }
   };
 
+  /// Entries, and sections with a "/" behind them, that have an effect only if one of the choosers fits. An entry needs
+  /// all rules that name it or a section that it is in.
+  struct EntryRule
+  {
+    std::vector<std::string> entries;
+    std::vector<Chooser> choosers;
+  };
+
+  /// The rules of all these entries: one without a rule always has an effect.
   std::vector<EntryRule>
-  entry_rules(const Parameters &parameters);
+  entry_rules(const Declarations &declarations);
+
+  /// The rule by which this entry has no effect, if @p fits says which choosers fit; null if it has one.
+  const EntryRule *
+  rule_against(const std::vector<EntryRule> &rules,
+               const std::string &path,
+               const std::function<bool(const Chooser &)> &fits);
 } // namespace crawler

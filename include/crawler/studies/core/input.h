@@ -2,6 +2,7 @@
 #pragma once
 
 #include <crawler/accuracy/model_choice.h>
+#include <crawler/run/numerics.h>
 #include <crawler/studies/core/sensitivity_entries.h>
 
 #include <mpi.h>
@@ -26,11 +27,13 @@ namespace crawler
   ParameterFile
   read_file(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides);
 
-  /// The same, understood: the scene is built too.
+  /// The same, understood: the scene is built too. Notes say what has no effect in @p command.
   Input
-  read_input(MPI_Comm communicator, const std::string &file_name, const std::vector<std::string> &overrides);
-  Input
-  read_input(ParameterFile file);
+  read_input(ParameterFile file, const std::string &command = "run");
+
+  /// Notes on entries that have no effect since the program has chosen another level, mesh or method than they are for.
+  std::vector<std::string>
+  notes_on_choice(const Input &input, Model model, const Numerics *numerics = nullptr);
 
   /// model_choice.h; messages say where in the file the entry at fault is.
   ModelChoice

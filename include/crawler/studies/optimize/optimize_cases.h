@@ -68,6 +68,10 @@ namespace crawler
       return file_form_.declarations;
     }
 
+    /// On entries without an effect in any case.
+    std::vector<std::string>
+    notes(const ParameterFile &file);
+
     /// All entries as they are used, but for the axes, as a .prm file.
     std::string
     effective() const;

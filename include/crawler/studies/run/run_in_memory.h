@@ -21,6 +21,7 @@ namespace crawler
     SimulationResult result;
     std::unique_ptr<Kymograph> kymograph;   ///< null if it is not wanted, or if the run broke off before
     std::unique_ptr<Statistics> statistics; ///< the same
+    std::vector<std::string> notes = {};    ///< notes_on_choice()
   };
 
   /// What else is to be computed of a run on a mesh that has finished.

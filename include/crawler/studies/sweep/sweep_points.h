@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <crawler/studies/core/entry_notes.h>
 #include <crawler/studies/core/sensitivity_entries.h>
 #include <crawler/studies/sweep/sweep_design.h>
 
@@ -51,6 +52,17 @@ namespace crawler
     effective() const
     {
       return effective_;
+    }
+
+    /// What the axes fill in; @p by is the entry that has them.
+    VariedEntries
+    varied(const std::string &by = "Sweep/Axes") const;
+
+    /// On entries without an effect at any point.
+    std::vector<std::string>
+    notes(const std::string &command = "sweep", const std::string &by = "Sweep/Axes") const
+    {
+      return notes_on_entries(file_, declarations(), command, varied(by));
     }
 
     /// The entries of a point; good until the next call.

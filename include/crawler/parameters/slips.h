@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+
+namespace crawler
+{
+  /// A blank, a minus or a quote of a web page or a word processor that looks like the one of the keyboard, named in a
+  /// sentence. Empty if the text has none.
+  std::string
+  foreign_sign(const std::string &text);
+
+  /// What is wrong with the name of a file that begins with "~/", which shells only understand. Empty if it does not.
+  std::string
+  home_sign(const std::string &file);
+} // namespace crawler

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/parameters/declarations.h>
+#include <crawler/parameters/parameter_file.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// What a study fills in: entries that have other values than those of the file, and the entry that says so.
+  struct VariedEntries
+  {
+    std::vector<std::string> paths = {};
+    std::string by                 = "";
+    bool may_be_all                = false; ///< whole files are filled in
+  };
+
+  /// What the program has chosen where the file says "automatic", by the paths of the entries.
+  using ChosenValues = std::map<std::string, std::string>;
+
+  /// A note for each entry that @p file changes, or an axis varies, without an effect in @p command (entry_rules.h),
+  /// one for all that it changes in a section without an effect; and for each list that may be meant as a decimal.
+  std::vector<std::string>
+  notes_on_entries(const ParameterFile &file,
+                   const Declarations &declarations,
+                   const std::string &command,
+                   const VariedEntries &varied = {},
+                   const ChosenValues &chosen  = {});
+} // namespace crawler

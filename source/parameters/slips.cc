@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/parameters/slips.h>
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+namespace crawler
+{
+  namespace
+  {
+    /// A sign in UTF-8, its name, and what stands on the keyboard for it.
+    struct Sign
+    {
+      const char *bytes, *name, *expected;
+    };
+    constexpr const char *blank = "a blank", *minus = "\"-\"", *quote = "the straight quote \" or none",
+                         *times = "\"*\"";
+    constexpr Sign signs[]      = {{"\xC2\xA0", "a no-break space (U+00A0)", blank},
+                                   {"\xE2\x80\x87", "a figure space (U+2007)", blank},
+                                   {"\xE2\x80\x89", "a thin space (U+2009)", blank},
+                                   {"\xE2\x80\xAF", "a narrow no-break space (U+202F)", blank},
+                                   {"\xE2\x80\x8B", "a zero-width space (U+200B)", "nothing"},
+                                   {"\xEF\xBB\xBF", "a byte order mark (U+FEFF)", "nothing"},
+                                   {"\xE2\x88\x92", "a typographic minus sign (U+2212)", minus},
+                                   {"\xE2\x80\x90", "a typographic hyphen (U+2010)", minus},
+                                   {"\xE2\x80\x91", "a no-break hyphen (U+2011)", minus},
+                                   {"\xE2\x80\x93", "a dash (U+2013)", minus},
+                                   {"\xE2\x80\x94", "a long dash (U+2014)", minus},
+                                   {"\xE2\x80\x9C", "a typographic quote (U+201C)", quote},
+                                   {"\xE2\x80\x9D", "a typographic quote (U+201D)", quote},
+                                   {"\xE2\x80\x9E", "a typographic quote (U+201E)", quote},
+                                   {"\xE2\x80\x98", "a typographic quote (U+2018)", quote},
+                                   {"\xE2\x80\x99", "a typographic quote (U+2019)", quote},
+                                   {"\xC2\xAB", "a typographic quote (U+00AB)", quote},
+                                   {"\xC2\xBB", "a typographic quote (U+00BB)", quote},
+                                   {"\xC3\x97", "a typographic times sign (U+00D7)", times},
+                                   {"\xC2\xB7", "a centred dot (U+00B7)", times},
+                                   {"\xE2\x8B\x85", "a centred dot (U+22C5)", times}};
+  } // namespace
+
+  std::string
+  foreign_sign(const std::string &text)
+  {
+    const Sign *first = nullptr;
+    std::size_t place = std::string::npos;
+    for (const Sign &sign : signs)
+      if (const auto found = text.find(sign.bytes); found < place)
+      {
+        first = &sign;
+        place = found;
+      }
+    if (first == nullptr)
+      return "";
+    return fmt::format("there is {} in \"{}\", but {} is expected", first->name, text, first->expected);
+  }
+
+  std::string
+  home_sign(const std::string &file)
+  {
+    if (file != "~" && !file.starts_with("~/"))
+      return "";
+    const char *const home = std::getenv("HOME");
+    return fmt::format("\"{}\" begins with \"~\", which only a shell replaces by the home folder; the whole name is "
+                       "expected{}",
+                       file,
+                       home == nullptr ? "" : fmt::format(": {}{}", home, file.substr(1)));
+  }
+} // namespace crawler

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/studies/core/entry_notes.h>
+#include <crawler/studies/core/entry_rules.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+namespace crawler
+{
+  namespace
+  {
+    /// An entry that has no effect.
+    struct Idle
+    {
+      std::string path, place, section; ///< that has none as a whole; empty if others of its section may have one
+      bool is_override;
+      const EntryRule *rule;
+    };
+
+    bool
+    is_default(const std::string &value, const std::string &its_default)
+    {
+      const auto number = to_number(value);
+      return value == its_default || (number && number == to_number(its_default));
+    }
+
+    std::string
+    reason(const EntryRule &rule,
+           const Declarations &declarations,
+           const std::string &command,
+           const ChosenValues &chosen)
+    {
+      std::vector<std::string> words;
+      for (const Chooser &chooser : rule.choosers)
+        words.push_back(chooser.is_command()
+                          ? fmt::format("\"crawler {}\"", command)
+                          : fmt::format("\"{} = {}{}\"",
+                                        chooser.path,
+                                        declarations.value(chooser.path),
+                                        chosen.contains(chooser.path) ? " (" + chosen.at(chooser.path) + ")" : ""));
+      return fmt::format("has no effect with {}", fmt::join(words, " and "));
+    }
+
+    std::vector<std::string>
+    idle_entries(const ParameterFile &file,
+                 const Declarations &declarations,
+                 const std::string &command,
+                 const VariedEntries &varied,
+                 const ChosenValues &chosen)
+    {
+      const std::vector<EntryRule> rules = entry_rules(declarations);
+      const auto varies                  = [&](const std::string &path) {
+        return varied.may_be_all || std::find(varied.paths.begin(), varied.paths.end(), path) != varied.paths.end();
+      };
+      const auto value = [&](const std::string &path) {
+        return chosen.contains(path) ? chosen.at(path) : declarations.value(path);
+      };
+      std::vector<Idle> idle;
+      const auto look_at = [&](const std::string &path, const std::string &place, const bool is_override) {
+        const EntryRule *const rule = rule_against(rules, path, [&](const Chooser &chooser) {
+          return chooser.is_command() ? chooser.fits(command)
+                                      : varies(chooser.path) || chooser.fits(value(chooser.path));
+        });
+        if (rule == nullptr)
+          return;
+        const auto section = std::find_if(rule->entries.begin(), rule->entries.end(), [&](const std::string &entry) {
+          return entry.ends_with('/') && path.starts_with(entry);
+        });
+        idle.push_back({path,
+                        place,
+                        section == rule->entries.end() ? "" : section->substr(0, section->size() - 1),
+                        is_override,
+                        rule});
+      };
+      for (const Assignment &assignment : file.assignments())
+      {
+        const std::string path = assignment.path.substr(0, assignment.path.find('['));
+        if (file.assignment_of(assignment.path) == &assignment &&
+            (assignment.is_override || !is_default(assignment.value, declarations.info(path).default_value)))
+          look_at(path, assignment.place, assignment.is_override);
+      }
+      for (const std::string &path : varied.paths)
+        look_at(path.substr(0, path.find('[')), varied.by, /*is_override=*/true);
+
+      std::vector<std::string> notes;
+      std::set<std::pair<const EntryRule *, std::string>> sections;
+      for (const Idle &one : idle)
+      {
+        const auto alike = [&](const Idle &other) {
+          return !other.is_override && other.rule == one.rule && other.section == one.section;
+        };
+        const bool is_whole_section =
+          !one.is_override && !one.section.empty() && std::count_if(idle.begin(), idle.end(), alike) > 1;
+        if (is_whole_section && !sections.emplace(one.rule, one.section).second)
+          continue;
+        notes.push_back(fmt::format("Note: {}: {}\"{}\" {}",
+                                    one.place,
+                                    is_whole_section ? "section " : "",
+                                    is_whole_section ? one.section : one.path,
+                                    reason(*one.rule, declarations, command, chosen)));
+      }
+      return notes;
+    }
+
+    /// "0,5" where a single number would do is a list of two, but most likely meant as 0.5.
+    std::vector<std::string>
+    decimal_commas(const ParameterFile &file, const Declarations &declarations)
+    {
+      const auto is_whole = [](const std::string &text) {
+        return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+      };
+      const auto has_point = [](const Assignment &other) {
+        const auto number = to_number(other.value);
+        return number && other.value.find('.') != std::string::npos;
+      };
+      const bool has_points = std::any_of(file.assignments().begin(), file.assignments().end(), has_point);
+      std::vector<std::string> notes;
+      for (const Assignment &assignment : file.assignments())
+      {
+        const EntryValues &values = declarations.info(assignment.path).values;
+        const std::string &text   = assignment.value;
+        const auto comma          = text.find(',');
+        if (values.kind != EntryKind::numbers || values.may_be_empty || comma == std::string::npos ||
+            file.assignment_of(assignment.path) != &assignment)
+          continue;
+        const std::size_t start = text.starts_with("-") ? 1 : 0;
+        const std::string first = text.substr(start, comma - start), second = text.substr(comma + 1);
+        if (is_whole(first) && is_whole(second) && (first == "0" || has_points))
+          notes.push_back(
+            fmt::format("Note: {0}: \"{1} = {2},{3}\" is the two numbers {2} and {3}; decimals are written "
+                        "with a point, {2}.{3}",
+                        assignment.place,
+                        assignment.path,
+                        text.substr(0, comma),
+                        second));
+      }
+      return notes;
+    }
+  } // namespace
+
+  std::vector<std::string>
+  notes_on_entries(const ParameterFile &file,
+                   const Declarations &declarations,
+                   const std::string &command,
+                   const VariedEntries &varied,
+                   const ChosenValues &chosen)
+  {
+    auto notes = idle_entries(file, declarations, command, varied, chosen);
+    for (const std::string &note : decimal_commas(file, declarations))
+      notes.push_back(note);
+    return notes;
+  }
+} // namespace crawler
