@@ -89,6 +89,7 @@ CHECKS = (
     Check("fresh_jumps", 6, "{mpi} {build}/tests/calibration {jumps} {out}/fresh_jumps.csv 1e-3 1e-6"),
     Check("fresh_hard", 8, "{mpi} {build}/tests/calibration {hard} {out}/fresh_hard.csv 1e-3 1e-5"),
     Check("random_extremes", 40, "{build}/tests/random_extremes {extremes} {out}/random_extremes.csv"),
+    Check("soft_bodies", 30, "{root}/tests/long/soft_bodies.py {crawler} mpirun 1000 {seed}"),
     # Interruptions and faults.
     Check("kills_of_runs", 10, "{root}/tests/long/run_kills.py {crawler} mpirun 6 {seed}"),
     Check("kills_of_studies", 10, "{root}/tests/long/study_kills.py {crawler} mpirun 20 {seed}"),

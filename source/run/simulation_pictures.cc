@@ -94,7 +94,8 @@ namespace crawler
   Simulation::show_pictures_before_inversion(const Step &step, const std::vector<std::unique_ptr<Observer>> &observers)
   {
     const Diagnosis inverted = *run_->diagnosis;
-    const double start = step.time - step.size, end = result().inversion->t;
+    // What an end prescribes may be known to come a little later than the step ends.
+    const double start = step.time - step.size, end = std::min(result().inversion->t, step.time);
     if (run_->options.energy_balance)
     {
       run_->balance_before = *result().energy_balance;

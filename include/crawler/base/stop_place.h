@@ -12,8 +12,8 @@ namespace crawler
    *
    *     CRAWLER_STOP_AT=PLACE[:NUMBER]:SIGNAL[:RANK]
    *
-   * raises SIGNAL (KILL, TERM, INT, USR1, SEGV, or STOP, which waits for CONT) in the process that reaches PLACE for the
-   * NUMBER-th time (default 1), if it has this RANK of mpirun (default: any). PLACE is one of
+   * raises SIGNAL (KILL, TERM, INT, USR1, SEGV, or STOP, which waits for CONT) in the process that reaches PLACE for
+   * the NUMBER-th time (default 1), if it has this RANK of mpirun (default: any). PLACE is one of
    *
    * | place | reached |
    * |---|---|
