@@ -110,8 +110,8 @@ namespace crawler
     {
       SweepWork own(points, size_of(communicator));
       RowFile results(communicator, folder / table.file, table.group, table.written_columns());
-      const auto crashes = crashes_in(folder);
       CrashNote note(folder);
+      own.beware_of(crashes_in(folder), note);
       return share_work(
         communicator,
         {own.n_parts(),
@@ -122,8 +122,6 @@ namespace crawler
            return own.compute(
              number,
              done,
-             crashes,
-             note,
              [&](const unsigned long first, const std::span<const RowFile::Row> rows) { results.write(first, rows); },
              stops,
              see);

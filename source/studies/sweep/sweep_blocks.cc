@@ -248,11 +248,16 @@ namespace crawler
     return block.size;
   }
 
+  void
+  SweepWork::beware_of(std::map<unsigned long, unsigned int> crashes, CrashNote &note)
+  {
+    crashes_ = std::move(crashes);
+    note_    = &note;
+  }
+
   bool
   SweepWork::compute(const unsigned long number,
                      const std::vector<bool> &done,
-                     const std::map<unsigned long, unsigned int> &crashes,
-                     CrashNote &note,
                      const WriteRows &write,
                      const std::function<bool()> &interrupted,
                      const std::function<void(unsigned long n, unsigned long failed)> &see)
@@ -263,16 +268,20 @@ namespace crawler
     for (unsigned long point = own.first; point < own.first + own.size; ++point)
       if (!done[point])
       {
-        const auto died = crashes.find(point);
-        if (died == crashes.end())
+        const auto died = crashes_.find(point);
+        if (died == crashes_.end())
           missing.push_back(point);
         else if (died->second == 1)
           died_once.push_back(point);
         else
           died_twice.push_back({point, crashed_task()});
       }
+    const auto at_work_on = [this](const std::span<const unsigned long> points) {
+      if (note_ != nullptr)
+        note_->at_work_on(points);
+    };
     write_rows(died_twice, points_.sensitivities(), write, see);
-    note.at_work_on(missing);
+    at_work_on(missing);
     auto shared = compute_shared(block_of(number), missing, interrupted);
     differentiate(shared, interrupted);
     if (interrupted())
@@ -291,7 +300,7 @@ namespace crawler
     for (std::size_t from = 0, to = 0; from < missing.size(); from = to)
     {
       to = from < alone ? std::min(from + together, alone) : from + 1;
-      note.at_work_on(std::span(missing).subspan(from, to - from));
+      at_work_on(std::span(missing).subspan(from, to - from));
       std::vector<Task> few;
       for (std::size_t i = from; i < to; ++i)
         few.push_back(numerics_.task(missing[i]));
@@ -307,7 +316,7 @@ namespace crawler
         return false;
       write_rows(ready, points_.sensitivities(), write, see);
     }
-    note.at_work_on({});
+    at_work_on({});
     return true;
   }
 } // namespace crawler

@@ -74,16 +74,18 @@ namespace crawler
     /// Takes the rows of points in succession, from the one with this number on.
     using WriteRows = std::function<void(unsigned long first, std::span<const RowFile::Row> rows)>;
 
+    /// Points at which a process died before come last and alone from now on; those at which it died twice are not
+    /// computed, and their rows say so. @p note is told which are computed, and must live as long as this.
+    void
+    beware_of(std::map<unsigned long, unsigned int> crashes, CrashNote &note);
+
     /// Computes the points of the part @p number that have no row yet (@p done), and gives their rows to @p write.
-    /// Those at which a process died before (@p crashes) come last and alone; those at which it died twice are not
-    /// computed, and their rows say so. @p note is told which are computed. Calls @p see when rows have been written,
-    /// with their number and how many of these did not finish. Returns false if it was interrupted. Throws what @p
-    /// write throws.
+    /// Calls
+    /// @p see when rows have been written, with their number and how many of these did not finish. Returns false if it
+    /// was interrupted. Throws what @p write throws.
     bool
     compute(unsigned long number,
             const std::vector<bool> &done,
-            const std::map<unsigned long, unsigned int> &crashes,
-            CrashNote &note,
             const WriteRows &write,
             const std::function<bool()> &interrupted,
             const std::function<void(unsigned long n, unsigned long failed)> &see);
@@ -115,5 +117,7 @@ namespace crawler
     const unsigned long parts_of_block_;
     const double time_limit_; ///< for each point [s]
     SweepNumerics numerics_;
+    std::map<unsigned long, unsigned int> crashes_; ///< how often a process died at a point
+    CrashNote *note_ = nullptr;
   };
 } // namespace crawler
