@@ -96,6 +96,7 @@ CHECKS = (
     Check("optimize_long", 9, "{root}/tests/cli/optimize.py {crawler} {root}/prm/studies mpirun --long"),
     Check("nodes", 5, "{root}/tests/long/nodes.py {crawler} mpirun"),
     Check("disk", 15, "{root}/tests/long/disk.py {crawler} {root}/prm 12 {seed}"),
+    Check("entries", 30, "{root}/tests/python/entry_effects.py {crawler} {build}/python {root} all"),
     Check("hostile_input", 3, "{root}/tests/cli/faults.py {crawler} {root}/prm"),
     Check("memory", 3, "{root}/tests/long/memory.py {crawler} 100000 0.2"),
     Check("memory_of_python", 2, "{root}/tests/long/python_memory.py {build}/python"),
