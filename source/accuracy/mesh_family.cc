@@ -158,6 +158,13 @@ namespace crawler
           numerics().tolerance = std::min(right, numerics().tolerance * 100.);
           latest_              = run(numerics());
         }
+        // What is left in cells that become empty decides how they fill again.
+        if (!parameters_.time.tolerance && latest_.min_stretch.value < empty &&
+            numerics().tolerance > tolerance_if_empty)
+        {
+          numerics().tolerance = tolerance_if_empty;
+          latest_              = run(numerics());
+        }
         measure_size();
         for (unsigned int i = 0; i < most_tolerances && value(latest_); ++i)
         {
@@ -269,11 +276,12 @@ namespace crawler
           return std::max(now.settled, now.change / (std::exp2(order) - 1.));
         if (order > largest_order)
           return std::max(now.settled, now.change / 3.);
-        if (levels_.size() == 2) // two of the first displacements may agree by chance; their works do not, too
-          return std::max(now.settled, unsettled_work(before, now) * now.change);
-        return before.settled > fast * now.settled && std::abs(order - 2.) < clean
-                 ? std::max(now.settled, before.settled / fastest) / credited
-                 : std::max(now.settled, before.settled / fastest);
+        // Displacements may agree by chance; their works do not, too.
+        const double settled = std::max(now.settled, unsettled_work(before, now) * now.change);
+        if (levels_.size() == 2)
+          return settled;
+        const double bound = std::max(settled, before.settled / fastest);
+        return before.settled > fast * settled && std::abs(order - 2.) < clean ? bound / credited : bound;
       }
 
       static double

@@ -75,17 +75,24 @@ namespace crawler
       {
       }
 
-      /// At random times, where m is faster than it is in a period, and at many times in each period. What cannot be
-      /// searched for the fast does not repeat; and what repeats but for something after some times P does so after no
-      /// other time, either.
+      /// |m| is as large as that somewhere.
+      void
+      knows(const double largest)
+      {
+        largest_ = std::max(largest_, largest);
+      }
+
+      /// At random times, where m is faster than it is in a period, and at many times in each period. Where there are
+      /// too many fast changes to look at them all it does not hold; and if m repeats but for something after some
+      /// times P, it does not repeat after others, either.
       bool
       holds(const double P)
       {
-        std::mt19937 generator(20220610);
-        largest_          = largest_in_first(P);
-        const double last = end_ - begin_ - P;
         if (n_misses_ >= most_misses)
           return false;
+        std::mt19937 generator(20220610);
+        const double last = end_ - begin_ - P;
+        knows(largest_in_first(P));
         for (unsigned int i = 0; i < n_random; ++i)
           if (!is_same_after(begin_ + static_cast<double>(generator()) / 4294967296. * last, P))
             return false;
@@ -255,6 +262,7 @@ namespace crawler
       smallest(const std::vector<unsigned int> &candidates, const double longest, PeriodTest &test)
       {
         constexpr std::size_t most_candidates = 64;
+        test.knows(largest_);
         for (std::size_t i = 0; i < std::min(candidates.size(), most_candidates); ++i)
           for (const double P : guesses(candidates[i]))
             if (P > 0. && P <= longest && test.holds(P))

@@ -289,7 +289,7 @@ def test_killed_at_files(folder):
                f"killed before {place} has its name: {killed.returncode}, {names}")
         if place in ("original.prm", "results.csv"):
             plain = sweep(folder, output)
-            expect(plain.returncode == 2 and "not empty" in plain.stderr, f"then it wants --resume: {plain.stderr}")
+            expect(plain.returncode == 2 and "--resume goes on" in plain.stderr, f"then it wants --resume: {plain.stderr}")
         result = sweep(folder, output, "--resume")
         expect(result.returncode == 0 and same_columns(reference, table(output)) and (output / "results.csv").is_file()
                and json_of(output / "summary.json")["status"] == "finished" and not list(output.glob("*.part"))

@@ -30,6 +30,7 @@ namespace
   {
     Task task;
     task.parameters = test::parameters_with(settings);
+    task.gait       = true;
     compute_all({&task, 1}, HUGE_VAL, never);
     if (task.error)
       std::rethrow_exception(task.error);

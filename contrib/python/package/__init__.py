@@ -236,7 +236,7 @@ def _source(scene, overrides):
 def _warn(notes):
     """Warnings in the line that called this package."""
     level, frame = 2, sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals["__name__"] == __name__:
+    while frame.f_back is not None and frame.f_globals.get("__name__") == __name__:
         level, frame = level + 1, frame.f_back
     for note in notes:
         warnings.warn(note.removeprefix("Note: "), stacklevel=level)

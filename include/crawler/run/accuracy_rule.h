@@ -148,6 +148,8 @@ namespace crawler::accuracy_rule
     inline constexpr double time_part             = 0.3;
     inline constexpr unsigned int most_tolerances = 5;
     inline constexpr double finer_tolerance       = 0.1;
+    /// Cells with a smaller stretch are empty; the time tolerance then is no larger than this.
+    inline constexpr double empty = 1e-9, tolerance_if_empty = 3e-7;
     /// The bound is at least this part of the wanted error: what all runs have in common.
     inline constexpr double least_part = 0.5;
     /// Observed orders between which second order is believed.
