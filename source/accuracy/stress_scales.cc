@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/stress_scales.h>
 #include <crawler/scene/fast_changes.h>
+#include <crawler/scene/jump_bracket.h>
 
 #include <algorithm>
 #include <array>
@@ -54,25 +55,19 @@ namespace crawler
       for (unsigned int i = 0; i <= n; ++i)
         points[i] = L * i / n;
       scene.active_stress->at(points)->values(t, m);
-      double left = 0., right = 0., m_left = 0., m_right = 0.;
+      JumpBracket jump;
       for (unsigned int i = 0; i < n; ++i)
-        if (std::abs(m[i + 1] - m[i]) > std::abs(m_right - m_left) && !any_between(in_space, points[i], points[i + 1]))
-        {
-          left    = points[i];
-          right   = points[i + 1];
-          m_left  = m[i];
-          m_right = m[i + 1];
-        }
-      for (unsigned int i = 0; i < n_bisections && std::abs(m_right - m_left) > least; ++i)
-      {
-        const std::vector<double> middle = {0.5 * (left + right)};
-        std::vector<double> m_middle(1);
-        scene.active_stress->at(middle)->values(t, m_middle);
-        const bool in_left           = std::abs(m_middle[0] - m_left) > std::abs(m_right - m_middle[0]);
-        (in_left ? right : left)     = middle[0];
-        (in_left ? m_right : m_left) = m_middle[0];
-      }
-      return std::abs(m_right - m_left) > least ? std::optional(0.5 * (left + right)) : std::nullopt;
+        if (std::abs(m[i + 1] - m[i]) > jump.change() && !any_between(in_space, points[i], points[i + 1]))
+          jump = {points[i], points[i + 1], m[i], m[i + 1]};
+      jump.narrow(
+        [&](const double place) {
+          std::vector<double> value(1);
+          scene.active_stress->at({place})->values(t, value);
+          return value[0];
+        },
+        n_bisections,
+        least);
+      return jump.change() > least ? std::optional(jump.middle()) : std::nullopt;
     }
 
     /// Are there such jumps that are elsewhere at another time?

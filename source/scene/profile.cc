@@ -6,6 +6,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/breaks.h>
+#include <crawler/scene/jump_bracket.h>
 #include <crawler/scene/profile.h>
 
 #include <fmt/format.h>
@@ -38,18 +39,17 @@ namespace crawler
       std::vector<double> jumps;
       for (unsigned int i = 0; i < n; ++i)
       {
-        double left = places[i], right = places[i + 1], f_left = f[i], f_right = f[i + 1];
-        for (unsigned int j = 0; j < n_bisections && std::abs(f_right - f_left) > least * largest; ++j)
-        {
-          const double middle = 0.5 * (left + right);
-          double f_middle     = 0.;
-          values({&middle, 1}, {&f_middle, 1});
-          const bool in_left           = std::abs(f_middle - f_left) > std::abs(f_right - f_middle);
-          (in_left ? right : left)     = middle;
-          (in_left ? f_right : f_left) = f_middle;
-        }
-        if (std::abs(f_right - f_left) > least * largest)
-          jumps.push_back(0.5 * (left + right));
+        JumpBracket jump{places[i], places[i + 1], f[i], f[i + 1]};
+        jump.narrow(
+          [&](const double place) {
+            double value = 0.;
+            values({&place, 1}, {&value, 1});
+            return value;
+          },
+          n_bisections,
+          least * largest);
+        if (jump.change() > least * largest)
+          jumps.push_back(jump.middle());
       }
       return jumps.size() <= most ? jumps : std::vector<double>();
     }

@@ -42,12 +42,16 @@ namespace crawler
       return record;
     }
 
-    /// The limits of strain, closer by what was exceeded. Returns whether something was.
+    /// The limits of strain, closer by what was exceeded by more than @p exact, relative. Returns whether something
+    /// was.
     bool
-    tighten(OptimizeParameters &parameters, const OptimizeParameters &wanted, const std::pair<double, double> &extremes)
+    tighten(OptimizeParameters &parameters,
+            const OptimizeParameters &wanted,
+            const std::pair<double, double> &extremes,
+            const double exact)
     {
-      constexpr double more = 1.02, exact = 1e-5;
-      const auto closer = [&](std::optional<double> &limit, const std::optional<double> &own, const double value) {
+      constexpr double more = 1.02;
+      const auto closer     = [&](std::optional<double> &limit, const std::optional<double> &own, const double value) {
         if (!own)
           return false;
         const double excess = (std::abs(value) - std::abs(*own)) * more;
@@ -131,12 +135,12 @@ namespace crawler
       go_on()
       {
         constexpr unsigned int most_rounds = 12;
-        constexpr double above_noise       = 10.;
-        const auto model                   = make_gait_model(family_, x_, stops_);
-        wanted_.tolerance                  = std::max(wanted_.tolerance, above_noise * model->noise());
-        parameters_                        = wanted_;
-        bool is_rough                      = model->noise() == 0.; // of simulations all is known after the first round
-        bool is_fine                       = false;
+        constexpr double above_noise = 10., promised = 1e-5;
+        const auto model  = make_gait_model(family_, x_, stops_);
+        wanted_.tolerance = std::max(wanted_.tolerance, above_noise * model->noise());
+        parameters_       = wanted_;
+        bool is_rough     = model->noise() == 0.; // of simulations all is known after the first round
+        bool is_fine      = false;
         for (unsigned int round = 0; round < most_rounds; ++round)
         {
           improve(*model, is_rough);
@@ -161,7 +165,7 @@ namespace crawler
             if (!wanted_.smallest_strain && !wanted_.largest_strain)
               return;
             const auto extremes = model->extreme_strains(x_);
-            if (!tighten(parameters_, wanted_, extremes))
+            if (!tighten(parameters_, wanted_, extremes, std::min(promised, result_.admissible)))
             {
               result_.best.violation = std::max(result_.best.violation, excess(wanted_, extremes));
               return;
