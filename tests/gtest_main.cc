@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
+#include "support/ranks.h"
 
+#include <crawler/base/communication.h>
+#include <crawler/base/mpi_session.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -54,7 +56,7 @@ main(int argc, char **argv)
 #ifdef __SANITIZE_ADDRESS__
   __lsan_disable();
 #endif
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  const crawler::MpiSession guard(one, argv);
 #ifdef __SANITIZE_ADDRESS__
   __lsan_enable();
 #endif
@@ -64,11 +66,11 @@ main(int argc, char **argv)
     return 2;
   }
   auto &listeners = ::testing::UnitTest::GetInstance()->listeners();
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
+  if (crawler::rank_of(MPI_COMM_WORLD) != 0)
     delete listeners.Release(listeners.default_result_printer());
   const int failed = RUN_ALL_TESTS();
 #ifdef __SANITIZE_ADDRESS__
   __lsan_do_leak_check();
 #endif
-  return static_cast<int>(dealii::Utilities::MPI::max(failed, MPI_COMM_WORLD));
+  return crawler::test::over_ranks(failed, MPI_MAX);
 }

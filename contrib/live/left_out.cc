@@ -3,10 +3,10 @@
 // What needs libraries that the page does not have: PETSc (adaptive meshes, BDF, couplings of distant cells), deal.II's
 // triangulation, muParser's formulas, HDF5's tables, shared objects. Each is refused in a sentence when a scene asks
 // for it; all else is the program's own code.
+#include <crawler/base/deal_ii_library.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/grid_table.h>
 #include <crawler/formula/formula.h>
-#include <crawler/mesh/triangulation.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/scene/active_stress/formula_input.h>
 #include <crawler/scene/active_stress/library.h>
@@ -55,28 +55,10 @@ namespace crawler
     refuse(petsc);
   }
 
-  struct Triangulation::Implementation
+  void *
+  deal_ii_symbol(const char *)
   {
-  };
-  Triangulation::Triangulation(MPI_Comm, const std::vector<double> &)
-  {
-    refuse("this scene needs deal.II's adaptive meshes");
-  }
-  Triangulation::~Triangulation() = default;
-  std::size_t
-  Triangulation::n_cells() const
-  {
-    refuse("this scene needs deal.II's adaptive meshes");
-  }
-  std::vector<Cell>
-  Triangulation::cells(const std::vector<Cell> &) const
-  {
-    refuse("this scene needs deal.II's adaptive meshes");
-  }
-  void
-  Triangulation::change(const std::vector<CellChange> &)
-  {
-    refuse("this scene needs deal.II's adaptive meshes");
+    refuse("this needs deal.II, as adaptive meshes do");
   }
 
   std::shared_ptr<const Formula>

@@ -5,6 +5,7 @@
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/mpi_session.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/base/stop_place.h>
 #include <crawler/output/kymograph_writer.h>
@@ -20,9 +21,6 @@
 #include <crawler/studies/sweep/sweep.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_rows.h>
-
-#include <deal.II/base/mpi.h>
-#include <deal.II/base/multithread_info.h>
 
 #include <fmt/format.h>
 #include <petscsys.h>
@@ -57,32 +55,19 @@ namespace crawler
       {
         instance_.reset();
       }
-      ~Libraries()
-      {
-        if (own_mpi_ == nullptr)
-          PetscFinalize();
-      }
 
     private:
       Libraries()
       {
-        int mpi_is_there = 0;
-        MPI_Initialized(&mpi_is_there);
         static char name[] = "crawler", no_handler[] = "-no_signal_handler", yes[] = "true";
         static char *words[] = {name, no_handler, yes, nullptr};
         int n                = 3;
         char **arguments     = words;
         const QuickStart quick_start;
-        if (mpi_is_there == 0)
-          own_mpi_ = std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(n, arguments, /*max_num_threads=*/1);
-        else
-        {
-          PetscInitialize(&n, &arguments, nullptr, nullptr);
-          dealii::MultithreadInfo::set_thread_limit(1);
-        }
+        session_ = std::make_unique<MpiSession>(n, arguments);
       }
       static std::unique_ptr<Libraries> instance_;
-      std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> own_mpi_;
+      std::unique_ptr<MpiSession> session_;
     };
     std::unique_ptr<Libraries> Libraries::instance_;
 

@@ -3,14 +3,13 @@
 #include <crawler/app/commands.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
+#include <crawler/base/mpi_session.h>
 #include <crawler/base/petsc_object.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/base/process.h>
 #include <crawler/base/standard_output.h>
 #include <crawler/lanes/forced_instruction_set.h>
 #include <crawler/time/failure.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <fmt/format.h>
 
@@ -125,13 +124,12 @@ namespace crawler
       char **petsc_argv = petsc_arguments.data();
 
       MPI_Comm communicator = MPI_COMM_WORLD;
-      std::unique_ptr<const dealii::Utilities::MPI::MPI_InitFinalize> guard;
+      std::unique_ptr<const MpiSession> session;
       std::optional<PetscErrorWords> petsc_error(std::in_place);
       try
       {
         const QuickStart quick_start;
-        guard =
-          std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(petsc_argc, petsc_argv, /*max_num_threads=*/1);
+        session = std::make_unique<MpiSession>(petsc_argc, petsc_argv);
       }
       catch (const std::exception &)
       {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/versions.h>
 
-#include <deal.II/base/config.h>
-
 #include <fmt/format.h>
 #include <mpi.h>
 #include <petscversion.h>
@@ -14,7 +12,7 @@ namespace crawler
   {
     return {{"crawler", CRAWLER_VERSION},
             {"revision", CRAWLER_REVISION},
-            {"deal.II", DEAL_II_PACKAGE_VERSION},
+            {"deal.II", CRAWLER_DEAL_II},
             {"PETSc", fmt::format("{}.{}.{}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR)},
             {"MPI", fmt::format("{}.{}", MPI_VERSION, MPI_SUBVERSION)}};
   }

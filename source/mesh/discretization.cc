@@ -103,7 +103,7 @@ namespace crawler
   {
     const unsigned int n = n_cells();
     if (!mesh_->triangulation)
-      mesh_->triangulation = std::make_unique<Triangulation>(communicator_, mesh_->all_ends());
+      mesh_->triangulation = create_triangulation(communicator_, mesh_->all_ends());
     if (mesh_->triangulation->n_cells() != n)
       throw std::logic_error("only the latest of a sequence of meshes can be adapted");
 

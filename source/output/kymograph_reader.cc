@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/base64.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/output/kymograph_reader.h>
-
-#include <deal.II/base/utilities.h>
 
 #include <boost/algorithm/string/trim.hpp>
 #include <boost/property_tree/xml_parser.hpp>
@@ -20,7 +19,7 @@ namespace crawler
     std::vector<double>
     decoded(const boost::property_tree::ptree &array)
     {
-      const std::vector<unsigned char> bytes = dealii::Utilities::decode_base64(boost::trim_copy(array.data()));
+      const std::vector<unsigned char> bytes = decode_base64(boost::trim_copy(array.data()));
       if (array.get<std::string>("<xmlattr>.type") != "Float64" || bytes.size() < sizeof(std::uint64_t))
         throw InputError("an array without numbers");
       std::vector<double> values((bytes.size() - sizeof(std::uint64_t)) / sizeof(double));

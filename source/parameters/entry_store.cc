@@ -1,112 +1,110 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/deal_ii_library.h>
 #include <crawler/parameters/entry_store.h>
 
-#include <deal.II/base/parameter_handler.h>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
+#include <ostream>
+#include <sstream>
+#include <stdexcept>
 
 namespace crawler
 {
   namespace
   {
-    using dealii::ParameterHandler;
+    using Entries = std::vector<StoredEntry>;
 
-    /// What deal.II calls the values of an entry, so that parameter_gui has the right field for them; empty if it has
-    /// no word for them.
-    std::string
-    dealii_words(const EntryValues &values)
+    bool
+    is_below(const StoredEntry &entry, const EntryStore::Path &section)
     {
-      namespace Patterns = dealii::Patterns;
-      if (values.may_be_automatic)
-        return "";
-      const auto bound = [](const double x) { return static_cast<int>(std::min(x, 2147483647.)); };
-      switch (values.kind)
-      {
-        case EntryKind::number:
-          return Patterns::Double(values.range.lower, values.range.upper).description();
-        case EntryKind::whole_number:
-          return Patterns::Integer(bound(values.range.lower), bound(values.range.upper)).description();
-        case EntryKind::choice:
-          return Patterns::Selection(fmt::format("{}", fmt::join(values.words, "|"))).description();
-        case EntryKind::flag:
-          return Patterns::Bool().description();
-        default:
-          return "";
-      }
+      return entry.path.size() > section.size() && std::equal(section.begin(), section.end(), entry.path.begin());
     }
 
-    /// A pattern that says in words what it expects.
-    class WordyPattern : public dealii::Patterns::PatternBase
+    /// The words of @p text in lines of at most so many characters; the last one is shorter than that, as in what
+    /// dealii::ParameterHandler writes.
+    std::vector<std::string>
+    lines_of(const std::string &text, const std::size_t width)
+    {
+      std::vector<std::string> lines;
+      std::istringstream words(text);
+      for (std::string word; words >> word;)
+      {
+        const bool is_last = (words >> std::ws).eof();
+        if (lines.empty() || lines.back().size() + 1 + word.size() + (is_last ? 1 : 0) > width)
+          lines.push_back(word);
+        else
+          lines.back() += " " + word;
+      }
+      return lines;
+    }
+
+    /// One section of a .prm file, whose entries and sections stand in the order in which they were declared.
+    class Section
     {
     public:
-      WordyPattern(std::string expected, std::string machine_words, std::function<bool(const std::string &)> match)
-        : expected_(std::move(expected))
-        , machine_words_(std::move(machine_words))
-        , match_(std::move(match))
+      Section(const Entries &entries, EntryStore::Path path)
+        : path_(std::move(path))
+        , indent_(2 * path_.size(), ' ')
       {
+        for (const StoredEntry &entry : entries)
+        {
+          if (!is_below(entry, path_))
+            continue;
+          if (entry.path.size() == path_.size() + 1)
+            own_.push_back(&entry);
+          else if (const std::string &name = entry.path[path_.size()]; std::ranges::find(names_, name) == names_.end())
+            names_.push_back(name);
+        }
       }
-      bool
-      match(const std::string &text) const override
+
+      void
+      print(std::ostream &out, const Entries &entries) const
       {
-        return match_(text);
-      }
-      std::string
-      description(const OutputStyle style) const override
-      {
-        return style == Machine && !machine_words_.empty() ? machine_words_ : expected_;
-      }
-      std::unique_ptr<PatternBase>
-      clone() const override
-      {
-        return std::make_unique<WordyPattern>(*this);
+        print_entries(out);
+        if (!own_.empty() && !names_.empty())
+          out << "\n\n";
+        for (const std::string &name : names_)
+        {
+          EntryStore::Path path = path_;
+          path.push_back(name);
+          out << indent_ << "subsection " << name << "\n";
+          Section(entries, path).print(out, entries);
+          out << indent_ << "end\n" << (path_.empty() ? "\n\n" : "\n");
+        }
       }
 
     private:
-      std::string expected_, machine_words_;
-      std::function<bool(const std::string &)> match_;
-    };
-
-    /// Runs @p action in the section of the entry @p path.
-    template <typename Action>
-    auto
-    in_section(ParameterHandler &handler, const EntryStore::Path &path, const Action &action)
-    {
-      struct Sections
+      void
+      print_entries(std::ostream &out) const
       {
-        Sections(ParameterHandler &handler, const EntryStore::Path &path)
-          : handler(handler)
-          , depth(path.size() - 1)
+        constexpr std::size_t width = 78;
+        std::size_t longest_name = 0, longest_value = 0;
+        for (const StoredEntry *entry : own_)
         {
-          for (std::size_t i = 0; i < depth; ++i)
-            handler.enter_subsection(path[i]);
+          longest_name  = std::max(longest_name, entry->path.back().size());
+          longest_value = std::max(longest_value, entry->value.size());
         }
-        ~Sections()
+        bool is_first = true;
+        for (const StoredEntry *entry : own_)
         {
-          for (std::size_t i = 0; i < depth; ++i)
-            handler.leave_subsection();
+          if (!is_first)
+            out << "\n";
+          is_first = false;
+          for (const std::string &line : lines_of(entry->explanation, width - indent_.size() - 2))
+            out << indent_ << "# " << line << "\n";
+          const std::string &name = entry->path.back();
+          out << indent_ << "set " << name << std::string(longest_name - name.size(), ' ') << " = " << entry->value;
+          if (entry->value != entry->info.default_value)
+            out << std::string(longest_value - entry->value.size(), ' ') << " # default: " << entry->info.default_value;
+          out << "\n";
         }
-        ParameterHandler &handler;
-        const std::size_t depth;
-      };
-      const Sections inside(handler, path);
-      return action(path.back());
-    }
+      }
+
+      const EntryStore::Path path_;
+      const std::string indent_;
+      std::vector<const StoredEntry *> own_;
+      std::vector<std::string> names_; ///< of the sections below
+    };
   } // namespace
-
-  struct EntryStore::Implementation
-  {
-    ParameterHandler handler;
-  };
-
-  EntryStore::EntryStore()
-    : implementation_(std::make_unique<Implementation>())
-  {
-  }
-
-  EntryStore::~EntryStore() = default;
 
   void
   EntryStore::declare(const Path &path,
@@ -114,48 +112,43 @@ namespace crawler
                       const std::function<bool(const std::string &)> &match,
                       const std::function<void(const std::string &)> &assign)
   {
+    if (!match(info.default_value))
+      throw std::logic_error("the default of \"" + info.path + "\" is not admissible");
+    places_[path]          = entries_.size();
     const std::string unit = info.unit.empty() ? "" : " Unit: " + info.unit + ".";
-    in_section(implementation_->handler, path, [&](const std::string &name) {
-      implementation_->handler.declare_entry(name,
-                                             info.default_value,
-                                             WordyPattern(info.expected, dealii_words(info.values), match),
-                                             info.documentation + " Expected: " + info.expected + "." + unit);
-      implementation_->handler.add_action(name, assign);
-    });
+    entries_.push_back(
+      {path, info, info.documentation + " Expected: " + info.expected + "." + unit, info.default_value});
+    actions_.push_back({match, assign});
+    assign(info.default_value);
   }
 
   bool
   EntryStore::set(const Path &path, const std::string &text)
   {
-    return in_section(implementation_->handler, path, [&](const std::string &name) {
-      try
-      {
-        implementation_->handler.set(name, text);
-        return true;
-      }
-      catch (const ParameterHandler::ExcValueDoesNotMatchPattern &)
-      {
-        return false;
-      }
-    });
+    const std::size_t i = places_.at(path);
+    if (!actions_[i].match(text))
+      return false;
+    entries_[i].value = text;
+    actions_[i].assign(text);
+    return true;
   }
 
   std::string
   EntryStore::get(const Path &path) const
   {
-    return in_section(
-      implementation_->handler, path, [&](const std::string &name) { return implementation_->handler.get(name); });
+    return entries_[places_.at(path)].value;
   }
 
   void
   EntryStore::print_prm(std::ostream &out) const
   {
-    implementation_->handler.print_parameters(out, ParameterHandler::PRM | ParameterHandler::KeepDeclarationOrder);
+    out << "# Listing of Parameters\n# ---------------------\n";
+    Section(entries_, {}).print(out, entries_);
   }
 
   void
   EntryStore::print_xml(std::ostream &out) const
   {
-    implementation_->handler.print_parameters(out, ParameterHandler::XML | ParameterHandler::KeepDeclarationOrder);
+    deal_ii_function<PrintXml>("crawler_print_xml")(out, entries_);
   }
 } // namespace crawler

@@ -8,7 +8,7 @@
 //     adaptive_table contrib/reference/extremes.json [part of a scene's name]
 #include "../support/run_text.h"
 
-#include <deal.II/base/mpi.h>
+#include <crawler/base/mpi_session.h>
 
 #include <nlohmann/json.hpp>
 
@@ -172,7 +172,7 @@ int
 main(int argc, char **argv)
 {
   int one = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  const crawler::MpiSession guard(one, argv);
   std::ifstream file(argc > 1 ? argv[1] : "");
   if (!file)
   {

@@ -39,7 +39,7 @@
 //                        unknowns.
 #include "benchmarks.h"
 
-#include <deal.II/base/mpi.h>
+#include <crawler/base/mpi_session.h>
 
 #include <benchmark/benchmark.h>
 
@@ -47,7 +47,7 @@ int
 main(int argc, char **argv)
 {
   int one = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  const crawler::MpiSession guard(one, argv);
   crawler::test::add_run_benchmarks();
   crawler::test::add_sweep_benchmarks();
   crawler::test::add_kernel_benchmarks();

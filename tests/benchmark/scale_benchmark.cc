@@ -9,7 +9,7 @@
 //   run/construction/bdf ...   a new Simulation for another scene, its first run included up to its first state
 #include "../support/run_text.h"
 
-#include <deal.II/base/mpi.h>
+#include <crawler/base/mpi_session.h>
 
 #include <benchmark/benchmark.h>
 
@@ -66,7 +66,7 @@ int
 main(int argc, char **argv)
 {
   int one = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  const crawler::MpiSession guard(one, argv);
   for (const std::string integrator : {"bdf", "radau 5"})
   {
     const auto add = [&](const std::string &name, const auto &function, const auto &...arguments) {

@@ -10,11 +10,11 @@
 // ranks, since ranks that wait for each other use the CPU, too. Each step is at a new time, so the active stress is
 // evaluated once in it. With complex numbers the step has one complex system, as one pair of stages of a Radau method
 // has. Prints a table in Markdown.
+#include "../support/ranks.h"
 #include "../support/run_text.h"
 
+#include <crawler/base/mpi_session.h>
 #include <crawler/equation/general_position_form.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <ctime>
@@ -86,8 +86,8 @@ namespace
     for (unsigned int i = 0; i < steps; ++i)
       bench.newton_step(t += 1e-9, is_complex);
     const Seconds end = now();
-    return {dealii::Utilities::MPI::max((end.wall - start.wall) / steps, MPI_COMM_WORLD),
-            dealii::Utilities::MPI::min((end.cpu - start.cpu) / steps, MPI_COMM_WORLD)};
+    return {test::over_ranks((end.wall - start.wall) / steps, MPI_MAX),
+            test::over_ranks((end.cpu - start.cpu) / steps, MPI_MIN)};
   }
 
   void
@@ -127,13 +127,13 @@ namespace
 int
 main(int argc, char **argv)
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(argc, argv, 1);
+  const crawler::MpiSession guard(argc, argv);
   std::vector<unsigned int> cells;
   for (int i = 1; i < argc; ++i)
     cells.push_back(static_cast<unsigned int>(std::stoul(argv[i])));
   if (cells.empty())
     cells = {10, 100, 1000, 5000, 10000, 50000, 100000, 500000, 1000000};
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+  if (rank_of(MPI_COMM_WORLD) == 0)
     fmt::print("| ranks | shift | cells | unknowns | ms per step, median | smallest | CPU | ns per cell (smallest) |\n"
                "|---|---|---|---|---|---|---|---|\n");
   for (const bool is_complex : {false, true})

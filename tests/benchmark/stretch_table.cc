@@ -10,9 +10,8 @@
 // one at which Accuracy (choose_form() follows that).
 #include "../support/run_text.h"
 
+#include <crawler/base/mpi_session.h>
 #include <crawler/studies/core/compute.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <cmath>
 #include <ctime>
@@ -150,7 +149,7 @@ main(int argc, char **argv)
 {
   int one            = 1;
   char *no_options[] = {argv[0], nullptr}, **none = no_options;
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(one, none, 1);
+  const crawler::MpiSession mpi(one, none);
   const std::string part = argc > 1 ? argv[1] : "", formulation = argc > 2 ? argv[2] : "";
   if (part == "trade")
   {

@@ -9,10 +9,9 @@
 // second. The counter is measured twice: while rank 0 takes part, and while it computes (and calls serve(), as a sweep
 // does at every step).
 #include <crawler/base/communication.h>
+#include <crawler/base/mpi_session.h>
 #include <crawler/base/row_file.h>
 #include <crawler/base/work_queue.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <fmt/format.h>
 
@@ -115,7 +114,7 @@ namespace
 int
 main(int argc, char **argv)
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const crawler::MpiSession mpi(argc, argv);
   const unsigned int n_ranks = size_of(MPI_COMM_WORLD);
   if (rank_of(MPI_COMM_WORLD) == 0)
     fmt::print("| on {:<4} rank{:<38} | us each   | a second   |\n|---|---|---|\n", n_ranks, n_ranks == 1 ? "" : "s");

@@ -172,12 +172,13 @@ TEST_F(Commands, VersionAndHelp)
   }
 }
 
-/// parameter_gui is deal.II's, and so is what reads the XML here: every default comes back.
-TEST_F(Commands, DealIIReadsItsXml)
+namespace
 {
-  dealii::ParameterHandler handler;
-  const json list  = json::parse(run_program(folder.path, {"parameters", "--format", "json"}).out);
-  const auto visit = [&handler](const std::string &path, const auto &action) {
+  /// Does something with the entry of that name in its section.
+  template <typename Action>
+  void
+  visit(dealii::ParameterHandler &handler, const std::string &path, const Action &action)
+  {
     std::vector<std::string> words;
     std::istringstream in(path);
     for (std::string word; std::getline(in, word, '/');)
@@ -187,17 +188,65 @@ TEST_F(Commands, DealIIReadsItsXml)
     action(words.back());
     for (std::size_t i = 0; i + 1 < words.size(); ++i)
       handler.leave_subsection();
-  };
+  }
+} // namespace
+
+/// parameter_gui is deal.II's, and so is what reads the XML here: every default comes back.
+TEST_F(Commands, DealIIReadsItsXml)
+{
+  dealii::ParameterHandler handler;
+  const json list = json::parse(run_program(folder.path, {"parameters", "--format", "json"}).out);
   for (const json &entry : list)
-    visit(entry.at("entry"), [&](const std::string &name) { handler.declare_entry(name, "not read"); });
+    visit(handler, entry.at("entry"), [&](const std::string &name) { handler.declare_entry(name, "not read"); });
   const ProgramResult printed = run_program(folder.path, {"parameters", "--format", "xml"});
   EXPECT_EQ(printed.exit_code, 0);
   std::istringstream text(printed.out);
   handler.parse_input_from_xml(text);
   EXPECT_GT(list.size(), 100u);
   for (const json &entry : list)
-    visit(entry.at("entry"),
-          [&](const std::string &name) { EXPECT_EQ(handler.get(name), entry.at("default")) << entry.at("entry"); });
+    visit(handler, entry.at("entry"), [&](const std::string &name) {
+      EXPECT_EQ(handler.get(name), entry.at("default")) << entry.at("entry");
+    });
+}
+
+/// Parameter files are what ParameterHandler itself would write, byte for byte: the defaults, and those of a run.
+TEST_F(Commands, DealIIWritesTheSameParameterFiles)
+{
+  dealii::ParameterHandler handler;
+  const auto printed = [&handler]() {
+    std::ostringstream text;
+    handler.print_parameters(text, dealii::ParameterHandler::PRM | dealii::ParameterHandler::KeepDeclarationOrder);
+    return text.str();
+  };
+  for (const json &entry : json::parse(run_program(folder.path, {"parameters", "--format", "json"}).out))
+  {
+    const std::string unit = entry.at("unit");
+    visit(handler, entry.at("entry"), [&](const std::string &name) {
+      handler.declare_entry(name,
+                            entry.at("default"),
+                            dealii::Patterns::Anything(),
+                            entry.at("documentation").get<std::string>() +
+                              " Expected: " + entry.at("expected").get<std::string>() + "." +
+                              (unit.empty() ? "" : " Unit: " + unit + "."));
+    });
+  }
+  EXPECT_EQ(run_program(folder.path, {"parameters"}).out, printed());
+
+  const std::vector<std::pair<std::string, std::string>> values = {{"Accuracy", "1e-2"},
+                                                                   {"Body/Anchoring exponent", "2.25"},
+                                                                   {"Active stress/Optimal wave/Wave speed", "1"},
+                                                                   {"Output/Number of snapshots", "0"}};
+  std::vector<std::string> arguments                            = {"run", "-", "--quiet", "--output", "out"};
+  for (const auto &[entry, value] : values)
+  {
+    arguments.insert(arguments.end(), {"--set", entry + "=" + value});
+    visit(handler, entry, [&](const std::string &name) { handler.set(name, value); });
+  }
+  EXPECT_EQ(run_program(folder.path, arguments, "\n").exit_code, 0);
+  std::ifstream file(folder.path / "out/parameters.prm");
+  std::ostringstream text;
+  text << file.rdbuf();
+  EXPECT_EQ(text.str(), printed());
 }
 
 TEST_F(Commands, ParametersInThreeFormats)

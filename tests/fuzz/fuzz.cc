@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/mpi.h>
+#include <crawler/base/mpi_session.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -109,7 +109,7 @@ namespace crawler::fuzz
       __lsan_disable();
 #endif
       // Not ended: that would look for leaks in what a fuzzer leaves when it ends itself.
-      auto *const guard = new dealii::Utilities::MPI::MPI_InitFinalize(n, arguments, 1);
+      auto *const guard = new crawler::MpiSession(n, arguments);
 #ifdef __SANITIZE_ADDRESS__
       __lsan_enable();
 #endif

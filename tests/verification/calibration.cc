@@ -17,10 +17,9 @@
 #include <crawler/accuracy/run_as_promised.h>
 #include <crawler/base/communication.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/mpi_session.h>
 #include <crawler/base/work_queue.h>
 #include <crawler/run/self_check.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <fstream>
@@ -341,7 +340,7 @@ int
 main(int argc, char **argv)
 {
   int one = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  const crawler::MpiSession guard(one, argv);
   if (argc < 3)
   {
     fmt::print(stderr, "usage: calibration SCENES OUTPUT.csv [ACCURACY ...]\n");

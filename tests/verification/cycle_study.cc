@@ -8,7 +8,7 @@
 // time.
 #include "random_scenes.h"
 
-#include <deal.II/base/mpi.h>
+#include <crawler/base/mpi_session.h>
 
 #include <algorithm>
 #include <vector>
@@ -42,7 +42,7 @@ int
 main(int argc, char **argv)
 {
   int one = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  const crawler::MpiSession guard(one, argv);
   if (argc < 2)
   {
     fmt::print(stderr, "usage: cycle_study SCENES\n");

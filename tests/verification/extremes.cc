@@ -7,7 +7,7 @@
 //     extremes contrib/reference/extremes.json [accuracy]
 #include "../support/run_text.h"
 
-#include <deal.II/base/mpi.h>
+#include <crawler/base/mpi_session.h>
 
 #include <nlohmann/json.hpp>
 
@@ -34,7 +34,7 @@ int
 main(int argc, char **argv)
 {
   int one = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  const crawler::MpiSession guard(one, argv);
   if (argc < 2)
     return 2;
   std::ifstream file(argv[1]);

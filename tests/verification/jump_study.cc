@@ -8,7 +8,7 @@
 #include "../support/lane_runs.h"
 #include "../support/with_breaks.h"
 
-#include <deal.II/base/mpi.h>
+#include <crawler/base/mpi_session.h>
 
 #include <chrono>
 
@@ -66,7 +66,7 @@ int
 main(int argc, char **argv)
 {
   int one = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  const crawler::MpiSession guard(one, argv);
   if (argc < 2)
   {
     fmt::print(stderr, "usage: jump_study mesh|time [a k]\n");

@@ -7,10 +7,9 @@
 //     build/tests/ladder_study [number of scenes]
 #include "../support/random_waves.h"
 
+#include <crawler/base/mpi_session.h>
 #include <crawler/reduced_models/perturbation.h>
 #include <crawler/run/reduced_model.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +22,7 @@ main(int argc, char **argv)
 {
   const unsigned int n = argc > 1 ? static_cast<unsigned int>(std::stoul(argv[1])) : 100;
   int one              = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  const crawler::MpiSession guard(one, argv);
   std::cout << "a,chi,c,k,T,displacement,perturbation true,perturbation estimated,kinematic true,kinematic estimated,"
                "changes\n";
   unsigned int within[2] = {0, 0}, total = 0, unknown = 0, skipped = 0;

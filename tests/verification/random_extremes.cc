@@ -18,10 +18,9 @@
 #include <crawler/accuracy/answer.h>
 #include <crawler/accuracy/graded_choice.h>
 #include <crawler/base/exceptions.h>
+#include <crawler/base/mpi_session.h>
 #include <crawler/run/self_check.h>
 #include <crawler/studies/core/compute.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <cstdio>
 #include <ctime>
@@ -467,7 +466,7 @@ main(int argc, char **argv)
 {
   int one            = 1;
   char *no_options[] = {argv[0], nullptr}, **none = no_options;
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(one, none, 1);
+  const crawler::MpiSession mpi(one, none);
   unsigned int first = 0, last = 0;
   const int n_numbers = argc < 3 ? 0 : std::sscanf(argv[1], "%u-%u", &first, &last);
   if (n_numbers == 1 && std::string(argv[2]) == "--prm")

@@ -7,7 +7,7 @@
 // Exit status 1 if a true error is above the accuracy asked for, 2 if the reference cannot be read.
 #include "../support/run_text.h"
 
-#include <deal.II/base/mpi.h>
+#include <crawler/base/mpi_session.h>
 
 #include <nlohmann/json.hpp>
 
@@ -19,7 +19,7 @@ main(int argc, char **argv)
 {
   using namespace crawler;
   int one = 1;
-  const dealii::Utilities::MPI::MPI_InitFinalize guard(one, argv, 1);
+  const crawler::MpiSession guard(one, argv);
   if (argc < 2)
     return 2;
   std::ifstream file(argv[1]);

@@ -14,24 +14,30 @@ namespace crawler
   class Triangulation
   {
   public:
-    /// Cells between neighbours of @p ends [length] (collective).
-    Triangulation(MPI_Comm communicator, const std::vector<double> &ends);
-    ~Triangulation();
+    Triangulation()          = default;
+    virtual ~Triangulation() = default;
 
-    std::size_t
-    n_cells() const;
+    Triangulation(const Triangulation &) = delete;
+    Triangulation &
+    operator=(const Triangulation &) = delete;
+
+    virtual std::size_t
+    n_cells() const = 0;
 
     /// The cells from left to right, each of them a part of one of the first mesh, @p coarse.
-    std::vector<Cell>
-    cells(const std::vector<Cell> &coarse) const;
+    virtual std::vector<Cell>
+    cells(const std::vector<Cell> &coarse) const = 0;
 
     /// Divides and joins cells (collective): both halves of a cell are joined, and neighbours differ by one level at
     /// most.
-    void
-    change(const std::vector<CellChange> &changes);
-
-  private:
-    struct Implementation;
-    std::unique_ptr<Implementation> implementation_;
+    virtual void
+    change(const std::vector<CellChange> &changes) = 0;
   };
+
+  /// Cells between neighbours of @p ends [length] (collective).
+  std::unique_ptr<Triangulation>
+  create_triangulation(MPI_Comm communicator, const std::vector<double> &ends);
+
+  /// Does it, with the library that links deal.II (base/deal_ii_library.h).
+  using CreateTriangulation = Triangulation *(MPI_Comm communicator, const std::vector<double> &ends);
 } // namespace crawler

@@ -3,22 +3,29 @@
 
 #include <crawler/parameters/entry_info.h>
 
+#include <cstddef>
 #include <functional>
 #include <iosfwd>
-#include <memory>
+#include <map>
 #include <string>
 #include <vector>
 
 namespace crawler
 {
-  /// Keeps the texts of declared entries, by dealii::ParameterHandler. A path is the words of sections and entry.
+  /// A declared entry and its text.
+  struct StoredEntry
+  {
+    std::vector<std::string> path; ///< the words of sections and entry
+    EntryInfo info;
+    std::string explanation; ///< what a user reads about it
+    std::string value;
+  };
+
+  /// Keeps the texts of declared entries. A path is the words of sections and entry.
   class EntryStore
   {
   public:
     using Path = std::vector<std::string>;
-
-    EntryStore();
-    ~EntryStore();
 
     /// An entry with its default value. @p match says whether a text is admissible; @p assign sees each value from now
     /// on, the default first.
@@ -35,15 +42,25 @@ namespace crawler
     std::string
     get(const Path &path) const;
 
-    /// The present values as a .prm file with every entry explained.
+    /// The present values as a .prm file with every entry explained, in the form of dealii::ParameterHandler.
     void
     print_prm(std::ostream &out) const;
     /// The same in the XML of dealii::ParameterHandler.
     void
     print_xml(std::ostream &out) const;
 
+    /// Does it, with the library that links deal.II (base/deal_ii_library.h).
+    using PrintXml = void(std::ostream &out, const std::vector<StoredEntry> &entries);
+
   private:
-    struct Implementation;
-    std::unique_ptr<Implementation> implementation_;
+    struct Actions
+    {
+      std::function<bool(const std::string &)> match;
+      std::function<void(const std::string &)> assign;
+    };
+
+    std::vector<StoredEntry> entries_; ///< in the order in which they were declared
+    std::vector<Actions> actions_;     ///< of the entries
+    std::map<Path, std::size_t> places_;
   };
 } // namespace crawler

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/base64.h>
 #include <crawler/studies/report/packed.h>
-
-#include <deal.II/base/utilities.h>
 
 #include <algorithm>
 #include <bit>
@@ -24,7 +23,7 @@ namespace crawler
     {
       std::vector<unsigned char> bytes(values.size() * sizeof(Number));
       std::memcpy(bytes.data(), values.data(), bytes.size());
-      return dealii::Utilities::encode_base64(bytes);
+      return encode_base64(bytes);
     }
 
     /// Indices into the different values; nothing if these are too many to be worth it.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // What a change of the mesh keeps, also on several ranks.
+#include "../../support/ranks.h"
 #include "../../support/run_text.h"
 
 #include <crawler/equation/general_position_form.h>
 #include <crawler/equation/mesh_transfer.h>
 
-#include <deal.II/base/mpi.h>
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ namespace
     if (d.n_local() > 0 && !d.has_right_neighbour())
       own += u.back();
     const CellIntegrals sum = form.integrals(0., u, std::vector<double>(d.n_owned(), 0.));
-    return {1. + dealii::Utilities::MPI::sum(own, MPI_COMM_WORLD), sum.displacement, sum.elastic_energy};
+    return {1. + test::over_ranks(own), sum.displacement, sum.elastic_energy};
   }
 
   void

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // The block-tridiagonal elimination against a dense solution, also on several ranks and with more ranks than cells.
+#include "../../support/ranks.h"
+
 #include <crawler/mesh/block_tridiagonal_matrix.h>
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
 
@@ -94,8 +95,8 @@ TEST(Discretization, CellsAndUnknownsAreShared)
   for (const unsigned int n_cells : {1u, 2u, 10u})
   {
     const Discretization d(MPI_COMM_WORLD, 3., n_cells, 4);
-    EXPECT_EQ(dealii::Utilities::MPI::sum(d.n_local_cells(), MPI_COMM_WORLD), n_cells);
-    EXPECT_EQ(dealii::Utilities::MPI::sum(static_cast<unsigned int>(d.n_owned()), MPI_COMM_WORLD), d.n_unknowns());
+    EXPECT_EQ(test::over_ranks(d.n_local_cells()), n_cells);
+    EXPECT_EQ(test::over_ranks(static_cast<unsigned int>(d.n_owned())), d.n_unknowns());
     for (const double h : d.cell_size())
       EXPECT_NEAR(h, 3. / n_cells, 1e-14);
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 //
 // Which cells are divided and joined, and what meshes that gives; also on several ranks.
+#include "../../support/ranks.h"
+
 #include <crawler/mesh/mesh_marking.h>
 
-#include <deal.II/base/mpi.h>
 
 #include <gtest/gtest.h>
 
@@ -51,9 +52,8 @@ namespace
       end = cell.left + cell.size;
     }
     EXPECT_NEAR(end, length, 1e-14 * length);
-    EXPECT_EQ(dealii::Utilities::MPI::sum(mesh.n_local_cells(), MPI_COMM_WORLD), mesh.n_cells());
-    EXPECT_EQ(dealii::Utilities::MPI::sum(static_cast<unsigned int>(mesh.n_owned()), MPI_COMM_WORLD),
-              mesh.n_unknowns());
+    EXPECT_EQ(test::over_ranks(mesh.n_local_cells()), mesh.n_cells());
+    EXPECT_EQ(test::over_ranks(static_cast<unsigned int>(mesh.n_owned())), mesh.n_unknowns());
     for (unsigned int c = 0; c < mesh.n_local_cells(); ++c)
     {
       EXPECT_EQ(mesh.cell_left()[c], mesh.cells()[mesh.first_cell() + c].left);
