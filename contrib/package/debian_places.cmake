@@ -16,10 +16,13 @@ if(PYTHON)
   file(RENAME ${PYTHON}/dist-packages ${USR}/lib/python3/dist-packages)
   file(REMOVE_RECURSE ${PYTHON})
 endif()
-file(GLOB BINARIES ${USR}/bin/crawler ${USR}/lib/python3/dist-packages/crawler/*.so)
-foreach(BINARY ${BINARIES}) # Debian's libraries are found without
-  file(RPATH_REMOVE FILE ${BINARY})
+# Debian's libraries are found without; the part that needs deal.II is in a folder of its own.
+file(RPATH_SET FILE ${USR}/bin/crawler NEW_RPATH "\$ORIGIN/../lib/crawler")
+file(GLOB MODULES ${USR}/lib/python3/dist-packages/crawler/*.so)
+foreach(MODULE ${MODULES})
+  file(RPATH_SET FILE ${MODULE} NEW_RPATH "\$ORIGIN/../../../../lib/crawler")
 endforeach()
+file(RPATH_REMOVE FILE ${USR}/lib/crawler/libcrawler_deal_ii.so)
 
 file(COPY ${CPACK_CRAWLER_SOURCE}/contrib/package/copyright DESTINATION ${DOC})
 file(REMOVE ${DOC}/LICENSE)

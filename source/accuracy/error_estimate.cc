@@ -134,14 +134,14 @@ namespace crawler
   } // namespace
 
   NumericsChoice
-  refined(const NumericsChoice &choice, const Scene &scene)
+  refined(const NumericsChoice &choice, const Scene &scene, const double cells)
   {
     NumericsChoice next = choice;
     Numerics &n         = next.numerics;
     if (n.mesh.tolerance > 0.)
       n.mesh.tolerance *= refined_tolerance;
     else
-      n.n_cells = finer_n_cells(refined_cells, n.n_cells, scene.breaks_in_space().size(), n.grading);
+      n.n_cells = finer_n_cells(cells, n.n_cells, scene.breaks_in_space().size(), n.grading);
     change_steps(n, refined_tolerance);
     if (n.grading.levels > 0)
       n = with_finer_grading(scene, n);

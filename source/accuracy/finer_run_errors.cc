@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace crawler
 {
@@ -34,6 +35,11 @@ namespace crawler
       errors.values[i] = entry.is_sampled
                            ? more_if_sampled * factor * x + (part + sampling_error / (n_points * n_points)) * S
                            : factor * x + part * S;
+      // Two meshes may be wrong alike at the ends of their cells.
+      for (const auto &[key, extreme] :
+           {std::pair("min_stretch.value", &result.min_stretch), {"max_stretch.value", &result.max_stretch}})
+        if (entry.key == key)
+          errors.values[i] = std::max(errors.values[i], extreme->jump);
     }
     return errors;
   }

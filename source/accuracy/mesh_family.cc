@@ -47,7 +47,7 @@ namespace crawler
         keep(latest_);
         for (;;)
         {
-          const bool good = is_good();
+          const bool good = is_good_in_space();
           if (good ? is_fine_in_time() : 2 * latest_.mesh->n_cells > most_cells_now() || !is_worth_it())
             break;
           if (!good)
@@ -207,7 +207,8 @@ namespace crawler
         const double error = 2. * std::abs(*value(result) - *value(before));
         if (error <= time_part * wanted() || ++n_corrections_ > most_tolerances)
         {
-          time_error_ = std::max(time_error_, error);
+          // One difference may be small by chance.
+          time_error_ = std::max(error, std::min(time_error_, time_part * wanted()));
           return true;
         }
         numerics().tolerance = other.tolerance;
@@ -327,10 +328,11 @@ namespace crawler
         }
       }
 
+      /// With the largest error in time that is admissible; what that was on the coarsest mesh does not count here.
       bool
-      is_good() const
+      is_good_in_space() const
       {
-        return value(latest_) && std::max(space_error_, least_part * wanted()) + time_error_ <= wanted();
+        return value(latest_) && std::max(space_error_, least_part * wanted()) + time_part * wanted() <= wanted();
       }
 
       Answer

@@ -5,6 +5,7 @@
 #include <crawler/accuracy/run_as_promised.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
+#include <crawler/run/accuracy_rule.h>
 #include <crawler/run/self_check.h>
 #include <crawler/time/failure.h>
 
@@ -17,6 +18,8 @@ namespace crawler
 {
   namespace
   {
+    using accuracy_rule::finer_run::most_refined_cells, accuracy_rule::finer_run::refined_cells;
+
     /**
      * Where the user chose the numerics a coarse mesh or long steps can fake a stretch that is lost inside: finer runs
      * must lose it, too, at nearly the same time.
@@ -152,7 +155,7 @@ namespace crawler
         return answer;
       if (retries)
       {
-        const NumericsChoice next = refined(answer.choice, scene);
+        const NumericsChoice next = refined(answer.choice, scene, refined_cells);
         result                    = simulate(next);
         answer.choice             = next;
         ++answer.refinements;
@@ -174,7 +177,11 @@ namespace crawler
       if (may_refine && answer.refinements < most_refinements)
         try
         {
-          const NumericsChoice next = refined(answer.choice, scene);
+          // A smooth solution needs few more; where that has not helped errors go with a power of the size of cells.
+          const double cells        = answer.refinements == 0 || !(total > wanted)
+                                        ? refined_cells
+                                        : std::clamp(std::cbrt(total / wanted), refined_cells, most_refined_cells);
+          const NumericsChoice next = refined(answer.choice, scene, cells);
           result                    = simulate(next);
           answer.choice             = next;
           ++answer.refinements;

@@ -54,6 +54,12 @@ namespace crawler
   }
 
   double
+  LaneTables::smallest_size() const
+  {
+    return *std::ranges::min_element(sizes_);
+  }
+
+  double
   LaneTables::place_of_sample(const unsigned int number) const
   {
     const unsigned int cell = number / setup.n_samples;

@@ -102,6 +102,7 @@ namespace crawler
         std::optional<Recorder> recorder;
         std::unique_ptr<ActiveStressAtPoints> stress; ///< at the quadrature points and the ends of the body
         std::optional<StressWatch> watch;
+        std::vector<double> breaks; ///< in space, in lengths of the body
         std::vector<double> m;
         std::vector<std::array<double, 2>> end_stress; ///< m at the ends, in the stages of the step that is tried
         std::size_t n_stress_calls = 0;
@@ -142,6 +143,9 @@ namespace crawler
         lane.stress = scene.active_stress->at(points);
         lane.watch.emplace(
           *scene.active_stress, lane.units.length, numerics.least_event > 0. ? numerics.least_event : HUGE_VAL);
+        lane.breaks = scene.breaks_in_space();
+        for (double &s : lane.breaks)
+          s /= lane.units.length;
         lane.m.resize(points.size());
         lane.end_stress.resize(tableau_.n);
         lane.n_stress_calls = 0;
@@ -190,6 +194,7 @@ namespace crawler
         if (runs_[lane.run].cycles)
           options.cycles = runs_[lane.run].cycles;
         lane.recorder.emplace(scene, lane.units, options, tolerance, /*may_search=*/false);
+        lane.recorder->set_smallest_cell(tables_.smallest_size());
         lane.output_times = lane.segments.breaks();
         lane.output_times.push_back(1.);
         lane.restarts.assign(lane.output_times.size(), 1);
@@ -277,8 +282,8 @@ namespace crawler
         {
           if (!(step.stages[i].min_stretch > small_stretch))
             return false;
-          const auto [smallest, largest] =
-            extremes_.look(step, i, lane.recorder->result.min_stretch.value, lane.recorder->result.max_stretch.value);
+          const auto [smallest, largest] = extremes_.look(
+            step, i, lane.recorder->result.min_stretch.value, lane.recorder->result.max_stretch.value, lane.breaks);
           lane.recorder->see_stretch(smallest, largest);
           if (options_.energy_balance)
             add_rates(lane, step, i);

@@ -33,6 +33,12 @@ namespace crawler
       gait_meter_.emplace(period, cycle_stop_.has_value());
   }
 
+  void
+  Recorder::set_smallest_cell(const double size)
+  {
+    sudden_changes_.emplace(scene_, units_, size);
+  }
+
   std::vector<double>
   Recorder::step_ends() const
   {
@@ -57,8 +63,23 @@ namespace crawler
   {
     if (started_)
     {
-      smallest_.add(smallest);
-      largest_.add(largest);
+      const auto known = sudden_changes_ ? sudden_changes_->extremes_if_thin(smallest.t) : std::nullopt;
+      if (known)
+      {
+        smallest_.add_alone(known->first);
+        largest_.add_alone(known->second);
+      }
+      else if (were_known_)
+      {
+        smallest_.add_alone(smallest);
+        largest_.add_alone(largest);
+      }
+      else
+      {
+        smallest_.add(smallest);
+        largest_.add(largest);
+      }
+      were_known_ = known.has_value();
     }
     else
     {
@@ -151,7 +172,7 @@ namespace crawler
   {
     archive.require_same(cycle_stop_.has_value(), "the cycle stop");
     archive.require_same(gait_meter_.has_value(), "the look at the gait");
-    archive(result, smallest_, largest_, started_, largest_friction_, largest_net_friction_);
+    archive(result, smallest_, largest_, started_, largest_friction_, largest_net_friction_, were_known_);
     if (cycle_stop_)
       archive(*cycle_stop_);
     if (gait_meter_)

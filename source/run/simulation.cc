@@ -141,6 +141,8 @@ namespace crawler
     const bool is_watched               = time_.step_control == StepControl::adaptive;
     Recorder recorder(
       physical_scene_, units_, options, numerics_.tolerance, mesh_.discretization->n_unknowns() <= most_unknowns);
+    if (mesh_.position != nullptr && !is_adaptive())
+      recorder.set_smallest_cell(std::ranges::min(mesh_.discretization->cells(), {}, &Cell::size).size);
     OutputTimes output_times(pictures, recorder.step_ends(), !integrators_.present->stage_places().empty());
     run_.emplace(options,
                  !observers.empty(),
@@ -150,6 +152,7 @@ namespace crawler
                              past_.delay > 0. ? past_.delay : HUGE_VAL,
                              *scene_.active_stress,
                              is_watched ? numerics_.least_event : 0.));
+    run_->breaks         = scene_.breaks_in_space();
     run_->n_failures     = scene_.active_stress->failures() != nullptr ? scene_.active_stress->failures()->count : 0;
     result().model       = numerics_.linear ? Model::linear : Model::nonlinear;
     result().jumps_move  = numerics_.jumps_move;

@@ -50,7 +50,8 @@ namespace crawler
     const double place             = lanes.tables().setup.c[i];
     const SimulationResult &record = result();
     const auto [smallest, largest] =
-      LaneExtremes(lanes.tables()).look(lanes.step(), i, record.min_stretch.value, record.max_stretch.value);
+      LaneExtremes(lanes.tables())
+        .look(lanes.step(), i, record.min_stretch.value, record.max_stretch.value, run_->breaks);
     run_->recorder.see_stretch(smallest, largest);
     if (!mesh_.end_power)
       mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);

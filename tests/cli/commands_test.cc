@@ -6,6 +6,7 @@
 #include <boost/property_tree/xml_parser.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <regex>
 #include <utility>
@@ -209,44 +210,50 @@ TEST_F(Commands, DealIIReadsItsXml)
     });
 }
 
-/// Parameter files are what ParameterHandler itself would write, byte for byte: the defaults, and those of a run.
+/// Parameter files are what ParameterHandler itself would write, byte for byte: the defaults, and those of a run (which
+/// has no terms of a sum if there is none).
 TEST_F(Commands, DealIIWritesTheSameParameterFiles)
 {
-  dealii::ParameterHandler handler;
-  const auto printed = [&handler]() {
-    std::ostringstream text;
-    handler.print_parameters(text, dealii::ParameterHandler::PRM | dealii::ParameterHandler::KeepDeclarationOrder);
-    return text.str();
-  };
-  for (const json &entry : json::parse(run_program(folder.path, {"parameters", "--format", "json"}).out))
-  {
-    const std::string unit = entry.at("unit");
-    visit(handler, entry.at("entry"), [&](const std::string &name) {
-      handler.declare_entry(name,
-                            entry.at("default"),
-                            dealii::Patterns::Anything(),
-                            entry.at("documentation").get<std::string>() +
-                              " Expected: " + entry.at("expected").get<std::string>() + "." +
-                              (unit.empty() ? "" : " Unit: " + unit + "."));
-    });
-  }
-  EXPECT_EQ(run_program(folder.path, {"parameters"}).out, printed());
-
+  const json list = json::parse(run_program(folder.path, {"parameters", "--format", "json"}).out);
   const std::vector<std::pair<std::string, std::string>> values = {{"Accuracy", "1e-2"},
                                                                    {"Body/Anchoring exponent", "2.25"},
                                                                    {"Active stress/Optimal wave/Wave speed", "1"},
                                                                    {"Output/Number of snapshots", "0"}};
-  std::vector<std::string> arguments                            = {"run", "-", "--quiet", "--output", "out"};
+  const auto printed                                            = [&](const bool is_run) {
+    dealii::ParameterHandler handler;
+    for (const json &entry : list)
+    {
+      const std::string path = entry.at("entry"), unit = entry.at("unit");
+      if (is_run && path.starts_with("Active stress/Sum/"))
+        continue;
+      visit(handler, path, [&](const std::string &name) {
+        handler.declare_entry(name,
+                              entry.at("default"),
+                              dealii::Patterns::Anything(),
+                              entry.at("documentation").get<std::string>() +
+                                " Expected: " + entry.at("expected").get<std::string>() + "." +
+                                (unit.empty() ? "" : " Unit: " + unit + "."));
+      });
+    }
+    if (is_run)
+      for (const auto &[entry, value] : values)
+        visit(handler, entry, [&, text = value](const std::string &name) { handler.set(name, text); });
+    std::ostringstream text;
+    handler.print_parameters(text, dealii::ParameterHandler::PRM | dealii::ParameterHandler::KeepDeclarationOrder);
+    return text.str();
+  };
+  const auto expect_same = [](const std::string &found, const std::string &expected) {
+    const auto [here, there] = std::ranges::mismatch(found, expected);
+    EXPECT_TRUE(found == expected) << "found: " << std::string(here, found.end()).substr(0, 200)
+                                   << "\nexpected: " << std::string(there, expected.end()).substr(0, 200);
+  };
+  expect_same(run_program(folder.path, {"parameters"}).out, printed(/*is_run=*/false));
+
+  std::vector<std::string> arguments = {"run", "-", "--quiet", "--output", "out"};
   for (const auto &[entry, value] : values)
-  {
     arguments.insert(arguments.end(), {"--set", entry + "=" + value});
-    visit(handler, entry, [&](const std::string &name) { handler.set(name, value); });
-  }
-  EXPECT_EQ(run_program(folder.path, arguments, "\n").exit_code, 0);
-  std::ifstream file(folder.path / "out/parameters.prm");
-  std::ostringstream text;
-  text << file.rdbuf();
-  EXPECT_EQ(text.str(), printed());
+  EXPECT_EQ(run_program(folder.path, arguments, "set Accuracy = 1e-2\n").exit_code, 0);
+  expect_same(read_text(folder.path / "out/parameters.prm"), printed(/*is_run=*/true));
 }
 
 TEST_F(Commands, ParametersInThreeFormats)

@@ -472,3 +472,43 @@ TEST(HardAnswers, ModulusThatJumpsInAFormula)
                 1e-4,
                 "modulus 1 and 3");
 }
+
+/// Friction of two directions, whose kinks move through the cells, and a displacement that is nearly 0 (true: runs at
+/// 1e-6, and by 200 cells).
+TEST(HardAnswers, KinksOfFrictionGetMoreCells)
+{
+  expect_within(answer_to({{"Accuracy", "1e-5"},
+                           {"Body/Elastic modulus", "0.628969760229485"},
+                           {"Body/Anchoring exponent", "2.877515581644195"},
+                           {"Ground/Backward ratio", "0.44833912717340346"},
+                           {"Ground/Switching velocity", "0.05"},
+                           {"Active stress/Generator", "travelling wave"},
+                           {"Active stress/Travelling wave/Amplitude", "0.21753521426996525"},
+                           {"Active stress/Travelling wave/Wave number", "1.5"},
+                           {"Active stress/Travelling wave/Frequency", "2"},
+                           {"Active stress/Travelling wave/Phase", "2.6380110418195337"},
+                           {"Active stress/Travelling wave/Ramp duration", "0.3"},
+                           {"Time/End time", "0.40211717607952263"}}),
+                -5.6504301e-5,
+                2e-5, // of 1e-4 of the deformation, which is larger
+                "ramped wave on ground of two directions");
+}
+
+/// The displacement on the coarsest mesh of a very soft body is far too large, and so is the error in time that is
+/// admissible there.
+TEST(HardAnswers, TimeErrorsOfVerySoftBodiesAreLookedAtAgain)
+{
+  expect_within(answer_to({{"Accuracy", "1e-4"},
+                           {"Body/Elastic modulus", "1.1695831119230269e-06"},
+                           {"Body/Anchoring exponent", "-0.045726166540092095"},
+                           {"Body/Length", "2.397906067226977"},
+                           {"Body/Friction coefficient", "0.14128465621767736"},
+                           {"Active stress/Optimal wave/Choose wave by", "wave speed"},
+                           {"Active stress/Optimal wave/Perturbation parameter", "0.1955337768148631"},
+                           {"Active stress/Optimal wave/Wave speed", "0.7"},
+                           {"Active stress/Optimal wave/Sine coefficients", "0.6, 0, 0.4"},
+                           {"Time/End time", "0.35834126120766124"}}),
+                -0.0011976421,
+                1e-4,
+                "K = 3.5e-7");
+}

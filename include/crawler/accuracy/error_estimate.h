@@ -30,9 +30,9 @@ namespace crawler
                   SimulationResult &result,
                   const KeepGoing &keep_going = {});
 
-  /// The numerics of the next try where the error of @p choice is too large.
+  /// The numerics of the next try where the error of @p choice is too large, with so many times the cells.
   NumericsChoice
-  refined(const NumericsChoice &choice, const Scene &scene);
+  refined(const NumericsChoice &choice, const Scene &scene, double cells);
 
   /// The finer run that measures the errors of a run with @p choice: what it does with entries of section Time, its
   /// numerics, and what it computes.

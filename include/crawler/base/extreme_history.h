@@ -4,6 +4,7 @@
 #include <crawler/base/parabola.h>
 
 #include <array>
+#include <cmath>
 
 namespace crawler
 {
@@ -11,6 +12,7 @@ namespace crawler
   struct Extreme
   {
     double value = 1., s = 0., t = 0.;
+    double jump = 0.; ///< of what should be continuous, where the cell of s ends: what the value may be wrong by
   };
 
   /// Keeps the smallest (or the largest) of the values that are shown to it in the order of time. Between them the
@@ -47,8 +49,17 @@ namespace crawler
       {
         const auto [t, value] = parabola_vertex(before.t, before.value, middle.t, middle.value, after.t, after.value);
         if (is_beyond(value, extreme_.value) && value > 0.)
-          extreme_ = {value, middle.s, t};
+          extreme_ = {value, middle.s, t, middle.jump + std::abs(value - middle.value)};
       }
+    }
+
+    /// A value that does not go on smoothly from those before.
+    void
+    add_alone(const Extreme &now)
+    {
+      last_.fill(now);
+      if (is_beyond(now.value, extreme_.value))
+        extreme_ = now;
     }
 
     /// What comes does not go on smoothly from what was.

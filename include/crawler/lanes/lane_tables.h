@@ -37,6 +37,10 @@ namespace crawler
     std::vector<double> points;
     LaneSetup setup;
 
+    /// Of a cell, for a body of length 1.
+    double
+    smallest_size() const;
+
     /// s/L of a sample (LaneStep).
     double
     place_of_sample(unsigned int number) const;

@@ -213,7 +213,7 @@ namespace crawler::accuracy_rule
     /// A cycle that stands for many others has an error that does not average out: the finer run is more accurate.
     inline constexpr double finer_tolerance_of_cycles = 0.25;
     /// For the next try.
-    inline constexpr double refined_cells = 1.2, refined_tolerance = 0.1;
+    inline constexpr double refined_cells = 1.2, most_refined_cells = 4., refined_tolerance = 0.1;
     /// No displacement is more accurate than this part of the body length.
     inline constexpr double round_off = 1e-15;
   } // namespace finer_run

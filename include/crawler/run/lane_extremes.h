@@ -4,6 +4,8 @@
 #include <crawler/base/extreme_history.h>
 #include <crawler/lanes/lane_tables.h>
 
+#include <vector>
+
 namespace crawler
 {
   /**
@@ -25,11 +27,17 @@ namespace crawler
     }
 
     /// Of stage @p i of @p step. If a sample may be a new extreme beyond @p least and @p most, the parabola through its
-    /// neighbours in the cell comes closer.
+    /// neighbours in the cell comes closer. At @p breaks, in lengths of the body, the stretch may jump.
     Range
-    look(const LaneStep &step, unsigned int i, double least, double most) const;
+    look(const LaneStep &step, unsigned int i, double least, double most, const std::vector<double> &breaks) const;
 
   private:
+    /// At a sample of a cell.
+    double
+    stretch_at(const LaneStep &step, unsigned int i, unsigned int cell, unsigned int place) const;
+    /// The largest of the jumps at the ends of a cell that are no breaks.
+    double
+    jump_at(const LaneStep &step, unsigned int i, unsigned int cell, const std::vector<double> &breaks) const;
     void
     sharpen(const LaneStep &step, unsigned int i, unsigned int sample, Extreme &now) const;
 

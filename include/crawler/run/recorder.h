@@ -6,6 +6,7 @@
 #include <crawler/run/cycle_stop.h>
 #include <crawler/run/gait.h>
 #include <crawler/run/simulation_result.h>
+#include <crawler/run/sudden_changes.h>
 
 #include <functional>
 #include <optional>
@@ -68,6 +69,11 @@ namespace crawler
     /// @p scene is in the @p units of the user, and must outlive this; @p tolerance is that of the time integration in
     /// natural units. A gait whose period is not declared is looked for only if @p may_search.
     Recorder(const Scene &scene, const Units &units, const RecordOptions &options, double tolerance, bool may_search);
+
+    /// The mesh is one of high order with cells no smaller than this, in natural units: what it shows of thin layers
+    /// does not count. Not called otherwise.
+    void
+    set_smallest_cell(double size);
 
     /// Times in (0, 1), ascending, where steps have to end besides the output times.
     std::vector<double>
@@ -132,8 +138,10 @@ namespace crawler
     const Units units_;
     std::optional<CycleStop> cycle_stop_;
     std::optional<GaitMeter> gait_meter_;
+    std::optional<SuddenChanges> sudden_changes_;
     ExtremeHistory smallest_{ExtremeHistory::smallest}, largest_{ExtremeHistory::largest};
     bool started_            = false;
+    bool were_known_         = false;                          ///< the extremes that were seen last, by sudden_changes_
     double largest_friction_ = 0., largest_net_friction_ = 0.; ///< over time
   };
 } // namespace crawler

@@ -131,7 +131,8 @@ namespace crawler
       OutputTimes output_times;
       StepLimiter limiter;
       Accepted accepted;
-      StretchRange stretch{}; ///< of the state that is looked at
+      StretchRange stretch{};     ///< of the state that is looked at
+      std::vector<double> breaks; ///< in space
       CellIntegrals integrals{};
       bool lanes_look    = false; ///< what they see in the stages of steps is taken
       bool lanes_gave_up = false;

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/run/sudden_changes.h>
+#include <crawler/scene/breaks.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Times and places so near to a break count as its sides, relative to duration and length.
+    constexpr double beside = 1e-9;
+    /// Smaller changes of the stretch are not sudden, and its overshoot is small.
+    constexpr double sudden = 1e-5;
+    /// A cell shows a layer of thickness sqrt(4 D t) that is this part of it, and layers are thin for no longer than
+    /// this part of the duration.
+    constexpr double seen = 1., longest = 1e-3;
+  } // namespace
+
+  SuddenChanges::SuddenChanges(const Scene &scene, const Units &units, const double smallest_cell)
+    : units_(units)
+    , cell_(smallest_cell)
+    , a_(scene.friction_exponent())
+    , k_(scene.body.elastic_modulus / units.force)
+    , end_moduli_(scene.end_moduli())
+  {
+    if (scene.active_stress->feedback() != nullptr)
+      return;
+    starts_ = TimeSegments(*scene.active_stress, scene.end_time).breaks();
+    starts_.insert(starts_.begin(), 0.);
+    std::vector<double> places = {0., units.length};
+    for (const double s : scene.breaks_in_space())
+      for (const double side : {s - beside * units.length, s + beside * units.length})
+      {
+        places.push_back(side);
+        moduli_.push_back(scene.body.elastic_modulus *
+                          (scene.profiles.elastic_modulus ? scene.profiles.elastic_modulus->value(side) : 1.));
+      }
+    m_.resize(places.size());
+    stress_ = scene.active_stress->at(places);
+  }
+
+  SuddenChanges::Stresses
+  SuddenChanges::at(const double t)
+  {
+    stress_->values(t * units_.time, m_);
+    Stresses stresses{{1. - m_[0] / end_moduli_.first, 1. - m_[1] / end_moduli_.second}, {}};
+    for (std::size_t i = 2; i + 1 < m_.size(); i += 2)
+      stresses.jumps.push_back(m_[i + 1] / moduli_[i - 1] - m_[i] / moduli_[i - 2]);
+    return stresses;
+  }
+
+  void
+  SuddenChanges::look_at_next_start()
+  {
+    const double start   = starts_[next_++];
+    const Stresses after = at(start + beside);
+    Stresses before{{1., 1.}, std::vector<double>(after.jumps.size(), 0.)};
+    if (start > 0.)
+      before = at(start - beside);
+    double largest    = std::max(std::abs(after.end_stretch.first - before.end_stretch.first),
+                              std::abs(after.end_stretch.second - before.end_stretch.second));
+    double resistance = 1.; // largest w^a
+    const auto see    = [&](const double w) {
+      if (w > 0.)
+        resistance = std::max(resistance, std::pow(w, a_));
+    };
+    see(after.end_stretch.first);
+    see(after.end_stretch.second);
+    for (std::size_t i = 0; i < after.jumps.size(); ++i)
+    {
+      const double change = std::abs(after.jumps[i] - before.jumps[i]);
+      largest             = std::max(largest, change);
+      see(1. + 0.5 * change);
+      see(1. - 0.5 * change);
+    }
+    if (largest > sudden)
+      thin_until_ =
+        std::max(thin_until_, start + std::min(longest, cell_ * cell_ * seen * seen * resistance / (4. * k_)));
+  }
+
+  std::optional<std::pair<Extreme, Extreme>>
+  SuddenChanges::extremes_if_thin(const double t)
+  {
+    while (next_ < starts_.size() && starts_[next_] < t)
+      look_at_next_start();
+    if (!(t < thin_until_))
+      return std::nullopt;
+    const auto [left, right] = at(t).end_stretch;
+    const Extreme at_left{left, 0., t}, at_right{right, 1., t};
+    return left < right ? std::pair(at_left, at_right) : std::pair(at_right, at_left);
+  }
+} // namespace crawler
