@@ -13,6 +13,7 @@
 #include "../support/ranks.h"
 #include "../support/run_text.h"
 
+#include <crawler/base/communication.h>
 #include <crawler/base/mpi_session.h>
 #include <crawler/equation/general_position_form.h>
 
@@ -133,7 +134,7 @@ main(int argc, char **argv)
     cells.push_back(static_cast<unsigned int>(std::stoul(argv[i])));
   if (cells.empty())
     cells = {10, 100, 1000, 5000, 10000, 50000, 100000, 500000, 1000000};
-  if (rank_of(MPI_COMM_WORLD) == 0)
+  if (crawler::rank_of(MPI_COMM_WORLD) == 0)
     fmt::print("| ranks | shift | cells | unknowns | ms per step, median | smallest | CPU | ns per cell (smallest) |\n"
                "|---|---|---|---|---|---|---|---|\n");
   for (const bool is_complex : {false, true})
