@@ -3,7 +3,7 @@
 # Runs clang-tidy with the checks of .clang-tidy; fails, naming the lines, if it finds something.
 # Usage: contrib/check_tidy.sh                    all headers, and the sources that differ from the branch main
 #        contrib/check_tidy.sh --since COMMIT     the same for another commit
-#        contrib/check_tidy.sh --headers          all headers (the test unit/tidy_headers: a quarter of a minute)
+#        contrib/check_tidy.sh --headers          all headers (a minute)
 #        contrib/check_tidy.sh FILE|FOLDER...     these sources (5 s each)
 # Compile commands are those of the build folder BUILD (default: build).
 set -euo pipefail

@@ -75,6 +75,9 @@ CHECKS = (
           "build/tests/calibration 10000-10059", within=0.01),
     Check("number_errors", 4, "{root}/tests/verification/number_errors.py {build}/crawler 100 7", NUMERICS,
           "python3 tests/verification/number_errors.py", within=0.01),
+    Check("sensitivities", 2, "{root}/tests/verification/sensitivity_bounds.py {crawler} 1e-9 {root}/prm/paper/fig_s1.prm "
+          "{root}/prm/examples/larva.prm {root}/prm/examples/travelling_wave.prm"),
+    Check("long_tests", 2, "{build}/tests/verification_tests long"),
     Check("cycle_stop", 3, "{build}/tests/cycle_study 150", NUMERICS, "`build/tests/cycle_study 150`", "text", within=0.03),
     Check("levels", 0.5, "{build}/tests/ladder_study 300", NUMERICS, "Measured with `build/tests/ladder_study 300`",
           "tables", within=0.02),
@@ -103,6 +106,7 @@ CHECKS = (
     Check("fuzz", 65, "{root}/contrib/fuzz.sh 600"),
     Check("sanitizers", 12, "{root}/contrib/check_sanitizers.sh"),
     Check("tidy", 15, "{root}/contrib/check_tidy.sh source tests"),
+    Check("tidy_headers", 1, "{root}/contrib/check_tidy.sh --headers"),
     # What people see.
     Check("films", 4, "{root}/tests/long/paraview_films.py {crawler} pvbatch"),
     Check("live_page", 15, "{root}/tests/long/live_page.py {crawler} {build}/live"),

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <string_view>
 
 #ifdef __SANITIZE_ADDRESS__
 #  include <sanitizer/lsan_interface.h>
@@ -22,7 +23,8 @@ __lsan_default_suppressions()
 
 namespace
 {
-  /// Restricts the run to the tests of one source, archive_test for archive_test.cc. Returns how many it has.
+  /// Restricts the run to the tests of one source, archive_test for archive_test.cc, but for suites named Long...;
+  /// "long" are these, of all sources (contrib/verify.sh). Returns how many there are.
   unsigned int
   keep_tests_of(const std::string &source)
   {
@@ -33,7 +35,9 @@ namespace
     {
       const auto &suite = *all.GetTestSuite(i);
       for (int j = 0; j < suite.total_test_count(); ++j)
-        if (const auto &test = *suite.GetTestInfo(j); std::filesystem::path(test.file()).stem() == source)
+        if (const auto &test = *suite.GetTestInfo(j); std::string_view(suite.name()).starts_with("Long")
+                                                        ? source == "long"
+                                                        : std::filesystem::path(test.file()).stem() == source)
         {
           filter += std::string(suite.name()) + "." + test.name() + ":";
           ++n;
@@ -44,7 +48,7 @@ namespace
   }
 } // namespace
 
-/// Runs the tests of all sources of the program, or of the one that is named: unit_base archive_test.
+/// Runs the tests of all sources of the program, or of the one that is named: unit_base archive_test; or the long ones.
 /// Starts MPI and PETSc for all tests of a program; only rank 0 prints, and all ranks fail together.
 /// Leaks are looked for in what the tests allocate. Start and end of MPI are left out: it loads and unloads modules,
 /// and what these keep would look like leaks of unknown origin.
@@ -62,7 +66,7 @@ main(int argc, char **argv)
 #endif
   if (argc > 1 && keep_tests_of(argv[1]) == 0)
   {
-    std::cerr << argv[0] << " has no tests of " << argv[1] << ".cc\n";
+    std::cerr << argv[0] << " has no tests named " << argv[1] << "\n";
     return 2;
   }
   auto &listeners = ::testing::UnitTest::GetInstance()->listeners();

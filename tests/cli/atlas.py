@@ -15,7 +15,7 @@ import tempfile
 import h5py
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, on_ranks, ranks_that_stop  # noqa: E402
+from program import NO_PICTURES, Checks, call, on_ranks, ranks_that_stop  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -37,10 +37,10 @@ checks = Checks()
 check = checks.expect
 
 
-def atlas(output, *more, ranks=1, stop_at=None):
+def atlas(output, *more, ranks=1, stop_at=None, picture=False):
     """The atlas of the scene."""
     return call([*on_ranks(MPIRUN, ranks), PROGRAM, "atlas", "scene.prm", "--output", output.name, *more], output.parent,
-                stop_at)
+                stop_at, {} if picture else NO_PICTURES)
 
 
 def table(folder):
@@ -169,7 +169,7 @@ def main():
         results = {}
         for ranks in (1, 4):
             output = folder / f"on-{ranks}"
-            result = atlas(output, ranks=ranks)
+            result = atlas(output, ranks=ranks, picture=True)
             check(result.returncode == 0 and not result.stderr, f"exit code {result.returncode} on {ranks} ranks "
                   f"{result.stderr}")
             check(re.search(r"6 points, 6 finished, 0 inverted.* 0 disagree", result.stdout) is not None,

@@ -255,7 +255,7 @@ def helps():
 
 
 def without_mpi():
-    """What computes nothing does not start MPI; several processes speak once."""
+    """What computes nothing does not start MPI."""
     for arguments in (["--version"], ["--help"], ["run", "--help"], ["parameters"], ["init", "robot"], ["man"],
                       ["completion", "zsh"], ["plot", "--help"]):
         done = crawler(*arguments, variables=BROKEN_MPI)
@@ -265,6 +265,10 @@ def without_mpi():
         check(done.returncode == 2 and len(done.stderr.splitlines()) == 1 and done.stderr.startswith("crawler: "),
               f"the error of {arguments} starts no MPI {done.stderr}")
     check(crawler("check", "none.prm", variables=BROKEN_MPI).returncode not in (0, 2), "MPI can be broken")
+
+
+def several_processes():
+    """They speak once."""
     two = on_ranks(MPIEXEC, 2)
     check(crawler("--version", launcher=two).stdout.count("deal.II") == 1, "two processes print the version once")
     wrong = crawler("runn", launcher=two)
@@ -307,6 +311,7 @@ def main():
         manual()
         helps()
         without_mpi()
+        several_processes()
         full_disk(pathlib.Path(first))
         without_scratch(pathlib.Path(first))
     checks.end()

@@ -22,12 +22,15 @@ import matplotlib.image
 import matplotlib.pyplot
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call  # noqa: E402
+from program import NO_PICTURES, Checks, call  # noqa: E402
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 STUDY = """
 set Accuracy = 1e-3
+subsection Time
+  set End time = 0.5
+end
 subsection Sweep
   set Axes = Body/Anchoring exponent : 2, 3; Body/Elastic modulus : 1, 2, 4
 end
@@ -140,7 +143,7 @@ def make_folders():
     pathlib.Path("empty").mkdir()
     for folder, (command, file, more, _) in STUDIES.items():
         path = ROOT / file if (ROOT / file).is_file() else file
-        end = crawler(command, path, "--output", folder, "--quiet", *more)
+        end = crawler(command, path, "--output", folder, "--quiet", *more, **NO_PICTURES)
         check(end.returncode == 0, f"crawler {command} {file}: {end.returncode} {end.stderr.strip()}")
     end = crawler("run", ROOT / "prm/examples/expression.prm", "--output", "no_stride", "--quiet", "--set", "Time/End time=0.4")
     check(end.returncode == 0, f"a run without a stride: {end.stderr.strip()}")

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """How the program shows how far it is: a bar and a kymograph in place on a terminal, lines where there is none.
 
-    python3 progress.py PATH_TO_CRAWLER MPIEXEC
+    python3 progress.py PATH_TO_CRAWLER MPIEXEC [alone|several]
 
 The program runs in a pseudo terminal; a small terminal of our own follows its control sequences, so that what stands on
 the screen at any time is known. What a bar shows is read until enough of it was seen; the work, which lasts for minutes, is then
@@ -24,9 +24,9 @@ import tempfile
 import termios
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import PATIENCE, Checks, call, environment, on_ranks  # noqa: E402
+from program import PATIENCE, Checks, call, environment, on_ranks, tests_of_part  # noqa: E402
 
-PROGRAM, MPIEXEC = sys.argv[1:]
+PROGRAM, MPIEXEC = sys.argv[1:3]
 PRM = pathlib.Path(__file__).resolve().parents[2] / "prm"
 WIDTH = 100
 VERSION = re.compile(r"crawler \d+\.\d+\.\d+ \(revision \S+, deal\.II \S+, PETSc \S+\)")
@@ -224,10 +224,8 @@ def optimise(folder):
 def main():
     """All of it."""
     with tempfile.TemporaryDirectory() as folder:
-        run(pathlib.Path(folder))
-        watch(pathlib.Path(folder))
-        sweep(pathlib.Path(folder))
-        optimise(pathlib.Path(folder))
+        for test in tests_of_part((run, watch, optimise), (sweep,)):
+            test(pathlib.Path(folder))
     checks.end()
 
 

@@ -20,7 +20,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from browser import Browser  # noqa: E402
-from program import Checks, call  # noqa: E402
+from program import NO_PICTURES, Checks, call  # noqa: E402
 
 NASTY = "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 1'>"
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -70,7 +70,7 @@ class Program:
         self.path, self.folder = path, folder
 
     def __call__(self, *arguments):
-        return call([self.path, *arguments], self.folder)
+        return call([self.path, *arguments], self.folder, variables=NO_PICTURES)
 
     def study(self, command, scene, output, **entries):
         """Writes a parameter file and runs it; entries with _ for blanks and __ for slashes."""

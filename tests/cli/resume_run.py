@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs that are stopped or killed go on with --resume and leave the same files as those that were never disturbed.
 
-    python3 resume_run.py PATH_TO_CRAWLER MPIEXEC_COMMAND
+    python3 resume_run.py PATH_TO_CRAWLER MPIEXEC_COMMAND [alone|several]
 
 Each kind of run is killed once; tests/long/run_kills.py kills them at many random places.
 """
@@ -17,7 +17,7 @@ import tempfile
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, environment  # noqa: E402
+from program import Checks, Paused, environment, tests_of_part  # noqa: E402
 from run_scenes import SCENES, STATES, Scene  # noqa: E402
 
 CRAWLER, TWO_RANKS = sys.argv[1], [sys.argv[2], "--oversubscribe", "-n", "2"]
@@ -154,11 +154,22 @@ def folders(scene):
     expect((foreign / "letter.txt").read_text() == "dear", "a foreign file was changed")
 
 
-def two_ranks(place, one_rank):
+def one_rank(place):
+    """All kinds of runs."""
+    scenes = {one: Scene(CRAWLER, place / one.replace(" ", "_"), one, checks) for one in SCENES}
+    for scene in scenes.values():
+        killed(scene)
+    signals_in_pilots(scenes["adaptive"])
+    for part in (signals, time_limits, stop_file, damaged, other_parameters, ends, folders):
+        part(scenes["lanes"])
+
+
+def two_ranks(place):
     """One of them writes what both compute, or they share the cells. One that is killed ends the other, too."""
+    lanes = Scene(CRAWLER, place / "two_lanes", "lanes", checks)
     shared = Scene(CRAWLER, place / "shared", "petsc", checks, ["Discretization/Share cells=yes"], TWO_RANKS)
-    one_rank.before = TWO_RANKS
-    for scene, place_of_signal in ((one_rank, "step:150:USR1"), (shared, "write:000003.vtu:USR1:0")):
+    lanes.before = TWO_RANKS
+    for scene, place_of_signal in ((lanes, "step:150:USR1"), (shared, "write:000003.vtu:USR1:0")):
         scene.expect("two", STATES, 5, "signal", stop_at=place_of_signal)
         done = scene.run("two", [*STATES, "--resume"], "write:000009.vtu:KILL:0")
         expect(done.returncode not in (0, 2, 5), f"{scene.name}, two ranks, one killed: exit code {done.returncode}")
@@ -166,12 +177,12 @@ def two_ranks(place, one_rank):
         expect(scene.went_on("two") == 2, f"{scene.name}, two ranks: {scene.went_on('two')} times from a state")
         scene.compare("two", "two ranks")
     # mpirun hands SIGUSR1 on to a run that has begun and does not end by itself.
-    command = [str(word) for word in one_rank.command("handed", ["--set", "Time/End time=1e6"]) if word != "--quiet"]
+    command = [str(word) for word in lanes.command("handed", ["--set", "Time/End time=1e6"]) if word != "--quiet"]
     with subprocess.Popen(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         begun = any("cells" in line for line in process.stdout)
         process.send_signal(signal.SIGUSR1)
         _, errors = process.communicate()
-    expect(begun and process.returncode == 5 and "signal" in errors and (one_rank.place / "handed" / "restart.dat").exists(),
+    expect(begun and process.returncode == 5 and "signal" in errors and (lanes.place / "handed" / "restart.dat").exists(),
            f"SIGUSR1 to mpirun: exit code {process.returncode}, {errors[:500]!r}")
 
 
@@ -179,13 +190,8 @@ def main():
     """All of it."""
     with tempfile.TemporaryDirectory() as name:
         place = pathlib.Path(name)
-        scenes = {one: Scene(CRAWLER, place / one.replace(" ", "_"), one, checks) for one in SCENES}
-        for scene in scenes.values():
-            killed(scene)
-        signals_in_pilots(scenes["adaptive"])
-        for part in (signals, time_limits, stop_file, damaged, other_parameters, ends, folders):
-            part(scenes["lanes"])
-        two_ranks(place, scenes["lanes"])
+        for test in tests_of_part((one_rank,), (two_ranks,)):
+            test(place)
     checks.end()
 
 

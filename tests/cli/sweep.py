@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """crawler sweep: designs, its table in h5py and pandas, resume after kills and after changes, limits and bad input.
 
-    python3 sweep.py PATH_TO_CRAWLER MPIRUN
+    python3 sweep.py PATH_TO_CRAWLER MPIRUN [alone|several]
 
 Kills at random places, and what needs many ranks, points or little memory: tests/long/study_kills.py.
 """
@@ -19,7 +19,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, Paused, call, environment, on_ranks, ranks_that_stop  # noqa: E402
+from program import Checks, Paused, call, environment, on_ranks, ranks_that_stop, tests_of_part  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, same_as_csv, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
@@ -510,9 +510,9 @@ def test_damaged_table(folder):
 def main():
     """Each test in a folder of its own."""
     with tempfile.TemporaryDirectory() as name:
-        for test in (test_bad_input, test_damaged_table, test_grid, test_designs, test_places_of_files, test_rows_that_fail,
-                     test_time_limits, test_changed_inputs, test_killed_at_files, test_two_at_once, test_signals, test_crashes, test_kills,
-                     test_full_disk):
+        for test in tests_of_part((test_bad_input, test_damaged_table, test_places_of_files, test_rows_that_fail,
+                                   test_time_limits, test_changed_inputs, test_killed_at_files, test_two_at_once,
+                                   test_crashes, test_full_disk), (test_grid, test_designs, test_signals, test_kills)):
             folder = pathlib.Path(name, test.__name__)
             folder.mkdir()
             test(folder)

@@ -144,7 +144,7 @@ def uncertainty():
     with open("small_raw.csv", "w", encoding="utf-8") as file:
         print("s,t,m", *(f"{s},{t},{0.2 * np.sin(2 * np.pi * (s + t)) * np.sin(np.pi * t / 2)**2}" for t in times for s in places),
               sep="\n", file=file)
-    made = crawler("table", "small_raw.csv", "small.csv", "--noise", sigma, "--scene", "small.prm", "--copies", "192")
+    made = crawler("table", "small_raw.csv", "small.csv", "--noise", sigma, "--scene", "small.prm", "--copies", "96")
     check(made.returncode == 0, f"crawler table small_raw.csv {made.stderr}")
     found = float(made.stdout.split("numerical bound) +- ")[1].split()[0])
     displacement("small.prm", "small_run", "--set", "Output/Sensitivities=Body/Elastic modulus")

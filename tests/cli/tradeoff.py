@@ -15,7 +15,7 @@ import tempfile
 import h5py
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
-from program import Checks, call, on_ranks, ranks_that_stop  # noqa: E402
+from program import NO_PICTURES, Checks, call, on_ranks, ranks_that_stop  # noqa: E402
 from tables import csv_rows, h5_columns, json_of, number, same_as_csv  # noqa: E402
 
 BODY = """
@@ -44,10 +44,10 @@ checks = Checks()
 check = checks.expect
 
 
-def study(output, *more, ranks=1, stop_at=None):
+def study(output, *more, ranks=1, stop_at=None, picture=False):
     """The study, or the rest of it."""
     return call([*on_ranks(MPIRUN, ranks), PROGRAM, "tradeoff", "small.prm", "--output", output.name, *more], output.parent,
-                stop_at)
+                stop_at, {} if picture else NO_PICTURES)
 
 
 def table(folder):
@@ -189,7 +189,7 @@ def check_stops(output, expected):
     lines = written(output)
     check(killed.returncode == 128 + signal.SIGKILL and len(lines) >= len(before) + 5 and before.items() <= lines.items(),
           f"rank 1 of two is killed after {len(lines)} settings, {len(before)} before: {killed}")
-    done = study(output, "--resume", "--set", "Tradeoff/Time limit=1e6", ranks=2)
+    done = study(output, "--resume", "--set", "Tradeoff/Time limit=1e6", ranks=2, picture=True)
     check(done.returncode == 0 and "Resumed with" in done.stdout, f"resumed on two ranks {done.stderr}")
     rows = table(output)
     check(answers(rows) == expected and len(rows) == len(expected), "the same settings and errors as without a break")
@@ -214,7 +214,7 @@ def main():
         all_answers = {}
         for ranks in (1, 2):
             output = folder / f"on-{ranks}"
-            result = study(output, ranks=ranks)
+            result = study(output, ranks=ranks, picture=True)
             check(result.returncode == 0 and not result.stderr, f"exit code {result.returncode} on {ranks} ranks "
                   f"{result.stderr}")
             rows, summary = table(output), summary_of(output)

@@ -21,7 +21,7 @@ import warnings
 PROGRAM, PACKAGE, SOURCE = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:4])
 sys.path[:0] = [PACKAGE, str(pathlib.Path(__file__).resolve().parents[1] / "support")]
 import crawler  # noqa: E402
-from program import Checks, call  # noqa: E402
+from program import NO_PICTURES, Checks, call  # noqa: E402
 
 checks = Checks()
 expect = checks.expect
@@ -195,8 +195,8 @@ PAIRS = [
 GRID = {**BY_SPEED, "Sweep/Axes": "Body/Elastic modulus : 1, 2; Body/Anchoring exponent : 2, 3"}
 DRAWN = {**BY_SPEED, "Sweep/Axes": "Body/Elastic modulus : uniform(1, 2)", "Sweep/Design": "random",
          "Sweep/Number of points": "3"}
-MAP = {**BY_SPEED, "Atlas/First axis": "Body/Elastic modulus : 1, 2", "Atlas/Second axis": "Body/Anchoring exponent : 2, 3"}
-TRADES = {**BY_SPEED, **{"Tradeoff/" + name: value for name, value in {
+MAP = {**BY_SPEED, T + "End time": "0.3", "Atlas/First axis": "Body/Elastic modulus : 1, 2", "Atlas/Second axis": "Body/Anchoring exponent : 2, 3"}
+TRADES = {**BY_SPEED, T + "End time": "0.1", **{"Tradeoff/" + name: value for name, value in {
     "Models": "nonlinear", "Formulations": "position", "Meshes": "uniform", "Engines": "fused", "Integrators": "radau 5",
     "Degrees": "2", "Cells": "4", "Tolerances": "1e-2", "Repetitions": "1"}.items()}}
 BEST = {**WAVE_OF_STRAIN, "Optimize/Variables": STRAIN + "Amplitude : 0.1 to 0.4"}
@@ -271,7 +271,7 @@ def outcome(scene, command="run"):
         return answer_in(folder), [line for line in log if "has no effect" in line]
     file = folder.parent / "scene.prm"
     file.write_text(crawler.to_prm(scene))
-    ended = call([PROGRAM, command, file, "--output", folder], variables={"PATH": "/nowhere"})
+    ended = call([PROGRAM, command, file, "--output", folder], variables=NO_PICTURES)
     expect(0 <= ended.returncode < 100, f"{command} of {scene} ends with {ended.returncode}: {ended.stderr}")
     if ended.returncode == 2:
         return ended.stderr, []

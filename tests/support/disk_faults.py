@@ -6,7 +6,7 @@ import resource
 import shutil
 import subprocess
 
-from program import Paused, call
+from program import NO_PICTURES, Paused, call
 
 PAGE = 4096
 RUN = """set Accuracy = 1e-3
@@ -51,6 +51,9 @@ subsection Atlas
   set First axis  = Active stress/Optimal wave/Perturbation parameter : 0.1, 0.2
   set Second axis = Body/Anchoring exponent : linspace(0, 2, 2)
 end
+subsection Time
+  set End time = 0.3
+end
 """
 TRADEOFF = """subsection Active stress
   subsection Optimal wave
@@ -64,6 +67,9 @@ subsection Tradeoff
   set Cells       = 3
   set Tolerances  = 1e-2, 1e-3
   set Repetitions = 1
+end
+subsection Time
+  set End time = 0.1
 end
 """
 SAMPLES = "s,t,m\n" + "".join(f"{s / 4},{t / 8},{(s - t) % 3}\n" for t in range(9) for s in range(5))
@@ -93,7 +99,9 @@ class Case:
             if largest is not None:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))
 
-        command, more = [self.program, *words, *options], {"variables": {"MPLCONFIGDIR": str(inputs / "matplotlib")}}
+        command = [self.program, *words, *options]
+        drawn = self.name not in ("atlas", "tradeoff")  # the pictures of an optimisation and of "plot" are enough
+        more = {"variables": {"MPLCONFIGDIR": str(inputs / "matplotlib"), **({} if drawn else NO_PICTURES)}}
         if not self.to_screen:
             return call(command, preexec_fn=limit, **more)
         try:

@@ -6,6 +6,7 @@ include/crawler/base/stop_place.h) raises a signal when the program gets there. 
 ends what hangs.
 """
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -14,6 +15,8 @@ PATIENCE = 600  # seconds
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1",
                "OPENBLAS_NUM_THREADS": "1"}
 ENVIRONMENT.pop("CRAWLER_STOP_AT", None)
+# For studies that need no picture: their Python does nothing.
+NO_PICTURES = {"PATH": f"{pathlib.Path(__file__).resolve().parent / 'no_pictures'}:{os.environ['PATH']}"}
 
 
 class Checks:
@@ -58,6 +61,14 @@ def call(command, folder=None, stop_at=None, variables=None, **more):
 def on_ranks(mpirun, n):
     """What stands before a command that n ranks run; nothing for one."""
     return [mpirun, "--oversubscribe", "-n", n] if n > 1 else []
+
+
+def tests_of_part(alone, several):
+    """The tests of this call of a script, whose last argument may be "alone": those that start no ranks; or "several": those
+    that do, which ctest gives the processors that they need. Without either: all.
+    """
+    part = sys.argv[-1]
+    return (*(alone if part != "several" else ()), *(several if part != "alone" else ()))
 
 
 def ranks_that_stop(mpirun, command, *places):

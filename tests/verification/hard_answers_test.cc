@@ -319,14 +319,14 @@ TEST(HardAnswers, FrictionOfTwoDirectionsBalances)
                                              {"Body/Initial stretch", "1+0.05*s"},
                                              {"Body/Elastic modulus", "100"},
                                              {"Time/End time", "0.3"},
-                                             {"Accuracy", "1e-7"}});
+                                             {"Accuracy", "1e-6"}});
   EXPECT_EQ(result.time.status, Status::finished) << result.time.message;
   EXPECT_LT(result.net_friction, 1e-6);
 }
 
 /// Pieces between breaks had as many cells on the "finer" graded mesh as on the first: an error of 17e-9 was reported
 /// as 3e-9. The answer is that of an independent finite-volume solver and of uniform meshes of up to 640 cells.
-TEST(HardAnswers, AFinerGradedMeshIsFiner)
+TEST(LongHardAnswers, AFinerGradedMeshIsFiner)
 {
   expect_within(answer_to({{"Active stress/Generator", "strain feedback"},
                            {"Active stress/Strain feedback/Distance", "0.16708152325341044"},

@@ -133,7 +133,7 @@ TEST(SquareActuation, UnknownMovingJumpsHaveAnHonestBound)
   const Settings settings = {{"Active stress/Generator", "expression"},
                              {"Active stress/Expression/Active stress", "mod(1.5*s+t,1) < 0.5 ? 0.3 : -0.3"},
                              {"Time/End time", "0.5"}};
-  const double limit      = 2. * with_jumps_through_cells(settings, 512) - with_jumps_through_cells(settings, 256);
+  const double limit      = 2. * with_jumps_through_cells(settings, 256) - with_jumps_through_cells(settings, 128);
   const auto good         = answer(test::with(settings, {{"Accuracy", "1e-2"}}));
   EXPECT_EQ(good.result.time.status, Status::finished) << good.result.time.message;
   EXPECT_LT(std::abs(good.result.displacement - limit), good.result.error->total);
@@ -151,8 +151,8 @@ TEST(SquareActuation, UnknownMovingJumpsHaveAnHonestBound)
 TEST(SquareActuation, MovingJumpsAreTheLimitOfFronts)
 {
   const Settings settings = travelling_wave("square", 0.5);
-  const double fine       = with_jumps_through_cells(settings, 512),
-               limit      = 2. * fine - with_jumps_through_cells(settings, 256);
+  const double fine       = with_jumps_through_cells(settings, 256),
+               limit      = 2. * fine - with_jumps_through_cells(settings, 128);
   const auto accurate     = answer(test::with(settings, {{"Accuracy", "1e-5"}}));
   const double D          = accurate.result.displacement;
   ASSERT_EQ(accurate.result.time.status, Status::finished) << accurate.result.time.message;

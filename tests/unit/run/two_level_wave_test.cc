@@ -91,20 +91,19 @@ TEST(TwoLevelWave, TheBestShareIsThatOfTheTheory)
 /// a = -1 run against the motion, those of a = 2 with it.
 TEST(TwoLevelWave, NearlyReachesTheBound)
 {
-  for (const double a : {-1., 2.})
-    for (const double front : {0.05, 0.1})
-      for (const bool to_head : {false, true})
-      {
-        const Settings settings = wave(
-          a, {{"Front width", test::text(front)}, {"Direction", to_head ? "from tail to head" : "from head to tail"}});
-        const auto result = kinematic(settings);
-        const auto own    = numbers(settings);
-        ASSERT_TRUE(result.gait_efficiency);
-        EXPECT_GT(*result.gait_efficiency, front < 0.07 ? 0.97 : 0.95) << a << " " << front;
-        EXPECT_LT(*result.gait_efficiency, 1.);
-        EXPECT_NEAR(*result.gait_efficiency, own.merit / own.bound, 1e-6);
-        EXPECT_EQ(result.displacement > 0., to_head == (a > 0.)) << a;
-      }
+  for (const auto &[a, front, to_head] :
+       {std::tuple(-1., 0.05, false), {-1., 0.1, true}, {2., 0.05, true}, {2., 0.1, false}})
+  {
+    const Settings settings =
+      wave(a, {{"Front width", test::text(front)}, {"Direction", to_head ? "from tail to head" : "from head to tail"}});
+    const auto result = kinematic(settings);
+    const auto own    = numbers(settings);
+    ASSERT_TRUE(result.gait_efficiency);
+    EXPECT_GT(*result.gait_efficiency, front < 0.07 ? 0.97 : 0.95) << a << " " << front;
+    EXPECT_LT(*result.gait_efficiency, 1.);
+    EXPECT_NEAR(*result.gait_efficiency, own.merit / own.bound, 1e-6);
+    EXPECT_EQ(result.displacement > 0., to_head == (a > 0.)) << a;
+  }
 }
 
 /// Friction in proportion to the velocity on the ground, g = w, is a = 1; and the best share of a law that is no power.
@@ -136,13 +135,12 @@ TEST(TwoLevelWave, DoesTheWorkThatIsGiven)
                          {"Body/Friction coefficient", "0.4"},
                          {"Body/Elastic modulus", "7"},
                          {"Time/End time", "1.7"}};
-  for (const char *n : {"1", "2"})
-    for (const char *phase : {"0", "0.7"})
-    {
-      const auto result =
-        kinematic(wave(-1., {{"Given by", "work"}, {"Work", "0.25"}, {"Wave number", n}, {"Phase", phase}}, body));
-      EXPECT_NEAR(result.energy_balance->stress_work, 0.25, 1e-6 * 0.25) << n;
-    }
+  for (const auto &[n, phase] : {std::pair("1", "0.7"), {"2", "0"}})
+  {
+    const auto result =
+      kinematic(wave(-1., {{"Given by", "work"}, {"Work", "0.25"}, {"Wave number", n}, {"Phase", phase}}, body));
+    EXPECT_NEAR(result.energy_balance->stress_work, 0.25, 1e-6 * 0.25) << n;
+  }
   const auto by_speed =
     numbers(wave(-1., {{"Given by", "wave speed"}, {"Wave speed", "0.6"}, {"Wave number", "2"}}, body));
   EXPECT_DOUBLE_EQ(by_speed.frequency, 0.4);
