@@ -114,7 +114,8 @@ namespace crawler
   {
     if (!match(info.default_value))
       throw std::logic_error("the default of \"" + info.path + "\" is not admissible");
-    places_[path]          = entries_.size();
+    if (!places_.emplace(path, entries_.size()).second)
+      throw std::logic_error("\"" + info.path + "\" is declared twice");
     const std::string unit = info.unit.empty() ? "" : " Unit: " + info.unit + ".";
     entries_.push_back(
       {path, info, info.documentation + " Expected: " + info.expected + "." + unit, info.default_value});

@@ -126,6 +126,20 @@ def check_inverted(folder):
               and not row["run displacement"] for row in rows[:2]), "the ends invert at t = k/2, and all runs say so")
 
 
+def check_crashes(folder):
+    """A fault of the program at every point of two: each is tried once more, alone, and given up by name if that crashes."""
+    two = ("--set", f"Atlas/First axis={CHI} : 0.2", "--set", f"Atlas/Second axis={P} : 2, 3")
+    for i in range(3):
+        died = atlas(folder / "crashed", *two, *(["--resume"] if i > 0 else []), stop_at="step:5:SEGV")
+        check(died.returncode == -signal.SIGSEGV, f"crash {i}: {died}")
+    notes = (folder / "crashed" / "crashes.txt").read_text(encoding="utf-8").split()
+    last = atlas(folder / "crashed", "--resume", *two)
+    rows = table(folder / "crashed")
+    check(last.returncode == 0 and sorted(notes[:2]) == ["0", "1"]
+          and [row["outcome"] for row in rows] == ["failed: crashed" if i == int(notes[2]) else "finished" for i in range(2)]
+          and "crashed twice" in rows[int(notes[2])]["explanation"], f"crashes at {notes}: {rows} {last.stderr}")
+
+
 def check_stops(folder):
     """SIGTERM and kill -9 at some rows: what is computed is kept, and --resume makes the rest, bit for bit."""
     n, long = 24, ("--set", f"Atlas/First axis={CHI} : linspace(0.1, 0.3, 12)")
@@ -194,6 +208,7 @@ def main():
               and single["steps"] == results[1]["run steps"][3], "crawler run gives the same answer")
         check_refused(folder)
         check_inverted(folder)
+        check_crashes(folder)
         check_stops(folder)
     checks.end()
 

@@ -7,6 +7,7 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/atlas/atlas.h>
 #include <crawler/studies/atlas/atlas_results.h>
+#include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
@@ -106,29 +107,41 @@ namespace crawler
       for (unsigned long i = 0; i < n; ++i)
         if (const unsigned long point = i * stride % n; !done[point])
           missing.push_back(point);
-      const unsigned long together = points_together(missing.size(), size_of(communicator));
-      const auto columns           = table.written_columns();
+      const auto columns = table.written_columns();
       RowFile rows(communicator, folder / table.file, table.group, columns);
-      return share_work(communicator,
-                        {(missing.size() + together - 1) / together,
-                         missing.size(),
-                         "points",
-                         interrupted,
-                         [&](const unsigned long number, const auto &stops, const auto &see) {
-                           const unsigned long first = number * together,
-                                               last  = std::min<unsigned long>(first + together, missing.size());
-                           std::vector<Parameters> parameters;
-                           for (unsigned long i = first; i < last; ++i)
-                             parameters.push_back(points.parameters(missing[i]));
-                           const auto some = compute_points(parameters, stops);
-                           if (!some)
-                             return false;
-                           for (unsigned long i = first; i < last; ++i)
-                             rows.write(missing[i], {{atlas_row(columns, (*some)[i - first])}});
-                           see(some->size(), 0);
-                           return true;
-                         }},
-                        log);
+      CrashNote note(folder);
+      const PointsByCrashes sorted = by_crashes(missing, crashes_in(folder));
+      if (rank_of(communicator) == 0)
+        for (const unsigned long point : sorted.given_up)
+          rows.write(point, {{atlas_row(columns, crashed_point())}});
+
+      const unsigned long n_usual = sorted.usual.size(), together = points_together(n_usual, size_of(communicator)),
+                          n_parts = (n_usual + together - 1) / together;
+      return share_work(
+        communicator,
+        {n_parts + sorted.alone.size(),
+         n_usual + sorted.alone.size(),
+         "points",
+         interrupted,
+         [&](const unsigned long number, const auto &stops, const auto &see) {
+           const auto own =
+             number < n_parts
+               ? std::span(sorted.usual).subspan(number * together, std::min(together, n_usual - number * together))
+               : std::span(sorted.alone).subspan(number - n_parts, 1);
+           std::vector<Parameters> parameters;
+           for (const unsigned long point : own)
+             parameters.push_back(points.parameters(point));
+           note.at_work_on(own);
+           const auto some = compute_points(parameters, stops);
+           if (!some)
+             return false;
+           for (std::size_t i = 0; i < own.size(); ++i)
+             rows.write(own[i], {{atlas_row(columns, (*some)[i])}});
+           note.at_work_on({});
+           see(some->size(), 0);
+           return true;
+         }},
+        log);
     }
   } // namespace
 

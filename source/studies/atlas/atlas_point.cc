@@ -4,6 +4,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/atlas/atlas_point.h>
 #include <crawler/studies/core/compute.h>
+#include <crawler/studies/core/crash_file.h>
 
 #include <fmt/format.h>
 
@@ -206,6 +207,17 @@ namespace crawler
         points[numbers[i]].runs[which] = run_of(tasks[i]);
     }
   } // namespace
+
+  AtlasPoint
+  crashed_point()
+  {
+    AtlasPoint point;
+    point.runs[AtlasPoint::automatic].status  = "failed";
+    point.runs[AtlasPoint::automatic].reason  = "crashed";
+    point.runs[AtlasPoint::automatic].message = crash_message;
+    point.outcome                             = outcome_of(point);
+    return point;
+  }
 
   std::optional<std::vector<AtlasPoint>>
   compute_points(const std::vector<Parameters> &parameters, const std::function<bool()> &interrupted)

@@ -18,6 +18,8 @@
 namespace crawler
 {
   const std::string crash_file = "crashes.txt";
+  const std::string crash_message =
+    "the program crashed twice at this point; it is a fault of the program, please report it";
 
   namespace
   {
@@ -83,7 +85,7 @@ namespace crawler
     prepared.size = line.size();
   }
 
-  std::map<unsigned long, unsigned int>
+  Crashes
   crashes_in(const std::filesystem::path &folder)
   {
     std::map<unsigned long, unsigned int> times;
@@ -93,5 +95,17 @@ namespace crawler
     for (unsigned long point = 0; text >> point;)
       ++times[point];
     return times;
+  }
+
+  PointsByCrashes
+  by_crashes(const std::span<const unsigned long> points, const Crashes &crashes)
+  {
+    PointsByCrashes sorted;
+    for (const unsigned long point : points)
+    {
+      const auto died = crashes.find(point);
+      (died == crashes.end() ? sorted.usual : died->second == 1 ? sorted.alone : sorted.given_up).push_back(point);
+    }
+    return sorted;
   }
 } // namespace crawler

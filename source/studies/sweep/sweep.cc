@@ -265,7 +265,7 @@ namespace crawler
       bytes += column.width == 0 ? sizeof(double) : column.width;
     // The time of some parts, spread over the sweep.
     constexpr unsigned long most_samples = 32;
-    constexpr double long_enough         = 2.; // seconds
+    constexpr double long_enough         = 0.5; // seconds
     SweepWork work(points, size_of(communicator));
     const unsigned long n_parts = work.n_parts(), stride = golden_stride(n_parts);
     const double before      = now();

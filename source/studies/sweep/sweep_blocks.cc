@@ -112,7 +112,7 @@ namespace crawler
       TimeOutcome &time = task.computed.result.time;
       time.status       = Status::failed;
       time.reason       = "crashed";
-      time.message      = "the program crashed twice at this point; it is a fault of the program, please report it";
+      time.message      = crash_message;
       return task;
     }
 
@@ -249,7 +249,7 @@ namespace crawler
   }
 
   void
-  SweepWork::beware_of(std::map<unsigned long, unsigned int> crashes, CrashNote &note)
+  SweepWork::beware_of(Crashes crashes, CrashNote &note)
   {
     crashes_ = std::move(crashes);
     note_    = &note;
@@ -263,24 +263,20 @@ namespace crawler
                      const std::function<void(unsigned long n, unsigned long failed)> &see)
   {
     const SweepBlock own = part(number);
-    std::vector<unsigned long> missing, died_once;
-    std::vector<Point> died_twice;
+    std::vector<unsigned long> missing;
     for (unsigned long point = own.first; point < own.first + own.size; ++point)
       if (!done[point])
-      {
-        const auto died = crashes_.find(point);
-        if (died == crashes_.end())
-          missing.push_back(point);
-        else if (died->second == 1)
-          died_once.push_back(point);
-        else
-          died_twice.push_back({point, crashed_task()});
-      }
+        missing.push_back(point);
+    const PointsByCrashes sorted = by_crashes(missing, crashes_);
+    missing                      = sorted.usual;
+    std::vector<Point> given_up;
+    for (const unsigned long point : sorted.given_up)
+      given_up.push_back({point, crashed_task()});
     const auto at_work_on = [this](const std::span<const unsigned long> points) {
       if (note_ != nullptr)
         note_->at_work_on(points);
     };
-    write_rows(died_twice, points_.sensitivities(), write, see);
+    write_rows(given_up, points_.sensitivities(), write, see);
     at_work_on(missing);
     auto shared = compute_shared(block_of(number), missing, interrupted);
     differentiate(shared, interrupted);
@@ -296,7 +292,7 @@ namespace crawler
     constexpr double much           = 1e6; // unknowns times steps
     std::size_t together            = most_together;
     const std::size_t alone         = missing.size(); // from here on
-    missing.insert(missing.end(), died_once.begin(), died_once.end());
+    missing.insert(missing.end(), sorted.alone.begin(), sorted.alone.end());
     for (std::size_t from = 0, to = 0; from < missing.size(); from = to)
     {
       to = from < alone ? std::min(from + together, alone) : from + 1;

@@ -48,6 +48,10 @@ namespace crawler
     Verdict verdict;
   };
 
+  /// A point at which the program crashed twice: it has no answer, and the reason says so.
+  AtlasPoint
+  crashed_point();
+
   /// Computes the scenes of all @p points in all forms and refined, and compares. Nothing is thrown: what goes wrong is
   /// the status of a run. Nothing is returned if @p interrupted said so before the end.
   std::optional<std::vector<AtlasPoint>>

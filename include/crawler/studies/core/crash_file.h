@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <map>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace crawler
 {
@@ -30,6 +32,19 @@ namespace crawler
   };
 
   /// How often a process died at work on each point; points at which none did are not there. Throws FileError.
-  std::map<unsigned long, unsigned int>
+  using Crashes = std::map<unsigned long, unsigned int>;
+  Crashes
   crashes_in(const std::filesystem::path &folder);
+
+  /// Points that are to be computed: where no process died, where one did, which are tried once more, each alone, and
+  /// where two did, which are given up.
+  struct PointsByCrashes
+  {
+    std::vector<unsigned long> usual, alone, given_up;
+  };
+  PointsByCrashes
+  by_crashes(std::span<const unsigned long> points, const Crashes &crashes);
+
+  /// The message of a point that is given up, whose reason is "crashed".
+  extern const std::string crash_message;
 } // namespace crawler

@@ -77,7 +77,7 @@ namespace crawler
     /// Points at which a process died before come last and alone from now on; those at which it died twice are not
     /// computed, and their rows say so. @p note is told which are computed, and must live as long as this.
     void
-    beware_of(std::map<unsigned long, unsigned int> crashes, CrashNote &note);
+    beware_of(Crashes crashes, CrashNote &note);
 
     /// Computes the points of the part @p number that have no row yet (@p done), and gives their rows to @p write.
     /// Calls
@@ -117,7 +117,7 @@ namespace crawler
     const unsigned long parts_of_block_;
     const double time_limit_; ///< for each point [s]
     SweepNumerics numerics_;
-    std::map<unsigned long, unsigned int> crashes_; ///< how often a process died at a point
+    Crashes crashes_; ///< how often a process died at a point
     CrashNote *note_ = nullptr;
   };
 } // namespace crawler
