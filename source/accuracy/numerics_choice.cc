@@ -646,6 +646,10 @@ namespace crawler
           n.integrator = "radau 9";
         if (!parameters_.time.initial_step && !is_graded)
           n.initial_step = first_step(parameters_.time);
+        // The linear level has uniform meshes for layers that start suddenly. Its displacement is 0 and says nothing of
+        // the first steps, in which these layers dissipate.
+        if (!parameters_.time.initial_step && n.linear && scales_.sudden > sudden_part * std::sqrt(accuracy_))
+          n.initial_step = std::min(n.initial_step, first_step_on_graded_mesh(scene_, n));
         // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
         // size.
         const double r       = 1. / (1. + estimated_order());

@@ -201,3 +201,34 @@ TEST(SuddenStretch, Robots)
     expect_stretch(robot(8, "3", accuracy), 0.528836, 1.180012, 1e-3);
   }
 }
+
+/// Energies of a stress m that is there at once, for a = 0 and k = gamma = L = 1: w - 1 = m (f - 1) with f the sine
+/// series of 1, whose terms decay. The linear level knows that the displacement is 0, which says nothing of its first
+/// steps.
+TEST(SuddenStretch, EnergiesOfTheLinearLevel)
+{
+  constexpr double m = 0.3, t = 0.05, pi = std::numbers::pi;
+  double mean = 0., mean_square = 0.; // of f
+  for (int n = 1; n < 100; n += 2)
+  {
+    const double decay = std::exp(-n * n * pi * pi * t), part = 8. / (n * n * pi * pi);
+    mean += part * decay;
+    mean_square += part * decay * decay;
+  }
+  const double work = m * m * (1. - mean), elastic = 0.5 * m * m * (1. - 2. * mean + mean_square);
+  for (const char *accuracy : {"1e-2", "1e-4", "1e-5", "1e-8"})
+  {
+    const SimulationResult result = answer_to({{"Model", "linear"},
+                                               {"Body/Anchoring exponent", "1"},
+                                               {"Active stress/Generator", "expression"},
+                                               {"Active stress/Expression/Active stress", "0.3"},
+                                               {"Time/End time", "0.05"},
+                                               {"Accuracy", accuracy}});
+    ASSERT_EQ(result.time.status, Status::finished) << accuracy << ": " << result.time.message;
+    const EnergyBalance &energies = result.energy_balance.value();
+    const double tolerance        = std::stod(accuracy) * work;
+    EXPECT_NEAR(energies.stress_work, work, tolerance) << accuracy;
+    EXPECT_NEAR(energies.elastic_energy, elastic, tolerance) << accuracy;
+    EXPECT_NEAR(energies.dissipation, work - elastic, tolerance) << accuracy;
+  }
+}
