@@ -421,7 +421,6 @@ namespace crawler
                    const Scene &scene,
                    const NumericsChoice &choice,
                    const Simulation::Options &options,
-                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
                    const KeepGoing &keep_going)
   {
     Answer answer = Family(parameters, scene, choice, options, keep_going).compute();
@@ -431,13 +430,6 @@ namespace crawler
       if (answer.result.gait)
         answer.result.gait->energy_balance.reset();
     }
-    if (!simulate || answer.result.time.status == Status::stopped)
-      return answer;
-    const SimulationResult files = simulate(answer.choice);
-    // Its output times make its steps a little different; the numbers are those that the bounds are for.
-    if (files.time.status == Status::stopped)
-      answer.result = files;
-    answer.result.output_seconds = files.output_seconds;
     return answer;
   }
 } // namespace crawler

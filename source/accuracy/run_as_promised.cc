@@ -81,6 +81,64 @@ namespace crawler
       constexpr const char *reasons[] = {"newton_diverged", "linear_failed", "rejection_limit", "under_resolved"};
       return outcome.status == Status::failed && std::ranges::find(reasons, outcome.reason) != std::end(reasons);
     }
+
+    /// Of one rank, without files.
+    Answer
+    answer_with(const NumericsChoice &choice,
+                const RunParameters &parameters,
+                const Scene &scene,
+                const Simulation::Options &options,
+                const KeepGoing &keep_going)
+    {
+      Simulation::Options own = options;
+      own.cycles              = cycle_wish(parameters, scene, /*has_pictures=*/false);
+      return run_as_promised(
+        MPI_COMM_SELF,
+        parameters,
+        scene,
+        choice,
+        [&](const NumericsChoice &next) {
+          return Simulation(MPI_COMM_SELF, scene, parameters.time, next.numerics).run({}, own, {}, keep_going);
+        },
+        own,
+        /*writes=*/false,
+        keep_going);
+    }
+
+    /// The stretch form has few digits: where its meshes do not meet Accuracy a uniform mesh of the position form may
+    /// do. Nothing if that does not either.
+    std::optional<Answer>
+    answer_of_position_form(const RunParameters &parameters,
+                            const Scene &scene,
+                            const Simulation::Options &options,
+                            const KeepGoing &keep_going)
+    {
+      if (parameters.discretization.formulation != FormulationEntry::automatic)
+        return std::nullopt;
+      RunParameters own              = parameters;
+      own.discretization.formulation = FormulationEntry::position;
+      const auto choice              = choose_numerics(MPI_COMM_SELF, own, scene, keep_going);
+      if (!choice || choice->numerics.mesh.tolerance > 0.)
+        return std::nullopt;
+      Answer answer = answer_with(*choice, own, scene, options, keep_going);
+      if (answer.result.time.status != Status::finished || !answer.result.error)
+        return std::nullopt;
+      return answer;
+    }
+
+    /// The answer with the files of one more run. Its output times make its steps a little different; the numbers are
+    /// those that the bounds are for.
+    Answer
+    with_files(Answer answer, const std::function<SimulationResult(const NumericsChoice &)> &simulate)
+    {
+      if (answer.result.time.status == Status::stopped)
+        return answer;
+      const SimulationResult files = simulate(answer.choice);
+      if (files.time.status == Status::stopped)
+        answer.result = files;
+      answer.result.output_seconds = files.output_seconds;
+      return answer;
+    }
   } // namespace
 
   Answer
@@ -96,19 +154,7 @@ namespace crawler
       answer.result.time.status = Status::stopped;
       return answer;
     }
-    Simulation::Options own = options;
-    own.cycles              = cycle_wish(parameters, scene, /*has_pictures=*/false);
-    return run_as_promised(
-      MPI_COMM_SELF,
-      parameters,
-      scene,
-      *choice,
-      [&](const NumericsChoice &next) {
-        return Simulation(MPI_COMM_SELF, scene, parameters.time, next.numerics).run({}, own, {}, keep_going);
-      },
-      own,
-      /*writes=*/false,
-      keep_going);
+    return answer_with(*choice, parameters, scene, options, keep_going);
   }
 
   Answer
@@ -130,12 +176,13 @@ namespace crawler
         },
         writes ? simulate : std::function<SimulationResult(const NumericsChoice &)>());
     if (choice.is_family)
-      return answer_of_family(parameters,
-                              scene,
-                              choice,
-                              options,
-                              writes ? simulate : std::function<SimulationResult(const NumericsChoice &)>(),
-                              keep_going);
+    {
+      Answer answer = answer_of_family(parameters, scene, choice, options, keep_going);
+      if (answer.result.time.reason == accuracy_not_met)
+        if (auto other = answer_of_position_form(parameters, scene, options, keep_going))
+          answer = std::move(*other);
+      return writes ? with_files(std::move(answer), simulate) : answer;
+    }
     Answer answer;
     answer.choice = choice;
     answer.result = simulate(choice);

@@ -96,7 +96,7 @@ namespace
     if (!reason_against_stretch_form(scene).empty())
       return {unknown, unknown, "the stretch form cannot compute it"};
     const auto choice             = choose_numerics(MPI_COMM_SELF, p, scene);
-    const SimulationResult result = answer_of_family(p, scene, *choice, {}, {}, {}).result;
+    const SimulationResult result = answer_of_family(p, scene, *choice, {}, {}).result;
     if (!result.error || !std::isfinite(result.error->total))
       return {unknown, unknown, "stretch form: " + problem_of(result)};
     return {result.displacement, result.error->total, ""};

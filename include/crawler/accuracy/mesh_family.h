@@ -16,14 +16,12 @@ namespace crawler
    * is as accurate as wanted (doc/numerics.md, "Stretch form"). The bound is made of the last change of R, or of D if
    * the observed order is not 2, and of the change with a tenth of the time tolerance, which the coarsest mesh shows.
    * Works and the displacement of the last stride are extrapolated alike; all else is that of the finest mesh. If the
-   * body inverts the time of that has to settle. @p options are those of each run, without output times; if @p simulate
-   * is given it makes the last of them once more, with files.
+   * body inverts the time of that has to settle. @p options are those of each run, without output times.
    */
   Answer
   answer_of_family(const RunParameters &parameters,
                    const Scene &scene,
                    const NumericsChoice &choice,
                    const Simulation::Options &options,
-                   const std::function<SimulationResult(const NumericsChoice &)> &simulate,
                    const KeepGoing &keep_going);
 } // namespace crawler
