@@ -183,18 +183,8 @@ namespace crawler
   } // namespace
 
   Answer
-  answer_of_fronts(const RunParameters &parameters,
-                   const Scene &scene,
-                   const AnswerOf &answer_of,
-                   const std::function<SimulationResult(const NumericsChoice &)> &simulate)
+  answer_of_fronts(const RunParameters &parameters, const Scene &scene, const AnswerOf &answer_of)
   {
-    Answer answer = Fronts(parameters, scene, answer_of).compute();
-    if (!simulate || answer.result.time.status == Status::stopped)
-      return answer;
-    const SimulationResult files = simulate(answer.choice);
-    if (files.time.status == Status::stopped)
-      answer.result = files;
-    answer.result.output_seconds = files.output_seconds;
-    return answer;
+    return Fronts(parameters, scene, answer_of).compute();
   }
 } // namespace crawler

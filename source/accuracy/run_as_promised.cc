@@ -168,19 +168,27 @@ namespace crawler
                   const KeepGoing &keep_going)
   {
     if (choice.has_fronts)
-      return answer_of_fronts(
-        parameters,
-        scene,
-        [&](const RunParameters &its_parameters, const Scene &its_scene) {
+    {
+      Answer answer =
+        answer_of_fronts(parameters, scene, [&](const RunParameters &its_parameters, const Scene &its_scene) {
           return answer_in_memory(its_parameters, its_scene, options, keep_going);
-        },
-        writes ? simulate : std::function<SimulationResult(const NumericsChoice &)>());
+        });
+      return writes ? with_files(std::move(answer), simulate) : answer;
+    }
     if (choice.is_family)
     {
       Answer answer = answer_of_family(parameters, scene, choice, options, keep_going);
       if (answer.result.time.reason == accuracy_not_met)
-        if (auto other = answer_of_position_form(parameters, scene, options, keep_going))
-          answer = std::move(*other);
+        try
+        {
+          if (auto other = answer_of_position_form(parameters, scene, options, keep_going))
+            answer = std::move(*other);
+        }
+        catch (...) // the answer that is there stays
+        {
+          answer.result.time.message +=
+            "; the position form failed, too: " + failure_of(std::current_exception()).message;
+        }
       return writes ? with_files(std::move(answer), simulate) : answer;
     }
     Answer answer;

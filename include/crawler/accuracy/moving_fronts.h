@@ -19,12 +19,8 @@ namespace crawler
    *   D = sum_k c_k D(d_k),    c_k = prod_(j != k) d_j/(d_j - d_k).
    *
    * The bound is the change by one width less, and |c_k| times the bounds of the runs. Works, the displacement of the
-   * last stride and extreme stretches are extrapolated alike; all else is that of the steepest fronts, and so are the
-   * files, if @p simulate is given.
+   * last stride and extreme stretches are extrapolated alike; all else is that of the steepest fronts.
    */
   Answer
-  answer_of_fronts(const RunParameters &parameters,
-                   const Scene &scene,
-                   const AnswerOf &answer_of,
-                   const std::function<SimulationResult(const NumericsChoice &)> &simulate);
+  answer_of_fronts(const RunParameters &parameters, const Scene &scene, const AnswerOf &answer_of);
 } // namespace crawler
