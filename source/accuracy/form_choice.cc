@@ -25,7 +25,7 @@ namespace crawler
   }
 
   bool
-  is_cheaper_than_adaptive(const double lengths, const double accuracy)
+  is_cheaper_than_many_cells(const double lengths, const double accuracy)
   {
     return lengths < most_lengths && accuracy >= least_accuracy;
   }

@@ -125,13 +125,15 @@ namespace crawler
           stretch_form();
           return choice_;
         }
+        // What few cells do not resolve is steep, not fine, if the active stress is smooth: fronts of friction.
+        const bool may_be_steep = may_be_stretch() && scene_.friction_exponent() < 0. &&
+                                  is_cheaper_than_many_cells(L_ / scales_.length, accuracy_);
         bool enough = false;
         if (mesh != MeshKind::adaptive)
           enough = uniform(mesh == MeshKind::uniform || user_cells_ || choice_.numerics.linear ? most_cells
-                                                                                               : most_uniform_cells);
-        // What no uniform mesh resolves is steep, not fine, if the active stress is smooth: fronts of friction.
-        if (!enough && may_be_stretch() && scene_.friction_exponent() < 0. && pilot_.time.reason != "inverted_at_end" &&
-            is_cheaper_than_adaptive(L_ / scales_.length, accuracy_))
+                                                                                               : most_uniform_cells,
+                           may_be_steep);
+        if (!enough && may_be_steep && pilot_.time.reason != "inverted_at_end")
         {
           stretch_form();
           return choice_;
@@ -345,9 +347,10 @@ namespace crawler
         }
       }
 
-      /// A uniform mesh with up to @p most cells; returns whether that is enough.
+      /// A uniform mesh from pilots with up to @p most cells; returns whether there is one, and, if the solution
+      /// @p may_be_steep, whether few cells are enough.
       bool
-      uniform(const unsigned int most)
+      uniform(const unsigned int most, const bool may_be_steep)
       {
         Numerics &n = choice_.numerics;
         if (adaptive_steps_ || n.linear)
@@ -368,17 +371,18 @@ namespace crawler
           return most == most_cells; // whatever it is, there is no more
         if (most < most_cells && stiffness() < very_soft)
           return false; // a pilot may pass over such layers by luck
-        return user_cells_ || extrapolate_cells(pilot_degree, n_cells, most);
+        return user_cells_ || extrapolate_cells(pilot_degree, n_cells, may_be_steep);
       }
 
       /**
-       * The number of cells from that of a pilot that resolves the deformation; false if these are more than @p most.
+       * The number of cells from that of a pilot that resolves the deformation; false if the solution @p may_be_steep
+       * and few cells are not enough.
        * On smooth solutions `unresolved` goes down as (cell size)^(2q-2), q the pilot's degree, and the error of the
        * displacement at least as fast. Thin layers look resolved before they are: so the rate is measured, with smaller
        * steps whose errors do not hide it, on meshes twice as fine each time until it is at least half of that.
        */
       bool
-      extrapolate_cells(const unsigned int pilot_degree, unsigned int n_cells, const unsigned int most)
+      extrapolate_cells(const unsigned int pilot_degree, unsigned int n_cells, const bool may_be_steep)
       {
         const double enough_cells = n_cells; // fewer failed or left too much unresolved
         const double full_rate = 2. * pilot_degree - 2., wanted_part = accuracy_ / space_factor;
@@ -388,12 +392,12 @@ namespace crawler
         double unresolved = pilot_.unresolved, indicator = pilot_.largest_indicator;
         double rate = sees_layers(pilot_degree, n_cells) ? full_rate : 0., indicator_rate = rate;
         const auto unbalanced = [&]() {
-          return most < most_cells && indicator_factor * indicator > accuracy_ * pilot_.strain &&
+          return may_be_steep && indicator_factor * indicator > accuracy_ * pilot_.strain &&
                  indicator_rate < 0.5 * full_rate;
         };
         while ((rate < 0.5 * full_rate || unbalanced()) && 2 * n_cells <= most_cells / 4)
         {
-          if (2 * n_cells > most)
+          if (may_be_steep && 2 * n_cells > most_uniform_cells)
             return false;
           const SimulationResult finer =
             pilot(pilot_numerics(pilot_degree, 2 * n_cells, 0.01 * tolerance_), ResolutionWish::all);
@@ -412,7 +416,7 @@ namespace crawler
         // rate, too, must be that of a smooth solution.
         const double gain      = std::pow(std::max(1., cells / n_cells), full_rate);
         const double too_large = indicator_factor * indicator / (accuracy_ * gain * pilot_.strain);
-        if (most < most_cells && too_large > 1.)
+        if (may_be_steep && too_large > 1.)
         {
           if (indicator_rate < 0.5 * full_rate || stiffness_over_friction() < very_soft)
             return false;
@@ -422,7 +426,7 @@ namespace crawler
           static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(most_cells)));
         // The rule's own idea of the error in space, relative to the wanted one.
         space_over_time_ = std::pow(cells / choice_.numerics.n_cells, rate > 0. ? rate : full_rate);
-        return choice_.numerics.n_cells <= most;
+        return !may_be_steep || choice_.numerics.n_cells <= most_uniform_cells;
       }
 
       /// An adaptive mesh: pilots measure the strain, to which its tolerance is relative, and the number of steps.

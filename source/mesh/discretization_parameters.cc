@@ -15,7 +15,7 @@ namespace crawler
     declarations.choice("Mesh", mesh)
       .means("Whether the cells have one size, or are divided and joined during the run where an error indicator asks "
              "for it. Automatic: with cells that become smaller towards the ends and the jumps if the active stress "
-             "starts or jumps suddenly, else adaptive if a uniform mesh would need more than 1024 cells.");
+             "starts or jumps suddenly, else adaptive only where the body inverts on coarse uniform ones.");
     declarations.number("Mesh tolerance", mesh_tolerance, positive(), "1")
       .means("Admissible sum of the error indicators of an adaptive mesh, relative to the square of the strain. "
              "Automatic: chosen from Accuracy.");

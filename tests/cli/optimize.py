@@ -192,6 +192,16 @@ def test_stops(place):
                 file.read_bytes() == text for file, text in kept.items()), f"{name}, and resumed: {resumed.stderr}")
         expect(rows(folder) == rows(place / "one"), f"{name}: the table of one in one go")
 
+    # A start at which the program crashed twice is a row that says so.
+    for i in range(2):
+        died = run("optimize_harmonics", place / "crashed", *BUDGETS, options=["--resume"] if i else [],
+                   stop_at="write:1-2.json:SEGV")
+        expect(died.returncode == -signal.SIGSEGV, f"crash {i}: {died.returncode}, {died.stderr}")
+    given_up = run("optimize_harmonics", place / "crashed", *BUDGETS, options=["--resume"])
+    starts = csv_rows(place / "crashed" / "starts.csv")
+    expect(sum("crashed twice" in start["problem"] for start in starts) == 1 and len(starts) == 6,
+           f"a start that crashed twice: {given_up.returncode}, {given_up.stderr}, {starts}")
+
     # Within the first start there is a best so far, too.
     within = run("optimize_from_rest", place / "within", stop_at="step:30:TERM")
     expect(within.returncode == 5 and summary(place / "within")["optimize"]["status"] == "stopped"

@@ -158,6 +158,21 @@ def written(folder):
     return rows
 
 
+def check_crashes(output, whole):
+    """A fault of the program at a setting is noted; one that crashed twice is a row that says so, and the rest goes on."""
+    died = study(output, stop_at="row:3:SEGV")
+    note = output / "crashes.txt"
+    check(died.returncode == -signal.SIGSEGV and [int(index) for index in note.read_text(encoding="utf-8").split()]
+          == list(written(output))[-1:], f"a crash at the third setting: {died}, {note.read_text(encoding='utf-8')}")
+    missing = next(row["index"] for row in whole if row["status"] == "finished" and int(row["index"]) not in written(output))
+    note.write_text(f"{missing}\n{missing}\n", encoding="utf-8")
+    done = study(output, "--resume")
+    rows = table(output)
+    crashed = [row for row in rows if row["reason"] == "crashed"]
+    check(done.returncode == 0 and [row["index"] for row in crashed] == [missing] and "crashed twice" in crashed[0]["message"]
+          and sum(row["status"] == "finished" for row in rows) > 50, f"a setting that crashed twice: {done}, {crashed}")
+
+
 def check_stops(output, expected):
     """Kills of the only process and of one rank of two, signals and the limit of time lose nothing but what was under way.
 
@@ -228,6 +243,7 @@ def main():
             if ranks == 1:
                 check_advice(folder, output, result.stdout)
         check(all_answers[1] == all_answers[2], "the same settings and errors on 1 and 2 ranks")
+        check_crashes(folder / "crashed", table(folder / "on-1"))
         check_stops(folder / "stopped", all_answers[1])
     checks.end()
 

@@ -16,7 +16,7 @@ namespace crawler
   /// Is the stretch form cheaper than an adaptive mesh, where no uniform one is enough? @p lengths of the active stress
   /// fit on the body.
   bool
-  is_cheaper_than_adaptive(double lengths, double accuracy);
+  is_cheaper_than_many_cells(double lengths, double accuracy);
 
   /// Is one for the stretch form whose smallest stretch is this?
   bool

@@ -97,14 +97,23 @@ namespace crawler
     return times;
   }
 
+  bool
+  is_given_up(const unsigned long point, const Crashes &crashes)
+  {
+    const auto died = crashes.find(point);
+    return died != crashes.end() && died->second >= 2;
+  }
+
   PointsByCrashes
   by_crashes(const std::span<const unsigned long> points, const Crashes &crashes)
   {
     PointsByCrashes sorted;
     for (const unsigned long point : points)
     {
-      const auto died = crashes.find(point);
-      (died == crashes.end() ? sorted.usual : died->second == 1 ? sorted.alone : sorted.given_up).push_back(point);
+      (is_given_up(point, crashes) ? sorted.given_up
+       : crashes.contains(point)   ? sorted.alone
+                                   : sorted.usual)
+        .push_back(point);
     }
     return sorted;
   }

@@ -6,6 +6,7 @@
 #include <crawler/base/row_file.h>
 #include <crawler/base/stop_signal.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/pictures.h>
@@ -47,17 +48,26 @@ namespace crawler
       file(const fs::path &folder) const
       {
         return folder / "starts" /
-               (neighbour ? fmt::format("{}-from-{}-{:08x}.json", number_of_case + 1, *neighbour + 1, mark())
-                          : fmt::format("{}-{}.json", number_of_case + 1, start));
+               (neighbour
+                  ? fmt::format("{}-from-{}-{:08x}.json", number_of_case + 1, *neighbour + 1, mark(std::span(x)))
+                  : fmt::format("{}-{}.json", number_of_case + 1, start));
+      }
+
+      /// A number that no other part has, for the notes on crashes.
+      unsigned long
+      number() const
+      {
+        return mark(std::span(file("").native()));
       }
 
     private:
-      /// A number that another gait does not have (FNV-1a).
-      std::uint32_t
-      mark() const
+      /// A number that other bytes do not have (FNV-1a).
+      template <class Span>
+      static std::uint32_t
+      mark(const Span bytes)
       {
         std::uint32_t sum = 2166136261u;
-        for (const std::byte byte : std::as_bytes(std::span(x)))
+        for (const std::byte byte : std::as_bytes(bytes))
           sum = (sum ^ std::to_integer<std::uint32_t>(byte)) * 16777619u;
         return sum;
       }
@@ -467,6 +477,8 @@ namespace crawler
       return stop_signal.arrived_anywhere(MPI_COMM_SELF) || (own.time_limit && now() - begin > *own.time_limit);
     };
     SearchState state;
+    CrashNote note(path);
+    const Crashes crashes = crashes_in(path);
     const auto search_all = [&](const std::vector<Part> &some) {
       const auto n_missing =
         static_cast<unsigned long>(std::ranges::count_if(some, [&](const Part &part) { return !is_done(part, path); }));
@@ -481,8 +493,14 @@ namespace crawler
                              return true;
                            const auto family = cases.family(part.number_of_case);
                            const auto x = part.neighbour ? part.x : start_values(own, family->variables(), part.start);
-                           const StartResult result = search(*family, part.number_of_case, part.start, x, state, stops);
+                           const unsigned long mark = part.number();
+                           note.at_work_on(std::span(&mark, 1));
+                           const StartResult result =
+                             is_given_up(mark, crashes)
+                               ? without_gait(part.number_of_case, part.start, x, crash_message)
+                               : search(*family, part.number_of_case, part.start, x, state, stops);
                            write_file(part.file(path), pack(result));
+                           note.at_work_on({});
                            see(1, result.has_converged ? 0 : 1);
                            return !result.was_interrupted;
                          },

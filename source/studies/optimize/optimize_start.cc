@@ -108,16 +108,16 @@ namespace crawler
         }
         catch (const InputError &error) // this start makes no gait
         {
-          const bool may_invert = !result_.records.empty() && !wanted_.smallest_strain;
-          result_.best          = {
-                     x_,
-                     NAN,
-                     {},
-                     NAN,
-                     error.what() + std::string(may_invert ? "; Optimize/Smallest strain keeps gaits away from inversion" : "")};
-          result_.records.push_back(result_.best);
+          const bool may_invert  = !result_.records.empty() && !wanted_.smallest_strain;
+          const StartResult none = without_gait(
+            result_.number_of_case,
+            result_.start,
+            x_,
+            error.what() + std::string(may_invert ? "; Optimize/Smallest strain keeps gaits away from inversion" : ""));
+          result_.best = none.best;
+          result_.records.push_back(none.best);
           result_.has_converged = false;
-          result_.message       = "no gait";
+          result_.message       = none.message;
         }
         catch (const GaitModel::Interrupted &)
         {
@@ -294,6 +294,21 @@ namespace crawler
       StartResult result_;
     };
   } // namespace
+
+  StartResult
+  without_gait(const unsigned long number_of_case,
+               const unsigned long start,
+               const std::vector<double> &x,
+               const std::string &problem)
+  {
+    StartResult result;
+    result.number_of_case = number_of_case;
+    result.start          = start;
+    result.best           = {x, NAN, {}, NAN, problem};
+    result.message        = "no gait";
+    result.records        = {result.best};
+    return result;
+  }
 
   std::string
   pack(const StartResult &result)

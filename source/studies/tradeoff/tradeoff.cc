@@ -8,6 +8,7 @@
 #include <crawler/base/stop_signal.h>
 #include <crawler/base/work_queue.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
@@ -23,6 +24,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 namespace crawler
 {
@@ -69,7 +71,12 @@ namespace crawler
 
     /// This rank's share of the families that are not done. A signal ends the work of all ranks.
     Rows
-    measure_own(MPI_Comm communicator, const Study &study, const Rows &kept, TradeoffRowWriter &writer, Log &log)
+    measure_own(MPI_Comm communicator,
+                const Study &study,
+                const Rows &kept,
+                const fs::path &folder,
+                TradeoffRowWriter &writer,
+                Log &log)
     {
       std::vector<const TradeoffFamily *> pending;
       for (const TradeoffFamily &family : study.families)
@@ -78,6 +85,8 @@ namespace crawler
       Rows own;
       if (pending.empty())
         return own;
+      CrashNote note(folder);
+      const Crashes crashes = crashes_in(folder);
       WorkQueue queue(communicator, pending.size());
       StudyProgress progress(log, pending.size(), "meshes");
       const unsigned long stride = golden_stride(pending.size());
@@ -88,13 +97,18 @@ namespace crawler
         std::vector<TradeoffRow> rows = rows_of(family, kept);
         while (const auto tolerance = next_of(study, family, rows))
         {
-          const auto row = study.interrupted() ? std::nullopt : measurement.measure(*tolerance);
+          const unsigned long setting = family.first_index + *tolerance;
+          note.at_work_on(std::span(&setting, 1));
+          const auto row = study.interrupted()             ? std::nullopt
+                           : is_given_up(setting, crashes) ? std::optional(measurement.crashed(*tolerance))
+                                                           : measurement.measure(*tolerance);
           if (!row)
           {
             queue.close();
             return own;
           }
           writer.write(*row);
+          note.at_work_on({});
           rows.push_back(*row);
           own.emplace(row->index, *row);
         }
@@ -303,7 +317,7 @@ namespace crawler
       "{} settings on {} meshes; the reference took {:.1f} s.", course.n_settings, all_families.size(), now() - start));
 
     TradeoffRowWriter writer(folder, rank_of(communicator));
-    const Rows own            = measure_own(communicator, study, earlier.rows, writer, log);
+    const Rows own            = measure_own(communicator, study, earlier.rows, folder, writer, log);
     course.calibration.at_end = calibrate(communicator, study);
     Rows rows                 = std::move(earlier.rows);
     for (const std::string &part : gather(pack(own), communicator)) // on rank 0

@@ -4,6 +4,7 @@
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
+#include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/tradeoff/tradeoff_measurement.h>
 #include <crawler/time/failure.h>
@@ -108,12 +109,29 @@ namespace crawler
     return given_up;
   }
 
-  std::optional<TradeoffRow>
-  TradeoffMeasurement::measure(const std::size_t tolerance)
+  /// The setting with nothing measured.
+  TradeoffRow
+  TradeoffMeasurement::row_of(const std::size_t tolerance) const
   {
     TradeoffRow row;
     row.index   = family_.first_index + tolerance;
     row.setting = family_.setting;
+    return row;
+  }
+
+  TradeoffRow
+  TradeoffMeasurement::crashed(const std::size_t tolerance) const
+  {
+    TradeoffRow row       = row_of(tolerance);
+    row.setting.tolerance = family_.tolerances[tolerance];
+    not_computed(row, "failed", "crashed", crash_message);
+    return row;
+  }
+
+  std::optional<TradeoffRow>
+  TradeoffMeasurement::measure(const std::size_t tolerance)
+  {
+    TradeoffRow row = row_of(tolerance);
     if (!family_.not_offered.empty())
     {
       not_computed(row, "not offered", "not_offered", family_.not_offered);

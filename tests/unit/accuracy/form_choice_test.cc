@@ -26,9 +26,9 @@ TEST(FormChoice, LimitsFallWithAccuracy)
 {
   EXPECT_FALSE(is_soft(1e-4, -1., 1e-9));
   EXPECT_FALSE(empties(0.02, -1., 1e-8));
-  EXPECT_FALSE(is_cheaper_than_adaptive(/*lengths=*/6., 1e-9));
-  EXPECT_TRUE(is_cheaper_than_adaptive(6., 1e-4));
-  EXPECT_FALSE(is_cheaper_than_adaptive(100., 1e-4));
+  EXPECT_FALSE(is_cheaper_than_many_cells(/*lengths=*/6., 1e-9));
+  EXPECT_TRUE(is_cheaper_than_many_cells(6., 1e-4));
+  EXPECT_FALSE(is_cheaper_than_many_cells(100., 1e-4));
 }
 
 /// Friction that vanishes with the stretch holds nothing: what is lost there is lost.

@@ -10,7 +10,7 @@
 namespace crawler
 {
   /// A file of the folder of a study in which a process says, when it dies of a fault of its own (SIGSEGV, SIGBUS,
-  /// SIGFPE, SIGILL, SIGABRT), on which points of the table it was at work.
+  /// SIGFPE, SIGILL, SIGABRT), on which of its points it was at work: rows of a table, settings or starts.
   extern const std::string crash_file;
 
   /**
@@ -35,6 +35,10 @@ namespace crawler
   using Crashes = std::map<unsigned long, unsigned int>;
   Crashes
   crashes_in(const std::filesystem::path &folder);
+
+  /// Did processes die at work on this point, so that it is not tried again?
+  bool
+  is_given_up(unsigned long point, const Crashes &crashes);
 
   /// Points that are to be computed: where no process died, where one did, which are tried once more, each alone, and
   /// where two did, which are given up.

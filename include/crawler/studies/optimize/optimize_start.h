@@ -33,6 +33,13 @@ namespace crawler
     }
   };
 
+  /// Of a start that makes no gait because of this @p problem.
+  StartResult
+  without_gait(unsigned long number_of_case,
+               unsigned long start,
+               const std::vector<double> &x,
+               const std::string &problem);
+
   std::string
   pack(const StartResult &result);
   StartResult

@@ -37,8 +37,15 @@ namespace crawler
     std::optional<TradeoffRow>
     measure(std::size_t tolerance);
 
+    /// The row of a tolerance that is given up because the program crashed there.
+    TradeoffRow
+    crashed(std::size_t tolerance) const;
+
   private:
     using KeepGoing = std::function<bool()>;
+
+    TradeoffRow
+    row_of(std::size_t tolerance) const;
 
     bool
     choose(const Parameters &own, double end);
