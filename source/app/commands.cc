@@ -133,9 +133,6 @@ namespace crawler
         own->add_flag("--overwrite", options.overwrite, "Replaces the results in the output folder");
         own->add_flag("--quiet", options.quiet, "Prints nothing but errors");
       }
-      if (command.function == run)
-        own->add_flag(
-          "--watch", options.watch, "Shows the stretch along the body while the run goes on, on a terminal");
     }
   } // namespace
 

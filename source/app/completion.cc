@@ -78,8 +78,6 @@ namespace crawler
       return option.get_items_expected_max() > 0;
     }
 
-    // bash
-
     /// What fills COMPREPLY.
     std::string
     bash_action(const Values &values)
@@ -103,7 +101,7 @@ namespace crawler
     }
 
     constexpr const char *bash_head =
-      R"~~~~(# Lets bash complete the command line of crawler; made by "crawler completion bash".
+      R"~~~~(# Lets bash, and zsh behind bashcompinit, complete the command line of crawler; made by "crawler completion bash".
 
 # The given words that begin with what was typed, in quotes or not.
 _crawler_words()
@@ -124,7 +122,10 @@ _crawler_words()
 _crawler_files()
 {
   compopt -o filenames 2>/dev/null
-  mapfile -t COMPREPLY < <({ compgen -d -- "$word"; [ "$1" = -d ] || compgen -f "$@" -- "$word"; } | sort -u)
+  local one
+  while IFS= read -r one; do
+    COMPREPLY+=("$one")
+  done < <({ compgen -d -- "$word"; [ "$1" = -d ] || compgen -f "$@" -- "$word"; } | sort -u)
 }
 
 _crawler()
@@ -174,114 +175,22 @@ _crawler()
                 << arguments << "  esac\n}\n"
                 << "complete -F _crawler crawler\n";
     }
-
-    // zsh
-
-    /// A text within single quotes and brackets.
-    std::string
-    zsh_text(const std::string &text)
-    {
-      std::string escaped;
-      for (const char c : text)
-        if (c == '\'')
-          escaped += "'\\''";
-        else if (c == '[' || c == ']' || c == ':' || c == '\\')
-          escaped += std::string("\\") + c;
-        else
-          escaped += c;
-      return escaped;
-    }
-
-    std::string
-    zsh_action(const Values &values)
-    {
-      switch (values.kind)
-      {
-        case Values::Kind::none:
-          return " ";
-        case Values::Kind::parameter_file:
-          return "_files -g \"*.prm\"";
-        case Values::Kind::folder:
-          return "_files -/";
-        case Values::Kind::file:
-          return "_files";
-        case Values::Kind::beginnings:
-          return "_crawler_entries";
-        case Values::Kind::words:
-        {
-          std::vector<std::string> words = values.words;
-          for (std::string &word : words)
-            for (std::size_t i = word.find(' '); i != std::string::npos; i = word.find(' ', i + 2))
-              word.insert(i, "\\");
-          return fmt::format("({})", fmt::join(words, " "));
-        }
-      }
-      return " ";
-    }
-
-    std::string
-    zsh_line(const CLI::App &command, const CLI::Option &option)
-    {
-      const Values values = values_of(command, option);
-      if (option.get_positional())
-        return fmt::format("'1:{}:{}'", option.get_name(), zsh_action(values));
-      return fmt::format("'{}{}[{}]{}'",
-                         option.get_lnames().front() == "set" ? "*" : "",
-                         typed_names(option).front(),
-                         zsh_text(option.get_description()),
-                         has_value(option) ? ":value:" + zsh_action(values) : "");
-    }
-
-    void
-    print_zsh(const CLI::App &app)
-    {
-      std::cout << "#compdef crawler\n# Lets zsh complete the command line of crawler; made by \"crawler completion "
-                   "zsh\".\n\n_crawler_entries()\n{\n  local -a entries=(\n";
-      for (const std::string &entry : entry_names())
-        std::cout << "    '" << entry << "='\n";
-      std::cout << "  )\n  compadd -S '' -a entries\n}\n\n_crawler()\n{\n"
-                   "  local curcontext=\"$curcontext\" state line\n  local -a commands=(\n";
-      for (const CLI::App *command : all_commands(app))
-        std::cout << fmt::format("    '{}:{}'\n", command->get_name(), zsh_text(command->get_description()));
-      std::cout << "  )\n  _arguments -C";
-      for (const CLI::Option *option : app.get_options())
-        std::cout << ' ' << zsh_line(app, *option);
-      std::cout << " '1:command:->command' '*::argument:->rest'\n  case $state in\n"
-                   "    command) _describe -t commands command commands ;;\n    rest)\n      case $words[1] in\n";
-      for (const CLI::App *command : all_commands(app))
-      {
-        std::cout << "        " << command->get_name() << ") _arguments";
-        for (const CLI::Option *option : command->get_options())
-          std::cout << " \\\n          " << zsh_line(*command, *option);
-        std::cout << " ;;\n";
-      }
-      std::cout << "      esac ;;\n  esac\n}\n\n"
-                   "if [ \"$funcstack[1]\" = _crawler ]; then _crawler \"$@\"; else compdef _crawler crawler; fi\n";
-    }
-
-    struct Shell
-    {
-      const char *name;
-      void (*print)(const CLI::App &);
-    };
-    constexpr Shell shells[] = {{"bash", print_bash}, {"zsh", print_zsh}};
   } // namespace
 
   std::vector<std::string>
   completion_shells()
   {
-    std::vector<std::string> names;
-    for (const Shell &shell : shells)
-      names.emplace_back(shell.name);
-    return names;
+    return {"bash"};
   }
 
   void
   print_completion(const CLI::App &app, const std::string &shell)
   {
-    const auto *const found = std::ranges::find_if(shells, [&](const Shell &one) { return one.name == shell; });
-    if (found == std::end(shells))
-      throw InputError(fmt::format("unknown shell \"{}\"; {} is expected", shell, quoted_list(completion_shells())));
-    found->print(app);
+    if (shell != "bash")
+      throw InputError(fmt::format("unknown shell \"{}\"; {} is expected, whose script zsh reads, too, behind "
+                                   "\"autoload -U bashcompinit; bashcompinit\"",
+                                   shell,
+                                   quoted_list(completion_shells())));
+    print_bash(app);
   }
 } // namespace crawler

@@ -19,7 +19,6 @@ namespace crawler
       {"crawler init table --output my.prm", "the same into a file that is new"},
       {"crawler check worm.prm", "what would be computed, and whether all entries are right"},
       {"crawler run worm.prm", "one run, with its files in output-worm/"},
-      {"crawler run worm.prm --watch", "the same with a picture of the stretch while it runs"},
       {"crawler run worm.prm --set \"Body/Length=12\" --output longer", "another value, another folder"},
       {"crawler run worm.prm --resume", "goes on with a run that was stopped"},
       {"crawler run worm.prm -- -ts_monitor", "options for PETSc stand behind a lone \"--\""},

@@ -29,8 +29,7 @@ namespace crawler
       static const std::vector<Format> list = {{"prm", &Declarations::print_prm},
                                                {"json", print_json},
                                                {"markdown", print_markdown},
-                                               {"schema", print_schema},
-                                               {"xml", &Declarations::print_xml}};
+                                               {"schema", print_schema}};
       return list;
     }
 

@@ -86,16 +86,6 @@ namespace crawler
   }
 
   void
-  StretchHistory::scale_time(const double ratio)
-  {
-    for (Step &step : steps_)
-    {
-      step.from *= ratio;
-      step.to *= ratio;
-    }
-  }
-
-  void
   StretchHistory::add(Step step, const double forget)
   {
     steps_.push_back(std::move(step));

@@ -515,12 +515,6 @@ namespace crawler
     store_->print_prm(out);
   }
 
-  void
-  Declarations::print_xml(std::ostream &out) const
-  {
-    store_->print_xml(out);
-  }
-
   std::string
   trimmed(const std::string &text)
   {

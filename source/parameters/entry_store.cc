@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/base/deal_ii_library.h>
 #include <crawler/parameters/entry_store.h>
 
 #include <algorithm>
@@ -145,11 +144,5 @@ namespace crawler
   {
     out << "# Listing of Parameters\n# ---------------------\n";
     Section(entries_, {}).print(out, entries_);
-  }
-
-  void
-  EntryStore::print_xml(std::ostream &out) const
-  {
-    deal_ii_function<PrintXml>("crawler_print_xml")(out, entries_);
   }
 } // namespace crawler

@@ -179,24 +179,4 @@ namespace crawler
       archive(*gait_meter_);
   }
 
-  void
-  Recorder::exchange_end(Archive &archive, const double ratio)
-  {
-    archive(result.min_stretch, result.max_stretch, result.energy_balance, largest_friction_, largest_net_friction_);
-    archive(result.largest_u, result.mesh_changes, result.most_cells, result.largest_indicator);
-    if (!archive.reads())
-      return;
-    for (Extreme *extreme : {&result.min_stretch, &result.max_stretch})
-      extreme->t *= ratio;
-    smallest_.start(result.min_stretch);
-    largest_.start(result.max_stretch);
-    started_ = true;
-    if (result.energy_balance)
-      result.energy_balance = result.energy_balance->scaled(1. / ratio);
-    largest_friction_ /= ratio;
-    largest_net_friction_ /= ratio;
-    cycle_stop_.reset();
-    if (gait_meter_ && gait_meter_->next_time() <= ratio)
-      gait_meter_.reset();
-  }
 } // namespace crawler

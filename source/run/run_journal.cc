@@ -26,7 +26,7 @@ namespace crawler
   {
     Archive archive(std::move(bytes));
     std::string state;
-    archive(ended_, identity_, state, end_, prolongs_);
+    archive(ended_, identity_, state);
     state_       = std::move(state);
     was_written_ = true;
   }
@@ -38,10 +38,7 @@ namespace crawler
     if (i < ended_.size())
     {
       if (ended_[i].identity == identity)
-      {
-        is_main_ = false;
         return ended_[i].result;
-      }
       ended_.resize(i);
       state_.reset();
     }
@@ -49,21 +46,6 @@ namespace crawler
       state_.reset();
     identity_ = std::move(identity);
     return std::nullopt;
-  }
-
-  bool
-  RunJournal::wants_end() const
-  {
-    return is_main_ && writes() && (was_written_ || now() - begin_ >= interval_);
-  }
-
-  void
-  RunJournal::prolong()
-  {
-    ended_.clear();
-    identity_.clear();
-    state_.reset();
-    prolongs_ = true;
   }
 
   bool
@@ -83,7 +65,6 @@ namespace crawler
   void
   RunJournal::end(const SimulationResult &result)
   {
-    is_main_ = false;
     if (is_closed_)
       return;
     ended_.push_back({std::move(identity_), result});
@@ -101,7 +82,7 @@ namespace crawler
     const double begin = now();
     Archive archive;
     std::string state = state_.value_or("");
-    archive(ended_, identity_, state, end_, prolongs_);
+    archive(ended_, identity_, state);
     if (!write_(archive.bytes()))
       return;
     last_        = now();

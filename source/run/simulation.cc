@@ -170,13 +170,6 @@ namespace crawler
     {
       result().time = failure_while_integrating();
     }
-    if (journal != nullptr && result().time.status == Status::finished && !run_->diagnosis &&
-        is_true_anywhere(journal->wants_end(), communicator_) && !run_->recorder.cycles_repeat())
-    {
-      Archive archive;
-      exchange_end(archive, observers);
-      journal->keep_end(together(archive));
-    }
     SimulationResult answer = finish(observers);
     answer.solve_seconds    = now() - start - answer.output_seconds;
     if (journal != nullptr)

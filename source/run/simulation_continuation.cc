@@ -98,34 +98,6 @@ namespace crawler
       build(std::move(next));
   }
 
-  /// The end of a run, for a longer one: whatever integrates starts anew there.
-  void
-  Simulation::exchange_end(Archive &archive, const std::vector<std::unique_ptr<Observer>> &observers)
-  {
-    Run &run        = *run_;
-    double duration = units_.time;
-    exchange_mesh(archive);
-    archive(duration, past_.history, run.accepted, run.latest);
-    const double ratio = duration / units_.time;
-    run.recorder.exchange_end(archive, ratio);
-    if (archive.reads())
-    {
-      y_                           = run.accepted.y;
-      run.accepted.time            = ratio;
-      run.accepted.next_step       = std::min(ratio * run.latest.size, numerics_.initial_step);
-      run.before.steps             = run.latest.number;
-      run.before.rejected_steps    = run.latest.rejected;
-      run.before.newton_iterations = run.latest.newton_iterations;
-      past_.history.scale_time(ratio);
-      while (!segments_.is_last() && segments_.end() <= ratio)
-        segments_.go_on();
-      while (run.output_times.next() <= ratio + least_time_between_breaks)
-        run.output_times.pass();
-    }
-    for (const auto &observer : observers)
-      observer->exchange(archive);
-  }
-
   /// The states of all ranks that share the cells, on the first of them.
   std::string
   Simulation::together(const Archive &own) const
@@ -149,16 +121,10 @@ namespace crawler
   void
   Simulation::take_up(const RunJournal &journal, const std::vector<std::unique_ptr<Observer>> &observers)
   {
-    if (journal.state() != nullptr)
-    {
-      Archive archive(own_part(*journal.state()));
-      exchange(archive, observers);
-    }
-    else if (journal.start() != nullptr)
-    {
-      Archive archive(own_part(*journal.start()));
-      exchange_end(archive, observers);
-    }
+    if (journal.state() == nullptr)
+      return;
+    Archive archive(own_part(*journal.state()));
+    exchange(archive, observers);
   }
 
   /// Gives the journal the state, if it is time for one or if the run @p stops.

@@ -192,24 +192,6 @@ namespace
   }
 } // namespace
 
-/// parameter_gui is deal.II's, and so is what reads the XML here: every default comes back.
-TEST_F(Commands, DealIIReadsItsXml)
-{
-  dealii::ParameterHandler handler;
-  const json list = json::parse(run_program(folder.path, {"parameters", "--format", "json"}).out);
-  for (const json &entry : list)
-    visit(handler, entry.at("entry"), [&](const std::string &name) { handler.declare_entry(name, "not read"); });
-  const ProgramResult printed = run_program(folder.path, {"parameters", "--format", "xml"});
-  EXPECT_EQ(printed.exit_code, 0);
-  std::istringstream text(printed.out);
-  handler.parse_input_from_xml(text);
-  EXPECT_GT(list.size(), 100u);
-  for (const json &entry : list)
-    visit(handler, entry.at("entry"), [&](const std::string &name) {
-      EXPECT_EQ(handler.get(name), entry.at("default")) << entry.at("entry");
-    });
-}
-
 /// Parameter files are what ParameterHandler itself would write, byte for byte: the defaults, and those of a run (which
 /// has no terms of a sum if there is none).
 TEST_F(Commands, DealIIWritesTheSameParameterFiles)

@@ -16,7 +16,7 @@ import tempfile
 CMAKE, BUILD = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PARTS = ["bin/crawler", "include/crawler/scene/stress_plugin.h", "lib*/**/cmake/crawler/crawlerConfig.cmake",
-         "share/bash-completion/completions/crawler", "share/zsh/site-functions/_crawler", "share/man/man1/crawler.1",
+         "share/bash-completion/completions/crawler", "share/man/man1/crawler.1",
          "share/crawler/plot/plotting.py", "share/crawler/paraview/movie.py", "share/crawler/plugin/peristalsis.cc",
          "share/crawler/prm/default.prm", "share/crawler/prm/examples/earthworm.prm", "share/doc/crawler/README.md",
          "share/doc/crawler/LICENSE", "share/doc/crawler/doc/user_guide.md", "share/doc/crawler/doc/images/fig_2.png"]

@@ -143,33 +143,8 @@ def run(folder):
           any(re.match(r" +\d+ %  t = ", row) for row in screen.seen[-1]), "a terminal that cannot do it has lines")
 
 
-def watch(folder):
-    """--watch leaves the kymograph of the stretch: the wave of an earthworm runs from head to tail."""
-    for name, language, shades in (("utf8", "C.UTF-8", "█▓▒░ "), ("ascii", "C", "#*+- ")):
-        command = [PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--watch", "--output", name]
-        screen, code = on_terminal(command, folder, language=language)
-        rows = [row for row in screen.seen[-1] if re.match(r"(head|tail|    )  ", row)]
-        check(code == 0 and len(rows) == 9 and rows[0].startswith("head") and rows[7].startswith("tail"),
-              f"{name}: a kymograph of eight rows and a scale {screen.seen[-1]}")
-        check("t = 0 to 10" in rows[8] or "to 10;" in rows[8], f"{name}: the scale names the times: {rows[8]}")
-        summary = (folder / name / "summary.json").read_text()
-        smallest = float(re.search(r'"min_stretch": \{\s*"value": ([\d.]+)', summary)[1])
-        printed = float(re.search(r"stretch ([\d.]+)", rows[8])[1])
-        check(abs(printed - smallest) < 0.02, f"{name}: the scale has the smallest stretch, {printed} of {smallest}")
-        # Row by row from head to tail the pattern comes later: 7/8 of the period, 64 times of which each third is shown.
-        values = [[shades.index(character) for character in row[6:].ljust(len(rows[0]) - 6)] for row in rows[:8]]
-        lags = [min(range(16), key=lambda lag, a=first, b=second: statistics.mean(
-            (x - y) ** 2 for x, y in zip(a[16:-16], b[16 + lag:]))) for first, second in zip(values, values[1:])]
-        check(abs(sum(lags) - 7 / 8 * 64 / 3) < 4, f"{name}: the wave runs from head to tail: {lags}")
-        check(all(len(row) <= WIDTH for row in rows) and set("".join(row[6:] for row in rows[:8])) == set(shades),
-              f"{name}: compressed parts are dark, stretched ones light")
-    screen, code = on_terminal([PROGRAM, "run", str(PRM / "examples/small_wave.prm"), "--watch", "--output", "reduced"],
-                               folder)
-    check(code == 0 and sum(re.match(r"(head|tail)  ", row) is not None for row in screen.seen[-1]) == 2,
-          "a run without a mesh has a kymograph, too")
-    plain = call([PROGRAM, "run", PRM / "examples/earthworm.prm", "--watch", "--output", "redirected"], folder)
-    check(plain.returncode == 0 and "head" not in plain.stdout and "█" not in plain.stdout,
-          "redirected there is no picture")
+def quiet(folder):
+    """--quiet shows nothing."""
     screen, code = on_terminal([PROGRAM, "run", str(PRM / "examples/earthworm.prm"), "--quiet", "--output", "quiet"],
                                folder)
     check(code == 0 and not any(shown(screen)), "--quiet shows nothing")
@@ -224,7 +199,7 @@ def optimise(folder):
 def main():
     """All of it."""
     with tempfile.TemporaryDirectory() as folder:
-        for test in tests_of_part((run, watch, optimise), (sweep,)):
+        for test in tests_of_part((run, quiet, optimise), (sweep,)):
             test(pathlib.Path(folder))
     checks.end()
 

@@ -110,8 +110,7 @@ def damaged(scene):
 
 def other_parameters(scene):
     """They are refused in one line; a file that is lost is named."""
-    for change, words in [("Accuracy=1e-6", "Accuracy was"), ("Time/End time=1", "larger one is expected"),
-                          ("Time/End time=4000", "has not come to its end")]:
+    for change, words in [("Accuracy=1e-6", "Accuracy was"), ("Time/End time=4000", "Time/End time was")]:
         done = scene.expect("harmed", ["--resume", "--set", change], 2, words)
         expect(done.stderr.count("\n") == 1, f"{change}: {done.stderr!r}")
     scene.expect("harmed", ["--resume", "--overwrite"], 2)
@@ -121,27 +120,11 @@ def other_parameters(scene):
 
 
 def ends(scene):
-    """What is complete is not computed again; a later end time prolongs it."""
+    """What is complete is not computed again."""
     summary = scene.place / "whole" / "summary.json"
     before = summary.read_bytes()
     scene.expect("whole", ["--resume"], 0)
     expect(summary.read_bytes() == before, "a complete run is computed again")
-    scene.expect("longer", STATES, 0)
-    rows = (scene.place / "longer" / "statistics.csv").read_text()
-    longer = ["--set", "Time/End time=30"]
-    scene.expect("longer", [*STATES, *longer, "--resume"], 0)
-    expect((scene.place / "longer" / "statistics.csv").read_text().startswith(rows), "prolonged: earlier rows are lost")
-    scene.expect("direct", longer, 0)
-    one, two = (json.loads((scene.place / name / "summary.json").read_text()) for name in ("longer", "direct"))
-    expect(abs(one["displacement"] - two["displacement"]) <= one["displacement_error"]["total"] +
-           two["displacement_error"]["total"], f"prolonged: {one['displacement']}, but {two['displacement']} at once")
-    expect(one["end_time"] == 30, "prolonged: another end time")
-    for name in ("min_stretch", "max_stretch"):
-        expect(abs(one[name]["value"] - two[name]["value"]) < 1e-5, f"prolonged: {one[name]}, but {two[name]} at once")
-    for name in ("stress_power", "dissipation"):
-        expect(abs(one[name] / two[name] - 1.) < 1e-6, f"prolonged: {name} {one[name]}, but {two[name]} at once")
-    times = np.genfromtxt(scene.place / "longer" / "statistics.csv", delimiter=",", skip_header=1)[:, 1]
-    expect(np.all(np.diff(times) > 0.) and times[-1] == 30., "prolonged: times of the statistics do not ascend")
 
 
 def folders(scene):

@@ -108,9 +108,6 @@ namespace
     RunJournal journal(1e9, {});
     if (resumption.kind == Resumption::goes_on)
       journal.load(resumption.journal);
-    NumericsChoice choice;
-    if (!resumption.choice.empty())
-      Archive(resumption.choice)(choice);
   }
 } // namespace
 

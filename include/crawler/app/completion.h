@@ -11,7 +11,7 @@ namespace CLI
 
 namespace crawler
 {
-  /// "bash", "zsh".
+  /// "bash", whose script zsh reads, too.
   std::vector<std::string>
   completion_shells();
 

@@ -54,10 +54,6 @@ namespace crawler
     void
     exchange(Archive &archive);
 
-    /// All times times @p ratio.
-    void
-    scale_time(double ratio);
-
     /// Adds a step that follows the last one; forgets those that end before @p forget.
     void
     add(Step step, double forget);

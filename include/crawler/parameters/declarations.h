@@ -131,9 +131,6 @@ namespace crawler
     /// The present values as a .prm file with every entry explained.
     void
     print_prm(std::ostream &out) const;
-    /// The same in the XML of dealii::ParameterHandler, which deal.II's parameter_gui opens.
-    void
-    print_xml(std::ostream &out) const;
 
   private:
     Entry

@@ -45,12 +45,6 @@ namespace crawler
     /// The present values as a .prm file with every entry explained, in the form of dealii::ParameterHandler.
     void
     print_prm(std::ostream &out) const;
-    /// The same in the XML of dealii::ParameterHandler.
-    void
-    print_xml(std::ostream &out) const;
-
-    /// Does it, with the library that links deal.II (base/deal_ii_library.h).
-    using PrintXml = void(std::ostream &out, const std::vector<StoredEntry> &entries);
 
   private:
     struct Actions

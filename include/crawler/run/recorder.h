@@ -121,11 +121,6 @@ namespace crawler
     void
     exchange(Archive &archive);
 
-    /// What the end of a run gives to a longer one, whose duration is that of the run over @p ratio: the last stride is
-    /// looked at only if it is in what is new.
-    void
-    exchange_end(Archive &archive, double ratio);
-
     SimulationResult result; ///< whoever runs adds what only it knows
 
   private:

@@ -48,47 +48,6 @@ namespace crawler
       return write_ && !is_closed_;
     }
 
-    /// The next run that begins is the one whose files are kept: it can be prolonged.
-    void
-    begins_main()
-    {
-      is_main_ = true;
-    }
-    bool
-    is_main() const
-    {
-      return is_main_;
-    }
-
-    /// Is the end of the main run to be kept? Not of a short one.
-    bool
-    wants_end() const;
-    void
-    keep_end(std::string state)
-    {
-      end_ = std::move(state);
-    }
-    /// Is there one?
-    bool
-    has_end() const
-    {
-      return !end_.empty();
-    }
-    /// From now on the main run is that which goes on from the end that is kept. Nothing else is known of it.
-    void
-    prolong();
-    /// Where the run that has begun starts, if it is the main one and prolongs another; null: at rest.
-    const std::string *
-    start() const
-    {
-      return is_main_ && prolongs_ ? &end_ : nullptr;
-    }
-    bool
-    prolongs() const
-    {
-      return prolongs_;
-    }
-
     /// Is it time for a state?
     bool
     is_due() const;
@@ -136,8 +95,6 @@ namespace crawler
     std::size_t n_begun_ = 0; ///< runs of this process
     std::string identity_;    ///< of the run that goes on
     std::optional<std::string> state_;
-    std::string end_; ///< of the main run
-    bool prolongs_ = false, is_main_ = false;
     bool is_closed_ = false, was_written_ = false;
   };
 

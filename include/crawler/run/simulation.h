@@ -247,8 +247,6 @@ namespace crawler
     void
     exchange(Archive &archive, const std::vector<std::unique_ptr<Observer>> &observers);
     void
-    exchange_end(Archive &archive, const std::vector<std::unique_ptr<Observer>> &observers);
-    void
     exchange_mesh(Archive &archive);
     std::string
     together(const Archive &own) const;

@@ -80,42 +80,23 @@ namespace crawler
   }
 
   void
-  Log::show_status(const std::vector<std::string> &rows)
+  Log::show_status(const std::string &text)
   {
-    if (status_width_ == 0)
-      return;
-    // Row over row, so that nothing flickers; rows that were there before and are more than those of now go first.
-    if (status_rows_ > rows.size())
+    if (text.empty())
       clear_status();
-    if (rows.empty())
-      return;
-    std::string text = "\r";
-    if (status_rows_ > 1)
-      text += fmt::format("\x1b[{}A", status_rows_ - 1);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      text += (i > 0 ? "\n" : "") + rows[i] + "\x1b[K";
-    std::cout << text << std::flush;
-    status_rows_ = rows.size();
-  }
-
-  void
-  Log::leave_status()
-  {
-    if (status_rows_ > 0)
-      std::cout << std::endl;
-    status_rows_ = 0;
+    else if (status_width_ > 0)
+    {
+      std::cout << "\r" << text << "\x1b[K" << std::flush;
+      has_status_ = true;
+    }
   }
 
   void
   Log::clear_status()
   {
-    if (status_rows_ == 0)
-      return;
-    std::string text = "\r\x1b[K";
-    for (std::size_t i = 1; i < status_rows_; ++i)
-      text += "\x1b[A\x1b[K";
-    std::cout << text << std::flush;
-    status_rows_ = 0;
+    if (has_status_)
+      std::cout << "\r\x1b[K" << std::flush;
+    has_status_ = false;
   }
 
   void

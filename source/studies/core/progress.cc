@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/terminal.h>
-#include <crawler/output/kymograph_writer.h>
 #include <crawler/studies/core/progress.h>
-#include <crawler/studies/core/text_kymograph.h>
 
 #include <fmt/format.h>
 
@@ -58,7 +56,7 @@ namespace crawler
 
   ProgressBar::~ProgressBar()
   {
-    log_.show_status({});
+    log_.show_status("");
   }
 
   bool
@@ -68,7 +66,7 @@ namespace crawler
   }
 
   void
-  ProgressBar::show(const std::optional<double> done, const std::string &text, const std::vector<std::string> &picture)
+  ProgressBar::show(const std::optional<double> done, const std::string &text)
   {
     last_                        = now();
     const double gone            = seconds();
@@ -88,9 +86,7 @@ namespace crawler
         line.pop_back();
       line.pop_back();
     }
-    std::vector<std::string> rows = picture;
-    rows.push_back(line);
-    log_.show_status(rows);
+    log_.show_status(line);
   }
 
 
@@ -115,12 +111,10 @@ namespace crawler
   }
 
 
-  RunProgress::RunProgress(Log &log, const Scene &scene, const Kymograph *const watched, const std::size_t n_rows)
+  RunProgress::RunProgress(Log &log, const Scene &scene)
     : log_(log)
     , end_time_(scene.end_time)
     , length_(scene.body.length)
-    , watched_(watched)
-    , n_rows_(n_rows)
     , bar_(log)
   {
   }
@@ -137,9 +131,7 @@ namespace crawler
                             snapshot.step.time,
                             snapshot.integrals.displacement / length_,
                             snapshot.stretch.min.value,
-                            snapshot.stretch.max.value),
-                watched_ == nullptr ? std::vector<std::string>()
-                                    : text_kymograph(*watched_, n_rows_, log_.status_width()));
+                            snapshot.stretch.max.value));
     if (10. * done < next_tenth_)
       return;
     while (next_tenth_ <= 10. * done)
@@ -153,20 +145,6 @@ namespace crawler
                   snapshot.integrals.displacement / length_,
                   snapshot.stretch.min.value,
                   snapshot.stretch.max.value));
-  }
-
-  void
-  RunProgress::end()
-  {
-    if (watched_ != nullptr)
-      watch(*watched_, n_rows_, log_);
-  }
-
-  void
-  watch(const Kymograph &kymograph, const std::size_t n_times, Log &log)
-  {
-    log.show_status(text_kymograph(kymograph, n_times, log.status_width()));
-    log.leave_status();
   }
 
 

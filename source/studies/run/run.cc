@@ -91,9 +91,6 @@ namespace crawler
         case Resumption::goes_on:
           log.line("The run goes on from the state in restart.dat.");
           break;
-        case Resumption::prolongs:
-          log.line("The run goes on from its end to a later end time, with the mesh and the tolerance that it has.");
-          break;
         case Resumption::is_whole:
           log.line(fmt::format("The run in \"{}\" is complete; nothing was computed.", folder.string()));
           break;
@@ -204,18 +201,9 @@ namespace crawler
         reach(StopPlace::state);
         return true;
       });
-    const bool goes_on = resumption.kind == Resumption::goes_on || resumption.kind == Resumption::prolongs;
+    const bool goes_on = resumption.kind == Resumption::goes_on;
     if (goes_on)
       journal.load(resumption.journal);
-    if (resumption.kind == Resumption::prolongs)
-    {
-      if (!journal.has_end())
-        throw InputError(fmt::format("the run in \"{}\" has not come to its end yet; the end time that it had is "
-                                     "expected, and a larger one when it is there",
-                                     folder.string()),
-                         "Time/End time");
-      journal.prolong();
-    }
     RunStops stops(stop_signal, parameters.time.wall_time_limit, begin, folder / stop_file_name);
 
     SimulationResult result;
@@ -255,12 +243,6 @@ namespace crawler
     guarded([&]() {
       input.parameters.model = model->model;
       // The linear level (a = 0) is computed by what follows, as the nonlinear one.
-      if (journal.prolongs())
-      {
-        chosen.emplace();
-        Archive(resumption.choice)(*chosen);
-        return;
-      }
       WaitProgress pilots(log, pilot_runs);
       const auto goes_on_with_pilots = [&]() {
         pilots.step();
@@ -304,8 +286,6 @@ namespace crawler
       if (!lock)
         lock.emplace(folder, options.overwrite);
       begin_files(log, input, folder, goes_on);
-      if (chosen)
-        checkpoint.choice = archived(*chosen);
       has_files = true;
       return "";
     });
@@ -317,8 +297,6 @@ namespace crawler
     const bool writes           = shared || first;
     const double length         = input.scene.body.length;
     const PictureTimes pictures = picture_times(output, input.scene);
-    const auto n_rows           = static_cast<std::size_t>(
-      std::ranges::count_if(pictures.all(), [](const PictureTimes::Time &time) { return time.kinds.is_row; }));
     const auto create_observers = [&]() {
       std::vector<std::unique_ptr<Observer>> observers;
       if (writes && output.has_snapshots())
@@ -328,14 +306,11 @@ namespace crawler
         if (output.kymograph)
           observers.push_back(std::make_unique<KymographWriter>(length, input.scene.end_time, folder));
       }
-      const Kymograph *const kymograph = options.watch && output.has_snapshots() && output.kymograph
-                                           ? static_cast<Kymograph *>(observers.back().get())
-                                           : nullptr;
       if (writes && output.statistics)
         observers.push_back(
           std::make_unique<StatisticsWriter>(length, first, folder, output.energy_balance, input.parameters.units));
       if (writes && !options.quiet)
-        observers.push_back(std::make_unique<RunProgress>(log, input.scene, kymograph, n_rows));
+        observers.push_back(std::make_unique<RunProgress>(log, input.scene));
       return observers;
     };
     const double setup_seconds = now() - begin;
@@ -366,7 +341,6 @@ namespace crawler
         log.line(describe(choice.numerics, input));
       }
       other_runs.reset();
-      journal.begins_main();
       SimulationResult run = simulation->run(pictures, run_options, create_observers(), keep_going);
       other_runs.emplace(log, "other runs measure the error");
       latest = run.time;
@@ -419,11 +393,11 @@ namespace crawler
     on_first_rank(communicator, [&]() {
       lock->require_in_place();
       const bool is_for_later = result.time.status == Status::stopped && stops.arrived_anywhere(MPI_COMM_SELF);
-      if (is_for_later || (result.time.status == Status::finished && journal.has_end()))
+      if (is_for_later)
         journal.write();
-      else
-        remove_checkpoints(folder);
       write_summary();
+      if (!is_for_later) // until now a kill loses nothing
+        remove_checkpoints(folder);
       if (is_for_later && journal.was_written())
         log.line("The state of the run is in restart.dat: the same command with --resume goes on with it.");
       return "";
@@ -440,14 +414,12 @@ namespace crawler
 
   namespace
   {
-    /// Writes the output times of a level as a run with a mesh does, and shows them in the log @p watching. Returns
-    /// false if it was interrupted.
+    /// Writes the output times of a level as a run with a mesh does. Returns false if it was interrupted.
     bool
     write_pictures(const ReducedModel &level,
                    const Input &input,
                    const std::filesystem::path &folder,
-                   const StopSignal &signal,
-                   Log *watching)
+                   const StopSignal &signal)
     {
       const OutputParameters &output = input.parameters.output;
       const double length            = input.scene.body.length;
@@ -472,8 +444,6 @@ namespace crawler
         snapshots->end();
       if (output.has_snapshots() && output.kymograph)
         kymograph.end();
-      if (watching != nullptr)
-        watch(kymograph, kymograph.times().size(), *watching);
       return whole;
     }
   } // namespace
@@ -519,7 +489,7 @@ namespace crawler
 
         const Stopwatch output_watch;
         if (result.error && (output.has_snapshots() || output.statistics) &&
-            !write_pictures(level, input, folder, stop_signal, options.watch ? &log : nullptr))
+            !write_pictures(level, input, folder, stop_signal))
           result.time.status = Status::stopped;
         result.output_seconds = output_watch.seconds();
       }

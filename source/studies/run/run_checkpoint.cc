@@ -22,7 +22,7 @@ namespace crawler
 
   namespace
   {
-    const std::string present_name = "restart.dat", older_name = "restart.old.dat", end_time = "Time/End time";
+    const std::string present_name = "restart.dat", older_name = "restart.old.dat";
     /// These say how a run is made, not what it gives.
     const std::vector<std::string> free_entries = {"Time/Wall time limit", "Time/Checkpoint interval"};
 
@@ -107,13 +107,6 @@ namespace crawler
           folder.string()));
     }
 
-    double
-    end_time_of(const std::string &effective)
-    {
-      const Form form(ParameterFile::from_text(effective, "parameters.prm"));
-      return form.parameters.time.end_time;
-    }
-
     bool
     has_finished(const fs::path &folder)
     {
@@ -128,7 +121,7 @@ namespace crawler
   RunCheckpoint
   checkpoint_of(const Input &input, const CommandOptions &options)
   {
-    RunCheckpoint checkpoint{this_program(), input.effective, options.petsc_options, {}, "", ""};
+    RunCheckpoint checkpoint{this_program(), input.effective, options.petsc_options, {}, ""};
     const Form form(input.file);
     for (unsigned int i = 0; i < form.declarations.entries().size(); ++i)
     {
@@ -181,26 +174,18 @@ namespace crawler
       if (checkpoint->files != own.files)
         changes.emplace_back("a file that the parameters name has changed");
     }
-    std::erase_if(changes, [](const std::string &change) { return change.starts_with(end_time); });
     if (!changes.empty())
       throw InputError(fmt::format("the run in \"{}\" was made with other parameters: {}; it can be resumed with the "
-                                   "same ones only (but for {}, and a larger {})",
+                                   "same ones only (but for {})",
                                    folder.string(),
                                    fmt::join(changes, ", "),
-                                   fmt::join(free_entries, " and "),
-                                   end_time));
-    const double was = end_time_of(before), is = end_time_of(own.effective);
-    if (is < was)
-      throw InputError(
-        fmt::format("the run in \"{}\" has an end time of {}, but a larger one is expected", folder.string(), was),
-        end_time);
-    if (is == was && has_finished(folder))
+                                   fmt::join(free_entries, " and ")));
+    if (has_finished(folder))
       result.kind = Resumption::is_whole;
     else if (checkpoint)
     {
-      result.kind    = is == was ? Resumption::goes_on : Resumption::prolongs;
+      result.kind    = Resumption::goes_on;
       result.journal = std::move(checkpoint->journal);
-      result.choice  = std::move(checkpoint->choice);
     }
     return result;
   }

@@ -74,34 +74,6 @@ namespace
     EXPECT_EQ(second.state(), nullptr);
   }
 
-  TEST(RunJournal, ProlongsTheMainRunAlone)
-  {
-    std::string written;
-    RunJournal journal(0., [&](const std::string &bytes) {
-      written = bytes;
-      return true;
-    });
-    journal.begins_main();
-    journal.begin("run");
-    ASSERT_TRUE(journal.wants_end());
-    EXPECT_EQ(journal.start(), nullptr);
-    journal.keep_end("its end");
-    journal.end(a_result(0.5));
-    journal.write();
-
-    RunJournal longer(0., {});
-    longer.load(written);
-    ASSERT_TRUE(longer.has_end());
-    longer.prolong();
-    longer.begins_main();
-    EXPECT_FALSE(longer.begin("run"));
-    ASSERT_NE(longer.start(), nullptr);
-    EXPECT_EQ(*longer.start(), "its end");
-    longer.end(a_result(1.));
-    EXPECT_FALSE(longer.begin("run for the error"));
-    EXPECT_EQ(longer.start(), nullptr);
-  }
-
   TEST(RunJournal, RefusesOtherBytes)
   {
     RunJournal journal(0., {});

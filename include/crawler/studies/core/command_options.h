@@ -17,7 +17,6 @@ namespace crawler
     bool strict         = false;
     bool quiet          = false;
     bool check_gradient = false;
-    bool watch          = false; ///< the stretch while the run goes on
     std::string command_line;
     std::string petsc_options; ///< behind "--"
   };

@@ -41,14 +41,10 @@ namespace crawler
       return status_width_;
     }
 
-    /// Shows @p rows below all lines, in the place of those that were there before. They must not be wider than
-    /// status_width(). The next line takes their place.
+    /// Shows @p text below all lines, in the place of the status before; none if it is empty. It must not be wider than
+    /// status_width(). The next line takes its place.
     void
-    show_status(const std::vector<std::string> &rows);
-
-    /// The rows stay where they are.
-    void
-    leave_status();
+    show_status(const std::string &text);
 
     /// Writes everything from now on, and all earlier lines, to @p file as well, behind what is in it if @p append.
     /// Throws FileError.
@@ -69,8 +65,8 @@ namespace crawler
 
     const bool active_, quiet_;
     unsigned int status_width_;
-    std::size_t status_rows_ = 0; ///< that are on the screen
-    std::string first_line_;      ///< still to be written
+    bool has_status_ = false; ///< on the screen
+    std::string first_line_;  ///< still to be written
     std::string earlier_;
     std::ofstream file_;
     std::filesystem::path path_;

@@ -7,12 +7,9 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace crawler
 {
-  class Kymograph;
-
   /// "0.83 ms", "83 s", "12 min", "3.4 h", "2.1 days".
   std::string
   duration_in_words(double seconds);
@@ -31,9 +28,9 @@ namespace crawler
     is_due() const;
 
     /// @p done from 0 to 1, with the time left if that is known; without it, the time that went by. @p text stands
-    /// behind the bar, @p picture above it.
+    /// behind the bar.
     void
-    show(std::optional<double> done, const std::string &text, const std::vector<std::string> &picture = {});
+    show(std::optional<double> done, const std::string &text);
 
     /// Seconds since the beginning.
     double
@@ -69,32 +66,21 @@ namespace crawler
 
   inline constexpr const char *pilot_runs = "pilot runs choose mesh and time steps";
 
-  /// Of a run: a bar, with the picture of a kymograph if that is given, or a line at every tenth of the duration.
+  /// Of a run: a bar, or a line at every tenth of the duration.
   class RunProgress : public Observer
   {
   public:
-    /// @p watched: collected by another observer, which comes before this one. @p n_rows: that it will have.
-    RunProgress(Log &log, const Scene &scene, const Kymograph *watched, std::size_t n_rows);
+    RunProgress(Log &log, const Scene &scene);
 
     void
     observe(const Snapshot &snapshot) override;
 
-    /// The picture stays.
-    void
-    end() override;
-
   private:
     Log &log_;
     const double end_time_, length_;
-    const Kymograph *const watched_;
-    const std::size_t n_rows_;
     ProgressBar bar_;
     unsigned int next_tenth_ = 1;
   };
-
-  /// Leaves the picture of a kymograph on the terminal (text_kymograph.h).
-  void
-  watch(const Kymograph &kymograph, std::size_t n_times, Log &log);
 
   /// Of a study of many runs: a bar, or a line every few seconds, with parts done, speed, and time left.
   class StudyProgress

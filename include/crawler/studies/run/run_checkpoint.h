@@ -19,13 +19,12 @@ namespace crawler
     std::string effective;                                  ///< parameters
     std::string petsc_options;                              ///< behind "--"
     std::vector<std::pair<std::string, std::string>> files; ///< that were read, with their fingerprints
-    std::string choice;  ///< of the numerics (numerics_choice.h), of a run that ends or is prolonged
-    std::string journal; ///< of the runs (run_journal.h)
+    std::string journal;                                    ///< of the runs (run_journal.h)
 
     void
     exchange(Archive &archive)
     {
-      archive(program, effective, petsc_options, files, choice, journal);
+      archive(program, effective, petsc_options, files, journal);
     }
   };
 
@@ -47,16 +46,15 @@ namespace crawler
     {
       begins,   ///< there is nothing to go on with
       goes_on,  ///< with the journal
-      prolongs, ///< what has ended, with the journal and the choice
       is_whole, ///< the run has ended
     } kind = begins;
-    std::string journal, choice;
+    std::string journal;
     std::vector<std::string> notes; ///< what the user should know
 
     void
     exchange(Archive &archive)
     {
-      archive(kind, journal, choice, notes);
+      archive(kind, journal, notes);
     }
   };
 
