@@ -1,94 +1,77 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Release notes (Markdown) from the files of doc/changes: what is new, improved and fixed, the newest first.
+"""Release notes (Markdown) of a version from doc/changes.md: what is new, improved, fixed and removed.
 
-    contrib/release_notes.py             # all changes
-    contrib/release_notes.py v1.2.0      # those since this tag
-    contrib/release_notes.py --check     # nothing but a check of the files: exit status 1 if one has another form
-    contrib/release_notes.py --debian 1.2.0   # a Debian changelog of all changes, as of that version
+    contrib/release_notes.py                  # those of the newest version
+    contrib/release_notes.py 1.2.0            # those of this one
+    contrib/release_notes.py --check          # nothing but a check of the file: exit status 1 if it has another form
+    contrib/release_notes.py --debian 1.2.0   # a Debian changelog of all versions, the newest under this number
 """
 import argparse
 import datetime
 import email.utils
 import pathlib
 import re
-import subprocess
 import sys
 import textwrap
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
-KINDS = ("New", "Improved", "Fixed")
+CHANGES = pathlib.Path(__file__).resolve().parents[1] / "doc/changes.md"
+KINDS = ("New", "Improved", "Fixed", "Removed")
 
 
-def changes_of(path):
-    """Date, kind and sentence of each line of a file; ValueError if the file has another form."""
-    if not re.fullmatch(r"20\d{6}_[a-z0-9_]+", path.name):
-        raise ValueError(f"doc/changes/{path.name}: the name is not of the form YYYYMMDD_topic (small letters)")
-    try:
-        date = datetime.datetime.strptime(path.name[:8], "%Y%m%d").date()
-    except ValueError:
-        raise ValueError(f"doc/changes/{path.name}: the name does not begin with a date") from None
-    for line in path.read_text(encoding="utf-8").splitlines():
-        kind, colon, sentence = line.partition(": ")
-        if not colon or kind not in KINDS or not sentence.strip().endswith((".", "!", "?", ")")):
-            raise ValueError(f"doc/changes/{path.name}: \"{line[:40]}...\" is not a sentence after "
-                             + ", ".join(kind + ":" for kind in KINDS[:-1]) + f" or {KINDS[-1]}: (on one line)")
-        yield date, kind, sentence.strip()
+def versions():
+    """[number, date, [(kind, sentence), ...]] of each version, the newest first; ValueError names a wrong line."""
+    found = []
+    for number, line in enumerate(CHANGES.read_text(encoding="utf-8").splitlines(), 1):
+        try:
+            if line.startswith("## "):
+                version, date = re.fullmatch(r"## (\d+\.\d+\.\d+) \((\d{4}-\d\d-\d\d)\)", line).groups()
+                found.append([version, datetime.date.fromisoformat(date), []])
+            elif found and line:
+                found[-1][2].append(re.fullmatch(rf"- ({'|'.join(KINDS)}): (\S.*[.!?)])", line).groups())
+        except (AttributeError, ValueError):
+            raise ValueError(f'doc/changes.md, line {number}: "{line[:40]}" is neither "## X.Y.Z (YYYY-MM-DD)" nor "- KIND: '
+                             f'SENTENCE." with one of the kinds {", ".join(KINDS)}') from None
+    return found
 
 
-def all_changes(names=None):
-    """The changes of these files (default: all), the newest first, and what is wrong with files."""
-    found, wrong = [], []
-    for path in sorted((ROOT / "doc/changes").iterdir(), reverse=True):
-        if names is None or path.name in names:
-            try:
-                found += changes_of(path)
-            except ValueError as error:
-                wrong.append(str(error))
-    return found, wrong
-
-
-def names_since(tag):
-    """Names of the files of doc/changes that came after a tag."""
-    git = subprocess.run(["git", "diff", "--name-only", "--diff-filter=A", tag, "--", "doc/changes"], cwd=ROOT,
-                         capture_output=True, text=True, check=False)
-    if git.returncode != 0:
-        sys.exit(f"git does not know the tag {tag}: {git.stderr.splitlines()[0]}")
-    return {pathlib.Path(line).name for line in git.stdout.splitlines()}
-
-
-def markdown(found):
-    """The notes as Markdown."""
+def markdown(changes):
+    """The changes by their kinds."""
     parts = []
     for kind in KINDS:
-        lines = ["- " + sentence for date, one, sentence in found if one == kind]
+        lines = ["- " + sentence for one, sentence in changes if one == kind]
         if lines:
             parts.append(f"## {kind}\n\n" + "\n".join(lines))
     return "\n\n".join(parts)
 
 
-def debian(found, version):
-    """The notes as a Debian changelog."""
+def debian(version, date, changes):
+    """An entry of a Debian changelog."""
     lines = [textwrap.fill(f"{kind}: {sentence}", 78, initial_indent="  * ", subsequent_indent="    ",
-                           break_long_words=False) for date, kind, sentence in found]
-    date = datetime.datetime.combine(max(date for date, _, _ in found), datetime.time(), datetime.timezone.utc)
+                           break_long_words=False) for kind, sentence in changes]
+    time = datetime.datetime.combine(date, datetime.time(), datetime.timezone.utc)
     return (f"crawler ({version}) unstable; urgency=medium\n\n" + "\n".join(lines)
-            + f"\n\n -- The authors of crawler <crawler@localhost>  {email.utils.format_datetime(date)}")
+            + f"\n\n -- The authors of crawler <crawler@localhost>  {email.utils.format_datetime(time)}")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tag", nargs="?")
+    parser.add_argument("version", nargs="?")
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--debian", metavar="VERSION")
     arguments = parser.parse_args()
-    found, wrong = all_changes(names_since(arguments.tag) if arguments.tag else None)
-    if wrong:
-        sys.exit("\n".join(wrong))
-    if not found:
-        sys.exit("There are no changes" + (f" since {arguments.tag}" if arguments.tag else ""))
-    if not arguments.check:
-        print(debian(found, arguments.debian) if arguments.debian else markdown(found))
+    try:
+        found = versions()
+    except ValueError as error:
+        sys.exit(str(error))
+    wanted = [one for one in found if arguments.version in (None, one[0])]
+    if not wanted:
+        sys.exit(f"doc/changes.md has no version {arguments.version}")
+    if arguments.debian:
+        found[0][0] = arguments.debian
+        print("\n\n".join(debian(*one) for one in found))
+    elif not arguments.check:
+        print(markdown(wanted[0][2]))
 
 
 if __name__ == "__main__":

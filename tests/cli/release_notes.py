@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every file of doc/changes has the form that contrib/release_notes.py needs, other forms are refused by name, notes
-have the newest change first and, with a tag, only what came after it; and the version is that of the last tag.
+"""doc/changes.md has the form that contrib/release_notes.py needs, another form is refused with its line, notes are those
+of a version, the newest by default; and the version of the program is that of the last tag.
 
     python3 release_notes.py CMAKE
 """
@@ -41,47 +41,44 @@ def version(folder):
 
 
 code, out = call(ROOT / "contrib/release_notes.py", "--check", folder=ROOT)
-expect(code == 0 and out == "", f"doc/changes: {out}")
+expect(code == 0 and out == "", f"doc/changes.md: {out}")
 
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     (folder / "contrib").mkdir()
-    (folder / "doc/changes").mkdir(parents=True)
-    script = folder / "contrib/release_notes.py"
+    (folder / "doc").mkdir()
+    script, changes = folder / "contrib/release_notes.py", folder / "doc/changes.md"
     script.write_text((ROOT / "contrib/release_notes.py").read_text())
+    TEXT = ("# Changes\n\n## 1.3.0 (2026-01-02)\n\n- Fixed: The second.\n- New: The third.\n\n"
+            "## 1.2.3 (2026-01-01)\n\n- New: The first.\n")
+    changes.write_text(TEXT)
 
     def notes(*arguments):
         return call(sys.executable, script, *arguments, folder=folder)
 
-    def change(topic, text):
-        (folder / "doc/changes" / topic).write_text(text)
-
     expect(version(folder) == ["0.1.0", "0.1.0", "unknown"], "the version without git")
     git(folder, "init", "-q")
-    change("20260101_first", "New: The first.\n")
     git(folder, "add", ".")
     git(folder, "commit", "-qm", "First")
     expect(version(folder)[:2] == ["0.1.0", "0.1.0"], "the version without a tag")
     git(folder, "tag", "v1.2.3")
     expect(version(folder)[:2] == ["1.2.3", "1.2.3"], "the version at a tag")
-    change("20260102_second", "Fixed: The second.\nNew: The third.\n")
-    git(folder, "add", ".")
-    git(folder, "commit", "-qm", "Second")
+    git(folder, "commit", "-qm", "Second", "--allow-empty")
     expect(version(folder)[:2] == ["1.2.3+1", "1.2.3"], "the version after a tag")
     (folder / "inside").mkdir()
     expect(version(folder / "inside") == ["0.1.0", "0.1.0", "unknown"], "the version of a folder in another repository")
 
-    expect(notes() == (0, "## New\n\n- The third.\n- The first.\n\n## Fixed\n\n- The second.\n"), f"notes: {notes()}")
-    expect(notes("v1.2.3") == (0, "## New\n\n- The third.\n\n## Fixed\n\n- The second.\n"), "notes since a tag")
-    code, out = notes("v7.0.0")
-    expect(code == 1 and "does not know the tag v7.0.0" in out, "notes since a tag that does not exist")
-    expect(notes("--debian", "1.2.3")[1].startswith("crawler (1.2.3) unstable; urgency=medium\n\n  * Fixed: The second."),
-           "Debian's changelog")
-    for topic, text in (("20260103_kind", "Added: A thing.\n"), ("20260103_lines", "New: A sentence over\ntwo lines.\n"),
-                        ("20260103_end", "New: no end\n"), ("20261303_month", "New: A.\n"), ("20260103_name.md", "New: A.\n")):
-        change(topic, text)
+    expect(notes() == (0, "## New\n\n- The third.\n\n## Fixed\n\n- The second.\n"), f"notes: {notes()}")
+    expect(notes("1.2.3") == (0, "## New\n\n- The first.\n"), "notes of an older version")
+    code, out = notes("7.0.0")
+    expect(code == 1 and "no version 7.0.0" in out, "notes of a version that does not exist")
+    code, out = notes("--debian", "1.3.1")
+    expect(code == 0 and out.startswith("crawler (1.3.1) unstable; urgency=medium\n\n  * Fixed: The second.")
+           and "crawler (1.2.3) unstable" in out and "Thu, 01 Jan 2026" in out, f"Debian's changelog: {out}")
+    for line in ("- Added: A thing.", "- New: A sentence over\ntwo lines.", "- New: no end", "## 1.2 (2026-01-01)",
+                 "## 1.2.0 (2026-13-01)", "- New:", "A sentence."):
+        changes.write_text(TEXT + line + "\n")
         code, out = notes("--check")
-        expect(code == 1 and topic in out, f"{topic} is not refused: {out}")
-        (folder / "doc/changes" / topic).unlink()
+        expect(code == 1 and "line 11" in out and line.splitlines()[0][:40] in out, f"{line} is not refused: {out}")
 
 sys.exit("\n".join(failures) or 0)
