@@ -362,19 +362,8 @@ def test_point_command(program, browser):
     check([one["title"] for one in page_data(folder)["runs"]] == ["points/1", "points/5"], "the next report has this point")
 
 
-def test_example():
-    """The example among the documents has the scripts of today; made again by the command in its first lines if not."""
-    root = pathlib.Path(__file__).resolve().parents[2]
-    example = (root / "doc/report_fig_s1.html").read_text(encoding="utf-8")
-    for source in sorted((root / "source/studies/report").glob("*.js")):
-        script = source.read_text(encoding="utf-8").split("\n", 2)[2].strip()
-        check(script in example, f"doc/report_fig_s1.html has {source.name} as it is now; else: crawler run fig_s1.prm --set "
-                                 "Output/Sensitivities=all, then crawler report output-fig_s1")
-
-
 def main():
     """Everything in a folder of its own."""
-    test_example()
     with tempfile.TemporaryDirectory() as name:
         program = Program(str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(name))
         make_studies(program)
