@@ -187,8 +187,8 @@ end
     compiler = os.environ.get("CXX", "c++")
     command(compiler, "-std=c++20", "-shared", "-fPIC", include, os.path.join(HERE, "faulty_plugin.cc"), "-o", FAULTY)
     refused("missing", {"File": "no.so"}, "there is no file", f"{folder}/no.so", "missing.prm, line ")
-    refused("folder", {"File": "source"}, "is not a shared object")
-    refused("text", {"File": "text.prm"}, "is not a shared object")
+    refused("folder", {"File": "source"}, "is not a file")
+    refused("text", {"File": "text.prm"}, "cannot be loaded", "invalid ELF header", "made with -shared is expected")
     refused("empty", {"File": ""}, "name of the shared object is missing")
     with open("other.c", "w") as file:
         file.write("int f(void) { return 0; }\n")
@@ -203,7 +203,7 @@ end
     content[18:20] = (0x1234).to_bytes(2, "little")
     with open("machine.so", "wb") as file:
         file.write(content)
-    refused("machine", {"File": "machine.so"}, "for another kind of processor")
+    refused("machine", {"File": "machine.so"}, "cannot be loaded", "made with -shared is expected")
     for name, interface, version in (("old", 0, "PLUGIN_VERSION"), ("version", 1, '"0.0.7"')):
         with open("old.cc", "w") as file:
             file.write("#include <crawler/scene/plugin_version.h>\n#define PLUGIN_VERSION crawler::plugin_version\n"
