@@ -106,7 +106,7 @@ namespace crawler
     }
 
     /// The stretch form has few digits: where its meshes do not meet Accuracy a uniform mesh of the position form may
-    /// do. Nothing if that does not either.
+    /// do, or come nearer. Nothing if it gives no displacement with a bound.
     std::optional<Answer>
     answer_of_position_form(const RunParameters &parameters,
                             const Scene &scene,
@@ -121,7 +121,7 @@ namespace crawler
       if (!choice || choice->numerics.mesh.tolerance > 0.)
         return std::nullopt;
       Answer answer = answer_with(*choice, own, scene, options, keep_going);
-      if (answer.result.time.status != Status::finished || !answer.result.error)
+      if (!answer.result.error || !std::isfinite(answer.result.error->total))
         return std::nullopt;
       return answer;
     }
@@ -181,7 +181,8 @@ namespace crawler
       if (answer.result.time.reason == accuracy_not_met)
         try
         {
-          if (auto other = answer_of_position_form(parameters, scene, options, keep_going))
+          auto other = answer_of_position_form(parameters, scene, options, keep_going);
+          if (other && !(answer.result.error && other->result.error->total >= answer.result.error->total))
             answer = std::move(*other);
         }
         catch (...) // the answer that is there stays

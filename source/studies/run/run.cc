@@ -322,6 +322,12 @@ namespace crawler
     const auto simulate                   = [&](const NumericsChoice &choice) {
       if (choice.is_of_several_runs())
         build(choice);
+      else if (chosen->is_of_several_runs()) // whose answer is one of the other form
+      {
+        build(choice);
+        log.line(describe(choice.numerics, input));
+        log.line("  (" + choice.explanation + ")");
+      }
       else if (++n_runs > 1)
       {
         log.line((latest.status == Status::failed ? latest.reason + ": " + latest.message
