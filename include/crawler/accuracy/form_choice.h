@@ -13,8 +13,8 @@ namespace crawler
   bool
   is_soft(double stiffness, double exponent, double accuracy);
 
-  /// Is the stretch form cheaper than an adaptive mesh, where no uniform one is enough? @p lengths of the active stress
-  /// fit on the body.
+  /// Is the stretch form cheaper than many cells of the position form, where few are not enough? @p lengths of the
+  /// active stress fit on the body.
   bool
   is_cheaper_than_many_cells(double lengths, double accuracy);
 

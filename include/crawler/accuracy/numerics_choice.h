@@ -60,13 +60,6 @@ namespace crawler
       if (std::isfinite(least_size))
         wanted_error = promised_error = accuracy * std::max(std::abs(displacement), least_size);
     }
-
-    void
-    exchange(Archive &archive)
-    {
-      archive(numerics, explanation, promised_error, wanted_error, space_share, least_error, is_rough, is_users);
-      archive(is_measured, is_family, strain, has_fronts, front_part, least_size, advice);
-    }
   };
 
   /**

@@ -21,7 +21,7 @@ namespace crawler::accuracy_rule
     inline constexpr unsigned int fewest_cells = 4, most_cells = 4096;
     /// A pilot that breaks off with a smaller stretch than this has lost it.
     inline constexpr double emptied = 0.1;
-    /// Meshes that would need more cells than this are adaptive, with this degree.
+    /// Uniform meshes of pilots have at most so many cells; adaptive meshes have this degree.
     inline constexpr unsigned int most_uniform_cells = 1024, adaptive_degree = 4;
     /// The error of the displacement, relative, is below this times the sum of the error indicators over the strain.
     inline constexpr double indicator_factor = 8.;
@@ -128,7 +128,7 @@ namespace crawler::accuracy_rule
     /// Limits at low accuracy, the Accuracy from which on they fall, and how.
     inline constexpr double softest = 1e-3, emptied = 0.06, emptied_if_it_inverts = 3e-3, moderate = 1e-5;
     inline constexpr double softness_power = 0.5, stretch_power = 0.35;
-    /// Beyond these an adaptive mesh is the cheaper one.
+    /// Beyond these many cells of the position form are cheaper.
     inline constexpr double most_lengths = 30., least_accuracy = 1e-7;
   } // namespace form
 
