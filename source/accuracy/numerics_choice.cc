@@ -72,11 +72,6 @@ namespace crawler
         n.least_event            = scales_.jumps_move ? 0. : least_event * scales_.stress;
         pilot_time_              = parameters.time;
         pilot_time_.step_control = StepControl::adaptive;
-        if (!integrator(pilot_time_.integrator).adaptive)
-        {
-          pilot_time_.integrator = "bdf";
-          pilot_time_.order      = 5;
-        }
         pilot_time_.petsc_prefix = "pilot_"; // options after "--" are for the real run
         pilot_time_.max_steps    = std::min(pilot_time_.max_steps, most_pilot_steps);
         tolerance_               = std::max(1e-3 * scale_, smallest());
@@ -613,9 +608,7 @@ namespace crawler
         const std::string &own = parameters_.time.integrator;
         const Integrator &method =
           integrator(own == "automatic" && !choice_.numerics.integrator.empty() ? choice_.numerics.integrator : own);
-        if (method.petsc_type == "radau")
-          return method.n_stages;
-        return method.order > 0 ? method.order : parameters_.time.order;
+        return method.petsc_type == "radau" ? method.n_stages : parameters_.time.order;
       }
 
       /// Of a displacement whose wanted error is round-off.

@@ -153,22 +153,11 @@ namespace crawler
     TS stepper               = ts.get();
     petsc(TSSetOptionsPrefix(stepper, parameters.petsc_prefix.c_str()));
     petsc(TSSetProblemType(stepper, TS_NONLINEAR));
-    petsc(TSSetEquationType(stepper, TS_EQ_IMPLICIT)); // without this arkimex is silently wrong
     petsc(TSSetType(stepper, method.petsc_type.c_str()));
     if (method.petsc_type == "bdf")
       petsc(TSBDFSetOrder(stepper, static_cast<PetscInt>(parameters.order)));
-    if (method.petsc_type == "arkimex")
-    {
-      petsc(TSARKIMEXSetType(stepper, method.subtype.c_str()));
-      petsc(TSARKIMEXSetFullyImplicit(stepper, PETSC_TRUE));
-    }
     if (method.petsc_type == radau_type)
       petsc(radau_set_stages(stepper, method.n_stages));
-    if (method.name == "midpoint")
-    {
-      petsc(TSThetaSetTheta(stepper, 0.5));
-      petsc(TSThetaSetEndpoint(stepper, PETSC_FALSE));
-    }
     TSAdapt adapt = nullptr;
     petsc(TSGetAdapt(stepper, &adapt));
     petsc(TSAdaptSetType(adapt, parameters.step_control == StepControl::fixed ? TSADAPTNONE : TSADAPTBASIC));
@@ -242,12 +231,6 @@ namespace crawler
     TSType type = nullptr;
     petsc(TSGetType(stepper, &type));
     std::string name = type;
-    if (name == "arkimex")
-    {
-      TSARKIMEXType subtype = nullptr;
-      petsc(TSARKIMEXGetType(stepper, &subtype));
-      name += std::string(" ") + subtype;
-    }
     if (name == radau_type)
     {
       unsigned int n_stages = 0;
@@ -258,19 +241,12 @@ namespace crawler
       for (unsigned int i = 0; i < n_stages; ++i)
         owner.stage_places_.push_back(tableau.c[i]);
     }
-    if (name == "theta")
-    {
-      PetscBool endpoint = PETSC_FALSE;
-      petsc(TSThetaGetEndpoint(stepper, &endpoint));
-      if (endpoint)
-        name += " endpoint";
-    }
     if (is_offered(name))
       return;
     const std::string reason = reason_against(name);
-    throw InputError(
-      "the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " +
-      (reason.empty() ? "it has not been verified for a mass matrix that depends on the state" : reason));
+    throw InputError("the PETSc integrator \"" + name + "\" (option -ts_type) is refused: " +
+                     (reason.empty() ? "it is not tested for a mass matrix that depends on the state" : reason) +
+                     "; \"bdf\" or \"radau\" is expected");
   }
 
   /// The elimination becomes a preconditioner from the right, so that residuals are the true ones.

@@ -9,12 +9,9 @@ namespace crawler
   /// A time integrator that users can name.
   struct Integrator
   {
-    std::string name;          ///< the word in the parameter file
-    std::string petsc_type;    ///< TSType
-    std::string subtype;       ///< of arkimex
-    unsigned int order;        ///< nominal order; 0: the entry "Order" decides (bdf)
-    bool adaptive;             ///< has an error estimate
-    unsigned int n_stages = 1; ///< implicit stages that are solved together
+    std::string name;       ///< the word in the parameter file
+    std::string petsc_type; ///< TSType
+    unsigned int n_stages;  ///< implicit stages that are solved together
   };
 
   /// All integrators that are offered: each reaches its nominal order on M(u) u' = f (tests/convergence).
@@ -26,12 +23,12 @@ namespace crawler
   const Integrator &
   integrator(const std::string &name);
 
-  /// What is known against an integrator of PETSc (the word of `-ts_type`, "arkimex TYPE" or "theta endpoint") for a
-  /// mass matrix that depends on the state; empty if nothing is.
+  /// What is known against an integrator of PETSc (the word of `-ts_type`) for a mass matrix that depends on the state;
+  /// empty if nothing is.
   std::string
   reason_against(const std::string &petsc_name);
 
-  /// Is it one of integrators(), by PETSc's name for it? Only those have been verified.
+  /// Is it one of integrators()? Only those have been verified.
   bool
-  is_offered(const std::string &petsc_name);
+  is_offered(const std::string &name);
 } // namespace crawler

@@ -70,8 +70,7 @@ namespace crawler
     declarations.text("Engines", engines, "a list of \"fused\", \"petsc\" and \"batch\"")
       .means("What carries the integrators out: the fused engine, PETSc, or the fused engine with 8 bodies side by "
              "side, where the cost is that of one body.");
-    declarations
-      .text("Integrators", integrators, "a list of integrators as in the section Time that estimate their error")
+    declarations.text("Integrators", integrators, "a list of integrators as in the section Time")
       .means("The time integrators that it tries.");
     declarations.text("Degrees", degrees, "a list of whole numbers from 1 to 8").means("The degrees that it tries.");
     declarations.text("Cells", cells, "\"automatic\" or a list of whole numbers")

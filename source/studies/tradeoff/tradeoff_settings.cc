@@ -97,7 +97,7 @@ namespace crawler
       return result;
     }
 
-    /// Names of integrators that choose their steps themselves. What is known against others is said.
+    /// Names of integrators. What is known against others is said.
     std::vector<std::string>
     read_integrators(const Parameters &parameters)
     {
@@ -108,10 +108,8 @@ namespace crawler
         {
           if (value == "automatic")
             throw InputError("\"automatic\" is no integrator, but the name of one is expected");
-          TimeParameters time = parameters.time;
-          time.integrator     = value;
-          time.step_control   = StepControl::adaptive;
-          time.initial_step.reset();
+          TimeParameters time;
+          time.integrator = value;
           time.validate();
         }
         catch (const InputError &error)

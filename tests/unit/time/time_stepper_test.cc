@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 using namespace crawler;
 
@@ -118,24 +119,20 @@ namespace
   }
 } // namespace
 
-TEST(TimeStepper, EveryIntegratorReachesItsOrder)
+/// bdf starts with steps of lower order: its orders are in convergence/time_test.cc.
+TEST(TimeStepper, RadauReachesItsOrder)
 {
-  for (const Integrator &method : integrators())
+  for (const auto &[name, order, steps] : {std::tuple("radau 5", 5., std::vector<double>{12, 24, 48}),
+                                           std::tuple("radau 9", 9., std::vector<double>{2, 3, 4})})
   {
-    // Those that start with a step of lower order are in convergence/time_test.cc.
-    if (method.name == "bdf" || (method.order > 3 && method.petsc_type != "radau"))
-      continue;
-    std::vector<double> n_steps, errors;
-    for (const unsigned int n :
-         method.order == 9 ? std::vector<unsigned int>{2, 3, 4} : std::vector<unsigned int>{12, 24, 48})
+    std::vector<double> errors;
+    for (const double n : steps)
     {
-      ScalarEquation equation(parameters_for(method.name, StepControl::fixed));
-      ASSERT_EQ(equation.solve(1e-12, 1.5 / n).status, Status::finished) << method.name;
-      n_steps.push_back(n);
+      ScalarEquation equation(parameters_for(name, StepControl::fixed));
+      ASSERT_EQ(equation.solve(1e-12, 1.5 / n).status, Status::finished) << name;
       errors.push_back(std::abs(equation.y[0] - std::sin(1.5)));
     }
-    EXPECT_GE(test::observed_order(n_steps, errors), (1. - 0.05) * method.order)
-      << method.name << " " << errors[0] << " " << errors[2];
+    EXPECT_GE(test::observed_order(steps, errors), (1. - 0.05) * order) << name << " " << errors[0] << " " << errors[2];
   }
 }
 
@@ -271,7 +268,7 @@ TEST(TimeStepper, FactorsThatAreNotThereAreNotUsed)
 
 TEST(TimeStepper, UnsoundIntegratorsAreRefusedWithTheReason)
 {
-  for (const char *name : {"rosw", "irk", "glle", "theta endpoint", "arkimex 2c", "rk"})
+  for (const char *name : {"rosw", "irk", "glle", "cn", "rk"})
   {
     EXPECT_NE(reason_against(name), "") << name;
     EXPECT_FALSE(is_offered(name)) << name;
@@ -280,12 +277,10 @@ TEST(TimeStepper, UnsoundIntegratorsAreRefusedWithTheReason)
   }
   for (const Integrator &method : integrators())
   {
-    const std::string petsc_name = method.petsc_type + (method.subtype.empty() ? "" : " " + method.subtype);
-    EXPECT_EQ(reason_against(petsc_name), "");
-    EXPECT_TRUE(is_offered(petsc_name));
-    TimeParameters parameters =
-      parameters_for(method.name, method.adaptive ? StepControl::adaptive : StepControl::fixed);
-    parameters.initial_step = 0.1;
+    EXPECT_EQ(reason_against(method.petsc_type), "");
+    EXPECT_TRUE(is_offered(method.name));
+    TimeParameters parameters = parameters_for(method.name);
+    parameters.initial_step   = 0.1;
     EXPECT_NO_THROW(parameters.validate());
   }
 }
