@@ -12,16 +12,17 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-packages=(g++ cmake ninja-build git libdeal.ii-dev libcli11-dev nlohmann-json3-dev libfmt-dev openmpi-bin)
-python=(python3-dev pybind11-dev python3-numpy)
+packages=(g++ cmake ninja-build git libdeal.ii-dev libcli11-dev nlohmann-json3-dev libfmt-dev openmpi-bin
+  python3-numpy python3-scipy python3-h5py python3-matplotlib)
+python=(python3-dev pybind11-dev)
 [ "${1:-}" = python ] && packages+=("${python[@]}")
 [ "${1:-}" = package ] && packages+=("${python[@]}" dpkg-dev file)
 [ "${1:-}" = live ] && packages+=(emscripten)
 [ "${1:-}" = fuzz ] && packages+=(libclang-rt-dev)
 is_installed() { dpkg-query -W -f '${db:Status-Abbrev}' "$1" 2>/dev/null | grep -q '^ii'; }
 if [ "${1:-}" = tests ] || [ "${1:-}" = verify ]; then
-  packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev python3-scipy python3-h5py
-    python3-pandas python3-matplotlib python3-jsonschema zsh groff-base chromium clang-format clang-tidy doxygen
+  packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev
+    python3-pandas python3-jsonschema zsh groff-base chromium clang-format clang-tidy doxygen
     texlive-binaries)
   # ParaView brings VTK for Python; Debian has the two not beside each other.
   is_installed python3-paraview || packages+=(python3-vtk9)

@@ -6,7 +6,6 @@
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
 #include <crawler/run/result_json.h>
-#include <crawler/run/result_table.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/run/run_in_memory.h>
 
@@ -67,10 +66,7 @@ extern "C"
   EMSCRIPTEN_KEEPALIVE const char *
   crawler_entries()
   {
-    Json entries = Json::array();
-    for (const ResultEntry &entry : result_table())
-      entries.push_back({{"key", entry.key}, {"unit", entry.unit}, {"meaning", entry.meaning}});
-    return keep({{"entries", std::move(entries)}, {"n_points", Kymograph::n_points}});
+    return keep({{"entries", result_entries()}, {"n_points", Kymograph::n_points}});
   }
 
   /// The run of the parameter file @p text; {"problem": a sentence} if it is refused.

@@ -9,7 +9,7 @@ import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-REPORT = HERE.parents[1] / "source/studies/report"
+REPORT = HERE.parent / "python/crawler/report"
 
 
 def text_of(*paths):

@@ -18,8 +18,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "contrib" / "plot"))
-from plotting import Parser, Problem, Unwritable, need, run_script  # noqa: E402
+sys.path.insert(0, str(ROOT / "contrib/python/crawler/plot"))
+from plotting import Parser, InputError, FileError, need, run_script  # noqa: E402
 
 need("numpy", "matplotlib")
 import figures  # noqa: E402
@@ -51,7 +51,7 @@ class Results:
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise Unwritable(f"cannot make the folder {folder}: {error.strerror}") from None
+            raise FileError(f"cannot make the folder {folder}: {error.strerror}") from None
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             list(pool.map(self.run, RUNS))
 
@@ -63,7 +63,7 @@ class Results:
             words += ["--set", f"{entry}={value}"]
         end = subprocess.run(words, capture_output=True, text=True, check=False, cwd=ROOT)
         if end.returncode != code:
-            raise Problem(f"{command} {file} ended with {end.returncode}, but {code} is expected: {end.stderr.strip()}")
+            raise InputError(f"{command} {file} ended with {end.returncode}, but {code} is expected: {end.stderr.strip()}")
 
     def summary(self, name):
         """The numbers of a run."""
@@ -101,7 +101,7 @@ def program_of(build):
     """The program in a build folder."""
     program = build / "crawler" if build.is_dir() else build
     if not os.access(program, os.X_OK) or program.is_dir():
-        raise Problem(f"{program} is not there; the build folder of crawler is expected (contrib/setup.sh makes it)")
+        raise InputError(f"{program} is not there; the build folder of crawler is expected (contrib/setup.sh makes it)")
     return program.resolve()
 
 

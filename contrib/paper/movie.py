@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 from PIL import Image  # comes with matplotlib
-from plotting import NAMES, Unwritable, colour_limits
+from plotting import NAMES, FileError, colour_limits
 
 STRIDES, FRAMES_EACH, RINGS = 5, 20, 16
 THICKNESS = 0.12  # of the unstretched body
@@ -59,5 +59,5 @@ def movie(run, path):
     try:
         small[0].save(path, save_all=True, append_images=small[1:], duration=80, loop=0, optimize=False)
     except OSError as error:
-        raise Unwritable(f"cannot write {path}: {error.strerror}") from None
+        raise FileError(f"cannot write {path}: {error.strerror}") from None
     print(f"wrote {path}")

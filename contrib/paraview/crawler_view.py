@@ -16,7 +16,7 @@ except ImportError:
     sys.exit(f"{sys.argv[0]}: this Python has no ParaView; call the script with pvbatch or pvpython (Debian: "
              f"apt install paraview python3-paraview): pvbatch {sys.argv[0]} RUN")
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "plot"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python/crawler/plot"))
 from plotting import unit_names, with_own_units  # noqa: E402
 
 UNITS = {"stretch": "1", "position": "length", "displacement": "length", "velocity": "length/time",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The module crawler._core: texts of parameter files go in, texts (JSON) and arrays come out; package/__init__.py makes
+// The module crawler._core: texts of parameter files go in, texts (JSON) and arrays come out; crawler/__init__.py makes
 // of them what users see. One computation at a time, without Python's lock, which is taken now and then to look for
 // signals.
 #include <crawler/base/clock.h>
@@ -14,6 +14,8 @@
 #include <crawler/run/summary.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/sensitivities.h>
+#include <crawler/studies/optimize/optimize.h>
+#include <crawler/studies/optimize/optimize_cases.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/run/run_in_memory.h>
 #include <crawler/studies/run/sensitivity_files.h>
@@ -298,7 +300,7 @@ namespace crawler
       return {table, notes};
     }
 
-    /// `crawler run` or `crawler sweep` with its files; the exit code, and notes.
+    /// `crawler run`, sweep or optimize with its files; the exit code, and notes.
     std::pair<int, std::vector<std::string>>
     run_command(
       const std::string &name, const Source &source, const std::string &output, const bool overwrite, const bool quiet)
@@ -313,9 +315,12 @@ namespace crawler
         options.quiet            = quiet;
         options.command_line     = "python";
         const ParameterFile file = source.file();
-        const auto notes         = name == "sweep" ? SweepPoints(MPI_COMM_SELF, file).notes() : read_input(file).notes;
-        const ExitCode code =
-          name == "sweep" ? sweep_input(MPI_COMM_SELF, options, file) : run_input(MPI_COMM_SELF, options, file);
+        const auto notes         = name == "run"     ? read_input(file).notes
+                                   : name == "sweep" ? SweepPoints(MPI_COMM_SELF, file).notes()
+                                                     : OptimizeCases(MPI_COMM_SELF, file).notes(file);
+        const ExitCode code      = name == "sweep"      ? sweep_input(MPI_COMM_SELF, options, file)
+                                   : name == "optimize" ? optimize_input(MPI_COMM_SELF, options, file)
+                                                        : run_input(MPI_COMM_SELF, options, file);
         return std::pair(static_cast<int>(code), notes);
       });
     }

@@ -82,6 +82,10 @@ namespace crawler
       {
         return fail(ExitCode::file_error, in_words(error));
       }
+      catch (const std::exception &error)
+      {
+        return fail(ExitCode::numerical_failure, error.what());
+      }
     }
 
     /// A command that computes; MPI is there.

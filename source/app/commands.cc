@@ -12,8 +12,8 @@
 #include <crawler/base/process.h>
 #include <crawler/base/versions.h>
 #include <crawler/studies/atlas/atlas.h>
+#include <crawler/studies/core/python.h>
 #include <crawler/studies/optimize/optimize.h>
-#include <crawler/studies/report/report.h>
 #include <crawler/studies/run/run.h>
 #include <crawler/studies/sweep/sweep.h>
 #include <crawler/studies/tradeoff/tradeoff.h>
@@ -30,7 +30,18 @@ namespace crawler
 {
   namespace
   {
-    /// A command that reads a parameter file, or the folder that another one has made.
+    /// Commands that contrib/python/crawler/__main__.py has.
+    constexpr std::pair<const char *, const char *> commands_in_python[] = {
+      {"report", "Makes a page for browsers, report.html, of the output folder of any other command"},
+      {"table", "Turns measured samples or tracks of markers into a table that a scene reads"}};
+
+    bool
+    is_in_python(const std::string &name)
+    {
+      return std::ranges::any_of(commands_in_python, [&](const auto &command) { return name == command.first; });
+    }
+
+    /// A command that reads a parameter file.
     struct Command
     {
       const char *name, *description;
@@ -74,12 +85,7 @@ namespace crawler
        /*writes=*/true,
        /*resumes=*/true,
        /*takes_petsc_options=*/true},
-      {"report",
-       "Makes a page for browsers, report.html, of the output folder of any other command",
-       report,
-       /*writes=*/false,
-       /*resumes=*/false,
-       /*takes_petsc_options=*/false}};
+    };
 
     const Command *
     find_command(const std::string &name)
@@ -102,13 +108,6 @@ namespace crawler
     add_command(const Command &command, CLI::App &app, CommandOptions &options)
     {
       CLI::App *own = app.add_subcommand(command.name, command.description);
-      if (command.function == report)
-      {
-        own->add_option("DIR", options.file, "Output folder of a run, sweep, atlas, tradeoff or optimisation")
-          ->required();
-        own->add_flag("--quiet", options.quiet, "Prints nothing but errors");
-        return;
-      }
       own->add_option("FILE", options.file, "Parameter file; - reads standard input")->required();
       own->add_option("--set", options.overrides, "Sets an entry: \"Section/Entry=value\" (repeatable)")
         ->allow_extra_args(false)
@@ -152,7 +151,15 @@ namespace crawler
   void
   Commands::add_own_commands()
   {
-    table_.emplace(app_);
+    for (const auto &[name, description] : commands_in_python)
+      if (CLI::App *const command = app_.add_subcommand(name, description); command->get_name() == "report")
+      {
+        command->add_option("DIR", options_.file, "Output folder of a run, sweep, atlas, tradeoff or optimisation")
+          ->required();
+        command->add_flag("--quiet", options_.quiet, "Prints nothing but errors");
+      }
+      else
+        command->prefix_command()->set_help_flag();
 
     CLI::App *plot = app_.add_subcommand("plot", "Draws the output folder of a run or study into it");
     plot->set_help_flag();
@@ -205,6 +212,7 @@ namespace crawler
   bool
   Commands::parse(const std::vector<std::string> &arguments, const std::vector<std::string> &petsc_options)
   {
+    words_                = arguments;
     options_.command_line = "crawler";
     for (const std::string &word : arguments)
       options_.command_line += " " + quoted(word);
@@ -263,7 +271,7 @@ namespace crawler
   bool
   Commands::needs_mpi() const
   {
-    return find_command(chosen()) != nullptr || table_->is(app_.get_subcommands().front());
+    return find_command(chosen()) != nullptr;
   }
 
   void
@@ -278,6 +286,8 @@ namespace crawler
       print_completion(app_, name_);
     else if (name == "man")
       print_manual(app_);
+    else if (is_in_python(name))
+      hand_over_to_python("__main__.py", words_);
     else if (plot_help_ && options_.file.empty())
       std::cout << app_.get_subcommands().front()->help();
     else
@@ -292,8 +302,6 @@ namespace crawler
   ExitCode
   Commands::run(MPI_Comm communicator) const
   {
-    if (table_->is(app_.get_subcommands().front()))
-      return (*table_)(communicator);
     return find_command(chosen())->function(communicator, options_);
   }
 } // namespace crawler

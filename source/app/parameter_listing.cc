@@ -2,12 +2,15 @@
 #include <crawler/app/parameter_listing.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
+#include <crawler/base/versions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/entry_lists.h>
 #include <crawler/parameters/parameter_file.h>
+#include <crawler/run/result_json.h>
 #include <crawler/studies/core/parameters.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -23,13 +26,21 @@ namespace crawler
       std::function<void(const Declarations &, std::ostream &)> print;
     };
 
+    /// What a page says of the numbers in summary.json, and of the program that makes it.
+    void
+    print_results(const Declarations &, std::ostream &out)
+    {
+      out << nlohmann::ordered_json({{"versions", versions()}, {"numbers", result_entries()}}).dump(2) << "\n";
+    }
+
     const std::vector<Format> &
     formats()
     {
       static const std::vector<Format> list = {{"prm", &Declarations::print_prm},
                                                {"json", print_json},
                                                {"markdown", print_markdown},
-                                               {"schema", print_schema}};
+                                               {"schema", print_schema},
+                                               {"results", print_results}};
       return list;
     }
 

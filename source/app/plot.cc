@@ -2,11 +2,10 @@
 #include <crawler/app/plot.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
-#include <crawler/studies/core/pictures.h>
+#include <crawler/studies/core/python.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sysexits.h>
 
 #include <algorithm>
 #include <array>
@@ -94,12 +93,7 @@ namespace crawler
     const std::string chosen           = kind.empty() ? kind_of(path) : kind;
     std::vector<std::string> arguments = {path};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    std::cout.flush(); // the script writes to the same stream
-    const PictureEnd end = call_plot_script(chosen + ".py", arguments, /*shown=*/true);
-    if (end.status == static_cast<int>(ExitCode::file_error))
-      throw FileError(end.problem, /*on_all_ranks=*/true);
-    if (end.status != 0)
-      throw InputError(end.status == EX_UNAVAILABLE ? "there is no picture: " + end.problem : end.problem);
+    hand_over_to_python("plot/" + chosen + ".py", arguments);
     std::error_code ignored;
     if (kind.empty() && fs::exists(fs::path(path) / "sensitivity_body.csv", ignored))
       std::cout << fmt::format("Also there: crawler plot {} --kind sensitivity", path) << std::endl;

@@ -17,10 +17,8 @@ namespace crawler
     struct Argument
     {
       const char *name, *meaning, *usage;
-      std::size_t n_words = 1;
     };
-    constexpr Argument arguments_of_commands[] = {{"OUT", "file", "IN.csv OUT.csv", 2},
-                                                  {"FILE", "parameter file", "FILE.prm"},
+    constexpr Argument arguments_of_commands[] = {{"FILE", "parameter file", "FILE.prm"},
                                                   {"DIR", "folder", "DIR"},
                                                   {"TEMPLATE", "template", "TEMPLATE"},
                                                   {"SHELL", "shell", "SHELL"},
@@ -33,7 +31,7 @@ namespace crawler
       const Argument *const argument = std::ranges::find_if(
         arguments_of_commands, [&](const Argument &one) { return command.get_option_no_throw(one.name) != nullptr; });
       const bool has_one     = argument != std::end(arguments_of_commands);
-      const std::size_t most = has_one ? 1 + argument->n_words : 1;
+      const std::size_t most = has_one ? 2 : 1;
       if (words.size() < most)
         return fmt::format(
           "the {} is missing; \"crawler {} {}\" is expected", argument->meaning, command.get_name(), argument->usage);
@@ -41,9 +39,7 @@ namespace crawler
         return fmt::format("found \"{}\" behind \"{}\", but {} is expected",
                            words[most],
                            words[most - 1],
-                           !has_one                ? "nothing"
-                           : argument->n_words > 1 ? argument->usage
-                                                   : fmt::format("one {}", argument->meaning));
+                           has_one ? fmt::format("one {}", argument->meaning) : "nothing");
       return "";
     }
 

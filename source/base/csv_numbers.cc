@@ -48,22 +48,23 @@ namespace crawler
                            line.find("NaN") != line.npos;
       return has_gap && is_of_samples ? " (\"crawler table IN OUT\" fills gaps)" : "";
     }
-  } // namespace
 
-  std::optional<double>
-  number_in(std::string_view text)
-  {
-    text = without_blanks(text);
-    if (text.size() > 1 && text[0] == '+' && text[1] != '-')
-      text.remove_prefix(1);
-    double value             = 0.;
-    const auto [end, result] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (result == std::errc::invalid_argument || end != text.data() + text.size())
-      return std::nullopt;
-    if (result == std::errc::result_out_of_range) // smaller or larger than any double
-      value = std::strtod(std::string(text).c_str(), nullptr);
-    return std::isfinite(value) ? std::optional(value) : std::nullopt;
-  }
+    /// A finite number if the whole text is one, apart from blanks.
+    std::optional<double>
+    number_in(std::string_view text)
+    {
+      text = without_blanks(text);
+      if (text.size() > 1 && text[0] == '+' && text[1] != '-')
+        text.remove_prefix(1);
+      double value             = 0.;
+      const auto [end, result] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (result == std::errc::invalid_argument || end != text.data() + text.size())
+        return std::nullopt;
+      if (result == std::errc::result_out_of_range) // smaller or larger than any double
+        value = std::strtod(std::string(text).c_str(), nullptr);
+      return std::isfinite(value) ? std::optional(value) : std::nullopt;
+    }
+  } // namespace
 
   bool
   Mistakes::is_first(const std::size_t row)
@@ -163,35 +164,5 @@ namespace crawler
     if (!in || !(text << in.rdbuf()))
       throw InputError("cannot read \"" + file + "\", or it is empty; " + expected + " is expected", entry);
     return csv_numbers(text.str(), names, file, entry);
-  }
-
-  Table
-  read_csv_table(const std::filesystem::path &path)
-  {
-    const std::string whole = read_whole_file(path);
-    std::string_view text   = without_byte_order_mark(whole);
-    Table table;
-    std::vector<std::vector<double>> columns;
-    for (std::string_view rest = next_part(text, '\n'); !rest.empty();)
-    {
-      const std::string_view word = without_blanks(next_part(rest, ','));
-      const auto unit             = word.rfind(" [");
-      const bool has_unit         = unit != word.npos && word.back() == ']';
-      table.push_back({std::string(word.substr(0, has_unit ? unit : word.npos)),
-                       has_unit ? std::string(word.substr(unit + 2, word.size() - unit - 3)) : "",
-                       "",
-                       {}});
-    }
-    columns.resize(table.size());
-    while (!text.empty())
-    {
-      std::string_view line = without_blanks(next_part(text, '\n'));
-      if (!line.empty())
-        for (auto &column : columns)
-          column.push_back(number_in(next_part(line, ',')).value_or(std::numeric_limits<double>::quiet_NaN()));
-    }
-    for (std::size_t i = 0; i < table.size(); ++i)
-      table[i].values = std::move(columns[i]);
-    return table;
   }
 } // namespace crawler

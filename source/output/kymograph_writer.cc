@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/base/communication.h>
 #include <crawler/base/files.h>
-#include <crawler/output/kymograph_reader.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/vtk_xml.h>
 
@@ -39,9 +38,13 @@ namespace crawler
     }
   } // namespace
 
-  KymographWriter::KymographWriter(const double length, const double end_time, const std::filesystem::path &folder)
+  KymographWriter::KymographWriter(const double length,
+                                   const double end_time,
+                                   std::shared_ptr<const Profile> ground,
+                                   const std::filesystem::path &folder)
     : length_(length)
     , end_time_(end_time)
+    , ground_(std::move(ground))
     , folder_(folder)
   {
   }
@@ -105,6 +108,20 @@ namespace crawler
     return size.within(all);
   }
 
+  std::string
+  KymographWriter::ground_arrays() const
+  {
+    constexpr unsigned int n_places = 400;
+    constexpr double margin         = 0.3; // on both sides, of the length
+    if (!ground_)
+      return "";
+    const auto [low, high] = std::minmax_element(rows().displacement.begin(), rows().displacement.end());
+    std::vector<double> places;
+    for (unsigned int i = 0; i < n_places; ++i)
+      places.push_back(std::lerp(*low - margin * length_, *high + (1. + margin) * length_, i / (n_places - 1.)));
+    return vtk_array("ground_x", places, 1, "length") + vtk_array("ground_factor", profile_at(ground_, places), 1, "1");
+  }
+
   void
   KymographWriter::end()
   {
@@ -117,8 +134,7 @@ namespace crawler
       {
         const auto [low, high] = shown(field);
         fields += vtk_array(field.name, rows().*field.values, 1, field.unit);
-        shown_ranges +=
-          vtk_array(std::string(shown_prefix) + field.name, std::vector<double>{low, high}, 1, field.unit);
+        shown_ranges += vtk_array(std::string("shown_") + field.name, std::vector<double>{low, high}, 1, field.unit);
       }
     std::vector<double> points;
     for (const double time : times())
@@ -133,7 +149,7 @@ namespace crawler
                   vtk_text("AxisTitleForX", "s/L") + vtk_text("AxisTitleForY", "t/T") +
                     vtk_array("L", std::vector<double>{length_}, 1, "length") +
                     vtk_array("T", std::vector<double>{end_time_}, 1, "time") + vtk_text("units", units_of_fields()) +
-                    shown_ranges,
+                    shown_ranges + ground_arrays(),
                   fields,
                   vtk_array("Points", points, 3)));
     write_file(folder_ / "kymograph.vts", text);

@@ -52,4 +52,13 @@ namespace crawler
       json["inversion"] = nullptr;
     return json;
   }
+
+  nlohmann::ordered_json
+  result_entries()
+  {
+    Json entries = Json::array();
+    for (const ResultEntry &entry : result_table())
+      entries.push_back({{"key", entry.key}, {"unit", entry.unit}, {"meaning", entry.meaning}});
+    return entries;
+  }
 } // namespace crawler

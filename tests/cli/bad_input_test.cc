@@ -582,7 +582,7 @@ namespace
       bad_arguments("MissingTemplate", {"init"}, {"the template is missing", "\"crawler init TEMPLATE\""}),
       bad_arguments("MissingShell", {"completion"}, {"the shell is missing", "\"crawler completion SHELL\""}),
       bad_arguments("EmptyNameOfTemplate", {"init", "robot", "--output", ""}, {"\"--output\"", "name of a file"}),
-      bad_arguments("UnknownFormat", {"parameters", "--format", "html"}, {"\"html\"", "\"markdown\" or \"schema\""}),
+      bad_arguments("UnknownFormat", {"parameters", "--format", "html"}, {"\"html\"", "\"schema\" or \"results\""}),
       bad_arguments("PetscOptionsForParameters",
                     {"parameters", "--", "-ts_type", "bdf"},
                     {"\"-ts_type\"", "\"parameters\" has no use for PETSc options"}),

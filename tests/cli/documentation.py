@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-GENERATED = (("doc/parameters.md", "markdown"), ("prm/default.prm", "prm"))
+GENERATED = (("prm/default.prm", "prm"),)
 SKIPPED = re.compile(r"build.*|output.*|\..*|__pycache__")
 # `Section/Entry`, `Section/Sub section/Entry` and `Section/Entry = value`; paths of files begin in lower case.
 ENTRY = re.compile(r"([A-Z][\w ]*(?:/[A-Z][\w ]*)+)(?: ?=.*)?")

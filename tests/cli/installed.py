@@ -17,7 +17,8 @@ CMAKE, BUILD = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PARTS = ["bin/crawler", "include/crawler/scene/stress_plugin.h", "lib*/**/cmake/crawler/crawlerConfig.cmake",
          "share/bash-completion/completions/crawler", "share/man/man1/crawler.1",
-         "share/crawler/plot/plotting.py", "share/crawler/paraview/movie.py", "share/crawler/plugin/peristalsis.cc",
+         "share/crawler/python/crawler/plot/plotting.py", "share/crawler/python/crawler/report/page.html",
+         "share/crawler/paraview/movie.py", "share/crawler/plugin/peristalsis.cc",
          "share/crawler/prm/default.prm", "share/crawler/prm/examples/earthworm.prm", "share/doc/crawler/README.md",
          "share/doc/crawler/LICENSE", "share/doc/crawler/doc/user_guide.md", "share/doc/crawler/doc/images/fig_2.png"]
 # In a namespace of its own (user, files), with empty folders in place of source and build.
@@ -64,6 +65,7 @@ with tempfile.TemporaryDirectory() as name:
     call(program, "report", "output-a", folder=here, before=before)
     for file in ("output-a/summary.json", "picture.png", "output-a/report.html"):
         expect((here / file).is_file(), f"{file} is not there")
+    expect("`inverted_inside`" in (here / "output-a/report.html").read_text(), "the report has no advice")
     if packages := glob.glob(str(prefix / "lib/python3*/dist-packages")):
         call("/usr/bin/python3", "-c", f"import sys; sys.path.insert(0, '{packages[0]}'); import crawler; "
              "assert crawler.run('a.prm').displacement > 0", folder=here, before=before)

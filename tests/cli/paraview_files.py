@@ -331,7 +331,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         serial = check_run("one rank", run(folder, "one", [sys.argv[1]]))
-        script = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "plot" / "kymograph.py"
+        script = pathlib.Path(__file__).resolve().parents[2] / "contrib/python/crawler/plot" / "kymograph.py"
         done = call([sys.executable, script, folder / "one"], folder)
         check(done.returncode == 0 and (folder / "one" / "kymograph.png").is_file(), "the picture of a run is beside its files")
         check_xdmf("XDMF", run(folder, "xdmf", [sys.argv[1]], XDMF), serial[0])

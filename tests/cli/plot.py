@@ -108,7 +108,7 @@ def drawn(folder, *options):
         at = options.index("--kind")
         kind = options[at + 1]
         del options[at:at + 2]
-    script = ROOT / "contrib" / "plot" / f"{kind}.py"
+    script = ROOT / "contrib/python/crawler/plot" / f"{kind}.py"
     child = os.fork()
     if child == 0:
         code = 1
@@ -206,7 +206,7 @@ def test_copied_program():
     """A copy of the program alone says where its scripts are looked for."""
     shutil.copy(PROGRAM, "copied")
     end = call(["./copied", "plot", "run"])
-    check(end.returncode == 2 and "kymograph.py is neither " in end.stderr and f"{pathlib.Path.cwd()}/plot/kymograph.py" in end.stderr
+    check(end.returncode == 2 and "kymograph.py is neither " in end.stderr and f"{pathlib.Path.cwd()}/python/crawler/plot/kymograph.py" in end.stderr
           and end.stderr.count("\n") == 1, f"a copied program: {end.returncode} {end.stderr.strip()}")
     pathlib.Path("copied").unlink()
 
@@ -273,7 +273,7 @@ def test_python(folder):
           f"which Python lacks what: {end.stderr.strip()}")
     end = crawler("plot", "run", PYTHONPATH=f"{folder}/blind")
     check(end.returncode == 0, f"a run needs no h5py: {end.stderr.strip()}")
-    for script in sorted((ROOT / "contrib" / "plot").glob("*.py")):
+    for script in sorted((ROOT / "contrib/python/crawler/plot").glob("*.py")):
         first = script.read_text(encoding="utf-8").splitlines()[0]
         check(script.name == "plotting.py" or first == "#!/usr/bin/env python3", f"{script.name} runs with any Python: {first}")
 

@@ -167,13 +167,13 @@ end
     for file in glob.glob(os.path.join(share, "prm", "examples", "*.prm")):
         if os.path.basename(file) not in ("earthworm.prm", "measured_table.prm"):
             os.remove(file)
-    result = subprocess.run([sys.executable, os.path.join(share, "plot", "gallery.py"), PROGRAM], env=ENVIRONMENT,
+    result = subprocess.run([sys.executable, os.path.join(share, "python/crawler/plot", "gallery.py"), PROGRAM], env=ENVIRONMENT,
                             capture_output=True, text=True)
     expect(result.returncode == 0 and os.path.exists("gallery.png") and "measured_table" in result.stdout,
            f"the installed gallery: {result.stdout} {result.stderr}")
 
     # The installed program finds the installed plot scripts: this one says that it is the one.
-    with open(os.path.join(share, "plot", "atlas.py"), "w") as file:
+    with open(os.path.join(share, "python/crawler/plot", "atlas.py"), "w") as file:
         file.write("import sys, pathlib\n(pathlib.Path(sys.argv[1]) / 'installed_script').touch()\n")
     with open("small.prm", "w") as file:
         file.write("subsection Atlas\nset First axis = Body/Anchoring exponent : 2, 3\n"

@@ -17,7 +17,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call  # noqa: E402
 
-PLOT = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "plot" / "sensitivity.py"
+PLOT = pathlib.Path(__file__).resolve().parents[2] / "contrib/python/crawler/plot" / "sensitivity.py"
 WAVE = """
 set Accuracy = 1e-6
 subsection Active stress

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""contrib/plot/sweep.py on small sweeps of each design: which pictures it makes, and what it says to bad input.
+"""contrib/python/crawler/plot/sweep.py on small sweeps of each design: which pictures it makes, and what it says to bad input.
 
     python3 sweep_plot.py PATH_TO_CRAWLER
 """
@@ -24,7 +24,7 @@ import numpy as np  # noqa: E402
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, call  # noqa: E402
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "contrib" / "plot" / "sweep.py"
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "contrib/python/crawler/plot" / "sweep.py"
 sys.path.insert(0, str(SCRIPT.parent))  # as if the script were started
 CHI, P, K = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent", "Body/Elastic modulus"
 BASE = """
@@ -212,7 +212,7 @@ def test_without_matplotlib(folder):
 
 def test_columns(folder):
     """The user guide's table of columns has each with its unit."""
-    guide = (SCRIPT.parents[2] / "doc" / "user_guide.md").read_text(encoding="utf-8")
+    guide = (SCRIPT.parents[4] / "doc" / "user_guide.md").read_text(encoding="utf-8")
     rows = re.search(r"\| columns \| unit \|\n\|---\|---\|\n((?:\|.*\n)+)", guide)[1].splitlines()
     told = {name: unit.strip() for names, unit in (row.strip("|").rsplit("|", 1) for row in rows if "errors.NAME" not in row)
             for name in re.findall(r"`([^`]+)`", names)}

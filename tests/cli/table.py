@@ -56,7 +56,7 @@ end
 """
 # Arguments, exit code, what the one sentence has.
 REFUSED = [
-    ([], 2, "file is missing"), (["larva_raw.csv"], 2, "file is missing"), (["a.csv", "b.csv", "c.csv"], 2, "c.csv"),
+    ([], 2, "IN, OUT"), (["larva_raw.csv"], 2, "OUT"), (["a.csv", "b.csv", "c.csv"], 2, "c.csv"),
     (["nowhere.csv", "out.csv"], 6, "nowhere.csv"), (["larva_raw.csv", "larva.csv"], 2, "--overwrite"),
     (["larva_raw.csv", "larva_raw.csv"], 2, "another name"), (["larva_raw.csv", "out.txt"], 2, ".csv"),
     (["larva_raw.csv", "no/out.csv"], 6, "no/out"), (["larva_raw.csv", "out.csv", "--smoth-t", "1"], 2, "--smooth-t"),
@@ -67,7 +67,7 @@ REFUSED = [
     (["larva_raw.csv", "out.csv", "--period", "never"], 2, '"find", "whole"'),
     (["larva_raw.csv", "out.csv", "--cycles", "2"], 2, "--period"), (["larva_raw.csv", "out.csv", "--smooth-s", "-1"], 2, "-1"),
     (["larva_raw.csv", "out.csv", "--ends", "free"], 2, "hold"), (["larva_raw.csv", "out.csv", "--copies", "1"], 2, "--copies"),
-    (["larva_raw.csv", "out.csv", "--scene", "kinematic.prm"], 2, "prescribed strain"),
+    (["larva_raw.csv", "out.csv", "--scene", "kinematic.prm", "--copies", "8"], 2, "does not read the table"),
     (["larva_raw.csv", "out.csv", "--scene", "nowhere.prm"], 6, "nowhere.prm"),
     (["tracks_raw.csv", "out.csv"], 2, "--columns"), (["tracks_raw.csv", "out.csv", *TRACKS[:2], "--length", "2"], 2, "the body from 0 to 2"),
     (["tracks_raw.csv", "out.csv", *TRACKS[:2], "--markers-at", "0,1"], 2, "there are 10 markers"),

@@ -6,7 +6,6 @@
 #include <crawler/base/files.h>
 #include <crawler/base/grid_table.h>
 #include <crawler/base/hdf5_handle.h>
-#include <crawler/studies/table/preparation.h>
 
 #include <fstream>
 #include <vector>
@@ -68,16 +67,8 @@ LLVMFuzzerTestOneInput(const std::uint8_t *data, const std::size_t size)
   fuzz::is_accepted([&]() {
     if (kind == 0)
       csv_numbers(bytes.rest(), {"s", "value"}, "table", "");
-    else if (kind == 1)
-      read_csv_table(file_of(bytes.rest()));
-    else if (kind == 2)
+    else if (kind <= 3)
       read_grid_table(file_of(bytes.rest()), "m", "");
-    else if (kind == 3)
-    {
-      std::vector<std::string> words;
-      const Samples samples = read_samples(read_measured_file(bytes.rest(), "table"), {}, words);
-      prepare_table(samples, {});
-    }
     else
     {
       static const std::vector<std::string> files = {hdf5_table(0), hdf5_table(1), hdf5_table(2), hdf5_table(3)};

@@ -18,7 +18,7 @@ import tempfile
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "contrib/plot")]
+sys.path[:0] = [str(ROOT / "tests/support"), str(ROOT / "contrib/python/crawler/plot")]
 from browser import Browser  # noqa: E402
 from plotting import Kymograph  # noqa: E402
 

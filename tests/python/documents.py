@@ -42,7 +42,7 @@ def check_notebook(folder):
     environment = dict(os.environ, PYTHONPATH=str(PACKAGE), PATH="/usr/bin:/bin", JUPYTER_CONFIG_DIR=str(folder),
                        IPYTHONDIR=str(folder), JUPYTER_RUNTIME_DIR=str(folder))
     ended = subprocess.run(["jupyter-nbconvert", "--to", "notebook", "--execute", "--output-dir", folder,
-                            ROOT / "contrib/python/tutorial.ipynb"], env=environment, capture_output=True, text=True)
+                            ROOT / "contrib/notebooks/tutorial.ipynb"], env=environment, capture_output=True, text=True)
     if ended.returncode != 0:
         failures.append(f"the tutorial does not run: {ended.stderr[-3000:]}")
         return
@@ -56,7 +56,7 @@ def check_notebook(folder):
     expect(best < min(others), f"the optimum costs {best}, its neighbours {others}")
     predicted, found = map(float, re.search(r"predicted ([\d.]+), of \d+ bodies ([\d.]+)", text).groups())
     expect(abs(found / predicted - 1) < 0.2, f"uncertainty: predicted {predicted}, found {found}")
-    stored = json.loads((ROOT / "contrib/python/tutorial.ipynb").read_text(encoding="utf-8"))["cells"]
+    stored = json.loads((ROOT / "contrib/notebooks/tutorial.ipynb").read_text(encoding="utf-8"))["cells"]
     expect(not any(cell.get("outputs") for cell in stored), "the notebook is stored with outputs")
 
 

@@ -36,7 +36,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         sweep = call(str(pathlib.Path(sys.argv[1]).resolve()), "sweep", "prm/studies/scaling.prm", "--output", name, "--strict")
         check(sweep.returncode == 0, f"the sweep finishes ({sweep.returncode}) {sweep.stderr.strip()}")
-        plot = call(sys.executable, "contrib/plot/scaling.py", name, str(TABLE), "--require", "1")
+        plot = call(sys.executable, "contrib/python/crawler/plot/scaling.py", name, str(TABLE), "--require", "1")
         check(plot.returncode == 0, f"all exponents within 1 % ({plot.returncode}) {plot.stderr.strip()}")
         laws = re.findall(r"(\w+): (\w+) = (\S+) \* (\w+)\^(\S+) \(theory (\S+), off by (\S+) %\)", plot.stdout)
         check(len(laws) == 6, f"{len(laws)} laws")
@@ -49,12 +49,12 @@ def main():
         blind = pathlib.Path(name, "blind")
         blind.mkdir()
         (blind / "matplotlib.py").write_text("raise ImportError(\"No module named 'matplotlib'\")\n", encoding="utf-8")
-        without = call(sys.executable, "contrib/plot/scaling.py", name, str(TABLE), env={**os.environ, "PYTHONPATH": str(blind)})
+        without = call(sys.executable, "contrib/python/crawler/plot/scaling.py", name, str(TABLE), env={**os.environ, "PYTHONPATH": str(blind)})
         check(without.returncode == 69 and "apt install python3-matplotlib" in without.stderr and without.stderr.count("\n") == 1,
               f"without matplotlib: {without.stderr.strip()}")
         picture = pathlib.Path(name, "scaling.png")
         check(picture.is_file() and picture.stat().st_size > 20000, "the picture is there")
-        strict = call(sys.executable, "contrib/plot/scaling.py", name, str(TABLE), "--require", "0.01")
+        strict = call(sys.executable, "contrib/python/crawler/plot/scaling.py", name, str(TABLE), "--require", "0.01")
         check(strict.returncode == 1 and "at most 0.01 %" in strict.stderr, "--require ends with 1 if an exponent is off by more")
     sys.exit(failures > 0)
 

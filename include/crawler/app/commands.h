@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/app/table_command.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/studies/core/command_options.h>
 
@@ -9,7 +8,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include <optional>
 #include <vector>
 
 namespace crawler
@@ -59,7 +57,7 @@ namespace crawler
 
     CLI::App app_;
     CommandOptions options_;
-    std::optional<TableCommand> table_;
+    std::vector<std::string> words_;           ///< of the command line
     std::string format_ = "prm", name_, kind_; ///< name_: of a template, a shell or a section
     bool plot_help_     = false;
   };

@@ -6,7 +6,7 @@
 
 namespace crawler
 {
-  /// The kinds of pictures, each with the script contrib/plot/KIND.py: "kymograph", "sweep", ...
+  /// The kinds of pictures, each with the script contrib/python/crawler/plot/KIND.py: "kymograph", "sweep", ...
   std::vector<std::string>
   plot_kinds();
 

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/table.h>
-
 #include <cstddef>
-#include <filesystem>
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -35,10 +31,6 @@ namespace crawler
     std::set<std::size_t> others_;
   };
 
-  /// A finite number if the whole text is one, apart from blanks.
-  std::optional<double>
-  number_in(std::string_view text);
-
   /// Columns of finite numbers.
   struct CsvNumbers
   {
@@ -62,9 +54,4 @@ namespace crawler
                    const std::vector<std::string> &names,
                    const std::string &expected,
                    const std::string &entry);
-
-  /// The columns of a CSV file of numbers that a run has written, as statistics.csv, with names "name [unit]". What is
-  /// empty, missing or no number is not a number. Throws FileError if the file cannot be read.
-  Table
-  read_csv_table(const std::filesystem::path &path);
 } // namespace crawler

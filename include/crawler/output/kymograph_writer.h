@@ -4,8 +4,10 @@
 #include <crawler/output/field_sampler.h>
 #include <crawler/output/observer.h>
 #include <crawler/output/usual_size.h>
+#include <crawler/scene/profile.h>
 
 #include <filesystem>
+#include <memory>
 #include <vector>
 
 namespace crawler
@@ -47,18 +49,27 @@ namespace crawler
     Fields rows_;
   };
 
-  /// Writes them as one structured grid (kymograph.vts: x is s/L, y is t/T) when the run ends.
+  /// Writes them as one structured grid (kymograph.vts: x is s/L, y is t/T) when the run ends, with what pictures show
+  /// of each field ("shown_stretch": two numbers) and the ground below the body's path.
   class KymographWriter : public Kymograph
   {
   public:
-    /// @p length L [length].
-    KymographWriter(double length, double end_time, const std::filesystem::path &folder);
+    /// @p length L [length]; @p ground may be null.
+    KymographWriter(double length,
+                    double end_time,
+                    std::shared_ptr<const Profile> ground,
+                    const std::filesystem::path &folder);
 
     void
     end() override;
 
   private:
+    /// Arrays of places on the ground and of its factor there; nothing where it is the same everywhere.
+    std::string
+    ground_arrays() const;
+
     const double length_, end_time_;
+    const std::shared_ptr<const Profile> ground_;
     const std::filesystem::path folder_;
   };
 } // namespace crawler

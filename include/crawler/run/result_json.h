@@ -11,4 +11,8 @@ namespace crawler
   /// contract (doc/user_guide.md). What is not known is null or not a number, which is written as null.
   nlohmann::ordered_json
   summary_of(const SimulationResult &result);
+
+  /// Of the numbers and words of a result: {key, unit, meaning}.
+  nlohmann::ordered_json
+  result_entries();
 } // namespace crawler

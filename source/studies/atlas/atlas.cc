@@ -11,7 +11,7 @@
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
-#include <crawler/studies/core/pictures.h>
+#include <crawler/studies/core/python.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/core/table_csv.h>
 #include <crawler/studies/sweep/point_table.h>
@@ -194,7 +194,7 @@ namespace crawler
       if (!is_whole)
         log.warn(fmt::format(
           "stopped by a signal after {} of {} points; --resume goes on", summary.computed(), summary.points));
-      draw("atlas.py", path, log);
+      draw("atlas", path, log);
       log.line(fmt::format("Results are in {}/.", path.string()));
       folder.leave();
       return "";

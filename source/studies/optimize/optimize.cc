@@ -9,7 +9,7 @@
 #include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/output_folder.h>
-#include <crawler/studies/core/pictures.h>
+#include <crawler/studies/core/python.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/core/study_folder.h>
 #include <crawler/studies/optimize/gradient_check.h>
@@ -371,7 +371,7 @@ namespace crawler
       for (const std::string &line : in_words(results, summaries, cases.parameters().units))
         log.line(line);
       if (!results.best.empty())
-        draw("optimize.py", folder, log);
+        draw("optimize", folder, log);
       if (is_wrong)
         log.warn("an evaluation is better than any gait can be (column problem of results.csv), so it is wrong");
       if (!is_whole)
@@ -445,10 +445,15 @@ namespace crawler
   ExitCode
   optimize(MPI_Comm communicator, const CommandOptions &options)
   {
+    return optimize_input(communicator, options, read_file(communicator, options.file, options.overrides));
+  }
+
+  ExitCode
+  optimize_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file)
+  {
     const StopSignal stop_signal; // from here on a signal ends the study in order
     const double begin = now();
     Log log(rank_of(communicator) == 0, options);
-    const ParameterFile file = read_file(communicator, options.file, options.overrides);
     OptimizeCases cases(communicator, file);
     const OptimizeParameters own = cases.parameters().optimize;
     try

@@ -304,7 +304,8 @@ namespace crawler
         observers.push_back(
           std::make_unique<SnapshotWriter>(output.snapshot_format, folder, length, pictures.n_snapshots() + 1));
         if (output.kymograph)
-          observers.push_back(std::make_unique<KymographWriter>(length, input.scene.end_time, folder));
+          observers.push_back(
+            std::make_unique<KymographWriter>(length, input.scene.end_time, input.scene.ground.profile, folder));
       }
       if (writes && output.statistics)
         observers.push_back(
@@ -433,7 +434,7 @@ namespace crawler
       std::optional<SnapshotWriter> snapshots;
       if (output.has_snapshots())
         snapshots.emplace(output.snapshot_format, folder, length, times.n_snapshots() + 1);
-      KymographWriter kymograph(length, input.scene.end_time, folder);
+      KymographWriter kymograph(length, input.scene.end_time, input.scene.ground.profile, folder);
       std::optional<StatisticsWriter> statistics;
       if (output.statistics)
         statistics.emplace(length, true, folder, output.energy_balance, input.parameters.units);

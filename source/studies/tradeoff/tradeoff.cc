@@ -12,8 +12,8 @@
 #include <crawler/studies/core/input.h>
 #include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
-#include <crawler/studies/core/pictures.h>
 #include <crawler/studies/core/progress.h>
+#include <crawler/studies/core/python.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/core/study_folder.h>
 #include <crawler/studies/tradeoff/tradeoff.h>
@@ -252,7 +252,7 @@ namespace crawler
       for (const std::string &line : recommendation_lines(results))
         log.line(line);
       if (std::count(results.on_front.begin(), results.on_front.end(), true) > 0) // there is something to draw
-        draw("tradeoff.py", folder, log);
+        draw("tradeoff", folder, log);
       if (course.status == "finished") // all files are there: nothing is left to do
         fs::remove_all(folder / "rows");
       log.line(fmt::format("Results are in {0}/; {0}/recommendations.prm has the blocks to paste.", folder.string()));

@@ -22,6 +22,9 @@ namespace crawler
    */
   ExitCode
   optimize(MPI_Comm communicator, const CommandOptions &options);
+  /// The same of a parameter file that is read already.
+  ExitCode
+  optimize_input(MPI_Comm communicator, const CommandOptions &options, const ParameterFile &file);
 
   /// For `crawler check`: computes the start of each case and says what it gives. Returns false if the file varies
   /// nothing. Throws InputError.

@@ -1,0 +1,326 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The limbless crawler in Python: runs, batches and sweeps in this process, and the results of the program's folders.
+
+    import crawler
+    result = crawler.run("prm/paper/fig_s1.prm", set={"Body/Elastic modulus": 2})
+    result.displacement, result.displacement_error.total, result.fields.stretch
+
+doc/python.md is the reference. Units are those of the scene, as in the parameter file.
+"""
+import atexit
+import difflib
+import functools
+import importlib
+import json
+import numbers
+import os
+import re
+import sys
+import tempfile
+import warnings
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from .needs import FileError, InputError
+from .results import Numbers, Result, Study, fields_of, parameters_of, read, table_of
+
+__all__ = ["FileError", "Gradient", "InputError", "Numbers", "Result", "RunFailed", "Study", "batch", "check", "entries",
+           "gradient", "measured", "optimize", "read", "run", "sweep", "to_prm"]
+
+
+def __getattr__(name):
+    """The module measured needs scipy and pandas, so it is loaded when it is used first."""
+    if name == "measured":
+        return importlib.import_module(".measured", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+class RunFailed(RuntimeError):
+    """A run did not finish, and check=True was asked for. `result` has how it ended."""
+
+    def __init__(self, result):
+        super().__init__(f"{result.reason}: {result.message}")
+        self.result = result
+
+
+@functools.cache
+def _compiled():
+    """The compiled part. It brings 200 libraries, so it is loaded when it is needed first, and their functions later."""
+    flags = sys.getdlopenflags()
+    sys.setdlopenflags(os.RTLD_LAZY)
+    try:
+        from . import _core
+    finally:
+        sys.setdlopenflags(flags)
+    atexit.register(_core.end)
+    return _core
+
+
+@functools.cache
+def entries():
+    """All entries of a parameter file by their full names, each a dict with default, expected, unit, documentation."""
+    return {one.pop("entry"): one for one in json.loads(_compiled().entries())}
+
+
+def check(scene, *, set=None, **keywords):
+    """All entries of a scene as they are used, by their full names; nothing is computed. Raises what run() would."""
+    effective, notes = _compiled().check(_source(scene, _overrides(set, keywords)))
+    _warn(notes)
+    return parameters_of(effective)
+
+
+def run(scene, *, set=None, fields=True, output=None, overwrite=False, check=False, verbose=False, **keywords):
+    """Computes one scene, with the same bits as `crawler run`, and returns its Result.
+
+    scene: the name of a parameter file, its text, or a dict with sections as in the file.
+    set, keywords: other values of entries, {"Body/Elastic modulus": 2} or elastic_modulus=2 where that names one entry.
+    fields: True, the fields over s and t and the statistics that the scene asks for (Output); False, none, which is
+    fastest; or the times [time] of the fields, increasing.
+    output: a folder for the files that `crawler run` writes; otherwise nothing is written.
+    check: a run that does not finish raises RunFailed; otherwise see Result.status, reason and message.
+    verbose: prints what the program would.
+    Raises InputError and FileError with the program's sentence.
+    """
+    overrides = _overrides(set, keywords)
+    times = None
+    if fields is False:
+        overrides = ["Output/Number of snapshots=0", "Output/Statistics=false", *overrides]
+    elif fields is not True:
+        times = np.asarray(fields, dtype=float).ravel().tolist()
+    source = _source(scene, overrides)
+    if output is not None:
+        if times is not None:
+            raise InputError('"fields" has times, but with "output" True or False is expected')
+        _command("run", source, output, overwrite, verbose)
+        return _checked(read(output), check)
+    answer = _compiled().run(source, times)
+    result = _result(answer)
+    if "times" in answer:
+        result.fields = fields_of(answer["times"], result.parameters["Body/Length"], answer["fields"])
+    if "statistics" in answer:
+        result.statistics = table_of({re.sub(r" \[.*", "", name): column for name, column in
+                                      zip(answer["statistics_names"], answer["statistics"].T)})
+    if "local" in answer:
+        result.local_sensitivities = Numbers(answer["local"])
+    if verbose:
+        print("\n".join(answer["lines"]))
+    return _checked(result, check)
+
+
+def batch(scenes, *, set=None, check=False, **keywords):
+    """Computes many scenes side by side in vector registers, without fields; the list of their Results.
+
+    Displacements agree with those of run() within their error bounds, and do not depend on the neighbours. set and
+    keywords hold for all scenes. Scenes that are alike but for some numbers are faster in sweep().
+    """
+    if isinstance(scenes, (Mapping, str, os.PathLike)):
+        raise InputError("this is one scene, but a list of scenes is expected; run() computes one")
+    overrides = _overrides(set, keywords)
+    answers = _compiled().batch([_source(scene, overrides) for scene in scenes])
+    return [_checked(_result(answer), check) for answer in answers]
+
+
+def sweep(scene, axes=None, *, design=None, set=None, output=None, overwrite=False, verbose=False, **keywords):
+    """Computes all points of a sweep; the table of `crawler sweep`, a pandas.DataFrame (without pandas a dict of arrays).
+
+    axes: {"Body/Elastic modulus": [1, 2, 4], ...}, or the values in words, "linspace(1, 4, 10)"; None: Sweep/Axes of
+    the scene. design: "grid", "zip", "random" or "latin hypercube". Points that go wrong are rows with status and
+    reason. output: a folder for the files of `crawler sweep`.
+    """
+    overrides = _overrides(set, keywords)
+    if axes is not None:
+        overrides.append("Sweep/Axes=" + "; ".join(f"{_full_name(name)} : {_axis(values, name)}"
+                                                   for name, values in axes.items()))
+    if design is not None:
+        overrides.append(f"Sweep/Design={design}")
+    source = _source(scene, overrides)
+    if output is None:
+        table, notes = _compiled().sweep(source)
+        _warn(notes)
+        return table_of(table)
+    _command("sweep", source, output, overwrite, verbose)
+    return read(output).table
+
+
+class Gradient(NamedTuple):
+    """A number of a run and its derivatives by entries; lists in the order of the entries that were asked for."""
+    value: float
+    derivatives: np.ndarray  # [entry], in units of the number per unit of the entry
+    errors: np.ndarray       # [entry], bounds of their errors
+    result: Result
+
+
+def gradient(scene, by, *, of="displacement", set=None, **keywords):
+    """A number of a run and its derivatives, as a Gradient: for objectives and fits of one's own.
+
+    by: entries by their full names, or one. of: "displacement", "stress_power", "dissipation", "positive_power",
+    "paper_energy", "gait.displacement" or "gait.speed". The derivatives are those of Output/Sensitivities
+    (doc/sensitivities.md): by the adjoint, whose cost hardly depends on the number of entries, or by differences of runs.
+    Raises InputError as run() does, and where a derivative does not exist; RunFailed if the run does not finish.
+    """
+    by = [by] if isinstance(by, str) else list(by)
+    result = run(scene, set={**(set or {}), "Output/Sensitivities": ", ".join(by)}, fields=False, check=True, **keywords)
+    found = []
+    for entry in by:
+        one = (result.sensitivities or {}).get(entry) or {}
+        one = one if of == "displacement" else one.get(of) or {}
+        if one.get("value") is None:
+            raise InputError(f'"{of}" has no derivative by "{entry}" here: {one.get("reason") or "it is not known"}')
+        found.append((one["value"], np.nan if one.get("error") is None else one["error"]))
+    derivatives, errors = np.array(found).T
+    return Gradient(result[of], derivatives, errors, result)
+
+
+def optimize(scene, variables=None, *, set=None, output=None, overwrite=False, verbose=False, **keywords):
+    """The best gait within limits, as `crawler optimize` finds it (doc/optimize.md), as a Study: best, the Results of the best
+    gaits; optimize.optima, for each case the objective, the variables and, of each limit, its value and multiplier; starts
+    and table.
+
+    variables: {"Active stress/Segments/Phase lag": (0.05, 0.45), ...}, entries and their ranges; None: those of the scene
+    (Optimize/Variables). objective="speed", starts=8, work=0.1, ... are entries of section Optimize. output: a folder for
+    the files of `crawler optimize`. Raises InputError and FileError; a search that fails says so in status and reason.
+    """
+    own = {_keyword(entry): entry for entry in entries() if entry.startswith("Optimize/")}
+    overrides = _overrides({**(set or {}), **{own[name]: keywords.pop(name) for name in list(keywords) if name in own}}, keywords)
+    if variables is not None:
+        ranges = "; ".join(f"{_full_name(name)} : {_text(low, name)} to {_text(high, name)}" for name, (low, high) in variables.items())
+        overrides.append(f"Optimize/Variables={ranges}")
+    source = _source(scene, overrides)
+    if output is not None:
+        _command("optimize", source, output, overwrite, verbose)
+        return read(output)
+    with tempfile.TemporaryDirectory() as folder:
+        _command("optimize", source, os.path.join(folder, "optimum"), False, verbose)
+        return read(os.path.join(folder, "optimum"))
+
+
+def to_prm(scene):
+    """A dict as the text of a parameter file."""
+    nested = {}
+    for name, value in _flat(scene):
+        *sections, entry = name.split("/")
+        place = nested
+        for section in sections:
+            place = place.setdefault(section, {})
+        place[entry] = value
+    return "\n".join(_lines(nested, "")) + "\n"
+
+
+def _flat(scene, before=""):
+    for name, value in scene.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{before}{name}/")
+        else:
+            yield before + name, _text(value, before + name)
+
+
+def _lines(nested, indent):
+    for name, value in nested.items():
+        if not isinstance(value, dict):
+            yield f"{indent}set {name} = {value}"
+    for name, value in nested.items():
+        if isinstance(value, dict):
+            yield f"{indent}subsection {name}"
+            yield from _lines(value, indent + "  ")
+            yield f"{indent}end"
+
+
+def _text(value, name):
+    """A value as it stands in a parameter file."""
+    if isinstance(value, (bool, np.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Real):
+        return repr(float(value))
+    if isinstance(value, (str, os.PathLike)):
+        text = " ".join(os.fspath(value).split("\n"))
+        if "#" in text:
+            raise InputError(f'"{name}" is "{text}", but "#" begins a comment in a parameter file')
+        return text
+    if isinstance(value, (list, tuple, range, np.ndarray)):
+        return ", ".join(_text(one, name) for one in value)
+    raise InputError(f'"{name}" is {value!r}, but a number, a text, True, False or a list is expected')
+
+
+def _axis(values, name):
+    """The values of an axis in words; those with a comma, a colon or a semicolon of their own stand in quotes."""
+    if isinstance(values, (str, numbers.Number)) or not hasattr(values, "__iter__"):
+        return _text(values, name)
+    texts = [_text(one, name) for one in values]
+    for text in texts:
+        if '"' in text:
+            raise InputError(f"\"{name}\" is {text}, but a value of an axis has no double quotes")
+    return ", ".join(f'"{text}"' if re.search("[,;:]", text) else text for text in texts)
+
+
+def _full_name(name):
+    """The entry with this full name, or the only one that is called so as a keyword."""
+    if "/" in name or name in entries() or name == "File":
+        return name
+    found = [entry for entry in entries() if _keyword(entry) == name]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise InputError(f'"{name}" may be any of ' + ", ".join(f'"{entry}"' for entry in found) +
+                         "; the full name is expected, in set={...}")
+    near = difflib.get_close_matches(name, map(_keyword, entries()), n=1, cutoff=0.)[0]
+    raise InputError(f'there is no entry "{name}"; the nearest is "{near}"')
+
+
+def _keyword(entry):
+    return entry.split("/")[-1].lower().replace(" ", "_").replace("-", "_")
+
+
+def _overrides(settings, keywords):
+    pairs = [*(settings or {}).items(), *((_full_name(name), value) for name, value in keywords.items())]
+    return [f"{name}={_text(value, name)}" for name, value in pairs]
+
+
+def _source(scene, overrides):
+    """What the compiled part reads."""
+    if isinstance(scene, Mapping):
+        name, text = "scene", to_prm(scene)
+    elif isinstance(scene, str) and re.search(r"\n|^\s*(set|subsection|include)\s", scene):
+        name, text = "scene", scene
+    elif isinstance(scene, (str, os.PathLike)):
+        name, text = os.fspath(scene), None
+    else:
+        raise InputError(f"the scene is {scene!r}, but the name of a parameter file, its text or a dict is expected")
+    return _compiled().Source(name, text, overrides)
+
+
+def _warn(notes):
+    """Warnings in the line that called this package."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__") == __name__:
+        level, frame = level + 1, frame.f_back
+    for note in notes:
+        warnings.warn(note.removeprefix("Note: "), stacklevel=level)
+
+
+def _result(answer):
+    _warn(answer["notes"])
+    return Result(json.loads(answer["summary"]), answer["parameters"])
+
+
+def _checked(result, check):
+    if check and result.status != "finished":
+        raise RunFailed(result)
+    return result
+
+
+def _command(name, source, output, overwrite, verbose):
+    stopped = 5  # exit code
+    code, notes = _compiled().command(name, source, os.fspath(output), overwrite, not verbose)
+    _warn(notes)
+    if code != stopped:
+        return
+    try:
+        if read(output).reason != "signal":
+            return
+    except FileError:
+        pass  # stopped before there were files
+    raise KeyboardInterrupt

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""crawler table: turns a file of measured samples into a table for the generators "table" and "prescribed strain"."""
+import argparse
+import csv
+import dataclasses
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+from ..needs import FileError, InputError, Parser, write_whole
+from .preparation import prepare
+from .samples import read_samples
+from .settings import Settings
+
+DESCRIPTION = """Turns measured samples or tracks of markers into a table that a scene reads. IN: s, t, m; or t, marker, x; or t
+and a column for each place or marker; or a file of DeepLabCut, SLEAP, TrackMate, Tierpsy, Tracker, FIMTrack, ImageJ or the
+Multi-Worm Tracker (doc/measured_data.md)."""
+
+
+def command_line():
+    """The options."""
+    parser = Parser(prog="crawler table", description=DESCRIPTION, allow_abbrev=False)
+    parser.add_argument("input", metavar="IN", help="measured samples or tracks")
+    parser.add_argument("output", metavar="OUT", help="the table to be written, NAME.csv")
+    text, number, whole = ({"metavar": "TEXT"}, {"metavar": "NUMBER", "type": float}, {"metavar": "WHOLE NUMBER", "type": int})
+    for name, kind, help_text in (
+            ("quantity", text, "m, strain, stretch or markers (default: by the names of columns)"),
+            ("columns", text, 'other names of columns: "t=Frame time, x=X"'),
+            ("animal", text, "which one of several is read"),
+            ("head", text, "the marker at the head (default: that with the largest x)"),
+            ("confidence", number, "markers that are less certain are gaps (default: 0)"),
+            ("unit-of-s", text, "factor of s and x, or the unit they are turned into: mm"),
+            ("unit-of-t", text, "the same for t; 1/30: frames of a film of 30 a second"),
+            ("unit-of-m", text, "the same for m (may be negative) or strain"),
+            ("shift-s", text, 'is added to s; "first": the first s becomes 0'),
+            ("shift-t", text, "the same for t"),
+            ("gap", whole, "largest number of samples in a row that are filled in (default: 3)"),
+            ("smooth-t", number, "width of the smoothing in t: waves of this length are halved (default: 0)"),
+            ("smooth-s", number, "the same in s"),
+            ("period", text, "find, whole or a number: makes one cycle of all, that closes"),
+            ("cycles", whole, "how often the cycle is written (default: 1)"),
+            ("points-s", whole, "equally spaced places of the table (default: those of the samples; markers: 33)"),
+            ("points-t", whole, "equally spaced times of the table (default: those of the samples)"),
+            ("markers-at", text, "material coordinates: first (frame; default), mean, or a list of numbers"),
+            ("first-marker", number, "s of the first marker (default: 0)"),
+            ("length", number, "length of the body (default: up to the last marker)"),
+            ("ends", text, "strain beyond the outermost markers: hold (default) or linear"),
+            ("noise", number, "standard deviation of a sample, in units of the table (default: estimated)"),
+            ("scene", text, "parameter file that uses the table: how uncertain the noise makes its displacement"),
+            ("copies", whole, "noisy copies from which that is found (default: 64)"),
+            ("seed", whole, "of their random numbers (default: 1)")):
+        parser.add_argument(f"--{name}", help=help_text, default=argparse.SUPPRESS, **kind)
+    parser.add_argument("--set", action="append", default=[], metavar="TEXT",
+                        help='sets an entry of the scene: "Section/Entry=value" (repeatable)')
+    parser.add_argument("--overwrite", action="store_true", help="replaces OUT")
+    parser.add_argument("--quiet", action="store_true", help="prints nothing but errors")
+    return parser
+
+
+def parts_of(options, names):
+    """Those of the options that have these names."""
+    return {name: value for name, value in vars(options).items() if name in names}
+
+
+def require_files(options):
+    """Raises InputError for names of files that no samples are needed to refuse."""
+    if getattr(options, "copies", 64) < 8:
+        raise InputError(f'"--copies" is {options.copies}, but at least 8 are expected')
+    if not options.output.endswith(".csv"):
+        raise InputError(f'the table is to be "{options.output}", but a name that ends in .csv is expected')
+    if os.path.exists(options.output):
+        if os.path.exists(options.input) and os.path.samefile(options.input, options.output):
+            raise InputError(f'"{options.output}" is to be read and written, but another name for the table is expected')
+        if not options.overwrite:
+            raise InputError(f'"{options.output}" exists; another name or "--overwrite" is expected')
+
+
+def write_columns(path, names, columns, digits):
+    """Columns of numbers, each with so many digits."""
+    lines = [",".join(names), *(",".join(f"{value:.{n}g}" for value, n in zip(row, digits)) for row in zip(*columns))]
+    write_whole(pathlib.Path(path), ("\n".join(lines) + "\n").encode())
+
+
+def write_table(path, s, t, values, names):
+    """A row for each point that is no gap; values: [time, place]."""
+    there = ~np.isnan(values.ravel())
+    columns = [column[there] for column in (np.tile(s, len(t)), np.repeat(t, len(s)), values.ravel())]
+    write_columns(path, names, columns, (15, 15, 10))
+
+
+def displacements(scene, overrides, entry, tables):
+    """The rows of a sweep of the scene over tables, for which it reads each after the other; a dict of texts for each.
+    Raises InputError and FileError with the program's sentence."""
+    with tempfile.TemporaryDirectory(prefix="crawler-table-") as folder:
+        names = [os.path.join(folder, f"{k}.csv") for k in range(len(tables))]
+        for name, table in zip(names, tables):
+            write_table(name, table.s, table.t, table.values, ("s", "t", table.quantity))
+        settings = [*overrides, f"{entry}={names[0]}", "Sweep/Design=grid", f"Sweep/Axes={entry} : {', '.join(names)}"]
+        output = os.path.join(folder, "sweep")
+        end = subprocess.run([os.environ["CRAWLER_PROGRAM"], "sweep", scene, "--output", output, "--quiet",
+                              *(word for setting in settings for word in ("--set", setting))], capture_output=True, text=True, check=False)
+        if end.returncode:
+            problem = end.stderr.strip().removeprefix("crawler: ").replace(folder + os.sep, "")
+            raise FileError(problem) if end.returncode == FileError.code else InputError(problem)
+        with open(os.path.join(output, "results.csv"), newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+
+def uncertainty(options, samples, table, prepare_copy):
+    """In words, how uncertain the noise makes the displacement of a scene: copies of the samples get noise of the same size,
+    are prepared in the same way, and the scene is computed with each."""
+    n, generator = getattr(options, "copies", 64), np.random.default_rng(getattr(options, "seed", 1))
+    noisy = (dataclasses.replace(samples, values=samples.values + table.noise * generator.standard_normal(samples.values.shape))
+             for _ in range(n))
+    entry = "Active stress/" + ("Table/File" if table.quantity == "m" else "Prescribed strain/File")
+    first, *rows = displacements(options.scene, options.set, entry, [table, *map(prepare_copy, noisy)])
+    if first["status"] != "finished" or not first["displacement"]:
+        raise InputError(f'"{options.scene}" with the new table: {first["message"] or first["status"]}')
+    copies = [float(row["displacement"]) for row in rows if row["status"] == "finished" and row["displacement"]]
+    if len(copies) < 0.9 * n:
+        problem = next(row["message"] for row in rows if row["status"] != "finished")
+        raise InputError(f"only {len(copies)} of {n} noisy copies could be run, so that the uncertainty is not known; one of the others: "
+                         f"{problem}")
+    if max(copies) == min(copies) and table.noise > 0:
+        reader = '"table"' if table.quantity == "m" else '"prescribed strain" with Given by = table'
+        raise InputError(f'"{options.scene}" does not read the table: "{entry}" does not change its displacement; the generator {reader} is '
+                         "expected")
+    bound, deviation = first["displacement_error.total"], np.std(copies, ddof=1)
+    return (f"displacement {float(first['displacement']):.8g} +- {f'{float(bound):.1e}' if bound else '?'} (numerical bound) +- "
+            f"{deviation:.2g} (standard deviation by noise of {table.noise:.3g}, {len(copies)} copies, known to "
+            f"{100 / math.sqrt(2 * (len(copies) - 1)):.0f} %; their mean is {np.mean(copies):.8g})")
+
+
+def main():
+    """Reads, prepares, writes and reports."""
+    options = command_line().parse_args(sys.argv[2:])
+    settings = Settings(**parts_of(options, Settings.__dataclass_fields__))
+    require_files(options)
+    words = []
+    reading = ("quantity", "columns", "animal", "head", "confidence", "unit_of_s", "unit_of_t", "unit_of_m", "shift_s", "shift_t")
+    samples = read_samples(options.input, words=words, **parts_of(options, reading))
+    table = prepare(samples, settings)
+    words += table.words
+    if settings.noise is None:
+        words.append(f"noise of a sample, as estimated from its neighbours in time: {table.noise:.3g}")
+    if hasattr(options, "scene"):
+        words.append(uncertainty(options, samples, table, lambda copy: prepare(copy, settings, table.period)))
+    words.append(f"table of {table.quantity} at {len(table.s)} places, s = {table.s[0]:g} to {table.s[-1]:g}, and {len(table.t)} times, "
+                 f"t = {table.t[0]:g} to {table.t[-1]:.10g}")
+    stem = options.output.removesuffix(".csv")
+    report = f"{options.input} -> {options.output}\n" + "".join(f"  {sentence}\n" for sentence in words)
+    write_table(f"{stem}_before.csv", samples.s, samples.t, samples.values, ("marker" if samples.quantity == "x" else "s", "t",
+                                                                               samples.quantity))
+    write_whole(pathlib.Path(f"{stem}_report.txt"), report.encode())
+    write_table(options.output, table.s, table.t, table.values, ("s", "t", table.quantity))
+    if not options.quiet:
+        how = ("prescribed strain, Given by = table" if table.quantity == "strain" else "table")
+        print(f"{report}Picture: crawler plot {options.output}. In the parameter file: Generator = {how}, File = {options.output}"
+              f"{', Outside = periodic' if table.period and table.quantity == 'm' else ''}")

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How samples become a table."""
+import dataclasses
+import math
+
+from ..needs import InputError
+
+
+@dataclasses.dataclass
+class Settings:
+    """How samples become a table; the names are those of the options of crawler table."""
+    gap: int = 3                # samples in a row that may be filled
+    smooth_s: float = 0.0       # widths of the smoothing [length], [time]
+    smooth_t: float = 0.0
+    period: str = ""            # none; "find"; "whole": the duration; or a number
+    cycles: int = 1             # how often a period is repeated
+    noise: float = None         # standard deviation of a sample
+    points_s: int = 0           # equally spaced points of the table; 0: those of the samples
+    points_t: int = 0
+    markers_at: str = "first"   # places of markers: in the first frame, in the "mean" of all, or a list of numbers
+    first_marker: float = 0.0   # place of the first one, unless there is a list [length]
+    length: float = None        # of the body; else that up to the last marker
+    ends: str = "hold"          # strain beyond the outermost markers: "hold" or "linear"
+
+    def require_sound(self):
+        """Raises InputError for what no samples are needed to refuse."""
+        for name in ("smooth_s", "smooth_t"):
+            if not 0 <= getattr(self, name) < math.inf:
+                raise InputError(f'"--{name.replace("_", "-")}" is {getattr(self, name):g}, but a width of 0 or more is expected')
+        for name in ("points_s", "points_t"):
+            if getattr(self, name) and getattr(self, name) < 4:
+                raise InputError(f'"--{name.replace("_", "-")}" is {getattr(self, name)}, but at least 4 points are expected')
+        if self.gap < 0:
+            raise InputError(f'"--gap" is {self.gap}, but a whole number of 0 or more is expected')
+        if self.noise is not None and not 0 <= self.noise < math.inf:
+            raise InputError(f'"--noise" is {self.noise:g}, but a standard deviation of 0 or more is expected')
+        if self.length is not None and not 0 < self.length < math.inf:
+            raise InputError(f'"--length" is {self.length:g}, but a positive length is expected')
+        if not math.isfinite(self.first_marker):
+            raise InputError(f'"--first-marker" is {self.first_marker:g}, but a place is expected')
+        if self.ends not in ("hold", "linear"):
+            raise InputError(f'"--ends" is "{self.ends}", but "hold" or "linear" is expected')
+        if self.cycles < 1 or (self.cycles > 1 and not self.period):
+            raise InputError(f'"--cycles" is {self.cycles}, but a number of cycles of "--period" is expected')

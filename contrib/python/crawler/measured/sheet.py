@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Tables as text, as instruments, trackers and spreadsheets write them: the cells, and the numbers that they mean."""
+import csv
+import dataclasses
+import datetime
+import re
+
+import numpy as np
+
+from ..needs import InputError
+from .units import split_unit
+
+GAPS = {"", "nan", "na", "n/a", "-", "--", "null", "none"}
+COMMENTS = ("#", "%", "//")
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+DECIMAL_COMMA = re.compile(r"[+-]?(\d*,\d+|\d+,)([eE][+-]?\d+)?")
+GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")  # 1,000: a thousand, or a number with three decimals
+SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", " ": "blanks"}
+FOREIGN = ((b"\xff\xfe", "text in UTF-16"), (b"\xfe\xff", "text in UTF-16"), (b"PK\x03\x04", "a workbook or an archive (zip)"),
+           (b"\x1f\x8b", "compressed (gzip)"), (b"\xd0\xcf\x11\xe0", "a workbook (xls)"))
+
+
+def is_gap(cell):
+    """Nothing was measured."""
+    return cell.lower() in GAPS
+
+
+@dataclasses.dataclass
+class Sheet:
+    """The cells of a file as text: rows of names (head) above rows of samples, all with the same number of columns.
+
+    Cells are turned into numbers when they are used, so that columns nobody asks for may hold anything.
+    """
+    name: str     # of the file, for messages
+    head: list    # [row][column], may be empty
+    rows: list    # [row][column]
+    lines: list   # the number of each row in the file, from 1
+    comma: str    # what a comma in a number is: "decimal", "thousands" or "" (none)
+    words: list   # what was found, for the report
+
+    @property
+    def names(self):
+        """The names of the columns, from the first row of the head, without units."""
+        return [split_unit(cell)[0] for cell in self.head[0]] if self.head else []
+
+    @property
+    def units(self):
+        """The units of the columns, behind the names or in a row of their own; those that are not there are empty."""
+        units = [split_unit(cell)[1] for cell in self.head[0]] if self.head else []
+        for row in self.head[1:]:
+            is_units = len(self.head) == 2 or all(cell[:1] in ("", "(", "[") for cell in row)
+            units = [unit or (cell.strip("()[]") if is_units else "") for unit, cell in zip(units, row)]
+        return units
+
+    def label(self, column):
+        """The name of a column, for messages."""
+        return (self.names[column] if self.head else "") or f"column {column + 1}"
+
+    def number(self, cell):
+        """What a cell means; NaN for a gap, None for something else."""
+        cell = cell.replace("\N{MINUS SIGN}", "-")
+        if is_gap(cell):
+            return np.nan
+        if self.comma == "decimal":
+            if re.fullmatch(r"[+-]?\d{1,3}(\.\d{3})+,\d*", cell):
+                cell = cell.replace(".", "")  # 1.234,5
+            elif "." in cell:
+                return None
+            cell = cell.replace(",", ".")
+        elif self.comma == "thousands" and GROUPED.fullmatch(cell.split(".")[0]):
+            cell = cell.replace(",", "")
+        return float(cell) if NUMBER.fullmatch(cell) else None
+
+    def column(self, i):
+        """The numbers of a column, array [row] with NaN for gaps. Raises InputError that names the first other cell."""
+        cells = [row[i] for row in self.rows]
+        if not self.comma:
+            try:
+                numbers = np.array(cells, dtype=float)
+                if not np.any(np.isinf(numbers)):
+                    return numbers
+            except ValueError:
+                pass  # gaps in words, or a cell that is no number
+        numbers = [self.number(cell) for cell in cells]
+        wrong = [r for r, number in enumerate(numbers) if number is None]
+        if wrong:
+            raise InputError(self.wrong_cell(self.lines[wrong[0]], cells[wrong[0]], i, len(wrong)))
+        return np.array(numbers)
+
+    def times(self, i):
+        """Numbers, or the seconds since the first of clock times (ISO 8601 or h:m:s), array [row]."""
+        cells = [row[i] for row in self.rows]
+        try:
+            if all(re.fullmatch(r"\d+:\d\d:\d\d([.,]\d*)?", cell) for cell in cells):
+                clock = [np.dot([3600, 60, 1], [float(part) for part in cell.replace(",", ".").split(":")]) for cell in cells]
+            elif all(re.match(r"\d{4}-\d\d-\d\d[T ]", cell) for cell in cells):
+                dates = [datetime.datetime.fromisoformat(cell.replace("Z", "+00:00")) for cell in cells]
+                clock = [(date - dates[0]).total_seconds() for date in dates]
+            else:
+                return self.column(i)
+        except (TypeError, ValueError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(f'"{self.label(i)}" of "{self.name}" has clock times that are none: {error}') from None
+        self.words.append(f'"{self.label(i)}" are clock times; t is in seconds from {cells[0]} on')
+        return np.round(np.array(clock) - clock[0], 9)
+
+    def wrong_cell(self, line, cell, i, n_more=1):
+        """The sentence about a cell that is no number."""
+        more = f" (and {n_more - 1} more rows have no number there)" if n_more > 1 else ""
+        return (f'row {line} of "{self.name}" has "{cell}" under {self.label(i)}, but a number'
+                f'{" with a decimal comma" if self.comma == "decimal" else ""} (or nothing or NaN for a gap) is expected{more}')
+
+
+def text_of(data, name):
+    """The text of a file. Raises InputError that says what it is instead."""
+    for magic, kind in FOREIGN:
+        if data.startswith(magic):
+            raise InputError(f'"{name}" is {kind}, but a table as text in UTF-8 is expected')
+    if b"\0" in data[:4096]:
+        raise InputError(f'"{name}" is a binary file, but a table as text in UTF-8 is expected')
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252", errors="replace")  # units like µm of older programs
+
+
+def cells_of(line, separator):
+    """The cells of a line, without blanks and quotes around them."""
+    if separator == " ":
+        parts = line.split()
+    else:
+        parts = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+    return [part.strip().strip("'\"").strip() for part in parts]
+
+
+def separator_of(line):
+    """The first of semicolon, tab and comma that stands in a line, else blanks."""
+    for separator in (";", "\t"):
+        if separator in line:
+            return separator
+    parts = line.split()
+    # Numbers between blanks may have decimal commas: "0,5 1,25".
+    if "," not in line or (len(parts) > 1 and all(DECIMAL_COMMA.fullmatch(part) or NUMBER.fullmatch(part) or is_gap(part)
+                                                  for part in parts)):
+        return " "
+    return ","
+
+
+def meaning_of_commas(rows, separator, name):
+    """Whether commas in numbers stand before decimals or group thousands ("1,000"). Raises InputError if both can be."""
+    cells = [cell for row in rows for cell in row if "," in cell]
+    decimal = [cell for cell in cells if DECIMAL_COMMA.fullmatch(cell) and not GROUPED.fullmatch(cell)]
+    grouped = [cell for cell in cells if GROUPED.fullmatch(cell.split(".")[0]) and (cell.count(",") > 1 or "." in cell)]
+    either = [cell for cell in cells if GROUPED.fullmatch(cell) and cell.count(",") == 1]
+    if decimal and grouped:
+        raise InputError(f'"{name}" has "{decimal[0]}" and "{grouped[0]}", but commas of one meaning are expected: decimals '
+                         "or thousands")
+    if decimal or grouped or not either:
+        return "decimal" if decimal else "thousands" if grouped else ""
+    if separator == ",":
+        return "thousands"
+    # Beside thousands in groups there are hundreds without.
+    if not any(re.fullmatch(r"[+-]?\d{3,}", cell) for row in rows for cell in row):
+        return "decimal"
+    column = [row[0] for row in rows]
+    readings = {}
+    for meaning in ("decimal", "thousands"):
+        values = [float(cell.replace(",", "." if meaning == "decimal" else "")) if NUMBER.fullmatch(cell.replace(",", "")) else
+                  np.nan for cell in column]
+        readings[meaning] = np.all(np.diff(values) > 0)
+    if readings["thousands"] and not readings["decimal"]:
+        return "thousands"
+    if readings["decimal"] and not readings["thousands"]:
+        return "decimal"
+    raise InputError(f'"{name}" has "{either[0]}", which may be {either[0].replace(",", ".")} or {either[0].replace(",", "")}; '
+                     f'numbers without commas, or with points for decimals, are expected')
+
+
+def read_sheet(data, name):
+    """The Sheet of the bytes of a file: columns between semicolons, tabs, commas or blanks; decimals with a point or,
+    unless commas separate the columns, a comma; comments that begin with #, % or //; titles above the names.
+    Raises InputError with the number of the line."""
+    lines, comment, forced = [], "", None
+    for number, line in enumerate(text_of(data, name).splitlines(), 1):
+        shown = line.strip()
+        if not shown:
+            continue
+        if not lines and (match := re.fullmatch(r'"?sep=(.)"?', shown)):
+            forced = match[1]  # Excel
+        elif not shown.startswith(COMMENTS):
+            lines.append((number, line))
+        elif not lines:
+            comment = shown.lstrip("#%/ ")
+    if not lines:
+        raise InputError(f'"{name}" is empty, but a table of numbers is expected')
+    separator = forced or separator_of(lines[-1][1])
+    rows = [(number, cells_of(line, separator)) for number, line in lines]
+    width = len(rows[-1][1])
+    whole = [cells for _, cells in rows if len(cells) == width]
+    sheet = Sheet(name, [], [], [], meaning_of_commas(whole[1:] or whole, separator, name), [])
+
+    # The columns of numbers are those of the last rows; samples begin where all of them have numbers.
+    last = whole[-20:]
+    numeric = [i for i in range(width) if sum(sheet.number(cells[i]) is not None for cells in last) > len(last) / 2]
+    filled = [i for i in numeric if not all(is_gap(cells[i]) for cells in whole)]
+
+    def is_sample(cells):
+        values = [sheet.number(cells[i]) for i in numeric] if len(cells) == width else [None]
+        return None not in values and not np.all(np.isnan(values))
+
+    begin = next((r for r, (_, cells) in enumerate(rows) if is_sample(cells)), None)
+    if begin is None or not filled:
+        raise InputError(f'"{name}" has no row of numbers; its last line, {rows[-1][0]}, is "{lines[-1][1].strip()}"')
+    _read_head(sheet, rows[:begin], width, numeric, (comment, separator))
+    for number, cells in rows[begin:]:
+        if len(cells) != width:
+            raise InputError(f'row {number} of "{name}" has {len(cells)} cells, but {width} are expected, as in row {rows[-1][0]}')
+        if all(is_gap(cells[i]) for i in filled):
+            raise InputError(f'row {number} of "{name}" has no number, but one at least is expected')
+        sheet.rows.append(cells)
+        sheet.lines.append(number)
+    _drop_empty_columns(sheet, width)
+    decimals = {"decimal": ", with decimal commas", "thousands": "; commas group thousands (1,000 is a thousand)"}
+    sheet.words.insert(0, f"{len(sheet.rows)} rows of {len(sheet.rows[0])} columns between {SEPARATORS.get(separator, repr(separator))}"
+                          f"{decimals.get(sheet.comma, '')}")
+    return sheet
+
+
+def _read_head(sheet, rows, width, numeric, comment):
+    """The rows of names and units; titles, of which one cell only is filled or which have other numbers of cells, are not
+    among them; without any, a comment may have the names."""
+    n_titles = 0
+    for number, cells in rows:
+        if len(cells) != width or sum(cell != "" for cell in cells) < min(2, width):
+            n_titles += 1
+            continue
+        # Names may be places, but units have no numbers among them: this is a row of samples.
+        is_number = [i for i in numeric if not is_gap(cells[i]) and sheet.number(cells[i]) is not None]
+        if sheet.head and is_number and cells[0].lower() not in ("bodyparts", "individuals"):
+            wrong = next(i for i in numeric if sheet.number(cells[i]) is None)
+            raise InputError(sheet.wrong_cell(number, cells[wrong], wrong))
+        sheet.head.append(cells)
+    if not sheet.head and len(cells := cells_of(*comment)) == width:
+        sheet.head.append(cells)
+    if n_titles:
+        sheet.words.append(f"{n_titles} line{'s' if n_titles > 1 else ''} above the names left out")
+
+
+def _drop_empty_columns(sheet, width):
+    """Columns at the end that have neither name nor cell, as many programs write a separator behind the last one."""
+    keep = width
+    while keep > 1 and not any(row[keep - 1] for row in sheet.head + sheet.rows):
+        keep -= 1
+    if keep < width:
+        sheet.words.append(f"{width - keep} empty column{'s' if width - keep > 1 else ''} at the end left out")
+        sheet.head = [row[:keep] for row in sheet.head]
+        sheet.rows = [row[:keep] for row in sheet.rows]

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the scripts of this folder share: the files of crawler, times, names of axes, colours, and how pictures are
+written. It is no script of its own; needs.py says how scripts end.
+"""
+import argparse
+import csv
+import io
+import json
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from needs import FileError, InputError, Parser, need, run_script, script, write_whole  # noqa: E402, F401
+
+# Those of Okabe and Ito, safe for colour-blind readers, with a line and a marker each for grey print.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+LINES = ("-", "--", "-.", ":", "-", "--", "-.")
+DOTS = ("o", "s", "^", "D", "v", "P", "X")
+INK = "0.15"                                # dark grey
+SIZES, SIGNED = "cividis", "PuOr_r"         # colour maps: of positive numbers, of numbers of both signs
+
+# Name and symbol (doc/theory.md, "Nomenclature") and unit of what pictures show.
+NAMES = {"s": "material coordinate $s$ [length]", "t": "time $t$ [time]", "position": r"position $\zeta$ [length]",
+         "displacement": "displacement $D$ [length]", "stretch": "stretch $w$ [1]", "strain": "strain $w-1$ [1]",
+         "active_stress": "active stress $m$ [force]", "work": "work $W$ [force length]"}
+SYMBOLS = {"Body/Length": "L", "Body/Elastic modulus": "k", "Body/Friction coefficient": r"\gamma",
+           "Body/Anchoring exponent": "p", "Time/End time": "T",
+           "Active stress/Optimal wave/Perturbation parameter": r"\chi", "Active stress/Optimal wave/Wave speed": "c",
+           "Active stress/Optimal wave/Energy": "H", "displacement": "D", "stress_power": "W", "dissipation": "Q",
+           "gait.displacement": r"\Delta", "gait.period": "P", "gait.frequency": r"\nu", "gait.speed": "U",
+           "gait.wave.speed": "c", "min_stretch.value": "w", "max_stretch.value": "w"}
+
+
+def root_folder():
+    """That with the folder prm: of the source code or of an installed program."""
+    here = pathlib.Path(__file__).resolve()
+    return next((folder for folder in here.parents if (folder / "prm").is_dir()), here.parents[2])
+
+
+def parser(doc, output="", time=False):
+    """A command line that begins with a folder. @p output describes the picture; @p time: options for a part of the run."""
+    own = Parser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    own.add_argument("folder", type=pathlib.Path, metavar="OUTPUT_FOLDER")
+    if output:
+        own.add_argument("--output", type=pathlib.Path, metavar="PICTURE",
+                         help=f"the picture, .png, .svg or .pdf (default: {output} in the folder)")
+    if time:
+        own.add_argument("--from", dest="begin", type=float, metavar="TIME", help="draws from this time on")
+        own.add_argument("--to", dest="end", type=float, metavar="TIME", help="draws up to this time")
+        own.add_argument("--last-stride", action="store_true", help="draws the last stride only")
+    return own
+
+
+def picture_of(options, name):
+    """Where the picture goes: the name asked for, or in the folder this one; a part of the run has a name of its own, so
+    that the picture of the whole stays."""
+    if options.output:
+        return options.output
+    stem, suffix = name.rsplit(".", 1)
+    if options.last_stride:
+        stem += "_last_stride"
+    for word, time in (("from", options.begin), ("to", options.end)):
+        if time is not None:
+            stem += f"_{word}_{time:g}"
+    return options.folder / f"{stem}.{suffix}"
+
+
+def existing(path, what):
+    """The path of a file, which must exist. @p what is expected where it does not."""
+    if not path.parent.is_dir():
+        raise InputError(f"{path.parent} is not a folder; {what} is expected")
+    if not path.is_file():
+        raise InputError(f"{path} does not exist; {what} is expected")
+    return path
+
+
+def number(text):
+    """What is not known is not a number."""
+    return float(text) if text not in ("", None) else float("nan")
+
+
+def read_rows(path):
+    """The rows of a CSV file, as dictionaries."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+    except (OSError, ValueError, csv.Error) as error:
+        raise InputError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from None
+
+
+def read_summary(folder, what):
+    """summary.json of a folder, as a dictionary."""
+    path = existing(folder / "summary.json", what)
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise InputError(f"{path} is not a summary of crawler ({error})") from None
+
+
+def results():
+    """The module crawler.results, which reads the files of folders; it needs numpy."""
+    folder = str(pathlib.Path(__file__).resolve().parents[2])
+    if folder not in sys.path:
+        sys.path.append(folder)
+    import crawler.results
+    return crawler.results
+
+
+class Parameters:
+    """The entries of a file parameters.prm, by their full names as "Body/Length"."""
+
+    def __init__(self, path):
+        entries = results().entries_of(path.read_text(encoding="utf-8"))
+        self.path, self.values, self.units = path, *({name: entry[part] for name, entry in entries.items()}
+                                                     for part in ("value", "unit"))
+
+    def number(self, name):
+        """The value of an entry."""
+        try:
+            return float(self.values[name])
+        except (KeyError, ValueError):
+            raise InputError(f"{self.path} has no number {name}") from None
+
+
+def unit_names(folder):
+    """What the user of a study calls length, time and force (section Units); itself where that is not known."""
+    path = folder / "parameters.prm"
+    known = Parameters(path).values if path.is_file() else {}
+    names = {word: known.get(f"Units/{word.capitalize()}", word) for word in ("length", "time", "force")}
+    return names if all(word == name for word, name in names.items()) else \
+        {**names, "energy": f"{names['force']} {names['length']}"}
+
+
+def with_own_units(text, names):
+    """A text with units in brackets, "time $t$ [time]", with those of the user."""
+    return re.sub(r"\[[^\[\]]*\]", lambda unit: re.sub(r"[a-z]+", lambda word: names.get(word[0], word[0]), unit[0]), text)
+
+
+def label(entry, unit, short=None):
+    """The name of an axis: the last words of an entry or result, its symbol and its unit."""
+    words = short or entry.split("/")[-1].replace("_", " ").replace(".", ", ")
+    symbol = f" ${SYMBOLS[entry]}$" if entry in SYMBOLS else ""
+    return words + symbol + (f" [{unit}]" if unit else "")
+
+
+class Kymograph:
+    """Fields over body and time of a run: s [length], t [time], and under their names arrays with a row for each t."""
+
+    def __init__(self, folder, *names):
+        what = "the output folder of a run with Output/Kymograph = true and snapshots"
+        path = existing(folder / "kymograph.vts", what)
+        self.folder, parameters = folder, Parameters(existing(folder / "parameters.prm", what))
+        self.length, self.duration = (parameters.number(name) for name in ("Body/Length", "Time/End time"))
+        try:
+            arrays = results().read_kymograph(path)
+            self.fields = {name: arrays[name] for name in names}
+        except (OSError, KeyError) as error:
+            raise InputError(f"{path} is not a kymograph of crawler ({error})") from None
+        self.s, self.t = self.length * arrays["places"], self.duration * arrays["times"]
+
+    def __getitem__(self, name):
+        """A field. The position is that of the points on the ground, the strain the stretch minus 1."""
+        if name == "position":
+            return self.s + self.fields["displacement"]
+        return self.fields["stretch"] - 1 if name == "strain" else self.fields[name]
+
+    def last_stride(self):
+        """Begin and end of it."""
+        period = (read_summary(self.folder, "the output folder of a finished run").get("gait") or {}).get("period")
+        if not period:
+            raise InputError(f"{self.folder} has no stride (gait/period in summary.json is null); --from and --to choose a "
+                          "part of its time")
+        return max(self.t[-1] - period, 0.0), self.t[-1]
+
+    def keep(self, begin, end, last_stride=False):
+        """Keeps the times of the command line; returns begin and end. None is the begin or end of the run."""
+        if last_stride and (begin is not None or end is not None):
+            raise InputError("--last-stride is there besides --from or --to, but one of the two ways is expected")
+        if last_stride:
+            begin, end = self.last_stride()
+        begin = self.t[0] if begin is None else begin
+        end = self.t[-1] if end is None else end
+        slack = 1e-9 * self.duration
+        if not self.t[0] - slack <= begin < end <= self.t[-1] + slack:
+            raise InputError(f"found the times from {begin:g} to {end:g}, but a part of the run, which lasts from "
+                          f"{self.t[0]:g} to {self.t[-1]:g}, is expected")
+        some = (self.t >= begin - slack) & (self.t <= end + slack)
+        if some.sum() < 3:
+            raise InputError(f"between {begin:g} and {end:g} {self.folder / 'kymograph.vts'} has {some.sum()} times, but 3 or "
+                          "more are expected (Output/Number of snapshots)")
+        self.t, self.fields = self.t[some], {name: field[some] for name, field in self.fields.items()}
+        return begin, end
+
+
+def colour_limits(field, name):
+    """Colour map and limits of a field of this name; those of both signs are symmetric."""
+    if name in ("stretch", "position"):
+        low, high = float(field.min()), float(field.max())
+        margin = 0 if high > low else 0.01 * abs(high) or 1.0
+        return dict(cmap=SIZES, vmin=low - margin, vmax=high + margin)
+    largest = float(abs(field).max()) or 1.0
+    return dict(cmap=SIGNED, vmin=-largest, vmax=largest)
+
+
+def draw_field(axes, kymograph, name):
+    """A field over s and t, with its axes named; returns what a colour bar needs."""
+    field = kymograph[name]
+    mesh = axes.pcolormesh(kymograph.s, kymograph.t, field, shading="gouraud", rasterized=True,
+                           **colour_limits(field, name))
+    axes.set(title=NAMES[name].split(" $")[0], xlabel=NAMES["s"], ylabel=NAMES["t"])
+    return mesh
+
+
+def draw_body(axes, kymograph, name="stretch", parts=8):
+    """The body on the ground over time, coloured by a field, and some of its points; returns what a colour bar needs."""
+    import numpy as np
+    field, position = kymograph[name], kymograph["position"]
+    times = np.broadcast_to(kymograph.t[:, None], position.shape)
+    mesh = axes.pcolormesh(position, times, field, shading="gouraud", rasterized=True, **colour_limits(field, name))
+    for part in range(parts + 1):  # paths of material points, the ends thicker
+        i, at_end = part * (len(kymograph.s) - 1) // parts, part in (0, parts)
+        axes.plot(position[:, i], kymograph.t, color="black", linewidth=1.0 if at_end else 0.5,
+                  alpha=1.0 if at_end else 0.5)
+    margin = 0.03 * (position.max() - position.min())
+    axes.set(xlabel=NAMES["position"], ylabel=NAMES["t"], ylim=(kymograph.t[0], kymograph.t[-1]),
+             xlim=(position.min() - margin, position.max() + margin))
+    return mesh
+
+
+def save(figure, *pictures, study=None, dpi=160, few_colours=False):
+    """Writes a figure under each of the names, with the units of the study's folder if there is one. With few colours a
+    .png is less than half as large."""
+    if study is not None:
+        from matplotlib.text import Text
+        names = unit_names(study)
+        for text in figure.findobj(Text):
+            if "[" in text.get_text():
+                text.set_text(with_own_units(text.get_text(), names))
+    for picture in map(pathlib.Path, pictures):
+        known = figure.canvas.get_supported_filetypes()
+        if picture.suffix[1:].lower() not in known:
+            raise InputError(f'found the picture "{picture}", but a name that ends in .png, .svg or .pdf is expected')
+        memory = io.BytesIO()
+        figure.savefig(memory, format=picture.suffix[1:].lower(), dpi=dpi,
+                       metadata={"Date": None} if picture.suffix == ".svg" else None)
+        if few_colours and picture.suffix == ".png":
+            from PIL import Image  # comes with matplotlib
+            coloured, memory = memory, io.BytesIO()
+            Image.open(coloured).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=1,
+                                                         dither=Image.Dither.NONE).save(memory, "png", optimize=True)
+        write_whole(picture, memory.getvalue())
+        print(f"wrote {picture}")

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""crawler report: a page for browsers of the folder of any other command. It has what files say, and computes nothing."""

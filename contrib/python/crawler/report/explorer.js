@@ -1,0 +1,252 @@
+// A table of many points: a map, lines or dots over columns that can be chosen, and the details of one point.
+
+const NOUN = {tradeoff: 'setting', optimisation: 'gait'}[page.kind] ?? 'point';
+const GOOD = ['finished', 'agree']; // green
+
+class Explorer {
+  /** @p table: that of the page; axes: names of what was varied; first: {x, y, colour}; frame(explorer) may know better
+   *  axes, decorate(chart, explorer) draws more, details(panel, row, explorer) says what a row is; rows that fades(row, explorer)
+   *  are grey. */
+  constructor(parent, table, {axes, first, frame, fades, decorate, details, status}) {
+    Object.assign(this, {parent, rows: table.rows, axes, frame, fades, decorate, details, columns: columnsOf(table.columns), filters: {}, selected: null});
+    this.statusName = status;
+    this.index = this.columns.get('index');
+    const numeric = [...this.columns.values()].filter(column => column.different().length > 1 || axes.includes(column.name));
+    const usable = numeric.filter(column => !(column.isText && column.texts.length > 60 && !axes.includes(column.name)));
+    const options = usable.map(column => [column.name, withUnit(column.title, column.unit)]);
+    const pick = wanted => wanted.find(name => usable.some(column => column.name === name)) ?? usable[0]?.name;
+    this.x = pick(first.x);
+    this.y = pick(first.y);
+    this.colour = first.colour.length ? pick(first.colour) : '';
+    const choose = key => value => { this[key] = value; this.update(); };
+    this.controls = el('div', {class: 'controls'}, chooser('Across', options, this.x, choose('x')), chooser('Up', options, this.y, choose('y')),
+      chooser('Colour', [['', 'none'], ...options], this.colour, choose('colour')));
+    this.filterBox = el('div', {class: 'controls'});
+    this.caption = el('figcaption');
+    this.box = el('figure', {}, this.caption);
+    this.legendBox = el('div');
+    this.panel = el('section', {class: 'details', 'aria-live': 'polite', hidden: true});
+    parent.append(this.controls, this.filterBox, this.box, this.panel);
+    this.chart = new Chart(this.box, {height: 460, margin: {left: 72, right: 16, top: 10, bottom: 44}, label: 'map of all points', keys: event => this.keys(event), axesAbove: false,
+      axes: () => this.axesOf(), paint: chart => this.paint(chart), overlay: chart => this.mark(chart),
+      hover: (x, y) => { this.hovered = this.find(x, y); this.chart.move(); return this.hovered === null ? null : this.words(this.hovered); },
+      left: () => { this.hovered = null; this.chart.move(); },
+      press: (x, y) => { const row = this.find(x, y); if (row !== null) this.select(row); }});
+    this.bar = new ColourBar(this.box, 72);
+    this.box.append(this.legendBox);
+    charts.unshift({box: this.box, draw: () => this.restyle()});
+    this.update();
+  }
+  column(key) { return this.columns.get(this[key]); }
+  isAxis(key) { return this.axes.includes(this[key]); }
+  /** Sorts out how to show what was chosen. */
+  update() {
+    const others = this.axes.filter(name => ![this.x, this.y, this.colour].includes(name) && this.columns.get(name)?.different().length > 1);
+    this.showFilters(others);
+    const filters = others.filter(name => this.filters[name] !== undefined && this.filters[name] !== '');
+    const x = this.column('x').numbers(), y = this.column('y').numbers(), list = [];
+    for (let row = 0; row < this.rows; ++row)
+      if (isFinite(x[row]) && isFinite(y[row]) && filters.every(name => this.columns.get(name).number(row) === Number(this.filters[name]))) list.push(row);
+    this.list = list;
+    this.cells = this.isAxis('x') && this.isAxis('y') && this.x !== this.y ? this.cellsOf(x, y) : null;
+    this.lines = !this.cells && this.isAxis('x') && !this.isAxis('y') && (!this.colour || this.isAxis('colour')) ? this.linesOf() : null;
+    this.order = [...list].sort((a, b) => x[a] - x[b] || y[a] - y[b]);
+    this.place = new Map(this.order.map((row, i) => [row, i]));
+    const what = this.cells ? 'a map' : this.lines ? 'lines' : 'dots';
+    this.caption.replaceChildren(el('b', {}, list.length < this.rows ? `${list.length.toLocaleString('en')} of ${plural(this.rows, NOUN)}, ${what}.` : `${plural(list.length, NOUN)}, ${what}.`),
+      list.length < this.rows && !filters.length ? ' The others have no such number.' : '', ' Point at one for its numbers, click for its details; arrow keys go from one to the next.');
+    const status = this.columns.get(this.statusName);
+    this.isOpen = this.axes.length && status && this.colour !== this.statusName ? row => ![null, 'finished'].includes(status.value(row)) : () => false;
+    if (list.some(this.isOpen)) this.caption.append(' Crossed out: did not finish.');
+    this.restyle();
+    this.chart.draw();
+  }
+  showFilters(names) {
+    for (const name of names) if (this.filters[name] === undefined) this.filters[name] = this.isAxis('x') && this.isAxis('y') ? String(this.columns.get(name).different()[0]) : '';
+    this.filterBox.replaceChildren(...names.filter(name => this.columns.get(name).different().length < 500).map(name => {
+      const column = this.columns.get(name);
+      return chooser(shortName(name), [['', 'all'], ...column.different().map(value => [String(value), column.isText ? column.texts[value] : show(value)])],
+        this.filters[name], value => { this.filters[name] = value; this.update(); });
+    }));
+  }
+  /** A row for each pair of values, if that is a grid: {xs, ys, rows}. */
+  cellsOf(x, y) {
+    const xs = this.column('x').different(), ys = this.column('y').different();
+    if (xs.length < 2 || ys.length < 2 || xs.length * ys.length > 4 * this.list.length) return null;
+    const xIndex = new Map(xs.map((value, i) => [value, i])), yIndex = new Map(ys.map((value, i) => [value, i]));
+    const rows = new Int32Array(xs.length * ys.length).fill(-1);
+    for (const row of this.list) {
+      const cell = yIndex.get(y[row]) * xs.length + xIndex.get(x[row]);
+      if (rows[cell] < 0) rows[cell] = row;
+    }
+    return {xs, ys, rows};
+  }
+  /** Rows that differ in x only, in its order. */
+  linesOf() {
+    const x = this.column('x').numbers(), others = this.axes.filter(name => name !== this.x && this.columns.has(name)).map(name => this.columns.get(name)), groups = new Map();
+    for (const row of this.list) {
+      const key = others.map(column => column.number(row)).join();
+      groups.set(key, [...(groups.get(key) ?? []), row]);
+    }
+    if (groups.size > 200 || groups.size > this.list.length / 2) return null;
+    return [...groups.values()].map(rows => rows.sort((a, b) => x[a] - x[b]));
+  }
+  /** Lines and dots of a few kinds have a colour each. */
+  isFew(column) { return !this.cells && column.different().length <= 7; }
+  restyle() {
+    const column = this.column('colour');
+    this.legendBox.replaceChildren();
+    this.bar.chart.box.hidden = !column || column.isText || this.isFew(column);
+    if (!column) { this.css = () => series(0); return; }
+    if (column.isText || this.isFew(column)) {
+      if (!column.isText) {
+        const list = column.different();
+        this.css = row => isFinite(column.number(row)) ? series(list.indexOf(column.number(row))) : ink('unknown');
+        legend(this.legendBox, [[withUnit(column.title, column.unit) + ':', 'transparent'], ...list.map((value, i) => [show(value, 4), series(i)])]);
+        return;
+      }
+      const others = column.texts.filter(text => !GOOD.includes(text)), hues = ['c2', 'c1', 'c4', 'c5', 'c6', 'c7'];
+      const colour = i => !isFinite(i) ? ink('unknown') : GOOD.includes(column.texts[i]) ? ink('c3') : ink(hues[others.indexOf(column.texts[i]) % hues.length]);
+      const counts = column.texts.map(() => 0);
+      for (const row of this.list) if (isFinite(column.number(row))) ++counts[column.number(row)];
+      this.css = row => colour(column.number(row));
+      legend(this.legendBox, column.texts.map((text, i) => [`${text} (${counts[i]})`, colour(i)]).filter((_, i) => counts[i] > 0));
+      return;
+    }
+    // What points that did not finish have reached is no result, and must not spread the scale.
+    const ended = this.list.filter(row => !this.isOpen(row)), values = (ended.length ? ended : this.list).map(row => column.number(row)), [low, high] = range(values);
+    const log = low > 0 && high / low > 1000, scale = colourScale(low, high, {log});
+    this.css = row => ended.length && this.isOpen(row) ? ink('unknown') : scale.css(column.number(row));
+    const grey = [values.some(value => !isFinite(value)) && 'not known', ended.length < this.list.length && 'not finished'].filter(Boolean);
+    this.bar.set(scale, withUnit(column.title, column.unit) + (grey.length ? ` (grey: ${grey.join(' or ')})` : ''));
+  }
+  axesOf() {
+    const axis = key => {
+      const column = this.column(key), title = withUnit(column.title, column.unit);
+      if (column.isText) return {low: -0.6, high: column.texts.length - 0.4, texts: column.texts, title};
+      const [low, high] = range(this.list.map(row => column.number(row)));
+      const list = column.different(), n = list.length - 1, step = Math.log(list[n] / list[0]) / n;
+      const geometric = n > 1 && list.every((value, i) => i === 0 || Math.abs(Math.log(value / list[i - 1]) / step - 1) < 0.01);
+      const log = low > 0 && (geometric || high / low > 1000);
+      const part = this.cells ? 0.5 / (key === 'x' ? this.cells.xs : this.cells.ys).length : 0.04;
+      return {...padded([low, high], log, part), title};
+    };
+    const axes = {x: axis('x'), y: axis('y')};
+    return {...axes, ...this.frame?.(this, axes)};
+  }
+  /** The pixels at which the cells of sorted values meet. */
+  edges(values, scale) {
+    const p = values.map(scale), list = [p[0] - (p[1] - p[0]) / 2];
+    for (let i = 1; i < p.length; ++i) list.push((p[i - 1] + p[i]) / 2);
+    return [...list, p[p.length - 1] + (p[p.length - 1] - p[p.length - 2]) / 2];
+  }
+  paint(chart) {
+    const c = chart.context;
+    if (this.cells) {
+      const {xs, ys, rows} = this.cells, px = this.edges(xs, chart.x), py = this.edges(ys, chart.y);
+      for (let j = 0; j < ys.length; ++j)
+        for (let i = 0; i < xs.length; ++i) {
+          const row = rows[j * xs.length + i];
+          if (row < 0) continue;
+          c.fillStyle = this.css(row);
+          c.fillRect(px[i], py[j + 1], px[i + 1] - px[i] + 0.6, py[j] - py[j + 1] + 0.6);
+        }
+      for (const row of this.list.filter(this.isOpen)) this.cross(chart, chart.x(this.column('x').number(row)), chart.y(this.column('y').number(row)));
+    } else {
+      const x = this.column('x').numbers(), y = this.column('y').numbers(), size = this.list.length > 5000 ? 2 : this.list.length > 300 ? 5 : 7;
+      for (const all of this.lines ?? []) {
+        const rows = all.filter(row => !this.isOpen(row));
+        if (!rows.length) continue;
+        chart.polyline(rows.map(row => x[row]), rows.map(row => y[row]), this.css(rows[0]));
+        this.errorBars(chart, rows, x, y);
+      }
+      this.decorate?.(chart, this);
+      for (const row of this.list) {
+        c.fillStyle = this.fades?.(row, this) ? ink('unknown') : this.css(row);
+        const px = chart.x(x[row]), py = chart.y(y[row]);
+        if (size < 5) c.fillRect(px - size / 2, py - size / 2, size, size);
+        else { c.beginPath(); c.arc(px, py, size / 2, 0, 7); c.fill(); }
+        if (this.isOpen(row)) this.cross(chart, px, py);
+      }
+    }
+  }
+  cross({context: c}, x, y) {
+    const r = this.list.length > 3000 ? 1.5 : 4;
+    c.strokeStyle = ink('ink');
+    c.lineWidth = 1;
+    c.beginPath(); c.moveTo(x - r, y - r); c.lineTo(x + r, y + r); c.moveTo(x - r, y + r); c.lineTo(x + r, y - r); c.stroke();
+  }
+  errorBars(chart, rows, x, y) {
+    const bounds = this.columns.get(boundKey(this.y));
+    if (!bounds || rows.length > 500) return;
+    const c = chart.context;
+    c.lineWidth = 1;
+    for (const row of rows) {
+      const px = chart.x(x[row]), bound = bounds.number(row);
+      if (isFinite(bound)) { c.beginPath(); c.moveTo(px, chart.y(y[row] - bound)); c.lineTo(px, chart.y(y[row] + bound)); c.stroke(); }
+    }
+  }
+  /** The row at a pixel. */
+  find(px, py) {
+    if (this.cells) {
+      const {xs, ys, rows} = this.cells, ex = this.edges(xs, this.chart.x), ey = this.edges(ys, this.chart.y);
+      const i = ex.findIndex(edge => px < edge) - 1, j = ey.findIndex(edge => py > edge) - 1;
+      return i >= 0 && j >= 0 && rows[j * xs.length + i] >= 0 ? rows[j * xs.length + i] : null;
+    }
+    const x = this.column('x').numbers(), y = this.column('y').numbers();
+    let best = null, nearest = 20 ** 2;
+    for (const row of this.list) {
+      const distance = (this.chart.x(x[row]) - px) ** 2 + (this.chart.y(y[row]) - py) ** 2;
+      if (distance < nearest) [best, nearest] = [row, distance];
+    }
+    return best;
+  }
+  mark(chart) {
+    for (const [row, colour] of [[this.hovered, 'soft'], [this.selected, 'ink']]) {
+      if (row === null || row === undefined) continue;
+      const c = chart.top, px = chart.x(this.column('x').number(row)), py = chart.y(this.column('y').number(row));
+      c.strokeStyle = ink('paper'); c.lineWidth = 4;
+      c.beginPath(); c.arc(px, py, 7, 0, 7); c.stroke();
+      c.strokeStyle = ink(colour); c.lineWidth = 2;
+      c.beginPath(); c.arc(px, py, 7, 0, 7); c.stroke();
+    }
+  }
+  keys(event) {
+    const move = {ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[event.key];
+    if (!move || !this.order.length) return false;
+    let row = this.selected !== null && this.place.has(this.selected) ? this.selected : null;
+    if (row === null) row = this.order[0];
+    else if (this.cells) {
+      const {xs, ys, rows} = this.cells, i = xs.indexOf(this.column('x').number(row)) + move[0], j = ys.indexOf(this.column('y').number(row)) + move[1];
+      if (i >= 0 && i < xs.length && j >= 0 && j < ys.length && rows[j * xs.length + i] >= 0) row = rows[j * xs.length + i];
+    } else row = this.order[Math.max(0, Math.min(this.order.length - 1, this.place.get(row) + move[0] + move[1]))];
+    this.select(row);
+    this.chart.say(this.words(row), this.chart.x(this.column('x').number(row)), this.chart.y(this.column('y').number(row)));
+    return true;
+  }
+  title(row) { return `${NOUN[0].toUpperCase()}${NOUN.slice(1)} ${this.index ? this.index.value(row) : row + 1}`; }
+  /** The tip of a row. */
+  words(row) {
+    const names = [...new Set([...this.axes, this.x, this.y, this.colour])].filter(name => this.columns.has(name)).slice(0, 8);
+    const status = this.columns.get(this.statusName)?.value(row), reason = this.columns.get('reason')?.value(row);
+    return [this.title(row), ...names.map(name => {
+      const column = this.columns.get(name), bound = this.columns.get(boundKey(name))?.value(row);
+      return `${shortName(column.title)}: ${known(bound) ? showWith(column.value(row), bound) + ` ± ${show(bound, 2)} ${unitText(column.unit)}` : column.words(row)}`;
+    }), status && status !== 'finished' && !names.includes(this.statusName) ? status + (reason ? ': ' + reason : '') : ''].filter(Boolean).join('\n');
+  }
+  select(row) {
+    this.selected = row;
+    this.chart.move();
+    const body = el('tbody');
+    for (const column of this.columns.values()) {
+      const value = column.value(row), bound = this.columns.get(boundKey(column.name))?.value(row);
+      if (value === null || column === this.index || /^errors\.|^displacement_error\.total$/.test(column.name)) continue;
+      body.append(el('tr', {}, el('td', {class: 'entry'}, ...brokenAtSlashes(column.title)), el('td', {class: column.isText ? '' : 'value'}, exactly(value, known(bound) ? showWith(value, bound) : show(value)), known(bound) ? ` ± ${show(bound, 2)}` : '',
+        el('span', {class: 'unit'}, ' ' + unitText(column.unit))), el('td', {class: 'meaning wide-only'}, column.meaning)));
+    }
+    this.panel.hidden = false;
+    this.panel.replaceChildren(el('h2', {}, this.title(row)));
+    this.details?.(this.panel, row, this);
+    this.panel.append(el('details', {}, el('summary', {}, 'All numbers of this row'), el('div', {class: 'scroll'}, el('table', {}, body))));
+  }
+}

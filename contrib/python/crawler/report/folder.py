@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the files of a folder say, as a page has it: dicts and lists that JSON knows, None for what is not there. All raise
+InputError if a file is damaged."""
+import json
+import math
+import os
+import re
+
+os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a study under way may be looked at
+import h5py
+import numpy as np
+
+from ..needs import FileError, InputError
+from ..results import parameters_of, read_columns, read_kymograph
+from .numbers import DIGITS, Column, fields_of, plain, some
+
+MOST_STEPS, MOST_ROWS, MOST_BYTES = 2000, 100000, 9000000  # of a run; of a table, so that the page stays below 10 MB
+
+
+def text_of(path):
+    """The text of a file; None if there is none."""
+    return path.read_text(encoding="utf-8", errors="replace") if path.is_file() else None
+
+
+def summary_in(folder):
+    """summary.json."""
+    text = text_of(folder / "summary.json")
+    try:
+        return None if text is None else {"status": json.loads(text)["status"], **json.loads(text)}
+    except (LookupError, TypeError, ValueError):
+        raise InputError(f'"{folder / "summary.json"}" is damaged: a JSON object with the key "status" is expected') from None
+
+
+def parameters_in(folder, effective, entries):
+    """The entries that are not at their defaults, {entry, value, default, unit, meaning}, and the texts of the files, that
+    of parameters.prm, @p effective, without comments."""
+    bare = "".join(line + "\n" for line in effective.splitlines() if line.strip() and not line.strip().startswith("#"))
+    return {"entries": [{"entry": name, **entry} for name, entry in entries.items() if entry["value"] != entry["default"]],
+            "original": text_of(folder / "original.prm"), "effective": bare or None}
+
+
+def units_of(entries):
+    """What the user calls the units: {length, time, force, energy}."""
+    names = {word: entries.get(f"Units/{word.title()}", {"value": word})["value"] for word in ("length", "time", "force")}
+    energy = f"{names['force']} {names['length']}"
+    return {**names, "energy": energy if any(word != name for word, name in names.items()) else "energy"}
+
+
+def curves_in(path):
+    """The columns of a CSV file with numbers over time or body, of many rows some; None if there is no such file."""
+    if not path.is_file():
+        return None
+    columns = []
+    for heading, values in read_columns(path).items():
+        name, unit = re.fullmatch(r"(.*?)(?: \[([^]]*)\])?", heading.strip()).groups()
+        columns.append(Column(name, unit or "", "", np.asarray(values)[some(len(values), MOST_STEPS)], DIGITS).json())
+    return columns
+
+
+def run_in(folder, title, most_times):
+    """A run: summary, body, statistics, kymograph (of about @p most_times times), ground, sensitivities along the body."""
+    values = parameters_of(text_of(folder / "parameters.prm") or "")
+    run = {"title": title, "summary": summary_in(folder),
+           "length": values.get("Body/Length", 1), "end_time": values.get("Time/End time", 1),
+           "statistics": curves_in(folder / "statistics.csv"), "along_body": curves_in(folder / "sensitivity_body.csv"),
+           "kymograph": None, "ground": None}
+    path = folder / "kymograph.vts"
+    if path.is_file():
+        try:
+            kymograph = read_kymograph(path)
+        except FileError:
+            raise InputError(f'"{path}" is damaged: a whole kymograph that crawler wrote is expected') from None
+        run["kymograph"] = fields_of(kymograph, most_times)
+        if "ground_factor" in kymograph:
+            run["ground"] = {name: plain(kymograph[f"ground_{name}"], DIGITS) for name in ("x", "factor")}
+    return run
+
+
+def runs_within(folder, inner):
+    """The runs within a study, as "points/5" or "best-2": its optima, or in the folder @p inner the points whose fields
+    were kept, by their numbers."""
+    pattern, found = r"()(\d{1,8})" if inner else r"best(-(\d{1,8}))?", []
+    for path in (folder / inner).glob("*/summary.json"):
+        match = re.fullmatch(pattern, path.parent.name)
+        if match:
+            found.append((int(match[2] or 0), path.parent.relative_to(folder).as_posix()))
+    return [name for _, name in sorted(found)]
+
+
+def rank_of(name, meaning, is_text, names):
+    """Which columns matter most where there is no place for all: what was varied and how it ended; the displacement and
+    other numbers with error bounds; the rest; the bounds of these, and messages."""
+    if meaning.startswith("axis of the ") or meaning == "variable":
+        return 0
+    if name in ("message", "explanation") or name.startswith(("errors.", "sensitivities.")):
+        return 4
+    if is_text or name in ("index", "displacement", "displacement_error.total"):
+        return 1
+    return 2 if f"errors.{name.removesuffix('.value')}" in names else 3
+
+
+def table_in(path, group):
+    """The table of a study: its columns (those whose meaning begins with "axis" or is "variable" are what was varied), and
+    the names of those that were left out because they would make the page too large; of very many rows some, evenly."""
+    try:
+        with h5py.File(path, "r") as file:
+            columns = [(*(data.attrs[word].decode() for word in ("name", "unit", "description")), data)
+                       for data in file[group].values()]
+            names = {name for name, *_ in columns}
+            columns.sort(key=lambda one: rank_of(one[0], one[2], one[3].dtype.kind == "S", names))
+            n = len(columns[0][3])
+            stride = -(-n // MOST_ROWS) or 1
+            # What has no divisor in common with the number of rows does not take the same value of an axis each time.
+            while stride > 1 and math.gcd(stride, n) != 1:
+                stride += 1
+            table, free = {"all_rows": n, "rows": -(-n // stride), "columns": [], "left_out": []}, MOST_BYTES
+            for name, unit, meaning, data in columns:
+                is_varied = rank_of(name, meaning, False, names) == 0
+                digits = None if table["rows"] <= MOST_STEPS else 10 if is_varied else DIGITS
+                column = Column(name, unit, meaning, data[:][::stride], digits)
+                if column.size > free:
+                    table["left_out"].append(name)
+                elif (one := column.json())["values"] != [None]:
+                    table["columns"].append(one)
+                    free -= column.size
+            return table
+    except (OSError, LookupError, ValueError, RuntimeError, AttributeError, TypeError):
+        raise InputError(f'"{path}" is damaged: a whole table that crawler wrote is expected') from None

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/exceptions.h>
+#include <crawler/base/process.h>
+#include <crawler/parameters/declarations.h>
+#include <crawler/studies/core/python.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <iostream>
+#include <stdexcept>
+#include <sysexits.h>
+
+namespace crawler
+{
+  namespace
+  {
+    /// Where a script is looked for: where it is installed with the program, and in the build folder.
+    std::array<std::filesystem::path, 2>
+    places_of_script(const std::string &name, const std::filesystem::path &program)
+    {
+      const auto folder = program.parent_path();
+      return {{folder.parent_path() / CRAWLER_INSTALLED_PYTHON / name, folder / "python/crawler" / name}};
+    }
+  } // namespace
+
+  PythonEnd
+  call_python(const std::string &script, const std::vector<std::string> &arguments, const bool shown)
+  {
+    std::error_code ignored;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+    const auto places  = places_of_script(script, program);
+    setenv("CRAWLER_PROGRAM", program.c_str(), /*overwrite=*/1);
+    const auto path =
+      std::ranges::find_if(places, [&](const auto &place) { return std::filesystem::exists(place, ignored); });
+    if (path == places.end())
+      return {
+        EX_UNAVAILABLE,
+        fmt::format("the script {} is neither {} nor {}; a copy of the program alone has no scripts, the installed "
+                    "one and that of the build folder have them",
+                    std::filesystem::path(script).filename().string(),
+                    places[0].lexically_normal().string(),
+                    places[1].string())};
+    // If this Python lacks a module, the script itself goes on with Debian's (contrib/python/crawler/needs.py).
+    for (const std::string python : {"python3", "/usr/bin/python3"})
+    {
+      std::vector<std::string> command = {python, path->string()};
+      command.insert(command.end(), arguments.begin(), arguments.end());
+      if (const ProgramEnd end = run_program(command, shown); end.started)
+        return {end.status, trimmed(end.errors)};
+    }
+    return {EX_UNAVAILABLE, "python3 is not there (Debian: apt install python3-h5py python3-matplotlib)"};
+  }
+
+  void
+  hand_over_to_python(const std::string &script, const std::vector<std::string> &arguments)
+  {
+    std::cout.flush(); // the script writes to the same stream
+    const PythonEnd end = call_python(script, arguments, /*shown=*/true);
+    if (end.status == static_cast<int>(ExitCode::file_error))
+      throw FileError(end.problem, /*on_all_ranks=*/true);
+    if (end.status == static_cast<int>(ExitCode::bad_input) || end.status == EX_UNAVAILABLE)
+      throw InputError(end.problem);
+    if (end.status != 0)
+      throw std::runtime_error(
+        fmt::format("{} was ended{}", script, end.problem.empty() ? " by a signal" : ": " + end.problem));
+  }
+
+  void
+  draw(const std::string &kind, const std::filesystem::path &folder, Log &log)
+  {
+    const PythonEnd end = call_python("plot/" + kind + ".py", {folder.string()}, /*shown=*/false);
+    if (end.status == static_cast<int>(ExitCode::file_error))
+      throw FileError(end.problem);
+    if (end.status != 0)
+      log.line(
+        fmt::format("There is no picture: {}. Draw it later with: crawler plot {}", end.problem, folder.string()));
+  }
+} // namespace crawler
