@@ -462,6 +462,17 @@ TEST_F(Commands, ATableBeyondTheBodyIsNoted)
     contains(log, "Note: the table reaches to s = 4, but the body ends at 1; check \"Active stress/Table/Unit"));
 }
 
+/// A strain given by a formula or a table has entries of its own.
+TEST_F(Commands, EntriesOfOtherFormulasAreNoted)
+{
+  const std::string lines = in_section("Active stress", "set Generator = prescribed strain") +
+                            in_section("Active stress/Expression", "set Active stress = sin(s)");
+  const auto result = run({"--set", "Model=kinematic"}, lines);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(
+    contains(read_text(results / "log.txt"), "\"Active stress/Expression/Active stress\" has no effect with"));
+}
+
 TEST_F(Commands, PetscOptionsAreRecorded)
 {
   ASSERT_EQ(run({"--", "-ts_type", "bdf"}).exit_code, 0);

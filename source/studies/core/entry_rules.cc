@@ -62,8 +62,11 @@ namespace crawler
         section[root.size()] = static_cast<char>(std::toupper(static_cast<unsigned char>(section[root.size()])));
         if (name == "none" || (name == "sum" && !has_sum))
           continue;
-        rules.push_back({{section}, {{root + "Generator", any_of({name, "prescribed strain"})}}});
-        if (name != "prescribed strain")
+        // A strain given by a formula or a table has entries of its own.
+        const bool gives_strain = name != "expression" && name != "table" && name != "prescribed strain";
+        rules.push_back(
+          {{section}, {{root + "Generator", gives_strain ? any_of({name, "prescribed strain"}) : any_of({name})}}});
+        if (gives_strain)
           rules.push_back(
             {{section}, {{root + "Generator", any_of({name})}, {root + strain + "Given by", any_of({name})}}});
       }

@@ -71,6 +71,7 @@ def estimated_noise(samples):
 def prepare(samples, settings, period=None):
     """The Table of Samples. @p period: one that is known already. Raises InputError where a gap is too large, where there
     is no period, and where its ends differ by more than the noise."""
+    settings = dataclasses.replace(settings, period=str(settings.period or ""))
     settings.require_sound()
     words, filled = [], _Filled()
     _require_steps(samples.t, settings.gap)

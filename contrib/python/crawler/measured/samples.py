@@ -42,11 +42,12 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
 
     path: a table as text, or HDF5 of SLEAP, Tierpsy or with s, t and m or strain. quantity: "m", "strain", "stretch" or
     "markers" (default: by the names). columns: other names, "t=Frame time, x=X". unit_of_s, unit_of_t, unit_of_m: a
-    factor (1/30) or a unit. shift_s, shift_t: a number, or "first". animal: which one is read. head: the marker at the
+    factor (1/30), as a number or text, or a unit. shift_s, shift_t: a number, or "first". animal: which one is read. head: the marker at the
     head. confidence: markers that are less certain are gaps. words: a list, gets what was done, in sentences.
     Raises InputError and FileError.
     """
     words = [] if words is None else words
+    unit_of_s, unit_of_t, unit_of_m, shift_s, shift_t = (str(one) for one in (unit_of_s, unit_of_t, unit_of_m, shift_s, shift_t))
     if quantity and quantity not in QUANTITIES:
         raise InputError(f'"--quantity" is "{quantity}", but "m", "strain", "stretch" or "markers" is expected')
     path = pathlib.Path(path)
