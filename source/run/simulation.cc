@@ -142,7 +142,7 @@ namespace crawler
     Recorder recorder(
       physical_scene_, units_, options, numerics_.tolerance, mesh_.discretization->n_unknowns() <= most_unknowns);
     if (mesh_.position != nullptr && !is_adaptive())
-      recorder.set_smallest_cell(std::ranges::min(mesh_.discretization->cells(), {}, &Cell::size).size);
+      recorder.set_smallest_cell(std::ranges::min_element(mesh_.discretization->cells(), {}, &Cell::size)->size);
     OutputTimes output_times(pictures, recorder.step_ends(), !integrators_.present->stage_places().empty());
     run_.emplace(options,
                  !observers.empty(),

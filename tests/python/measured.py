@@ -196,17 +196,27 @@ class Files(unittest.TestCase):
         text = "t;0;0.5;1;1.5\n" + "".join(f"{1580724432 + j / 10:.3f};1;2;3;{j}\n" for j in range(17))
         np.testing.assert_array_equal(read(text, shift_t="first").t, np.round(np.arange(17) / 10, 6))
 
+    def test_clock_times_and_per_cent(self):
+        """Over midnight; a strain in per cent is turned into one without unit."""
+        clock = "t;0;0.5;1;1.5\n" + "".join(f"{(86398 + j) % 86400 // 3600}:{(86398 + j) % 3600 // 60:02}:{(86398 + j) % 60:02};1;2;3;{j}\n"
+                                            for j in range(6))
+        np.testing.assert_array_equal(read(clock).t, np.arange(6))
+        percent = "s,t,strain [%]\n" + "".join(f"{i},{j},{10 * i}\n" for i in range(4) for j in range(4))
+        np.testing.assert_allclose(read(percent).values[0], [0, 0.1, 0.2, 0.3])
+
     def test_thousands(self):
-        """1,000 ms are a second where whole numbers stand beside them, 1,368 is a number where all have three decimals."""
+        """1,000 ms are a second where the times increase by that only; 1,368 may be both, unless the file or the user tells."""
         times = "".join(f"{100 * j:,};1;2;3;{j}\n" for j in range(17))
         self.assertEqual(read("t;0;0.5;1;1.5\n" + times).t[-1], 1600)
-        self.assertEqual(read("t;0;0.5;1;1.5\n" + "".join(f"{j};1,368;2,000;3,100;4,000\n" for j in range(9))).values[0, 0], 1.368)
+        three = "t;0;0.5;1;1.5\n" + "".join(f"{j};1,368;2,000;3,100;4,000\n" for j in range(9))
+        self.assertEqual([read(three, decimal=decimal).values[0, 0] for decimal in ("comma", "point")], [1.368, 1368])
         self.assertEqual(read("t;0;0.5;1;1.5\n" + "".join(f"{j};1.368,5;2,0;3,1;4,0\n" for j in range(9))).values[0, 0], 1368.5)
         with self.assertRaisesRegex(InputError, '"1,368", which may be 1.368 or 1368'):
-            read("t;0;0.5;1;1.5\n" + "".join(f"{j};1,368;900;800;{j}\n" for j in range(9)))
+            read(three)
 
     def test_refusals_name_the_place(self):
         rows = WIDE.split("\n", 1)[1]
+        longer = "m;s;t\n" + "".join(f"{1 + i + 4 * j};{i};{j}\n" for i in range(4) for j in range(4))
         for text, words, options in (
                 (WIDE + "4;1;2;x;4\n", 'row 6 of ".*" has "x" under 1,', {}), (WIDE + "4;1;2;3\n5;1;1;1;1\n", "row 6 .* has 4 cells, but 5", {}),
                 (rows, "no line of 5 names", {}), ("t;a;b;c;d\n" + rows, 'column 2 of ".*" is "a"', {}),
@@ -215,7 +225,9 @@ class Files(unittest.TestCase):
                 ("t;0;0.5;1;1.5\n1;2;2.5x;3;4\n2;1;2;3;4\n3;1;2;3;4\n4;1;2;3;4\n", 'row 2 .*"2.5x"', {}), ("", "is empty", {}),
                 ("only words\n", "no row of numbers", {}), (WIDE.encode("utf-16"), "UTF-16", {}), (b"PK\x03\x04", "a workbook", {}),
                 (b"a\0b", "a binary file", {}), (b"\x89HDF\r\n\x1a\n", "HDF5", {}), (WIDE, '"--head"', {"head": "x1"}),
-                (WIDE, "NAME=COLUMN", {"columns": "q=t"}), (WIDE, 'the column "q"', {"columns": "t=q"})):
+                (longer.replace("m;", "strain;", 1).replace("\n1;0;0", "\n-5;0;0"), "a strain above -1", {}),
+                (longer, 'has the column m, but "--quantity" is strain', {"quantity": "strain"}),
+                (longer.replace("\n1;0;0", "\n1_0;0;0"), '"1_0" under', {}), (WIDE, "NAME=COLUMN", {"columns": "q=t"}), (WIDE, 'the column "q"', {"columns": "t=q"})):
             with self.assertRaisesRegex(InputError, words, msg=text):
                 read(text, **options)
         with self.assertRaises(FileError):
@@ -333,6 +345,26 @@ class Trackers(unittest.TestCase):
         np.testing.assert_allclose(np.diff(samples.values, axis=1), np.diff(x, axis=1), rtol=2e-3)
         self.assertIn("the body bends", " ".join(words))
 
+    def test_a_lost_marker_moves_no_others(self):
+        """On a circle, one misplaced and uncertain: the places of all others stay, and its own is a gap."""
+        x, radius = self.x(), 3.0
+        columns = [column for i in range(9) for column in (radius * np.sin(x[:, i] / radius), radius * np.cos(x[:, i] / radius), np.ones(17))]
+        head = ["scorer" + ",net" * 27, "bodyparts," + ",".join(name for name in self.NAMES for _ in range(3)), "coords" + ",x,y,likelihood" * 9]
+        whole = read("\n".join(head) + "\n" + self.rows(range(17), *columns)).values
+        columns[3 * 4][6], columns[3 * 4 + 1][6], columns[3 * 4 + 2][6] = 9, 9, 0.1
+        lost = read("\n".join(head) + "\n" + self.rows(range(17), *columns), confidence=0.6).values
+        self.assertEqual(list(np.argwhere(np.isnan(lost))[0]), [6, 4])
+        np.testing.assert_allclose(np.delete(lost, 4, axis=1), np.delete(whole, 4, axis=1), atol=2e-3)
+
+    def test_material_coordinates_of_whole_cycles(self):
+        """The mean of 1.5 cycles is that of one, where the period is known."""
+        t = np.arange(31) / 20
+        x = self.S + 0.3 * np.sin(PI * (self.S / 3 - 2 * t[:, np.newaxis]))
+        tracks = Samples("x", np.arange(9.0), t, x, self.NAMES)
+        means = [prepare(tracks, Settings(markers_at="mean", period=period)).s[-1] for period in ("1", "")]
+        self.assertAlmostEqual(means[0], 4, delta=1e-6)
+        self.assertGreater(abs(means[1] - 4), 1e-3)
+
     def test_head(self):
         """Which end is the head turns the body round, so that it points from tail to head."""
         text = "t," + ",".join(f"x{i}" for i in range(9)) + "\n" + self.rows(self.T, *self.x().T)
@@ -342,6 +374,9 @@ class Trackers(unittest.TestCase):
         self.assertEqual(turned.names[-1], "x0")
         with self.assertRaisesRegex(InputError, "which lies between x0 and x8"):
             read(text, head="x4")
+        named = read(text.replace("x0", "x_nose", 1), quantity="markers").names
+        self.assertEqual(named[-1], "x8")
+        self.assertEqual(read(text.replace("t,x0", "t,nose", 1), quantity="markers").names[-1], "nose")
 
 
 if __name__ == "__main__":

@@ -160,7 +160,9 @@ def gradient(scene, by, *, of="displacement", set=None, **keywords):
     (doc/sensitivities.md): by the adjoint, whose cost hardly depends on the number of entries, or by differences of runs.
     Raises InputError as run() does, and where a derivative does not exist; RunFailed if the run does not finish.
     """
-    by = [by] if isinstance(by, str) else list(by)
+    by = [by] if isinstance(by, str) else list(by) if isinstance(by, (list, tuple)) else []
+    if not by or not all(isinstance(entry, str) for entry in by):
+        raise InputError("the entries are missing; a list of full names is expected, as [\"Body/Elastic modulus\"]")
     result = run(scene, set={**(set or {}), "Output/Sensitivities": ", ".join(by)}, fields=False, check=True, **keywords)
     found = []
     for entry in by:
@@ -185,6 +187,8 @@ def optimize(scene, variables=None, *, set=None, output=None, overwrite=False, v
     own = {_keyword(entry): entry for entry in entries() if entry.startswith("Optimize/")}
     overrides = _overrides({**(set or {}), **{own[name]: keywords.pop(name) for name in list(keywords) if name in own}}, keywords)
     if variables is not None:
+        if not isinstance(variables, Mapping) or not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in variables.values()):
+            raise InputError(f"the variables are {variables!r}, but a dict of entries and their ranges (from, to) is expected")
         ranges = "; ".join(f"{_full_name(name)} : {_text(low, name)} to {_text(high, name)}" for name, (low, high) in variables.items())
         overrides.append(f"Optimize/Variables={ranges}")
     source = _source(scene, overrides)

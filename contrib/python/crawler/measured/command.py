@@ -6,6 +6,8 @@ import dataclasses
 import math
 import os
 import pathlib
+import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -33,6 +35,7 @@ def command_line():
             ("columns", text, 'other names of columns: "t=Frame time, x=X"'),
             ("animal", text, "which one of several is read"),
             ("head", text, "the marker at the head (default: that with the largest x)"),
+            ("decimal", text, "comma or point: what stands before decimals, where a comma may also group thousands"),
             ("confidence", number, "markers that are less certain are gaps (default: 0)"),
             ("unit-of-s", text, "factor of s and x, or the unit they are turned into: mm"),
             ("unit-of-t", text, "the same for t; 1/30: frames of a film of 30 a second"),
@@ -71,6 +74,11 @@ def require_files(options):
     """Raises InputError for names of files that no samples are needed to refuse."""
     if getattr(options, "copies", 64) < 8:
         raise InputError(f'"--copies" is {options.copies}, but at least 8 are expected')
+    if getattr(options, "seed", 0) < 0:
+        raise InputError(f'"--seed" is {options.seed}, but a whole number of 0 or more is expected')
+    for name in ("copies", "seed", "set"):
+        if not hasattr(options, "scene") and getattr(options, name, None):
+            raise InputError(f'"--{name}" is for "--scene", which is missing')
     if not options.output.endswith(".csv"):
         raise InputError(f'the table is to be "{options.output}", but a name that ends in .csv is expected')
     if os.path.exists(options.output):
@@ -105,10 +113,18 @@ def displacements(scene, overrides, entry, tables):
         end = subprocess.run([os.environ["CRAWLER_PROGRAM"], "sweep", scene, "--output", output, "--quiet",
                               *(word for setting in settings for word in ("--set", setting))], capture_output=True, text=True, check=False)
         if end.returncode:
-            problem = end.stderr.strip().removeprefix("crawler: ").replace(folder + os.sep, "")
+            problem = end.stderr.strip().removeprefix("crawler: ").replace(names[0], "the new table")
+            problem = re.sub(r'^--set "Sweep/Axes=.*?": ', "", problem).replace(folder + os.sep, "")
             raise FileError(problem) if end.returncode == FileError.code else InputError(problem)
         with open(os.path.join(output, "results.csv"), newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
+
+
+def _prepared(copy, prepare_copy):
+    try:
+        return prepare_copy(copy)
+    except InputError as error:
+        raise InputError(f'with noise added the samples give no table, so that the uncertainty is not known: {error}; see "--noise"') from None
 
 
 def uncertainty(options, samples, table, prepare_copy):
@@ -118,7 +134,8 @@ def uncertainty(options, samples, table, prepare_copy):
     noisy = (dataclasses.replace(samples, values=samples.values + table.noise * generator.standard_normal(samples.values.shape))
              for _ in range(n))
     entry = "Active stress/" + ("Table/File" if table.quantity == "m" else "Prescribed strain/File")
-    first, *rows = displacements(options.scene, options.set, entry, [table, *map(prepare_copy, noisy)])
+    noisy = [_prepared(copy, prepare_copy) for copy in noisy]
+    first, *rows = displacements(options.scene, options.set, entry, [table, *noisy])
     if first["status"] != "finished" or not first["displacement"]:
         raise InputError(f'"{options.scene}" with the new table: {first["message"] or first["status"]}')
     copies = [float(row["displacement"]) for row in rows if row["status"] == "finished" and row["displacement"]]
@@ -142,7 +159,7 @@ def main():
     settings = Settings(**parts_of(options, Settings.__dataclass_fields__))
     require_files(options)
     words = []
-    reading = ("quantity", "columns", "animal", "head", "confidence", "unit_of_s", "unit_of_t", "unit_of_m", "shift_s", "shift_t")
+    reading = ("quantity", "columns", "animal", "head", "confidence", "decimal", "unit_of_s", "unit_of_t", "unit_of_m", "shift_s", "shift_t")
     samples = read_samples(options.input, words=words, **parts_of(options, reading))
     table = prepare(samples, settings)
     words += table.words
@@ -160,5 +177,5 @@ def main():
     write_table(options.output, table.s, table.t, table.values, ("s", "t", table.quantity))
     if not options.quiet:
         how = ("prescribed strain, Given by = table" if table.quantity == "strain" else "table")
-        print(f"{report}Picture: crawler plot {options.output}. In the parameter file: Generator = {how}, File = {options.output}"
+        print(f"{report}Picture: crawler plot {shlex.quote(options.output)}. In the parameter file: Generator = {how}, File = {options.output}"
               f"{', Outside = periodic' if table.period and table.quantity == 'm' else ''}")

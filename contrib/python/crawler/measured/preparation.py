@@ -12,7 +12,8 @@ from .settings import Settings
 from .splines import SmoothingSpline, periodic_spline
 from .units import number_of
 
-MUCH_OF_NOISE, LEAST_CYCLES, LEAST_PHASES, LEAST_REMAINDERS, USUAL_PLACES = 5, 1.25, 8, 8, 33
+MOST_POINTS = 20000000  # of a table
+MUCH_OF_NOISE, LEAST_CYCLES, LEAST_PHASES, LEAST_REMAINDERS, USUAL_PLACES, MOST_LAGS = 5, 1.25, 8, 8, 33, 65536
 
 
 @dataclasses.dataclass
@@ -71,8 +72,12 @@ def estimated_noise(samples):
 def prepare(samples, settings, period=None):
     """The Table of Samples. @p period: one that is known already. Raises InputError where a gap is too large, where there
     is no period, and where its ends differ by more than the noise."""
-    settings = dataclasses.replace(settings, period=str(settings.period or ""))
+    is_list = not isinstance(settings.markers_at, str)
+    settings = dataclasses.replace(settings, period=str(settings.period or ""), markers_at=",".join(f"{float(s):.17g}" for s in
+                                   settings.markers_at) if is_list else settings.markers_at)
     settings.require_sound()
+    if samples.quantity != "x":
+        settings.require_for_markers()
     words, filled = [], _Filled()
     _require_steps(samples.t, settings.gap)
     measured, is_tracks = samples, samples.quantity == "x"
@@ -97,6 +102,9 @@ def prepare(samples, settings, period=None):
         table.values = (1 + table.values) / (1 + table.values[0]) - 1
     if settings.period:
         n = len(table.t) - 1
+        if n * settings.cycles * len(table.s) > MOST_POINTS:
+            raise InputError(f"{settings.cycles} cycles are {n * settings.cycles} times at {len(table.s)} places, but at most {MOST_POINTS} "
+                             "points of a table are expected; a table may be periodic (Outside = periodic)")
         table.t = np.concatenate([table.t[:1], *(table.t[1:] + k * (table.t[-1] - table.t[0]) for k in range(settings.cycles))])
         table.values = np.concatenate([table.values[:1], *[table.values[1:]] * settings.cycles])
         assert len(table.t) == n * settings.cycles + 1
@@ -125,8 +133,10 @@ def strain_of_tracks(tracks, settings, words):
     if np.any(strain <= -1):
         j, i = np.argwhere(strain <= -1)[0]
         raise InputError(f"the tracks give the strain {strain[j, i]:g} at s = {places[i]:g}, t = {tracks.t[j]:g}, where the body would "
-                         'have no length; more smoothing ("--smooth-s") is needed, or markers are mixed up')
-    how = {"first": "from the first frame", "mean": "from the mean of all frames"}.get(settings.markers_at, "as given")
+                         'have no length; more smoothing ("--smooth-s") is needed, or markers are misplaced ("--confidence") or '
+                         "mixed up")
+    how = {"first": "from the first frame, which is taken as a body without strain", "mean": "from the mean of frames"}.get(
+        settings.markers_at, "as given")
     words.append(f"strain of {len(s)} markers at s = {s[0]:g} to {s[-1]:g} ({how}), at {len(places)} places of a body of length "
                  f"{length:g}")
     if s[0] > 0 or s[-1] < length * (1 - 1e-9):
@@ -137,7 +147,8 @@ def strain_of_tracks(tracks, settings, words):
 
 def _material_coordinates(tracks, settings):
     if settings.markers_at in ("first", "mean"):
-        s = tracks.values[0] if settings.markers_at == "first" else tracks.values.mean(axis=0)
+        n = 1 if settings.markers_at == "first" else _whole_cycles(tracks, settings.period)
+        s = tracks.values[:n].mean(axis=0)
         return s - s[0] + settings.first_marker
     numbers = [number_of(part) for part in settings.markers_at.split(",")]
     if None in numbers:
@@ -147,6 +158,16 @@ def _material_coordinates(tracks, settings):
         raise InputError(f'"--markers-at" has {len(numbers)} numbers, but there are {len(tracks.s)} markers, and one for each is '
                          "expected")
     return np.array(numbers)
+
+
+def _whole_cycles(tracks, wanted):
+    """The number of frames in as many whole cycles as there are; all frames if there is no period."""
+    shape = dataclasses.replace(tracks, values=tracks.values - tracks.values.mean(axis=1, keepdims=True))
+    period = find_period(shape) if wanted == "find" else number_of(wanted) if wanted not in ("", "whole") else None
+    duration = tracks.t[-1] - tracks.t[0]
+    if not period or not 0 < period <= duration:
+        return len(tracks.t)
+    return int(np.searchsorted(tracks.t, tracks.t[0] + period * (math.floor(duration / period + 1e-9) - 1e-6)))
 
 
 def _require_steps(t, most):
@@ -249,17 +270,23 @@ def find_period(samples):
     those later on; the duration must be at least 1.25 times as long. None if nothing repeats."""
     begin, duration = samples.t[0], samples.t[-1] - samples.t[0]
     curves = SmoothingSpline(samples.t, samples.values, 0)
-    n = min(4 * (len(samples.t) - 1), 512)
-    variance = np.var(curves(np.linspace(begin, samples.t[-1], n + 1)), axis=0).sum()
+    n = min(4 * (len(samples.t) - 1), MOST_LAGS)
+    y = curves(np.linspace(begin, samples.t[-1], n + 1))
+    y = y - y.mean(axis=0)
+    variance = np.mean(y**2, axis=0).sum()
     if not variance > 0:
         return None
 
     def difference(lag):
-        t = begin + (duration - lag) * np.linspace(0, 1, n + 1)
+        t = begin + (duration - lag) * np.linspace(0, 1, min(n, 2048) + 1)
         return np.sum(np.mean((curves(t + lag) - curves(t))**2, axis=0)) / (2 * variance)
 
-    lags = duration / n * np.arange(int(n / LEAST_CYCLES) + 2)
-    found = np.array([difference(min(lag, duration)) for lag in lags])
+    lags = duration / n * np.arange(min(int(n / LEAST_CYCLES) + 2, n))
+    squares = np.concatenate([[0], np.cumsum(np.sum(y**2, axis=1))])
+    transformed = np.fft.rfft(y, 2 * (n + 1), axis=0)
+    products = np.fft.irfft(np.sum(np.abs(transformed)**2, axis=1))[:len(lags)]  # sums of y(t) y(t + lag)
+    found = (squares[n + 1] - squares[:len(lags)] + squares[n + 1 - np.arange(len(lags))] - 2 * products) / (
+        2 * variance * (n + 1 - np.arange(len(lags))))
     minima = [j for j in range(LEAST, len(lags) - 1) if found[j] <= found[j - 1] and found[j] < found[j + 1]]
     least = min(found[minima], default=math.inf)
     if not least < 0.25:

@@ -6,12 +6,16 @@ import pathlib
 
 import numpy as np
 
+from scipy.interpolate import CubicSpline
+
 from ..needs import FileError, InputError
 from .formats import Tracks, chosen_animal, read_hdf5, tracks_of
 from .sheet import read_sheet
-from .units import number_of, unit_factor
+from .units import number_of, unit_factor, unit_of
 
 LEAST, MOST_GAPS = 4, 20  # places and times of a spline; times as many points of the grid as samples
+HEADS, TAILS = ("head", "nose", "snout", "anterior"), ("tail", "posterior")  # names of markers that say which end they are
+LARGEST = 1e100  # of a number, whose square must be one
 QUANTITIES = ("m", "strain", "stretch", "markers")
 # The names of columns that are understood, the best first.
 ROLES = {"s": ("s", "arc length"), "t": ("t", "time", "position_t", "timestamp", "frame", "slice n°", "slice"),
@@ -37,13 +41,13 @@ class Samples:
 
 
 def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", unit_of_m="", shift_s="", shift_t="",
-                 animal="", head="", confidence=0.0, words=None):
+                 animal="", head="", confidence=0.0, decimal="", words=None):
     """The Samples of a file, in the units wanted.
 
     path: a table as text, or HDF5 of SLEAP, Tierpsy or with s, t and m or strain. quantity: "m", "strain", "stretch" or
     "markers" (default: by the names). columns: other names, "t=Frame time, x=X". unit_of_s, unit_of_t, unit_of_m: a
     factor (1/30), as a number or text, or a unit. shift_s, shift_t: a number, or "first". animal: which one is read. head: the marker at the
-    head. confidence: markers that are less certain are gaps. words: a list, gets what was done, in sentences.
+    head. confidence: markers that are less certain are gaps. decimal: "comma" or "point", where a comma may be both. words: a list, gets what was done, in sentences.
     Raises InputError and FileError.
     """
     words = [] if words is None else words
@@ -60,7 +64,7 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
     if data.startswith(b"\x89HDF"):
         found, units = read_hdf5(path, animal), ("", "", "")
     else:
-        sheet = read_sheet(data, str(path))
+        sheet = read_sheet(data, str(path), decimal)
         is_renamed = any(not part.strip().startswith("t=") for part in columns.split(",") if part)
         found = None if is_renamed or quantity not in ("", "markers") else tracks_of(sheet, animal)
         found, units = (found, _units_of(sheet, found)) if found else _generic(sheet, quantity, columns, animal)
@@ -68,12 +72,14 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
     factor_s, factor_t = (unit_factor(unit, wanted, option) if wanted else 1.0 for unit, wanted, option in
                           ((units[0], unit_of_s, "--unit-of-s"), (units[1], unit_of_t, "--unit-of-t")))
     if isinstance(found, Tracks):
+        if unit_of_m or quantity not in ("", "markers"):
+            raise InputError(f'"{path}" has tracks of markers, but {"--unit-of-m" if unit_of_m else "--quantity " + quantity} is for '
+                             "samples of stress or strain")
         samples = _along_body(found, head, confidence, str(path), words)
     else:
         s, t, values, column = found
         if head or confidence or animal:
             raise InputError('"--head", "--confidence" and "--animal" are for markers, which this file has not')
-        column = quantity or column
         samples = Samples("m" if column == "m" else "strain", s, t, values)
         _require_grid(samples, str(path))
     words.append(f"{len(samples.s)} {'markers' if samples.quantity == 'x' else 'places'} x {len(samples.t)} times, "
@@ -86,15 +92,32 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
     else:
         samples.s = _converted(samples.s, "s", factor_s, shift_s, words)
         factor = unit_factor(units[2], unit_of_m, "--unit-of-m") if unit_of_m else 1.0
+        if column != "m" and (number_of(unit_of_m) is None if unit_of_m else units[2]):
+            base, factor = (unit_of_m == "%" and (None, 0)) or unit_of(units[2]) or (None, 0)
+            if base != "1":
+                raise InputError(f'the {column} of "{path}" is wanted in "{unit_of_m or units[2]}", but its unit is 1; "--unit-of-m" with a '
+                                 "number turns it")
         samples.values = _converted(samples.values, column, factor, "", words)
         if column == "stretch":
             samples.values = samples.values - 1
             words.append("the stretch minus 1 is the strain")
+    _require_possible(samples, str(path))
     if factor_s < 0 or factor_t < 0:
         raise InputError("a unit is negative, but only that of m may be")
     if isinstance(found, Tracks) and found.counts_frames and not unit_of_t:
         words.append('t counts frames; "--unit-of-t 1/30" turns those of a film of 30 frames a second into seconds')
     return samples
+
+
+def _require_possible(samples, name):
+    """Raises InputError for numbers that no body can have."""
+    low, what = (-1, "a strain above -1") if samples.quantity == "strain" else (-LARGEST, f"a number between -{LARGEST:g} and {LARGEST:g}")
+    with np.errstate(invalid="ignore"):
+        wrong = (samples.values <= low) | (samples.values >= LARGEST)
+    if np.any(wrong):
+        j, i = np.argwhere(wrong)[0]
+        raise InputError(f'"{name}" has {samples.quantity} = {samples.values[j, i]:g} at {"marker" if samples.quantity == "x" else "s"} = '
+                         f'{samples.s[i]:g}, t = {samples.t[j]:g}, but {what} is expected; see "--unit-of-m" and "--quantity"')
 
 
 def _converted(values, name, factor, shift, words):
@@ -128,8 +151,12 @@ def _generic(sheet, quantity, renamed, animal):
                          "t;s;m or t;0;0.25;0.5 or t;x1;x2;x3")
     roles = _roles(sheet, renamed)
     units = sheet.units
-    value = next((role for role in ("m", "strain", "stretch") if role in roles), None)
-    if {"t", "s"} <= set(roles) and value:
+    found = [role for role in ("m", "strain", "stretch") if role in roles]
+    if {"t", "s"} <= set(roles) and found:
+        if (quantity or len(found) > 1) and quantity not in found:
+            raise InputError(f'"{sheet.name}" has the column{"s" if len(found) > 1 else ""} {", ".join(found)}, but "--quantity" '
+                             f'{f"is {quantity}" if quantity else "does not say which"}; one of them is expected ("--columns" renames)')
+        value = quantity or found[0]
         s, t, values = _on_grid(sheet, sheet.column(roles["s"]), sheet.times(roles["t"]), sheet.column(roles[value]), sheet.lines, "s")
         return (s, t, values, value), (units[roles["s"]], units[roles["t"]], units[roles[value]])
     if {"t", "marker", "x"} <= set(roles):
@@ -293,11 +320,12 @@ def _along_body(tracks, head, confidence, name, words):
         raise InputError(f'"{name}" has the time {t[int(np.argmax(np.diff(t) <= 0))]:g} a second time, but different times are expected')
     x = x[order]
     if y is not None:
-        y = y[order]
+        gaps = np.isnan(x) | np.isnan(y[order])
+        x, y = np.where(gaps, np.nan, x), np.where(gaps, np.nan, y[order])
         if (chain := _shorter_chain(x, y)) is not None:
             x, y, names = x[:, chain], y[:, chain], [names[i] for i in chain]
             words.append(f"the markers put in order along the body: {', '.join(names)}")
-        x = _arc_lengths(x, y, words)
+        x = _arc_lengths(t, x, y, words)
     x, names = _from_tail_to_head(x, names, head, words)
     return Samples("x", np.arange(1.0, len(names) + 1), t, x, names)
 
@@ -314,8 +342,22 @@ def _shorter_chain(x, y):
     return order if mean[0, order[0]] <= mean[0, order[-1]] else order[::-1]
 
 
-def _arc_lengths(x, y, words):
+def _between_times(t, x):
+    """Gaps between measured times filled by splines, x [time, marker]: only so that other markers can be measured from there."""
+    x = x.copy()
+    for column in x.T:
+        there = np.flatnonzero(~np.isnan(column))
+        inside = np.flatnonzero(np.isnan(column))
+        inside = inside[(inside > there[0]) & (inside < there[-1])]
+        if len(inside) and len(there) >= LEAST:
+            column[inside] = CubicSpline(t[there], column[there])(t[inside])
+    return x
+
+
+def _arc_lengths(t, x, y, words):
     """Places along a body that may bend: distances between neighbours, beside the mean place along the mean axis."""
+    gaps = np.isnan(x)
+    x, y = _between_times(t, x), _between_times(t, y)
     with np.errstate(invalid="ignore"):
         axis = np.array([np.nanmean(x[:, -1] - x[:, 0]), np.nanmean(y[:, -1] - y[:, 0])])
         axis /= np.hypot(*axis)
@@ -325,12 +367,11 @@ def _arc_lengths(x, y, words):
     along = x * axis[0] + y * axis[1]
     if bend < 5:
         words.append("x and y lie on a straight line; places are along it")
-        return along if axis[0] >= 0 else -along
+        return np.where(gaps, np.nan, along if axis[0] >= 0 else -along)
     filled = np.where(np.isnan(steps), np.nanmean(steps, axis=0), steps)
     arc = np.concatenate([np.zeros((len(x), 1)), np.cumsum(filled, axis=1)], axis=1)
-    arc[np.isnan(along)] = np.nan
     words.append(f"the body bends, by {bend:.0f} degrees from the axis; places are distances along it")
-    return arc + (np.nanmean(along, axis=1) - np.nanmean(arc, axis=1))[:, np.newaxis]
+    return np.where(gaps, np.nan, arc + (np.nanmean(along, axis=1) - np.nanmean(arc, axis=1))[:, np.newaxis])
 
 
 def _from_tail_to_head(x, names, head, words):
@@ -342,6 +383,9 @@ def _from_tail_to_head(x, names, head, words):
         words.append("the last marker lies at the smallest x, so it is the first from the tail: the order is turned round" if turned
                      else f"the markers put in order along the body: {', '.join(names[i] for i in order)}")
     x, names = x[:, order], [names[i] for i in order]
+    if not head and names[0].lower() in HEADS or names[-1].lower() in TAILS:
+        head = head or names[0]
+        words.append(f"{head} is the head, as its name says")
     if head and names[-1] != head:
         if names[0] != head:
             raise InputError(f'"--head" is "{head}", which lies between {names[0]} and {names[-1]}, but one of these two is expected')

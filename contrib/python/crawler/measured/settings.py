@@ -2,8 +2,13 @@
 """How samples become a table."""
 import dataclasses
 import math
+import numbers
 
 from ..needs import InputError
+
+
+MOST = 100000  # points of a table in one direction, and cycles
+NAMES = {int: "whole number", float: "number", str: "text"}
 
 
 @dataclasses.dataclass
@@ -22,14 +27,24 @@ class Settings:
     length: float = None        # of the body; else that up to the last marker
     ends: str = "hold"          # strain beyond the outermost markers: "hold" or "linear"
 
+    def require_for_markers(self):
+        """Raises InputError where an entry for markers is set and there are none."""
+        for name in ("markers_at", "first_marker", "length", "ends"):
+            if getattr(self, name) != getattr(Settings, name):
+                raise InputError(f'"--{name.replace("_", "-")}" is for markers, which these samples have not')
+
     def require_sound(self):
         """Raises InputError for what no samples are needed to refuse."""
+        for field in dataclasses.fields(self):
+            value, kind = getattr(self, field.name), {int: numbers.Integral, float: numbers.Real, str: str}[field.type]
+            if not isinstance(value, kind) and not (value is None and field.default is None):
+                raise InputError(f'"{field.name}" is {value!r}, but a {NAMES[field.type]} is expected')
         for name in ("smooth_s", "smooth_t"):
             if not 0 <= getattr(self, name) < math.inf:
                 raise InputError(f'"--{name.replace("_", "-")}" is {getattr(self, name):g}, but a width of 0 or more is expected')
         for name in ("points_s", "points_t"):
-            if getattr(self, name) and getattr(self, name) < 4:
-                raise InputError(f'"--{name.replace("_", "-")}" is {getattr(self, name)}, but at least 4 points are expected')
+            if getattr(self, name) and not 4 <= getattr(self, name) <= MOST:
+                raise InputError(f'"--{name.replace("_", "-")}" is {getattr(self, name)}, but 4 to {MOST} points are expected')
         if self.gap < 0:
             raise InputError(f'"--gap" is {self.gap}, but a whole number of 0 or more is expected')
         if self.noise is not None and not 0 <= self.noise < math.inf:
@@ -40,5 +55,5 @@ class Settings:
             raise InputError(f'"--first-marker" is {self.first_marker:g}, but a place is expected')
         if self.ends not in ("hold", "linear"):
             raise InputError(f'"--ends" is "{self.ends}", but "hold" or "linear" is expected')
-        if self.cycles < 1 or (self.cycles > 1 and not self.period):
-            raise InputError(f'"--cycles" is {self.cycles}, but a number of cycles of "--period" is expected')
+        if not 1 <= self.cycles <= MOST or (self.cycles > 1 and not self.period):
+            raise InputError(f'"--cycles" is {self.cycles}, but a number of cycles of "--period", up to {MOST}, is expected')

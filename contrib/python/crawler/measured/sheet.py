@@ -15,6 +15,7 @@ COMMENTS = ("#", "%", "//")
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 DECIMAL_COMMA = re.compile(r"[+-]?(\d*,\d+|\d+,)([eE][+-]?\d+)?")
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")  # 1,000: a thousand, or a number with three decimals
+CLOCK = re.compile(r"\d+:\d\d:\d\d([.,]\d*)?|\d{4}-\d\d-\d\d[T ].*")
 SEPARATORS = {";": "semicolons", "\t": "tabs", ",": "commas", " ": "blanks"}
 FOREIGN = ((b"\xff\xfe", "text in UTF-16"), (b"\xfe\xff", "text in UTF-16"), (b"PK\x03\x04", "a workbook or an archive (zip)"),
            (b"\x1f\x8b", "compressed (gzip)"), (b"\xd0\xcf\x11\xe0", "a workbook (xls)"))
@@ -74,7 +75,7 @@ class Sheet:
     def column(self, i):
         """The numbers of a column, array [row] with NaN for gaps. Raises InputError that names the first other cell."""
         cells = [row[i] for row in self.rows]
-        if not self.comma:
+        if not self.comma and not any("_" in cell for cell in cells):
             try:
                 numbers = np.array(cells, dtype=float)
                 if not np.any(np.isinf(numbers)):
@@ -92,7 +93,8 @@ class Sheet:
         cells = [row[i] for row in self.rows]
         try:
             if all(re.fullmatch(r"\d+:\d\d:\d\d([.,]\d*)?", cell) for cell in cells):
-                clock = [np.dot([3600, 60, 1], [float(part) for part in cell.replace(",", ".").split(":")]) for cell in cells]
+                clock = np.array([np.dot([3600, 60, 1], [float(part) for part in cell.replace(",", ".").split(":")]) for cell in cells])
+                clock[1:] += 86400 * np.cumsum(np.diff(clock) < -43200)  # midnight
             elif all(re.match(r"\d{4}-\d\d-\d\d[T ]", cell) for cell in cells):
                 dates = [datetime.datetime.fromisoformat(cell.replace("Z", "+00:00")) for cell in cells]
                 clock = [(date - dates[0]).total_seconds() for date in dates]
@@ -147,8 +149,13 @@ def separator_of(line):
     return ","
 
 
-def meaning_of_commas(rows, separator, name):
-    """Whether commas in numbers stand before decimals or group thousands ("1,000"). Raises InputError if both can be."""
+def meaning_of_commas(rows, separator, name, decimal):
+    """Whether commas in numbers stand before decimals or group thousands ("1,000"); @p decimal, "comma" or "point", says it
+    if it is given. Raises InputError if both can be."""
+    if decimal not in ("", "comma", "point"):
+        raise InputError(f'"--decimal" is "{decimal}", but "comma" or "point" is expected')
+    if decimal:
+        return "decimal" if decimal == "comma" and separator != "," else "thousands"
     cells = [cell for row in rows for cell in row if "," in cell]
     decimal = [cell for cell in cells if DECIMAL_COMMA.fullmatch(cell) and not GROUPED.fullmatch(cell)]
     grouped = [cell for cell in cells if GROUPED.fullmatch(cell.split(".")[0]) and (cell.count(",") > 1 or "." in cell)]
@@ -160,9 +167,6 @@ def meaning_of_commas(rows, separator, name):
         return "decimal" if decimal else "thousands" if grouped else ""
     if separator == ",":
         return "thousands"
-    # Beside thousands in groups there are hundreds without.
-    if not any(re.fullmatch(r"[+-]?\d{3,}", cell) for row in rows for cell in row):
-        return "decimal"
     column = [row[0] for row in rows]
     readings = {}
     for meaning in ("decimal", "thousands"):
@@ -174,10 +178,10 @@ def meaning_of_commas(rows, separator, name):
     if readings["decimal"] and not readings["thousands"]:
         return "decimal"
     raise InputError(f'"{name}" has "{either[0]}", which may be {either[0].replace(",", ".")} or {either[0].replace(",", "")}; '
-                     f'numbers without commas, or with points for decimals, are expected')
+                     '"--decimal comma" or "--decimal point" says which')
 
 
-def read_sheet(data, name):
+def read_sheet(data, name, decimal=""):
     """The Sheet of the bytes of a file: columns between semicolons, tabs, commas or blanks; decimals with a point or,
     unless commas separate the columns, a comma; comments that begin with #, % or //; titles above the names.
     Raises InputError with the number of the line."""
@@ -198,15 +202,17 @@ def read_sheet(data, name):
     rows = [(number, cells_of(line, separator)) for number, line in lines]
     width = len(rows[-1][1])
     whole = [cells for _, cells in rows if len(cells) == width]
-    sheet = Sheet(name, [], [], [], meaning_of_commas(whole[1:] or whole, separator, name), [])
+    sheet = Sheet(name, [], [], [], meaning_of_commas(whole[1:] or whole, separator, name, decimal), [])
 
     # The columns of numbers are those of the last rows; samples begin where all of them have numbers.
-    last = whole[-20:]
-    numeric = [i for i in range(width) if sum(sheet.number(cells[i]) is not None for cells in last) > len(last) / 2]
+    last = whole[max(-20, 1 - len(whole)):] if len(whole) > 1 else whole
+    def value(cell):
+        return 0.0 if CLOCK.fullmatch(cell) else sheet.number(cell)
+    numeric = [i for i in range(width) if sum(value(cells[i]) is not None for cells in last) > len(last) / 2]
     filled = [i for i in numeric if not all(is_gap(cells[i]) for cells in whole)]
 
     def is_sample(cells):
-        values = [sheet.number(cells[i]) for i in numeric] if len(cells) == width else [None]
+        values = [value(cells[i]) for i in numeric] if len(cells) == width else [None]
         return None not in values and not np.all(np.isnan(values))
 
     begin = next((r for r, (_, cells) in enumerate(rows) if is_sample(cells)), None)

@@ -28,7 +28,7 @@ def unit_of(name):
 def number_of(text):
     """A number, or a fraction like 1/30; None for anything else."""
     try:
-        parts = [float(part) for part in text.split("/")]
+        parts = [float(part) for part in str(text).replace("_", "x").split("/")]
         return parts[0] if len(parts) == 1 else parts[0] / parts[1] if len(parts) == 2 else None
     except (ValueError, ZeroDivisionError):
         return None
