@@ -92,6 +92,17 @@ namespace crawler
   {
     refuse("\"" + entry + "\" names a file", entry);
   }
+
+  void
+  reach_ends(std::vector<double> &,
+             double,
+             const std::string &,
+             const std::string &,
+             const std::string &,
+             const std::string &entry)
+  {
+    refuse("\"" + entry + "\" is a table in a file", entry);
+  }
   void
   require_number_of_values(
     const std::vector<double> &, std::size_t, const std::string &, const std::string &, const std::string &entry)

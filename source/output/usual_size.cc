@@ -26,8 +26,11 @@ namespace crawler
       largest_ = std::max(largest_, size);
       if (duration == 0.)
         continue;
-      const int step   = size > 0. ? static_cast<int>(std::floor(steps * std::log2(size))) + 1 : zero;
-      const auto place = std::ranges::lower_bound(durations_, step, {}, &std::pair<int, double>::first);
+      const int step = size > 0. ? static_cast<int>(std::floor(steps * std::log2(size))) + 1 : zero;
+      const auto place =
+        std::lower_bound(durations_.begin(), durations_.end(), step, [](const auto &one, const int wanted) {
+          return one.first < wanted;
+        });
       if (place != durations_.end() && place->first == step)
         place->second += duration;
       else

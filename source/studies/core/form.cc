@@ -15,7 +15,8 @@ namespace crawler
     std::vector<std::string> open; // sections
     const auto indentation = [&]() { return std::string(2 * open.size(), ' '); };
     const auto go_to       = [&](const std::vector<std::string> &sections) {
-      const auto common = std::ranges::mismatch(open, sections).in1 - open.begin();
+      const auto common =
+        std::mismatch(open.begin(), open.end(), sections.begin(), sections.end()).first - open.begin();
       while (open.size() > static_cast<std::size_t>(common))
       {
         open.pop_back();
