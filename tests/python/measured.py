@@ -224,7 +224,7 @@ class Files(unittest.TestCase):
                 (WIDE, "a number, a fraction", {"unit_of_t": "parsec"}), (WIDE + "2;1;1;1;1\n", "row 6 .* gives s = 0, t = 2 a second", {}),
                 ("t;0;0.5;1;1.5\n1;2;2.5x;3;4\n2;1;2;3;4\n3;1;2;3;4\n4;1;2;3;4\n", 'row 2 .*"2.5x"', {}), ("", "is empty", {}),
                 ("only words\n", "no row of numbers", {}), (WIDE.encode("utf-16"), "UTF-16", {}), (b"PK\x03\x04", "a workbook", {}),
-                (b"a\0b", "a binary file", {}), (b"\x89HDF\r\n\x1a\n", "HDF5", {}), (WIDE, '"--head"', {"head": "x1"}),
+                (b"a\0b", "a binary file", {}), (b"\x89HDF\r\n\x1a\n", "HDF5", {}), (WIDE, '"--head"', {"head": "x1"}), (WIDE, '"--animal"', {"animal": "1"}),
                 (longer.replace("m;", "strain;", 1).replace("\n1;0;0", "\n-5;0;0"), "a strain above -1", {}),
                 (longer, 'has the column m, but "--quantity" is strain', {"quantity": "strain"}),
                 (longer.replace("\n1;0;0", "\n1_0;0;0"), '"1_0" under', {}), (WIDE, "NAME=COLUMN", {"columns": "q=t"}), (WIDE, 'the column "q"', {"columns": "t=q"})):

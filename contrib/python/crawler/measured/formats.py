@@ -11,6 +11,9 @@ import numpy as np
 from ..needs import InputError
 
 
+WITH_ANIMALS = ("DeepLabCut", "SLEAP", "FIMTrack", "Multi-Worm Tracker", "Tierpsy")
+
+
 @dataclasses.dataclass
 class Tracks:
     """Places of markers: arrays [time, marker] with NaN for gaps; y and confidence may be None."""
@@ -57,6 +60,8 @@ def _deeplabcut(sheet, animal):
     head = {row[0].lower(): row for row in sheet.head}
     if "bodyparts" not in head or "coords" not in head:
         return None
+    if animal and "individuals" not in head:
+        raise InputError(f'"--animal" is "{animal}", but "{sheet.name}" has no row of individuals')
     animals = head.get("individuals", [""] * len(head["coords"]))
     one = chosen_animal([name for name in animals[1:] if name != "single"], animal, sheet.name) if "individuals" in head else ""
     columns = [(head["bodyparts"][i], head["coords"][i].lower(), i) for i in range(1, len(head["coords"]))
@@ -80,7 +85,7 @@ def _sleap(sheet, animal):
     return Tracks(markers, sheet.column(names.index("frame_idx"))[keep], arrays["x"], arrays.get("y"), arrays.get("score"), "SLEAP")
 
 
-def _tracker(sheet, animal):
+def _tracker(sheet, _animal):
     """The names of masses stand above pairs of x and y."""
     if len(sheet.head) < 2 or [cell.lower() for cell in sheet.head[-1][:3]] != ["t", "x", "y"]:
         return None
@@ -123,7 +128,7 @@ def _spine(sheet, animal):
                   "Multi-Worm Tracker", counts_frames=False)
 
 
-def _pairs(sheet, animal):
+def _pairs(sheet, _animal):
     """Columns t, x1, y1, x2, y2, ... or head_x, head_y, ..., as WormLab and spreadsheets have them."""
     if not sheet.head:
         return None

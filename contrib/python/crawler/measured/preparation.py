@@ -8,7 +8,6 @@ from scipy.optimize import minimize_scalar
 
 from ..needs import InputError
 from .samples import LEAST, Samples
-from .settings import Settings
 from .splines import SmoothingSpline, periodic_spline
 from .units import number_of
 

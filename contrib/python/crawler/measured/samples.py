@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ..needs import FileError, InputError
-from .formats import Tracks, chosen_animal, read_hdf5, tracks_of
+from .formats import WITH_ANIMALS, Tracks, read_hdf5, tracks_of
 from .sheet import read_sheet
 from .units import number_of, unit_factor, unit_of
 
@@ -67,8 +67,10 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
         sheet = read_sheet(data, str(path), decimal)
         is_renamed = any(not part.strip().startswith("t=") for part in columns.split(",") if part)
         found = None if is_renamed or quantity not in ("", "markers") else tracks_of(sheet, animal)
-        found, units = (found, _units_of(sheet, found)) if found else _generic(sheet, quantity, columns, animal)
+        found, units = (found, _units_of(sheet, found)) if found else _generic(sheet, quantity, columns)
         words += sheet.words
+    if animal and not (isinstance(found, Tracks) and found.format in WITH_ANIMALS):
+        raise InputError(f'"--animal" is "{animal}", but "{path}" does not tell animals apart')
     factor_s, factor_t = (unit_factor(unit, wanted, option) if wanted else 1.0 for unit, wanted, option in
                           ((units[0], unit_of_s, "--unit-of-s"), (units[1], unit_of_t, "--unit-of-t")))
     if isinstance(found, Tracks):
@@ -78,8 +80,8 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
         samples = _along_body(found, head, confidence, str(path), words)
     else:
         s, t, values, column = found
-        if head or confidence or animal:
-            raise InputError('"--head", "--confidence" and "--animal" are for markers, which this file has not')
+        if head or confidence:
+            raise InputError('"--head" and "--confidence" are for markers, which this file has not')
         samples = Samples("m" if column == "m" else "strain", s, t, values)
         _require_grid(samples, str(path))
     words.append(f"{len(samples.s)} {'markers' if samples.quantity == 'x' else 'places'} x {len(samples.t)} times, "
@@ -143,7 +145,7 @@ def _units_of(sheet, tracks):
     return sheet.units[-1], sheet.units[0], ""
 
 
-def _generic(sheet, quantity, renamed, animal):
+def _generic(sheet, quantity, renamed):
     """Tracks, or (s, t, values, column), of a table with a column for each quantity, or with one for each place, time or
     marker; and the units of s (or x), t and values."""
     if not sheet.head:
