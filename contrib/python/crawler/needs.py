@@ -13,7 +13,7 @@ import pathlib
 import sys
 
 DEBIANS_PYTHON, LACKING = "/usr/bin/python3", "CRAWLER_LACKING_PYTHON"  # the latter: what another Python lacks
-PACKAGES = {name: f"python3-{name}" for name in ("h5py", "matplotlib", "numpy", "pandas", "scipy")}
+PACKAGES = {name: f"python3-{name}" for name in ("h5py", "matplotlib", "numpy", "scipy")}
 
 
 class InputError(ValueError):

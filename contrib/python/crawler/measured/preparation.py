@@ -72,7 +72,7 @@ def prepare(samples, settings, period=None):
     """The Table of Samples. @p period: one that is known already. Raises InputError where a gap is too large, where there
     is no period, and where its ends differ by more than the noise."""
     is_list = not isinstance(settings.markers_at, str)
-    settings = dataclasses.replace(settings, period=str(settings.period or ""), markers_at=",".join(f"{float(s):.17g}" for s in
+    settings = dataclasses.replace(settings, period=f"{period:.17g}" if period else str(settings.period or ""), markers_at=",".join(f"{float(s):.17g}" for s in
                                    settings.markers_at) if is_list else settings.markers_at)
     settings.require_sound()
     if samples.quantity != "x":
@@ -89,7 +89,7 @@ def prepare(samples, settings, period=None):
     noise = settings.noise if settings.noise is not None else estimated_noise(measured)
     if settings.period:
         full = _without_gaps(samples, settings.smooth_t, settings.gap, _Filled()) if settings.period == "find" else samples
-        period = period or _period_of(full, settings.period, words)
+        period = _period_of(full, settings.period, words)
         table = _one_period(samples, settings, period, spread, words, filled)
     else:
         table = _without_gaps(samples, settings.smooth_t, settings.gap, filled)
@@ -106,7 +106,6 @@ def prepare(samples, settings, period=None):
                              "points of a table are expected; a table may be periodic (Outside = periodic)")
         table.t = np.concatenate([table.t[:1], *(table.t[1:] + k * (table.t[-1] - table.t[0]) for k in range(settings.cycles))])
         table.values = np.concatenate([table.values[:1], *[table.values[1:]] * settings.cycles])
-        assert len(table.t) == n * settings.cycles + 1
     _say_what_changed(settings, filled, spread, samples.s, words)
     return Table(table.quantity, table.s, table.t, table.values, period, noise, words)
 
@@ -162,8 +161,8 @@ def _material_coordinates(tracks, settings):
 def _whole_cycles(tracks, wanted):
     """The number of frames in as many whole cycles as there are; all frames if there is no period."""
     shape = dataclasses.replace(tracks, values=tracks.values - tracks.values.mean(axis=1, keepdims=True))
-    period = find_period(shape) if wanted == "find" else number_of(wanted) if wanted not in ("", "whole") else None
     duration = tracks.t[-1] - tracks.t[0]
+    period = duration if wanted == "whole" else find_period(shape) if wanted == "find" else number_of(wanted)
     if not period or not 0 < period <= duration:
         return len(tracks.t)
     return int(np.searchsorted(tracks.t, tracks.t[0] + period * (math.floor(duration / period + 1e-9) - 1e-6)))

@@ -46,21 +46,16 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
 
     path: a table as text, or HDF5 of SLEAP, Tierpsy or with s, t and m or strain. quantity: "m", "strain", "stretch" or
     "markers" (default: by the names). columns: other names, "t=Frame time, x=X". unit_of_s, unit_of_t, unit_of_m: a
-    factor (1/30), as a number or text, or a unit. shift_s, shift_t: a number, or "first". animal: which one is read. head: the marker at the
-    head. confidence: markers that are less certain are gaps. decimal: "comma" or "point", where a comma may be both. words: a list, gets what was done, in sentences.
-    Raises InputError and FileError.
+    factor (1/30), as a number or text, or a unit. shift_s, shift_t: a number, or "first". animal: which one is read.
+    head: the marker at the head. confidence: markers that are less certain are gaps. decimal: "comma" or "point", where a
+    comma may be both. words: a list, gets what was done, in sentences. Raises InputError and FileError.
     """
     words = [] if words is None else words
     unit_of_s, unit_of_t, unit_of_m, shift_s, shift_t = (str(one) for one in (unit_of_s, unit_of_t, unit_of_m, shift_s, shift_t))
     if quantity and quantity not in QUANTITIES:
         raise InputError(f'"--quantity" is "{quantity}", but "m", "strain", "stretch" or "markers" is expected')
     path = pathlib.Path(path)
-    try:
-        if path.exists() and not path.is_file():
-            raise FileError(f'"{path}" is {"a folder" if path.is_dir() else "a device"}, but a file is expected')
-        data = path.read_bytes()
-    except OSError as error:
-        raise error if isinstance(error, FileError) else FileError(f'cannot read "{path}": {error.strerror}') from None
+    data = _bytes_of(path)
     if data.startswith(b"\x89HDF"):
         found, units = read_hdf5(path, animal), ("", "", "")
     else:
@@ -93,13 +88,7 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
         samples.values = _converted(samples.values, "x", factor_s, "", words)
     else:
         samples.s = _converted(samples.s, "s", factor_s, shift_s, words)
-        factor = unit_factor(units[2], unit_of_m, "--unit-of-m") if unit_of_m else 1.0
-        if column != "m" and (number_of(unit_of_m) is None if unit_of_m else units[2]):
-            base, factor = (unit_of_m == "%" and (None, 0)) or unit_of(units[2]) or (None, 0)
-            if base != "1":
-                raise InputError(f'the {column} of "{path}" is wanted in "{unit_of_m or units[2]}", but its unit is 1; "--unit-of-m" with a '
-                                 "number turns it")
-        samples.values = _converted(samples.values, column, factor, "", words)
+        samples.values = _converted(samples.values, column, _factor_of_values(column, units[2], unit_of_m, str(path)), "", words)
         if column == "stretch":
             samples.values = samples.values - 1
             words.append("the stretch minus 1 is the strain")
@@ -109,6 +98,26 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
     if isinstance(found, Tracks) and found.counts_frames and not unit_of_t:
         words.append('t counts frames; "--unit-of-t 1/30" turns those of a film of 30 frames a second into seconds')
     return samples
+
+
+def _bytes_of(path):
+    if path.exists() and not path.is_file():
+        raise FileError(f'"{path}" is {"a folder" if path.is_dir() else "a device"}, but a file is expected')
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise FileError(f'cannot read "{path}": {error.strerror}') from None
+
+
+def _factor_of_values(column, unit, wanted, name):
+    """By what values are multiplied. Strain and stretch have the unit 1, into which per cent are turned."""
+    if column == "m" or number_of(wanted) is not None:
+        return unit_factor(unit, wanted, "--unit-of-m") if wanted else 1.0
+    base, size = unit_of(unit or "1") or ("", 0)
+    if base != "1" or wanted not in ("", "1", "-"):
+        raise InputError(f'the {column} of "{name}" is wanted in "{wanted or unit}", but its unit is 1; "--unit-of-m" with a number '
+                         "turns it")
+    return size
 
 
 def _require_possible(samples, name):

@@ -26,7 +26,7 @@ def unit_of(name):
 
 
 def number_of(text):
-    """A number, or a fraction like 1/30; None for anything else."""
+    """A number, or a fraction like 1/30; None for anything else, as 1_000, which Python would take."""
     try:
         parts = [float(part) for part in str(text).replace("_", "x").split("/")]
         return parts[0] if len(parts) == 1 else parts[0] / parts[1] if len(parts) == 2 else None
@@ -48,6 +48,6 @@ def unit_factor(found, wanted, option):
                          "Pa, g, %, or one of them with n, u, m, c, k or M before it")
     unit = unit_of(found)
     if unit is None or unit[0] != to[0]:
-        raise InputError(f'"{option}" is "{wanted}", but the file has {f"""the unit "{found}" """.strip() if found else "no unit"}, '
-                         "which cannot be turned into it; a factor is expected")
+        unit_found = f'the unit "{found}"' if found else "no unit"
+        raise InputError(f'"{option}" is "{wanted}", but the file has {unit_found}, which cannot be turned into it; a factor is expected')
     return unit[1] / to[1]
