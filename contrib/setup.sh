@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Installs from Debian what is missing (as root or with sudo), and builds crawler in Release mode into build/.
 # No package that is there is removed.
-# Usage: contrib/setup.sh [tests|verify|python|package|live|fuzz]   with "tests": also what the tests need, and the tests
+# Usage: contrib/setup.sh [tests|verify|package|live|fuzz]   with "tests": also what the tests need, and the tests
 #                                           themselves; with "verify": the same, and what contrib/verify.sh needs;
-#                                           with "python": the Python package, in build/python (doc/python.md);
-#                                           with "package": the same, and what makes a Debian package of it;
+#                                           with "package": also what makes a Debian package;
 #                                           with "live": the live page, in build/live (doc/live_page.md), by
 #                                           emscripten (some 1 GB);
 #                                           with "fuzz": the programs of tests/fuzz, in build-fuzz (contrib/fuzz.sh).
@@ -13,15 +12,13 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(g++ cmake ninja-build git libdeal.ii-dev libcli11-dev nlohmann-json3-dev libfmt-dev openmpi-bin
-  python3-numpy python3-scipy python3-h5py python3-matplotlib)
-python=(python3-dev pybind11-dev)
-[ "${1:-}" = python ] && packages+=("${python[@]}")
-[ "${1:-}" = package ] && packages+=("${python[@]}" dpkg-dev file)
+  python3-dev pybind11-dev python3-numpy python3-scipy python3-h5py python3-matplotlib)
+[ "${1:-}" = package ] && packages+=(dpkg-dev file)
 [ "${1:-}" = live ] && packages+=(emscripten)
 [ "${1:-}" = fuzz ] && packages+=(libclang-rt-dev)
 is_installed() { dpkg-query -W -f '${db:Status-Abbrev}' "$1" 2>/dev/null | grep -q '^ii'; }
 if [ "${1:-}" = tests ] || [ "${1:-}" = verify ]; then
-  packages+=("${python[@]}" jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev
+  packages+=(jupyter-nbconvert python3-ipykernel libgtest-dev libbenchmark-dev
     python3-pandas python3-jsonschema zsh groff-base chromium clang-format clang-tidy doxygen
     texlive-binaries)
   # ParaView brings VTK for Python; Debian has the two not beside each other.
@@ -58,16 +55,9 @@ if [ "${1:-}" = tests ] || [ "${1:-}" = verify ]; then
 elif [ -f build/CMakeCache.txt ] && grep -q '^CRAWLER_TESTS:BOOL=ON' build/CMakeCache.txt; then
   with_tests=ON # keep what is there
 fi
-with_python=$with_tests
-targets=(crawler)
-if [ "${1:-}" = python ] || [ "${1:-}" = package ]; then
-  with_python=ON
-  targets+=(crawler_python)
-elif [ -f build/CMakeCache.txt ] && grep -q '^CRAWLER_PYTHON_PACKAGE:BOOL=ON' build/CMakeCache.txt; then
-  with_python=ON
-fi
+targets=(crawler crawler_python)
 [ "${1:-}" = tests ] || [ "${1:-}" = verify ] && targets=(all)
-cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCRAWLER_TESTS=$with_tests -DCRAWLER_PYTHON_PACKAGE=$with_python >build.log 2>&1 ||
+cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCRAWLER_TESTS=$with_tests >build.log 2>&1 ||
   { cat build.log >&2; exit 1; }
 rm -f build.log
 echo "Building crawler (Release) in build/"

@@ -14,6 +14,7 @@
 #include <crawler/run/summary.h>
 #include <crawler/studies/core/compute.h>
 #include <crawler/studies/core/sensitivities.h>
+#include <crawler/studies/core/variables.h>
 #include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/optimize/optimize_cases.h>
 #include <crawler/studies/run/run.h>
@@ -35,6 +36,7 @@
 #include <limits>
 #include <mutex>
 #include <sstream>
+#include <tuple>
 
 namespace py = pybind11;
 
@@ -149,23 +151,65 @@ namespace crawler
       });
     }
 
+    /// Those that the entry "Fit/Variables" lists, in the scene of which `crawler fit` finds them.
+    std::tuple<std::string, std::vector<std::string>, std::vector<std::tuple<std::string, double, double, double>>>
+    variables_of_fit(const Source &source)
+    {
+      return without_lock([&](const std::function<bool()> &) {
+        const Input input = read_input(source.file(), /*command=*/"fit");
+        Form form(input.file);
+        auto notes = input.notes;
+        std::vector<std::tuple<std::string, double, double, double>> variables;
+        for (const Variable &one : read_variables(form, "Fit/Variables"))
+          variables.emplace_back(one.path, one.from, one.to, one.start);
+        return std::tuple(input.effective, notes, variables);
+      });
+    }
+
+    /// Increasing numbers from 0 to a last one.
+    void
+    require_increasing(const std::vector<double> &numbers,
+                       const double last,
+                       const char *numbers_name,
+                       const char *last_name)
+    {
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (!(numbers[i] >= 0. && numbers[i] <= last) || (i > 0 && !(numbers[i] > numbers[i - 1])))
+          throw InputError(
+            fmt::format("the {} of the fields have {:g}, but increasing numbers from 0 to the {} {:g} are "
+                        "expected",
+                        numbers_name,
+                        numbers[i],
+                        last_name,
+                        last));
+    }
+
     py::dict
-    run_source(const Source &source, const std::optional<std::vector<double>> &times)
+    run_source(const Source &source,
+               const std::optional<std::vector<double>> &times,
+               const std::optional<std::vector<double>> &places)
     {
       std::string effective;
       std::vector<std::string> notes;
       LocalSensitivity local;
       const RunInMemory run = without_lock([&](const std::function<bool()> &interrupted) {
-        Input input      = read_input(source.file());
-        effective        = input.effective;
-        notes            = input.notes;
-        const double end = input.scene.end_time;
-        for (std::size_t i = 0; times && i < times->size(); ++i)
-          if (!((*times)[i] >= 0. && (*times)[i] <= end) || (i > 0 && !((*times)[i] > (*times)[i - 1])))
-            throw InputError(fmt::format("the times of the fields have {:g}, but increasing numbers from 0 to the end "
-                                         "time {:g} are expected",
-                                         (*times)[i],
-                                         end));
+        Input input = read_input(source.file());
+        effective   = input.effective;
+        notes       = input.notes;
+        std::optional<WantedFields> wanted;
+        if (times)
+        {
+          const double length = input.scene.body.length;
+          require_increasing(*times, input.scene.end_time, "times", "end time");
+          wanted = {*times, Kymograph::equidistant()};
+          if (places)
+          {
+            require_increasing(*places, length, "places", "length");
+            wanted->points.clear();
+            for (const double place : *places)
+              wanted->points.push_back(place / length);
+          }
+        }
         const ModelChoice model = choose_model(input);
         if (model.needs_mesh())
           Libraries::start();
@@ -174,7 +218,7 @@ namespace crawler
           sensitivities = [&](const Input &computed, const NumericsChoice &choice, SimulationResult &result) {
             local = add_sensitivities(computed, choice, result, [&]() { return !interrupted(); });
           };
-        return run_in_memory(std::move(input), model, times, interrupted, sensitivities);
+        return run_in_memory(std::move(input), model, wanted, interrupted, sensitivities);
       });
       py::dict answer;
       answer["summary"]    = summary_text(run.result);
@@ -190,7 +234,7 @@ namespace crawler
         py::dict fields;
         for (const FieldName &field : field_names)
           if (field.in_kymograph)
-            fields[field.name] = array_of(k.rows().*field.values, {n_t, Kymograph::n_points});
+            fields[field.name] = array_of(k.rows().*field.values, {n_t, k.points().size()});
         answer["fields"] = fields;
       }
       if (run.statistics)
@@ -372,6 +416,7 @@ PYBIND11_MODULE(_core, module)
     }));
   module.def("check", check);
   module.def("run", run_source);
+  module.def("variables_of_fit", variables_of_fit);
   module.def("batch", run_batch_of);
   module.def("sweep", sweep_source);
   module.def("command", run_command);

@@ -32,6 +32,7 @@ namespace crawler
   {
     /// Commands that contrib/python/crawler/__main__.py has.
     constexpr std::pair<const char *, const char *> commands_in_python[] = {
+      {"fit", "Finds numbers of a parameter file, with their uncertainty, from measured data"},
       {"report", "Makes a page for browsers, report.html, of the output folder of any other command"},
       {"table", "Turns measured samples or tracks of markers into a table that a scene reads"}};
 

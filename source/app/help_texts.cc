@@ -25,6 +25,7 @@ namespace crawler
       {"mpirun -n 2 crawler sweep sweep.prm", "a table of many runs, shared by two processes"},
       {"crawler sweep sweep.prm --resume", "goes on with one that was stopped"},
       {"crawler optimize gait.prm", "the best gait within limits"},
+      {"crawler fit worm.prm --data tracks.csv", "what measured data say about numbers of a scene"},
       {"crawler atlas map.prm", "a map over two entries, every answer cross-checked"},
       {"crawler tradeoff scene.prm", "what accuracy costs on this scene"},
       {"crawler plot output-worm", "a picture into the folder"},

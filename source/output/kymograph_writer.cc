@@ -11,32 +11,40 @@
 
 namespace crawler
 {
-  namespace
+  std::vector<double>
+  Kymograph::equidistant()
   {
-    constexpr unsigned int n_points = Kymograph::n_points;
+    std::vector<double> points(n_points);
+    for (unsigned int i = 0; i < n_points; ++i)
+      points[i] = static_cast<double>(i) / (n_points - 1);
+    return points;
+  }
 
-    /// Those of the equidistant points that lie in this rank's cells.
-    std::vector<FieldSampler::Point>
-    own_points(const Discretization &discretization)
-    {
-      std::vector<FieldSampler::Point> points;
-      const auto &left = discretization.cell_left();
-      if (left.empty())
-        return points;
-      const double end = left.back() + discretization.cell_size().back();
-      for (unsigned int i = 0; i < n_points; ++i)
-      {
-        const double s  = discretization.length() * i / (n_points - 1);
-        const bool last = !discretization.has_right_neighbour();
-        if (s < left.front() || (last ? i + 1 < n_points && s > end : s >= end))
-          continue;
-        const auto cell = static_cast<unsigned int>(
-          std::max<std::ptrdiff_t>(0, std::upper_bound(left.begin(), left.end(), s) - left.begin() - 1));
-        points.push_back({cell, std::clamp((s - left[cell]) / discretization.cell_size()[cell], 0., 1.)});
-      }
+  Kymograph::Kymograph(std::vector<double> points)
+    : points_(std::move(points))
+  {
+  }
+
+  std::vector<FieldSampler::Point>
+  Kymograph::own_points(const Discretization &discretization) const
+  {
+    std::vector<FieldSampler::Point> points;
+    const auto &left = discretization.cell_left();
+    if (left.empty())
       return points;
+    const double end = left.back() + discretization.cell_size().back();
+    for (const double point : points_)
+    {
+      const double s  = discretization.length() * point;
+      const bool last = !discretization.has_right_neighbour();
+      if (s < left.front() || (last ? point < 1. && s > end : s >= end))
+        continue;
+      const auto cell = static_cast<unsigned int>(
+        std::max<std::ptrdiff_t>(0, std::upper_bound(left.begin(), left.end(), s) - left.begin() - 1));
+      points.push_back({cell, std::clamp((s - left[cell]) / discretization.cell_size()[cell], 0., 1.)});
     }
-  } // namespace
+    return points;
+  }
 
   KymographWriter::KymographWriter(const double length,
                                    const double end_time,
@@ -104,7 +112,7 @@ namespace crawler
       return all;
     UsualSize size;
     for (std::size_t i = 0; i < times_.size(); ++i)
-      size.add(times_[i], std::span(values).subspan(i * n_points, n_points));
+      size.add(times_[i], std::span(values).subspan(i * points_.size(), points_.size()));
     return size.within(all);
   }
 
@@ -138,8 +146,8 @@ namespace crawler
       }
     std::vector<double> points;
     for (const double time : times())
-      for (unsigned int i = 0; i < n_points; ++i)
-        points.insert(points.end(), {static_cast<double>(i) / (n_points - 1), time / end_time_, 0.});
+      for (const double point : this->points())
+        points.insert(points.end(), {point, time / end_time_, 0.});
     const std::string text = vtk_file(
       "StructuredGrid",
       fmt::format(" WholeExtent=\"0 {0} 0 {1} 0 0\">\n<FieldData>\n{2}</FieldData>\n<Piece Extent=\"0 {0} 0 {1} "

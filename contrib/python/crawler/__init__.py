@@ -27,7 +27,7 @@ from .needs import FileError, InputError
 from .results import Numbers, Result, Study, fields_of, parameters_of, read, table_of
 
 __all__ = ["FileError", "Gradient", "InputError", "Numbers", "Result", "RunFailed", "Study", "batch", "check", "entries",
-           "gradient", "measured", "optimize", "read", "run", "sweep", "to_prm"]
+           "fit", "gradient", "measured", "optimize", "read", "run", "sweep", "to_prm"]
 
 
 def __getattr__(name):
@@ -52,6 +52,9 @@ def _compiled():
     sys.setdlopenflags(os.RTLD_LAZY)
     try:
         from . import _core
+    except ImportError as error:
+        raise InputError(f"the compiled part of the Python package cannot be loaded ({error}); contrib/setup.sh builds it for Debian's "
+                         "Python") from None
     finally:
         sys.setdlopenflags(flags)
     atexit.register(_core.end)
@@ -71,13 +74,14 @@ def check(scene, *, set=None, **keywords):
     return parameters_of(effective)
 
 
-def run(scene, *, set=None, fields=True, output=None, overwrite=False, check=False, verbose=False, **keywords):
+def run(scene, *, set=None, fields=True, places=None, output=None, overwrite=False, check=False, verbose=False, **keywords):
     """Computes one scene, with the same bits as `crawler run`, and returns its Result.
 
     scene: the name of a parameter file, its text, or a dict with sections as in the file.
     set, keywords: other values of entries, {"Body/Elastic modulus": 2} or elastic_modulus=2 where that names one entry.
     fields: True, the fields over s and t and the statistics that the scene asks for (Output); False, none, which is
     fastest; or the times [time] of the fields, increasing.
+    places: with times, where the fields are [length], increasing, instead of 201 equidistant points.
     output: a folder for the files that `crawler run` writes; otherwise nothing is written.
     check: a run that does not finish raises RunFailed; otherwise see Result.status, reason and message.
     verbose: prints what the program would.
@@ -89,16 +93,20 @@ def run(scene, *, set=None, fields=True, output=None, overwrite=False, check=Fal
         overrides = ["Output/Number of snapshots=0", "Output/Statistics=false", *overrides]
     elif fields is not True:
         times = np.asarray(fields, dtype=float).ravel().tolist()
+    if places is not None:
+        if times is None:
+            raise InputError('"places" is for "fields" with times, but those are missing')
+        places = np.asarray(places, dtype=float).ravel().tolist()
     source = _source(scene, overrides)
     if output is not None:
         if times is not None:
             raise InputError('"fields" has times, but with "output" True or False is expected')
         _command("run", source, output, overwrite, verbose)
         return _checked(read(output), check)
-    answer = _compiled().run(source, times)
+    answer = _compiled().run(source, times, places)
     result = _result(answer)
     if "times" in answer:
-        result.fields = fields_of(answer["times"], result.parameters["Body/Length"], answer["fields"])
+        result.fields = fields_of(answer["times"], result.parameters["Body/Length"], answer["fields"], places)
     if "statistics" in answer:
         result.statistics = table_of({re.sub(r" \[.*", "", name): column for name, column in
                                       zip(answer["statistics_names"], answer["statistics"].T)})
@@ -187,10 +195,7 @@ def optimize(scene, variables=None, *, set=None, output=None, overwrite=False, v
     own = {_keyword(entry): entry for entry in entries() if entry.startswith("Optimize/")}
     overrides = _overrides({**(set or {}), **{own[name]: keywords.pop(name) for name in list(keywords) if name in own}}, keywords)
     if variables is not None:
-        if not isinstance(variables, Mapping) or not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in variables.values()):
-            raise InputError(f"the variables are {variables!r}, but a dict of entries and their ranges (from, to) is expected")
-        ranges = "; ".join(f"{_full_name(name)} : {_text(low, name)} to {_text(high, name)}" for name, (low, high) in variables.items())
-        overrides.append(f"Optimize/Variables={ranges}")
+        overrides.append(f"Optimize/Variables={_ranges(variables)}")
     source = _source(scene, overrides)
     if output is not None:
         _command("optimize", source, output, overwrite, verbose)
@@ -198,6 +203,30 @@ def optimize(scene, variables=None, *, set=None, output=None, overwrite=False, v
     with tempfile.TemporaryDirectory() as folder:
         _command("optimize", source, os.path.join(folder, "optimum"), False, verbose)
         return read(os.path.join(folder, "optimum"))
+
+
+def fit(scene, data=None, variables=None, *, set=None, verbose=False, **keywords):
+    """Numbers of a scene, with their uncertainty, from what was measured, as `crawler fit` finds them (doc/fit.md): a Fit.
+
+    data: the name of a file, or measured.Samples; None: that of the scene (Fit/Data). variables: {entry: (from, to), ...};
+    None: Fit/Variables. starts=8, standard_deviation=0.01, ... are entries of section Fit. Fit.variables has, for each, value,
+    deviation, intervals and numerical error; Fit.undetermined what the data cannot tell. Raises InputError and FileError.
+    """
+    own = {_keyword(entry): entry for entry in entries() if entry.startswith("Fit/")}
+    overrides = _overrides({**(set or {}), **{own[name]: keywords.pop(name) for name in list(keywords) if name in own}}, keywords)
+    if variables is not None:
+        overrides.append(f"Fit/Variables={_ranges(variables)}")
+    fitting = importlib.import_module(".fitting", __name__)
+    found, notes = fitting.fit(lambda more: _source(scene, [*overrides, *more]), data, print if verbose else lambda text: None)
+    _warn([*notes, *found.notes])
+    return found
+
+
+def _ranges(variables):
+    """Entries and their ranges in words."""
+    if not isinstance(variables, Mapping) or not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in variables.values()):
+        raise InputError(f"the variables are {variables!r}, but a dict of entries and their ranges (from, to) is expected")
+    return "; ".join(f"{_full_name(name)} : {_text(low, name)} to {_text(high, name)}" for name, (low, high) in variables.items())
 
 
 def to_prm(scene):

@@ -7,14 +7,22 @@ import importlib
 import pathlib
 import sys
 
-HERE = pathlib.Path(__file__).resolve().parent
-COMMANDS = {"report": ("report.command", ("numpy", "h5py")),  # module and what it needs
+HERE = pathlib.Path(__file__).absolute().parent  # in the build folder, or installed
+COMMANDS = {"fit": ("fitting.command", ("numpy", "scipy")),  # module and what it needs
+            "report": ("report.command", ("numpy", "h5py")),
             "table": ("measured.command", ("numpy", "scipy"))}
+
+
+def place_of_package():
+    """The folder of the package with its compiled part, which an installed program has where Python looks; else this one."""
+    places = [HERE.parent, *(HERE.parents[3].glob("lib/python3*/dist-packages") if len(HERE.parents) > 3 else ())]
+    return next((place for place in places if any(place.glob("crawler/_core*"))), HERE.parent)
+
 
 if __name__ == "__main__":
     sys.path.insert(0, str(HERE))
     from needs import need
     module, needed = COMMANDS[sys.argv[1]]
     need(*needed)
-    sys.path[0] = str(HERE.parent)
+    sys.path[0] = str(place_of_package())
     importlib.import_module("crawler.needs").run_script(importlib.import_module(f"crawler.{module}").main)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What all commands and scripts in Python share: which modules they need, command lines, and how they end.
 
-A script that fails says why in one sentence and ends with 2 (bad input), 6 (a file that cannot be written) or 69 (no
-Python has the modules that it needs).
+A script that fails says why in one sentence and ends with 2 (bad input), 3 (it could not be computed), 5 (stopped), 6 (a
+file that cannot be written) or 69 (no Python has the modules that it needs).
 """
 import argparse
 import contextlib
@@ -12,6 +12,7 @@ import os
 import pathlib
 import sys
 
+STOPPED = 5  # exit code
 DEBIANS_PYTHON, LACKING = "/usr/bin/python3", "CRAWLER_LACKING_PYTHON"  # the latter: what another Python lacks
 PACKAGES = {name: f"python3-{name}" for name in ("h5py", "matplotlib", "numpy", "scipy")}
 
@@ -24,6 +25,11 @@ class InputError(ValueError):
 class FileError(OSError):
     """A file or folder cannot be read or written."""
     code = 6
+
+
+class Failed(RuntimeError):
+    """What was asked for could not be computed."""
+    code = 3
 
 
 def script():
@@ -93,9 +99,12 @@ def run_script(main):
     try:
         main()
         sys.stdout.flush()
-    except (InputError, FileError) as error:
+    except (InputError, FileError, Failed) as error:
         complain(error)
         sys.exit(error.code)
+    except KeyboardInterrupt:
+        complain("stopped by a signal")
+        sys.exit(STOPPED)
     except OSError as error:
         if error.filename is None:  # of standard output; what is left of it would be another error at the end
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -44,7 +44,7 @@ class Numbers(dict):
 class Fields:
     """The fields over time and body, arrays [time, point]; displacement and position are lengths."""
     t: np.ndarray  # [time]
-    s: np.ndarray  # along the undeformed body, 201 equidistant points [length]
+    s: np.ndarray  # along the undeformed body, 201 equidistant points unless others were wanted [length]
     position: np.ndarray
     displacement: np.ndarray
     stretch: np.ndarray
@@ -119,9 +119,9 @@ def read(folder):
     return result
 
 
-def fields_of(t, length, values):
-    """Fields of arrays [time, point] by their names."""
-    s = np.linspace(0, length, values["displacement"].shape[1])
+def fields_of(t, length, values, places=None):
+    """Fields of arrays [time, point] by their names; at these places, or at equidistant ones."""
+    s = np.linspace(0, length, values["displacement"].shape[1]) if places is None else np.asarray(places, dtype=float)
     return Fields(t=t, s=s, position=s + values["displacement"], **{name: values[name] for name in values})
 
 

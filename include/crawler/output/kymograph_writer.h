@@ -12,11 +12,18 @@
 
 namespace crawler
 {
-  /// Collects the fields over s and t, at equidistant points of the body.
+  /// Collects the fields over s and t, at points of the body.
   class Kymograph : public Observer
   {
   public:
-    static constexpr unsigned int n_points = 201; ///< both ends included
+    static constexpr unsigned int n_points = 201; ///< of the usual ones, both ends included
+
+    /// Parts of the length, from 0 to 1: the usual points.
+    static std::vector<double>
+    equidistant();
+
+    /// @p points are parts of the length, increasing.
+    explicit Kymograph(std::vector<double> points = equidistant());
 
     void
     observe(const Snapshot &snapshot) override;
@@ -27,6 +34,11 @@ namespace crawler
     void
     add(double time, const Fields &fields);
 
+    const std::vector<double> &
+    points() const
+    {
+      return points_;
+    }
     const std::vector<double> &
     times() const
     {
@@ -43,6 +55,11 @@ namespace crawler
     shown(const FieldName &field) const;
 
   private:
+    /// Those of the points that lie in this rank's cells.
+    std::vector<FieldSampler::Point>
+    own_points(const Discretization &discretization) const;
+
+    const std::vector<double> points_;
     std::unique_ptr<FieldSampler> sampler_; ///< for the mesh of this number
     unsigned int mesh_number_ = 0;
     std::vector<double> times_;

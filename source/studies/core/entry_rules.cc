@@ -156,8 +156,10 @@ namespace crawler
       const auto is_random = any_of({"random", "latin hypercube"});
       // What is there is used by the command of its section; check makes the plan of all.
       rules.push_back({{"Sweep/"}, {{command_entry, any_of({"sweep", "optimize", "check"})}}});
-      for (const auto &[section, command] :
-           {std::pair("Atlas/", "atlas"), std::pair("Tradeoff/", "tradeoff"), std::pair("Optimize/", "optimize")})
+      for (const auto &[section, command] : {std::pair("Atlas/", "atlas"),
+                                             std::pair("Tradeoff/", "tradeoff"),
+                                             std::pair("Optimize/", "optimize"),
+                                             std::pair("Fit/", "fit")})
         rules.push_back({{section}, {{command_entry, any_of({command, "check"})}}});
       rules.push_back({{"Sweep/Design", "Sweep/Number of points", "Sweep/Seed"}, {{"Sweep/Axes", is_set}}});
       rules.push_back({{"Sweep/Keep fields", "Sweep/Time limit per point", "Sweep/Time limit"},
@@ -178,9 +180,11 @@ namespace crawler
                         "Time/Step control",
                         "Time/Tolerance",
                         "Time/Cycle stop"},
-                       {{command_entry, any_of({"run", "sweep", "atlas", "optimize", "check"})}}});
+                       {{command_entry, any_of({"run", "sweep", "atlas", "optimize", "fit", "check"})}}});
       rules.push_back({{"Optimize/"}, {{"Optimize/Variables", is_set}, {command_entry, any_of({"optimize"})}}});
       rules.push_back({{"Optimize/Start spread", "Optimize/Seed"}, {{"Optimize/Starts", is_not(1.)}}});
+      rules.push_back({{"Fit/"}, {{"Fit/Variables", is_set}, {command_entry, any_of({"fit"})}}});
+      rules.push_back({{"Fit/Seed"}, {{"Fit/Starts", is_not(1.)}}});
     }
   } // namespace
 

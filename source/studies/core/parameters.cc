@@ -2,6 +2,7 @@
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/parameters.h>
+#include <crawler/studies/core/variables.h>
 
 #include <limits>
 
@@ -104,7 +105,7 @@ namespace crawler
              "count.");
     declarations.choice("Direction", direction, {"forward", "backward"})
       .means("Where the body should go: forward is towards growing s.");
-    declarations.text("Variables", variables, "\"Section/Entry : FROM to TO\", several of them separated by semicolons")
+    declarations.text("Variables", variables, variables_syntax)
       .means("The numbers of the scene that vary, with their ranges. The values in this file are the start. Of a list, "
              "Section/Entry[2] is the second number, [1-5] are the first five, each a variable, and [*] are all.");
     declarations.number("Work", work, positive(), "energy")
@@ -140,6 +141,46 @@ namespace crawler
   }
 
   void
+  FitParameters::add_parameters(Declarations &declarations)
+  {
+    declarations.enter("Fit");
+    declarations.file("Data", data, "the name of a file")
+      .means("What was measured: tracks of markers or samples of strain, in a file as "
+             "crawler table reads it (doc/measured_data.md); or columns t and centre, the path of the centre of mass, "
+             "or t and speed. The name "
+             "counts from the folder of this parameter file; crawler fit --data has another one.");
+    declarations.text("Variables", variables, variables_syntax)
+      .means("The numbers of the scene that are not known, with their ranges. The values in this file are the first "
+             "start. Of a list, "
+             "Section/Entry[2] is the second number, [1-5] are the first five, each a variable, and [*] are all.");
+    declarations.text("Markers at", markers_at, "\"first\" or a list of numbers", "length")
+      .means("Where on the body the markers are, from tail to head, as the body is without strain. First: where they "
+             "are in the first frame, "
+             "the outermost ones at the ends of the body.");
+    declarations.number("Place deviation", place_deviation, between(0., 1e100), "length")
+      .means("Standard deviation of the places of the markers: they are found with the variables, within it. "
+             "Automatic: 0 for a list; places of the first frame are free.");
+    declarations.choice("Origin", origin, {"unknown", "tail"})
+      .means("From where the tracks count x: from a place that is not known and is found with the variables, or from "
+             "where the tail is at the "
+             "start of the run.");
+    declarations.number("First time", first_time, between(0., 1e100), "time")
+      .means("When in the run the first of the data was measured; the times in the file count from there. Automatic: "
+             "the times in the file are those "
+             "of the run.");
+    declarations.number("Standard deviation", deviation, positive(), "1")
+      .means("Of one number of the data, in its unit. Automatic: as the data scatter about the best fit; whether the "
+             "scene fits them at all can then "
+             "not be told.");
+    declarations.whole_number("Starts", n_starts, 1, 100000)
+      .means("Number of starts: the values in this file, and others at random in the ranges. The best of all is the "
+             "result.");
+    declarations.whole_number("Seed", seed, 0, std::numeric_limits<unsigned int>::max())
+      .means("Of the random starts: the same seed gives the same starts.");
+    declarations.leave();
+  }
+
+  void
   Parameters::add_parameters(Declarations &declarations)
   {
     RunParameters::add_parameters(declarations);
@@ -147,6 +188,7 @@ namespace crawler
     atlas.add_parameters(declarations);
     tradeoff.add_parameters(declarations);
     optimize.add_parameters(declarations);
+    fit.add_parameters(declarations);
     units.add_parameters(declarations);
   }
 } // namespace crawler

@@ -42,7 +42,7 @@ namespace crawler
 
   GaitProblem::GaitProblem(GaitModel &model,
                            const OptimizeParameters &parameters,
-                           const std::vector<OptimizeVariable> &variables,
+                           const std::vector<Variable> &variables,
                            const std::vector<double> &start,
                            std::function<bool()> stops)
     : model_(model)

@@ -67,7 +67,7 @@ namespace crawler
   OptimizeCases::family(const unsigned long number)
   {
     Form &form = points_ ? points_->form(number) : file_form_;
-    return std::make_unique<SceneFamily>(form, read_variables(form));
+    return std::make_unique<SceneFamily>(form, read_variables_of_gait(form));
   }
 
   std::vector<std::string>
@@ -95,7 +95,7 @@ namespace crawler
   {
     VariedEntries varied = points_ ? points_->varied() : VariedEntries();
     const auto first     = family(0);
-    for (const OptimizeVariable &variable : first->variables())
+    for (const Variable &variable : first->variables())
       varied.paths.push_back(variable.path);
     return notes_on_entries(file, declarations(), "optimize", varied);
   }

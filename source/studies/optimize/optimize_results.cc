@@ -115,7 +115,7 @@ namespace crawler
       const auto family    = its_cases.family(number);
       const bool is_onward = family->form().parameters.optimize.direction == "forward";
       cases.push_back({its_cases.values(number), {}, its_cases.in_words(number), is_onward ? 1. : -1.});
-      for (const OptimizeVariable &variable : family->variables())
+      for (const Variable &variable : family->variables())
       {
         cases.back().paths.push_back(variable.path);
         if (std::ranges::find(paths, variable.path) != paths.end())

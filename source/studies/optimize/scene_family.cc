@@ -41,7 +41,7 @@ namespace crawler
     }
   } // namespace
 
-  SceneFamily::SceneFamily(Form &form, std::vector<OptimizeVariable> variables)
+  SceneFamily::SceneFamily(Form &form, std::vector<Variable> variables)
     : form_(form)
     , variables_(std::move(variables))
   {
@@ -49,7 +49,7 @@ namespace crawler
 
   SceneFamily::~SceneFamily()
   {
-    for (const OptimizeVariable &variable : variables_)
+    for (const Variable &variable : variables_)
       form_.declarations.set(variable.path, to_text(variable.start));
   }
 
@@ -57,7 +57,7 @@ namespace crawler
   SceneFamily::scale(const std::vector<double> &x, const std::size_t i) const
   {
     constexpr double least = 0.01, of_unknown = 0.1;
-    const OptimizeVariable &variable = variables_[i];
+    const Variable &variable = variables_[i];
     const double range = variable.to - variable.from, size = std::max(std::abs(x[i]), std::abs(variable.start));
     return size > 0. ? std::clamp(size, least * range, range) : of_unknown * range;
   }
@@ -65,8 +65,8 @@ namespace crawler
   SceneFamily::Stencil
   SceneFamily::stencil(const std::vector<double> &x, const std::size_t i, const double relative_step) const
   {
-    const OptimizeVariable &variable = variables_[i];
-    const double step                = relative_step * scale(x, i);
+    const Variable &variable = variables_[i];
+    const double step        = relative_step * scale(x, i);
     if (x[i] - 2. * step >= variable.from && x[i] + 2. * step <= variable.to)
       return {{-2. * step, -step, step, 2. * step},
               {1. / (12. * step), -8. / (12. * step), 8. / (12. * step), -1. / (12. * step)}};

@@ -38,14 +38,6 @@ namespace crawler
       return fields;
     }
 
-    std::vector<double>
-    equidistant(const unsigned int n)
-    {
-      std::vector<double> points(n);
-      for (unsigned int i = 0; i < n; ++i)
-        points[i] = static_cast<double>(i) / (n - 1);
-      return points;
-    }
   } // namespace
 
   PictureTimes
@@ -67,7 +59,7 @@ namespace crawler
                 const std::function<bool()> &keep_going)
   {
     const Units &units = level.reduced_scene().units();
-    const auto points  = equidistant(Kymograph::n_points);
+    const auto points  = viewers.kymograph != nullptr ? viewers.kymograph->points() : Kymograph::equidistant();
     std::vector<double> natural;
     for (std::size_t i = 0; i < times.all().size(); ++i)
       natural.push_back(times.natural(i));

@@ -35,20 +35,26 @@ namespace crawler
       Observer &to_;
     };
 
+    /// What a run keeps besides its result.
+    struct Kept
+    {
+      std::optional<PictureTimes> times; ///< if they are not those that the input asks for
+      std::vector<double> points;        ///< of the kymograph; empty: there is none
+    };
+
     /// New tables for a run, or for the next try.
     void
-    begin_tables(const OutputParameters &output, const Scene &scene, const bool has_kymograph, RunInMemory &run)
+    begin_tables(const OutputParameters &output, const Scene &scene, const Kept &kept, RunInMemory &run)
     {
-      if (has_kymograph)
-        run.kymograph = std::make_unique<Kymograph>();
+      if (!kept.points.empty())
+        run.kymograph = std::make_unique<Kymograph>(kept.points);
       if (output.statistics)
         run.statistics = std::make_unique<Statistics>(scene.body.length, output.energy_balance);
     }
 
     void
     compute_without_mesh(const Input &input,
-                         const std::optional<PictureTimes> &wanted,
-                         const bool has_kymograph,
+                         const Kept &kept,
                          const std::function<bool()> &keep_going,
                          const Afterwards &afterwards,
                          RunInMemory &run)
@@ -62,24 +68,24 @@ namespace crawler
         check_identities(run.result, input.parameters);
       if (afterwards && run.result.time.status == Status::finished)
         afterwards(input, {}, run.result);
-      if (!run.result.error || !(has_kymograph || output.statistics))
+      if (!run.result.error || !(!kept.points.empty() || output.statistics))
         return;
-      begin_tables(output, input.scene, has_kymograph, run);
+      begin_tables(output, input.scene, kept, run);
       show_pictures(level,
-                    wanted ? *wanted : times_without_mesh(input),
+                    kept.times ? *kept.times : times_without_mesh(input),
                     {nullptr, run.kymograph.get(), run.statistics.get()},
                     keep_going);
     }
 
     void
     compute_on_mesh(const Input &input,
-                    const PictureTimes &pictures,
-                    const bool has_kymograph,
+                    const Kept &kept,
                     const std::function<bool()> &keep_going,
                     const Afterwards &afterwards,
                     RunInMemory &run)
     {
       const Parameters &parameters = input.parameters;
+      const PictureTimes pictures  = kept.times ? *kept.times : picture_times(parameters.output, input.scene);
       auto chosen                  = choose_numerics(MPI_COMM_SELF, parameters, input.scene, keep_going);
       if (!chosen)
       {
@@ -93,7 +99,7 @@ namespace crawler
                                            .cycles         = cycle_wish(parameters, input.scene, !pictures.is_empty()),
                                            .gait           = Simulation::GaitWish::any};
       const auto simulate               = [&](const NumericsChoice &choice) {
-        begin_tables(parameters.output, input.scene, has_kymograph, run);
+        begin_tables(parameters.output, input.scene, kept, run);
         std::vector<std::unique_ptr<Observer>> observers;
         if (run.kymograph)
           observers.push_back(std::make_unique<Forward>(*run.kymograph));
@@ -117,7 +123,7 @@ namespace crawler
   RunInMemory
   run_in_memory(Input input,
                 const ModelChoice &model,
-                const std::optional<std::vector<double>> &times,
+                const std::optional<WantedFields> &wanted,
                 const std::function<bool()> &interrupted,
                 const Afterwards &afterwards)
   {
@@ -125,17 +131,20 @@ namespace crawler
     input.parameters.model         = model.model;
     const OutputParameters &output = input.parameters.output;
     const auto keep_going          = [&]() { return !interrupted(); };
-    const bool has_kymograph       = times || (output.has_snapshots() && output.kymograph);
-    std::optional<PictureTimes> wanted;
-    if (times)
-      wanted.emplace(std::vector<double>(), *times, input.scene.end_time);
+    Kept kept;
+    if (wanted)
+    {
+      kept.times.emplace(std::vector<double>(), wanted->times, input.scene.end_time);
+      kept.points = wanted->points;
+    }
+    else if (output.has_snapshots() && output.kymograph)
+      kept.points = Kymograph::equidistant();
     try
     {
       if (model.needs_mesh())
-        compute_on_mesh(
-          input, wanted ? *wanted : picture_times(output, input.scene), has_kymograph, keep_going, afterwards, run);
+        compute_on_mesh(input, kept, keep_going, afterwards, run);
       else
-        compute_without_mesh(input, wanted, has_kymograph, keep_going, afterwards, run);
+        compute_without_mesh(input, kept, keep_going, afterwards, run);
     }
     catch (...)
     {

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """crawler table: turns a file of measured samples into a table for the generators "table" and "prescribed strain"."""
-import argparse
 import csv
 import dataclasses
 import math
@@ -15,6 +14,7 @@ import tempfile
 import numpy as np
 
 from ..needs import FileError, InputError, Parser, write_whole
+from .options import NUMBER, TEXT, WHOLE, add_options, add_reading_options, parts_of, reading_of
 from .preparation import prepare
 from .samples import read_samples
 from .settings import Settings
@@ -29,45 +29,28 @@ def command_line():
     parser = Parser(prog="crawler table", description=DESCRIPTION, allow_abbrev=False)
     parser.add_argument("input", metavar="IN", help="measured samples or tracks")
     parser.add_argument("output", metavar="OUT", help="the table to be written, NAME.csv")
-    text, number, whole = ({"metavar": "TEXT"}, {"metavar": "NUMBER", "type": float}, {"metavar": "WHOLE NUMBER", "type": int})
-    for name, kind, help_text in (
-            ("quantity", text, "m, strain, stretch or markers (default: by the names of columns)"),
-            ("columns", text, 'other names of columns: "t=Frame time, x=X"'),
-            ("animal", text, "which one of several is read"),
-            ("head", text, "the marker at the head (default: that with the largest x)"),
-            ("decimal", text, "comma or point: what stands before decimals, where a comma may also group thousands"),
-            ("confidence", number, "markers that are less certain are gaps (default: 0)"),
-            ("unit-of-s", text, "factor of s and x, or the unit they are turned into: mm"),
-            ("unit-of-t", text, "the same for t; 1/30: frames of a film of 30 a second"),
-            ("unit-of-m", text, "the same for m (may be negative) or strain"),
-            ("shift-s", text, 'is added to s; "first": the first s becomes 0'),
-            ("shift-t", text, "the same for t"),
-            ("gap", whole, "largest number of samples in a row that are filled in (default: 3)"),
-            ("smooth-t", number, "width of the smoothing in t: waves of this length are halved (default: 0)"),
-            ("smooth-s", number, "the same in s"),
-            ("period", text, "find, whole or a number: makes one cycle of all, that closes"),
-            ("cycles", whole, "how often the cycle is written (default: 1)"),
-            ("points-s", whole, "equally spaced places of the table (default: those of the samples; markers: 33)"),
-            ("points-t", whole, "equally spaced times of the table (default: those of the samples)"),
-            ("markers-at", text, "material coordinates: first (frame; default), mean, or a list of numbers"),
-            ("first-marker", number, "s of the first marker (default: 0)"),
-            ("length", number, "length of the body (default: up to the last marker)"),
-            ("ends", text, "strain beyond the outermost markers: hold (default) or linear"),
-            ("noise", number, "standard deviation of a sample, in units of the table (default: estimated)"),
-            ("scene", text, "parameter file that uses the table: how uncertain the noise makes its displacement"),
-            ("copies", whole, "noisy copies from which that is found (default: 64)"),
-            ("seed", whole, "of their random numbers (default: 1)")):
-        parser.add_argument(f"--{name}", help=help_text, default=argparse.SUPPRESS, **kind)
+    add_reading_options(parser)
+    add_options(parser, (
+            ("gap", WHOLE, "largest number of samples in a row that are filled in (default: 3)"),
+            ("smooth-t", NUMBER, "width of the smoothing in t: waves of this length are halved (default: 0)"),
+            ("smooth-s", NUMBER, "the same in s"),
+            ("period", TEXT, "find, whole or a number: makes one cycle of all, that closes"),
+            ("cycles", WHOLE, "how often the cycle is written (default: 1)"),
+            ("points-s", WHOLE, "equally spaced places of the table (default: those of the samples; markers: 33)"),
+            ("points-t", WHOLE, "equally spaced times of the table (default: those of the samples)"),
+            ("markers-at", TEXT, "material coordinates: first (frame; default), mean, or a list of numbers"),
+            ("first-marker", NUMBER, "s of the first marker (default: 0)"),
+            ("length", NUMBER, "length of the body (default: up to the last marker)"),
+            ("ends", TEXT, "strain beyond the outermost markers: hold (default) or linear"),
+            ("noise", NUMBER, "standard deviation of a sample, in units of the table (default: estimated)"),
+            ("scene", TEXT, "parameter file that uses the table: how uncertain the noise makes its displacement"),
+            ("copies", WHOLE, "noisy copies from which that is found (default: 64)"),
+            ("seed", WHOLE, "of their random numbers (default: 1)")))
     parser.add_argument("--set", action="append", default=[], metavar="TEXT",
                         help='sets an entry of the scene: "Section/Entry=value" (repeatable)')
     parser.add_argument("--overwrite", action="store_true", help="replaces OUT")
     parser.add_argument("--quiet", action="store_true", help="prints nothing but errors")
     return parser
-
-
-def parts_of(options, names):
-    """Those of the options that have these names."""
-    return {name: value for name, value in vars(options).items() if name in names}
 
 
 def require_files(options):
@@ -159,8 +142,7 @@ def main():
     settings = Settings(**parts_of(options, Settings.__dataclass_fields__))
     require_files(options)
     words = []
-    reading = ("quantity", "columns", "animal", "head", "confidence", "decimal", "unit_of_s", "unit_of_t", "unit_of_m", "shift_s", "shift_t")
-    samples = read_samples(options.input, words=words, **parts_of(options, reading))
+    samples = read_samples(options.input, words=words, **reading_of(options))
     table = prepare(samples, settings)
     words += table.words
     if settings.noise is None:

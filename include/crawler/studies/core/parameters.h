@@ -60,7 +60,7 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
-  /// Section "Optimize": the gait that `crawler optimize` looks for (optimize_settings.h reads the variables).
+  /// Section "Optimize": the gait that `crawler optimize` looks for (variables.h reads the variables).
   struct OptimizeParameters
   {
     std::string objective = "displacement";
@@ -78,6 +78,20 @@ namespace crawler
     add_parameters(Declarations &declarations);
   };
 
+  /// Section "Fit": what `crawler fit` looks for in measured data (contrib/python/crawler/fit; variables.h reads the
+  /// variables).
+  struct FitParameters
+  {
+    std::string data = "", variables = "", markers_at = "first", origin = "unknown";
+    std::optional<double> first_time;      ///< [time]
+    std::optional<double> deviation;       ///< [unit of the data]
+    std::optional<double> place_deviation; ///< [length]
+    unsigned int n_starts = 1, seed = 1;
+
+    void
+    add_parameters(Declarations &declarations);
+  };
+
   /// All sections of the parameter file: those of one run, and those of each study of many runs.
   struct Parameters : RunParameters
   {
@@ -85,6 +99,7 @@ namespace crawler
     AtlasParameters atlas;
     TradeoffParameters tradeoff;
     OptimizeParameters optimize;
+    FitParameters fit;
     UnitNames units;
 
     void

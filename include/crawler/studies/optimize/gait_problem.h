@@ -44,7 +44,7 @@ namespace crawler
     /// Throws InputError if the start has a problem; GaitModel::Interrupted, as soon as @p stops says so.
     GaitProblem(GaitModel &model,
                 const OptimizeParameters &parameters,
-                const std::vector<OptimizeVariable> &variables,
+                const std::vector<Variable> &variables,
                 const std::vector<double> &start,
                 std::function<bool()> stops);
 
@@ -148,7 +148,7 @@ namespace crawler
 
     GaitModel &model_;
     const OptimizeParameters parameters_;
-    const std::vector<OptimizeVariable> variables_;
+    const std::vector<Variable> variables_;
     const std::function<bool()> stops_;
     std::vector<NumberLimit> number_limits_;
     std::vector<BlockLimit> block_limits_;

@@ -13,12 +13,12 @@ namespace crawler
   {
   public:
     /// @p form must outlive it.
-    SceneFamily(Form &form, std::vector<OptimizeVariable> variables);
+    SceneFamily(Form &form, std::vector<Variable> variables);
     SceneFamily(const SceneFamily &) = delete;
     /// Leaves the form as it was.
     ~SceneFamily();
 
-    const std::vector<OptimizeVariable> &
+    const std::vector<Variable> &
     variables() const
     {
       return variables_;
@@ -62,6 +62,6 @@ namespace crawler
 
   private:
     Form &form_;
-    const std::vector<OptimizeVariable> variables_;
+    const std::vector<Variable> variables_;
   };
 } // namespace crawler

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From measured data to numbers of a scene: least squares, uncertainty, and what the data cannot tell (doc/fit.md)."""
+from .. import _compiled
+from ..needs import InputError
+from ..results import parameters_of
+from .data import Data, read_data
+from .fit import Fit, find
+from .model import Model
+
+__all__ = ["Data", "Fit", "Model", "find", "fit", "read_data"]
+
+
+def fit(source, data=None, progress=lambda text: None, **reading):
+    """The Fit of a scene, and notes on its file: source(overrides) gives it with other values. data: a name, Samples, or None,
+    which stands for Fit/Data; reading: options of measured.read_samples(); progress gets sentences."""
+    effective, notes, variables = _compiled().variables_of_fit(source([]))
+    parameters = parameters_of(effective)
+    data = data if data is not None else parameters["Fit/Data"]
+    if isinstance(data, str) and not data:
+        raise InputError("Fit/Data is empty, but the name of a file with what was measured is expected (or --data)")
+    model = Model(source, parameters, variables, read_data(data, parameters, **reading))
+    return find(model, int(parameters["Fit/Starts"]), int(parameters["Fit/Seed"]), progress), notes

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The numbers that a run gives where there are data, and their derivatives."""
+import json
+import re
+
+import numpy as np
+
+from .. import _compiled
+from ..needs import InputError
+
+STEP = 1e-4  # of differences, relative to a value
+
+
+class Model:
+    """A scene as a function of its variables."""
+
+    def __init__(self, source, parameters, variables, data):
+        """source(overrides): the scene with other values; variables: [(entry, from, to, start)]."""
+        self.source, self.parameters, self.data = source, parameters, data
+        self.names = [one[0] for one in variables]
+        self.low, self.high, self.start = np.array([one[1:] for one in variables]).T
+        self.accuracy, self.n_runs, self.problem = None, 0, ""
+
+    def overrides(self, x):
+        """Entries with these values; a list as a whole."""
+        lists, others = {}, []
+        for name, value in zip(self.names, x):
+            match = re.fullmatch(r"(.*)\[(\d+)\]", name)
+            if match:
+                whole = lists.setdefault(match[1], str(self.parameters[match[1]]).split(","))
+                whole[int(match[2]) - 1] = repr(float(value))
+            else:
+                others.append(f"{name}={float(value)!r}")
+        return [*others, *(f"{name}={', '.join(map(str.strip, whole))}" for name, whole in lists.items())]
+
+    def summary(self, x, accuracy=None):
+        """What a run without fields says of itself."""
+        return json.loads(self._answer(x, accuracy or self.accuracy, None, None)["summary"])
+
+    def _answer(self, x, accuracy, times, places):
+        self.n_runs += 1
+        settings = [*self.overrides(x), "Output/Number of snapshots=0", "Output/Statistics=false", "Output/Sensitivities=",
+                    f"Accuracy={accuracy!r}"]
+        return _compiled().run(self.source(settings), times, places)
+
+    def __call__(self, x, accuracy=None):
+        """The numbers [time, place], and the stretch there if places are free; NaN if the run does not finish, for which problem
+        has the reason."""
+        data = self.data
+        places = None if not len(data.places) else data.places.tolist()
+        answer = self._answer(np.clip(x, self.low, self.high), accuracy or self.accuracy, data.t.tolist(), places)
+        summary = json.loads(answer["summary"])
+        if summary["status"] != "finished" or "fields" not in answer:
+            self.problem = f"{summary['reason']}: {summary['message']}"
+            return np.full(data.values.shape, np.nan), None
+        fields = answer["fields"]
+        if data.kind == "markers":
+            return fields["displacement"] + data.places, fields["stretch"]
+        if data.kind == "strain":
+            return fields["stretch"] - 1, None
+        if data.kind == "speed":
+            return _mean(fields["velocity"]), None
+        return _mean(fields["displacement"]) + self.parameters["Body/Length"] / 2, None
+
+    def jacobian(self, x, value=None):
+        """Derivatives [time, place, variable]: differences on both sides, or, if value is the model at x, on one."""
+        columns = []
+        for j, at in enumerate(x):
+            step = min(STEP * max(abs(at), 1e-2 * (self.high[j] - self.low[j])), 0.25 * (self.high[j] - self.low[j]))
+            up, down = np.array(x, dtype=float), np.array(x, dtype=float)
+            up[j], down[j] = at + step, at - step
+            if up[j] > self.high[j]:
+                up[j] = at
+            elif down[j] < self.low[j] or value is not None:
+                down[j] = at
+            above = self(up)[0] if up[j] != at else value if value is not None else self(x)[0]
+            below = self(down)[0] if down[j] != at else value if value is not None else self(x)[0]
+            columns.append((above - below) / (up[j] - down[j]))
+        return np.stack(columns, axis=-1)
+
+
+def _mean(values):
+    """Over the body, from equidistant points (Simpson's rule)."""
+    weights = np.ones(values.shape[1])
+    weights[1:-1:2], weights[2:-1:2] = 4, 2
+    return (values @ (weights / weights.sum()))[:, None]
+
+
+def require_enough(data, variables):
+    """Raises InputError if there are fewer data than unknown numbers."""
+    n, unknown = int(data.is_there.sum()), len(variables) + data.n_constants
+    if n <= unknown:
+        raise InputError(f"there are {n} data, but {unknown} numbers are to be found ({len(variables)} variables, {data.n_constants} "
+                         "for origin and places of the tracks); more data or fewer variables are expected")

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the data tell about each variable: covariance, what they cannot tell, and intervals by profile likelihood.
+
+Seber and Wild, Nonlinear Regression (1989), chapters 3 and 5. Variables are scaled to their ranges here, [0, 1] each, and
+residuals by the standard deviation of the data.
+"""
+import math
+
+import numpy as np
+from scipy import stats
+from scipy.optimize import least_squares
+
+WIDE = 0.5          # a standard deviation in ranges beyond which the data do not tell a value
+PART = 0.01         # of a direction, from which on a variable may belong to it
+LEVELS = {"interval_68": 1.0, "interval_95": 1.959963984540054}  # standard deviations of a normal distribution
+FAR = 2.0           # standard deviations at which the profile is looked at
+ROUGH = 0.25        # relative difference of a profile from a parabola beyond which it is followed further
+MOST_LOOKS = 15     # at one side of a profile
+
+
+def undetermined_directions(jacobian):
+    """The directions in which the variables may change by more than WIDE of their ranges within one standard deviation:
+    [direction, variable], and which variables belong to each: [direction, variable]. Those do whose own deviation is mostly
+    due to it."""
+    _, sizes, directions = np.linalg.svd(jacobian, full_matrices=True)
+    sizes = np.maximum(np.concatenate([sizes, np.zeros(directions.shape[0] - len(sizes))]), 1e-9 * sizes.max(initial=1.0))
+    deviations = np.abs(directions) / sizes[:, None]  # of variables, by each direction
+    members = (np.abs(directions) > PART) & (deviations > 0.5 * np.linalg.norm(deviations, axis=0))
+    loose = sizes < max(1 / WIDE, 1e-8 * sizes.max())
+    return directions[loose], members[loose]
+
+
+def covariance(jacobian):
+    """Of the variables, by Gauss and Newton; directions that the data do not tell are wide, but finite."""
+    _, sizes, directions = np.linalg.svd(jacobian, full_matrices=False)
+    return (directions.T / np.maximum(sizes, 1e-9 * sizes.max(initial=1.0)) ** 2) @ directions
+
+
+def in_words(direction, members, names, values, widths):
+    """What may change together without a change of the data, as a sentence."""
+    change = direction * widths
+    parts = [(name, dx, value) for name, dx, value, is_part in zip(names, change, values, members) if is_part]
+    if len(parts) == 1:
+        return f"the data do not tell {parts[0][0]}: they fit as well with any value of its range"
+    relative = [dx / value if value else math.inf for _, dx, value in parts]
+    if np.all(np.isfinite(relative)) and max(map(abs, relative)) < 1e3 * min(map(abs, relative)):
+        first = relative[0]
+        changes = [f"{name} by {ratio / first:+.3g} %" for (name, _, _), ratio in zip(parts, relative)]
+    else:
+        first = parts[0][1]
+        changes = [f"{name} by {dx / first:+.3g}" for name, dx, _ in parts]
+    if all(abs(ratio / relative[0] - 1) < 0.02 for ratio in relative):
+        return f"the data tell {_and([name for name, _, _ in parts])} only up to a common factor: their ratios, but not their sizes"
+    return f"the data do not tell {_and([name for name, _, _ in parts])} apart: changed together ({', '.join(changes)}) they fit as well"
+
+
+def _and(names):
+    return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+class Profile:
+    """The least chi-square with one variable held fast: found by steps of the others with the derivatives at the best values,
+    and, where it is no parabola, by searches."""
+
+    def __init__(self, residuals, jacobian, x):
+        """residuals(x), jacobian(x): of scaled residuals, NaN where there is no run; x: the best values."""
+        self.residuals, self.jacobian, self.x = residuals, jacobian, x
+        self.slopes = jacobian(x)
+        self.least = float(np.sum(residuals(x) ** 2))
+
+    def interval(self, j, deviation):
+        """{name: [low, high]} in scaled variables for LEVELS; an end is None where the range ends before."""
+        ends = {name: [None, None] for name in LEVELS}
+        for side in (-1, 1):
+            reach = (self.x[j] if side < 0 else 1 - self.x[j]) / deviation
+            for name, z in self._ends(j, side * deviation, reach).items():
+                ends[name][(side + 1) // 2] = None if z is None else self.x[j] + side * z * deviation
+        return ends
+
+    def _ends(self, j, unit, reach):
+        """How many units off chi-square has risen by the square of each level."""
+        z = min(FAR, reach)
+        root = self._root_near(j, unit, z) if z > 0 else 0.0
+        if z == 0 or not abs(root / z - 1) <= ROUGH:
+            points = [(0.0, 0.0, self.x)]  # units, root of the rise, values of the variables
+            return {name: self._searched(level, points, j, unit, reach) for name, level in LEVELS.items()}
+        a, ends = (root / z - 1) / z, {}  # root of the rise = z (1 + a z)
+        for name, level in LEVELS.items():
+            ends[name] = level if abs(a * level) < 1e-6 else (math.sqrt(max(1 + 4 * a * level, 0.0)) - 1) / (2 * a)
+            ends[name] = None if ends[name] > reach else ends[name]
+        return ends
+
+    def _guess(self, j, at, x):
+        """The variables with j there, and the others best if the residuals at x change as at the best values."""
+        others = np.arange(len(x)) != j
+        x = x.copy()
+        x[others] -= np.linalg.lstsq(self.slopes[:, others], self.slopes[:, j] * (at - x[j]), rcond=1e-9)[0]
+        x[j] = at
+        return np.clip(x, 0, 1), others
+
+    def _root_near(self, j, unit, z):
+        """Root of the rise, by a few steps."""
+        x, others = self._guess(j, self.x[j] + z * unit, self.x)
+        best, residual = math.inf, self.residuals(x)
+        for _ in range(3):
+            if not np.all(np.isfinite(residual)):
+                break
+            before, best = best, min(best, float(residual @ residual))
+            if not others.any() or before - best < 0.02 * max(best - self.least, 0.1):
+                break
+            x[others] = np.clip(x[others] - np.linalg.lstsq(self.slopes[:, others], residual, rcond=1e-9)[0], 0, 1)
+            residual = self.residuals(x)
+        return math.sqrt(max(best - self.least, 0.0))
+
+    def _look(self, points, j, unit, z):
+        """Adds the point there, searched from the nearest one; its root of the rise."""
+        near = min(points, key=lambda point: abs(point[0] - z))[2]
+        x, others = self._guess(j, self.x[j] + z * unit, near)
+        if not np.all(np.isfinite(self.residuals(x))):
+            x = near.copy()
+            x[j] = self.x[j] + z * unit
+        root = math.inf
+        if np.all(np.isfinite(self.residuals(x))):
+            def whole(y):
+                full = x.copy()
+                full[others] = y
+                return full
+            if others.any():
+                found = least_squares(lambda y: self.residuals(whole(y)), np.clip(x[others], 1e-9, 1 - 1e-9),
+                                      lambda y: self.jacobian(whole(y))[:, others], bounds=(0, 1), x_scale="jac",
+                                      ftol=1e-3 / len(self.slopes), xtol=1e-6, max_nfev=20)
+                x = whole(found.x)
+            root = math.sqrt(max(float(np.sum(self.residuals(x) ** 2)) - self.least, 0.0))
+        points.append((z, root, x))
+        points.sort(key=lambda point: point[0])
+        return root
+
+    def _searched(self, level, points, j, unit, reach):
+        """Where the root of the rise has this size, between points that were seen or are looked at."""
+        for _ in range(MOST_LOOKS):
+            above = next((point for point in points if point[1] >= level), None)
+            below = [point for point in points if point[1] < level and (above is None or point[0] < above[0])][-1]
+            if above is None:
+                if below[0] >= reach:
+                    return None
+                self._look(points, j, unit, min(reach, below[0] + max(0.25, min(level / max(below[1], 0.1), 2.0) * below[0] * 0.5)))
+                continue
+            if above[0] - below[0] < 0.02 * above[0]:
+                break
+            part = (level - below[1]) / (above[1] - below[1]) if above[1] < math.inf else 0.5
+            z = below[0] + (above[0] - below[0]) * min(max(part, 0.1), 0.9)
+            if abs(self._look(points, j, unit, z) - level) < 0.02 * level:
+                return z
+        above = next((point for point in points if point[1] >= level), None)
+        return None if above is None else above[0]
+
+
+def correlation_in_time(residuals):
+    """Of residuals [time, place] that are neighbours in time, and its standard deviation if they were independent."""
+    first, second = residuals[:-1], residuals[1:]
+    both = ~np.isnan(first) & ~np.isnan(second)
+    n, size = int(both.sum()), float(np.nanmean(residuals ** 2))
+    if n < 2 or size == 0:
+        return 0.0, math.inf
+    return float(np.mean(first[both] * second[both]) / size), 1 / math.sqrt(n)
+
+
+def probability(chi_square, freedom):
+    """Of a chi-square at least as large, if the scene is right."""
+    return float(stats.chi2.sf(chi_square, freedom))

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Options of command lines that say how a file of samples or tracks is read: of crawler table and crawler fit."""
+import argparse
+
+TEXT, NUMBER, WHOLE = {"metavar": "TEXT"}, {"metavar": "NUMBER", "type": float}, {"metavar": "WHOLE NUMBER", "type": int}
+READING = (("quantity", TEXT, "m, strain, stretch or markers (default: by the names of columns)"),
+           ("columns", TEXT, 'other names of columns: "t=Frame time, x=X"'),
+           ("animal", TEXT, "which one of several is read"),
+           ("head", TEXT, "the marker at the head (default: that with the largest x)"),
+           ("decimal", TEXT, "comma or point: what stands before decimals, where a comma may also group thousands"),
+           ("confidence", NUMBER, "markers that are less certain are gaps (default: 0)"),
+           ("unit-of-s", TEXT, "factor of s and x, or the unit they are turned into: mm"),
+           ("unit-of-t", TEXT, "the same for t; 1/30: frames of a film of 30 a second"),
+           ("unit-of-m", TEXT, "the same for m (may be negative) or strain"),
+           ("shift-s", TEXT, 'is added to s; "first": the first s becomes 0'),
+           ("shift-t", TEXT, "the same for t"))
+
+
+def add_options(parser, options):
+    """Options that are not there unless they are set."""
+    for name, kind, help_text in options:
+        parser.add_argument(f"--{name}", help=help_text, default=argparse.SUPPRESS, **kind)
+
+
+def add_reading_options(parser):
+    """Those of read_samples()."""
+    add_options(parser, READING)
+
+
+def parts_of(options, names):
+    """Those of the options that have these names."""
+    return {name: value for name, value in vars(options).items() if name in names}
+
+
+def reading_of(options):
+    """The arguments of read_samples() that are set."""
+    return parts_of(options, {name.replace("-", "_") for name, _, _ in READING})

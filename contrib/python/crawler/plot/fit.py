@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Draws the output folder of crawler fit: the data and the run that fits best, the residuals, and the variables.
+
+    contrib/python/crawler/plot/fit.py OUTPUT_FOLDER [--output PICTURE]
+
+Left dots are data and lines the run (of many places some); in the middle the residuals over place and time, or over time; right
+each variable in its range: its value, thick its interval of 68 %, thin that of 95 %. The picture is fit.png in the folder, unless
+--output names another one. Needs numpy and matplotlib.
+"""
+from plotting import COLOURS, INK, NAMES, colour_limits, existing, need, number, parser, read_rows, read_summary, run_script, save
+
+need("numpy", "matplotlib")
+import matplotlib.pyplot as plt
+import numpy as np
+
+MOST_LINES = 7
+LABELS = {"markers": "place $x$ of markers [length]", "strain": NAMES["strain"], "centre": "centre of mass $x$ [length]",
+          "speed": "speed [length/time]"}
+
+
+def draw_data(axes, t, place, data, model, kind):
+    """Data as dots, the run as lines."""
+    places = np.unique(place)
+    for k, at in enumerate(places[np.unique(np.linspace(0, len(places) - 1, MOST_LINES).round().astype(int))]):
+        here = place == at
+        colour = COLOURS[k % len(COLOURS)]
+        axes.plot(t[here], data[here], ".", color=colour, markersize=4, alpha=0.6, markeredgewidth=0)
+        axes.plot(t[here], model[here], color=colour, linewidth=1)
+        if len(places) > 1:
+            axes.annotate(f"$s$ = {at:.3g}", (t[here][-1], model[here][-1]), xytext=(4, 0), textcoords="offset points", fontsize=8,
+                          va="center", color=colour)
+    axes.set(xlabel=NAMES["t"], ylabel=LABELS[kind], title="dots: data, lines: the best run")
+    axes.set_xlim(right=t[-1] + 0.2 * (t[-1] - t[0]))
+
+
+def draw_residuals(axes, t, place, residuals):
+    """What is left, over place and time."""
+    places, times = np.unique(place), np.unique(t)
+    axes.set_title("residuals: data less run")
+    if len(places) == 1:
+        axes.axhline(0, color=INK, linewidth=0.6)
+        axes.plot(t, residuals, ".", color=COLOURS[0], markersize=3)
+        axes.set(xlabel=NAMES["t"], ylabel="residual")
+        return
+    grid = np.full((len(times), len(places)), np.nan)
+    grid[np.searchsorted(times, t), np.searchsorted(places, place)] = residuals
+    axes.set_facecolor("0.75")
+    mesh = axes.pcolormesh(places, times, np.ma.masked_invalid(grid), shading="nearest", rasterized=True,
+                           **colour_limits(residuals, "displacement"))
+    axes.set(xlabel=NAMES["s"], ylabel=NAMES["t"])
+    axes.figure.colorbar(mesh, ax=axes, label="residual")
+
+
+def draw_variables(axes, variables):
+    """Each in its range."""
+    for row, (name, one) in enumerate(reversed(variables.items())):
+        low, width = one["from"], one["to"] - one["from"]
+        axes.plot([0, 1], [row, row], color="0.8", linewidth=6, solid_capstyle="butt")
+        if not one["determined"]:
+            text = "not told by the data"
+        else:
+            for level, thickness in (("interval_95", 1.5), ("interval_68", 4)):
+                ends = [edge if end is None else (end - low) / width for end, edge in zip(one[level], (0, 1))]
+                axes.plot(ends, [row, row], color=COLOURS[0], linewidth=thickness, solid_capstyle="butt")
+            axes.plot((one["value"] - low) / width, row, "|", color=COLOURS[1], markersize=14, markeredgewidth=1.5)
+            text = f"{one['value']:.5g} $\\pm$ {one['deviation']:.2g}"
+        axes.text(0.5, row + 0.22, f"{name.split('/')[-1]}: {text}", ha="center", fontsize=9)
+        axes.text(0, row - 0.32, f"{one['from']:g}", fontsize=8, ha="left", color="0.4")
+        axes.text(1, row - 0.32, f"{one['to']:g}", fontsize=8, ha="right", color="0.4")
+    axes.set(ylim=(-0.6, len(variables) - 0.3), xlim=(-0.02, 1.02), title="variables in their ranges")
+    axes.axis("off")
+
+
+def main():
+    """Command line."""
+    options = parser(__doc__, "fit.png").parse_args()
+    summary = read_summary(options.folder, "the output folder of crawler fit")
+    rows = read_rows(existing(options.folder / "residuals.csv", "the output folder of crawler fit"))
+    t, place, data, model, residuals = (np.array([number(row[name]) for row in rows])
+                                        for name in ("t", "place", "data", "model", "residual"))
+    place = np.nan_to_num(place)
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
+    draw_data(left, t, place, data, model, summary["goodness"]["kind"])
+    draw_residuals(middle, t, place, residuals)
+    draw_variables(right, summary["variables"])
+    save(figure, options.output or options.folder / "fit.png", dpi=110, few_colours=True)
+
+
+if __name__ == "__main__":
+    run_script(main)

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <crawler/studies/core/form.h>
+
+#include <string>
+#include <vector>
+
+namespace crawler
+{
+  /// A number of the scene that a study varies.
+  struct Variable
+  {
+    std::string path;
+    double from, to, start; ///< range, and the value in the file [unit of the entry]
+  };
+
+  /// What an entry for variables reads, in words.
+  inline const std::string variables_syntax = "\"Section/Entry : FROM to TO\", several of them separated by semicolons";
+
+  /// Those that @p entry lists ("Optimize/Variables"). Throws InputError for it: names that are no numbers of the
+  /// scene, empty or inadmissible ranges, values in the file outside of them.
+  std::vector<Variable>
+  read_variables(Form &form, const std::string &entry);
+} // namespace crawler

@@ -1,0 +1,195 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""crawler.fit: numbers that data without noise must give back, deviations and intervals against their definitions, what data
+cannot tell, and refusals.
+
+    fit.py FOLDER_OF_THE_PYTHON_PACKAGE
+"""
+import pathlib
+import sys
+import tempfile
+import unittest
+import warnings
+
+sys.path.insert(0, sys.argv.pop(1))
+import numpy as np  # noqa: E402
+
+import crawler  # noqa: E402
+from crawler.measured import Samples  # noqa: E402
+
+BODY, WAVE = "Body/", "Active stress/Travelling wave/"
+P, K, GAMMA, AMPLITUDE = BODY + "Anchoring exponent", BODY + "Elastic modulus", BODY + "Friction coefficient", WAVE + "Amplitude"
+STRAIN = {"Model": "kinematic", "Active stress/Generator": "prescribed strain", "Active stress/Prescribed strain/Given by": "wave",
+          "Active stress/Prescribed strain/Amplitude": 0.3, BODY + "Length": 2, P: 2, "Time/End time": 2}
+STRESS = {"Active stress/Generator": "travelling wave", AMPLITUDE: 0.3, WAVE + "Wave number": 1, WAVE + "Frequency": 1,
+          BODY + "Length": 2, K: 1.5, P: 2, "Time/End time": 2}
+RANGES = {P: (0.2, 6), K: (0.3, 6), GAMMA: (0.2, 5), AMPLITUDE: (0.02, 0.9), WAVE + "Frequency": (0.6, 1.5)}
+T, S = np.linspace(0, 2, 41), np.linspace(0, 2, 7)
+NOISE = 0.004
+
+
+def fields(scene, places=S):
+    """Of a run that is as good as exact."""
+    return crawler.run(scene, fields=T, places=places, accuracy=1e-9, check=True).fields
+
+
+def tracks(scene, noise=NOISE, seed=1, origin=3.0):
+    """Of markers at S."""
+    x = fields(scene).position + origin
+    return Samples("x", np.arange(7.0), T, x + noise * np.random.default_rng(seed).standard_normal(x.shape), [str(i) for i in range(7)])
+
+
+def path(scene, noise=NOISE, kind="centre"):
+    """Of the centre of mass, or its speed."""
+    values = crawler.run(scene, fields=T, accuracy=1e-9, check=True).fields
+    values = np.trapz(values.position if kind == "centre" else values.velocity, dx=1 / 200, axis=1)[:, None]
+    return Samples(kind, np.zeros(1), T, values + noise * np.random.default_rng(1).standard_normal(values.shape))
+
+
+def fit(scene, data, *names, **settings):
+    """The Fit of variables with these names, from a start beside the truth."""
+    start = {**scene, **{name: scene.get(name, 1) * 1.1 for name in names}}
+    where = {"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)} if data.quantity == "x" else {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return crawler.fit(start, data, {name: RANGES[name] for name in names}, set={**where, **settings.pop("set", {})}, **settings)
+
+
+class Values(unittest.TestCase):
+    """Best values and their deviations."""
+
+    def test_gives_back_what_made_the_data(self):
+        for scene, names in ((STRAIN, (P,)), (STRESS, (P, K, AMPLITUDE)), (STRESS, (WAVE + "Frequency", GAMMA))):
+            for origin in (0, -1e3):
+                found = fit(scene, tracks(scene, noise=0, origin=origin), *names)
+                for name in names:
+                    self.assertAlmostEqual(found.variables[name]["used"], scene.get(name, 1), delta=2e-5, msg=name)
+
+    def test_reads_strain_centre_and_speed(self):
+        strain = Samples("strain", S, T, fields(STRESS).stretch - 1)
+        for data, names in ((strain, (K, AMPLITUDE)), (path(STRESS, 0), (P,)), (path(STRESS, 0, "speed"), (P,))):
+            found = fit(STRESS, data, *names)
+            for name in names:  # the mean over points is good to 1e-5
+                self.assertAlmostEqual(found.variables[name]["used"], STRESS[name], delta=5e-4, msg=data.quantity)
+
+    def test_deviation_is_that_of_least_squares(self):
+        """For one number it is noise over the norm of the derivatives; here those of runs beside the best one."""
+        found = fit(STRAIN, tracks(STRAIN), P, standard_deviation=NOISE, set={"Fit/Origin": "tail"} | {"Fit/First time": 0})
+        step, at = 1e-3, found.variables[P]["used"]
+        sides = [fields({**STRAIN, P: at + d}).position for d in (-step, step)]
+        self.assertAlmostEqual(found.variables[P]["deviation"] / (NOISE / np.linalg.norm((sides[1] - sides[0]) / (2 * step))), 1, delta=1e-3)
+
+    def test_deviation_is_a_share_of_the_noise(self):
+        small, large = (fit(STRESS, tracks(STRESS, noise), P, K, AMPLITUDE, standard_deviation=noise) for noise in (1e-5, 1e-4))
+        for name in (P, K, AMPLITUDE):
+            self.assertAlmostEqual(large.variables[name]["deviation"] / small.variables[name]["deviation"], 10, delta=0.05)
+
+    def test_noise_is_found(self):
+        found = fit(STRESS, tracks(STRESS), P, K, AMPLITUDE)
+        n = found.goodness.degrees_of_freedom
+        self.assertEqual(n, T.size * S.size - 4)
+        self.assertAlmostEqual(found.goodness.deviation_of_data / NOISE, 1, delta=4 / np.sqrt(2 * n))
+
+    def test_interval_ends_where_chi_square_says(self):
+        """With the variable held at an end and the others free, chi-square is larger by 1, and by 1.96 squared."""
+        data = tracks(STRESS, noise=0.03)
+        found = fit(STRESS, data, P, K, AMPLITUDE, standard_deviation=0.03)
+        for level, rise in (("interval_68", 1), ("interval_95", 3.8415)):
+            for end in found.variables[P][level]:
+                held = fit({**STRESS, P: end}, data, K, AMPLITUDE, standard_deviation=0.03)
+                self.assertAlmostEqual(held.goodness.chi_square - found.goodness.chi_square, rise, delta=0.1 * rise)
+
+    def test_numerical_error_is_a_tenth(self):
+        for noise in (1e-3, 1e-6, 1e-8):
+            found = fit(STRESS, tracks(STRESS, noise), P, K, AMPLITUDE, standard_deviation=noise)
+            for name, one in found.variables.items():
+                self.assertLess(one["numerical_error"], 0.1 * one["deviation"])
+                self.assertLess(abs(one["value"] - STRESS[name]), 5 * one["deviation"])
+
+    def test_places_of_the_first_frame(self):
+        """Also of a body that has strain in the first frame, where markers are not where they are at rest."""
+        for scene in (STRESS, STRAIN):
+            found = crawler.fit({**scene, P: 1.5}, tracks(scene), {P: RANGES[P]}, standard_deviation=NOISE, starts=2)
+            self.assertEqual(found.goodness.n_constants, 8)
+            self.assertLess(abs(found.variables[P]["value"] - 2), 4 * found.variables[P]["deviation"])
+            self.assertGreater(found.goodness.probability, 1e-3)
+
+
+class Untold(unittest.TestCase):
+    """What the data do not tell is said, and not returned as a number."""
+
+    def check(self, found, untold, *words):
+        self.assertEqual({name for name, one in found.variables.items() if not one["determined"]}, set(untold))
+        for name in untold:
+            self.assertIsNone(found.variables[name]["value"])
+        sentences = " ".join(found.undetermined)
+        for word in (*words, *untold):
+            self.assertIn(word, sentences)
+        if not untold:
+            self.assertEqual(found.undetermined, [])
+
+    def test_degenerate_cases(self):
+        for scene, data, names, untold, word in (
+                (STRESS, tracks(STRESS), (GAMMA, K, AMPLITUDE), (GAMMA, K, AMPLITUDE), "common factor"),
+                (STRESS, tracks(STRESS), (P, GAMMA, K, AMPLITUDE), (GAMMA, K, AMPLITUDE), "common factor"),
+                (STRAIN, tracks(STRAIN), (GAMMA,), (GAMMA,), "any value"),
+                (STRAIN, tracks(STRAIN), (P, GAMMA), (GAMMA,), "any value"),
+                (STRAIN, tracks(STRAIN), (GAMMA, K), (GAMMA, K), "any value"),
+                (STRESS, path(STRESS, 0.02), (P, AMPLITUDE), (P, AMPLITUDE), "apart")):
+            with self.subTest(names=names, data=data.quantity):
+                self.check(fit(scene, data, *names, standard_deviation=0.02 if data.quantity == "centre" else NOISE), untold, word)
+
+    def test_regular_cases(self):
+        for scene, data, names in ((STRESS, tracks(STRESS), (P, K, AMPLITUDE)), (STRESS, tracks(STRESS), (GAMMA, K)),
+                                   (STRESS, tracks(STRESS), (P, GAMMA, AMPLITUDE)), (STRAIN, tracks(STRAIN), (P,)),
+                                   (STRESS, path(STRESS, 1e-4), (P, GAMMA))):
+            with self.subTest(names=names):
+                self.check(fit(scene, data, *names, standard_deviation=1e-4 if data.quantity == "centre" else NOISE), ())
+
+    def test_says_that_a_scene_does_not_fit(self):
+        found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K, standard_deviation=NOISE)
+        self.assertIn("does not fit", " ".join(found.notes))
+        found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K)
+        self.assertIn("alike", " ".join(found.notes))
+
+    def test_says_that_a_value_is_at_its_limit(self):
+        found = crawler.fit({**STRAIN, P: 1.5}, tracks(STRAIN), {P: (0.5, 1.8)}, standard_deviation=NOISE)
+        self.assertEqual(found.variables[P]["at_limit"], "to")
+        self.assertIn("at its limit", " ".join(found.notes))
+
+
+class Refusals(unittest.TestCase):
+    """One sentence each."""
+
+    def refused(self, sentence, scene=STRAIN, data=None, variables=None, **settings):
+        with self.assertRaises((crawler.InputError, crawler.FileError)) as caught:
+            crawler.fit(scene, tracks(STRAIN) if data is None else data, {P: (0.2, 6)} if variables is None else variables, **settings)
+        self.assertIn(sentence, str(caught.exception))
+
+    def test_bad_input(self):
+        few = Samples("centre", np.zeros(1), T[:2], np.zeros((2, 1)))
+        late = Samples("centre", np.zeros(1), T + 1, np.zeros((41, 1)))
+        wide = Samples("strain", 2 * S, T, np.zeros((41, 7)))
+        inverted = {**STRESS, AMPLITUDE: 5}
+        for sentence, more in (
+                ("more data or fewer variables", {"data": few}), ("Time/End time", {"data": late}), ("Body/Length", {"data": wide}),
+                ("samples of m", {"data": Samples("m", S, T, np.zeros((41, 7)))}), ("Fit/Data is empty", {"data": ""}),
+                ("nowhere.csv", {"data": "nowhere.csv"}), ("2 places, but", {"markers_at": "0, 1"}), ("growing places", {"markers_at": [6, 5, 4, 3, 2, 1, 0]}),
+                ("a list of numbers is expected", {"markers_at": "here"}), ("Variables is empty", {"variables": {}}),
+                ("Anchoring exponent", {"variables": {BODY + "Anchoring exponnent": (1, 2)}}), ("in its range", {"variables": {P: (3, 4)}}),
+                ("whose Body/Length is 3", {"set": {BODY + "Length": 3}}), ("Standard deviation", {"place_deviation": 0.1}),
+                ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):
+            with self.subTest(sentence=sentence):
+                self.refused(sentence, **more)
+
+    def test_reads_columns_of_a_path(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "path.csv")
+            for text, sentence in (("centre,x\n1,2\n2,3\n", "t is expected"), ("t,centre\n1,2\n1,3\n", "growing times"),
+                                   ("t,speed\n0,0.1\n", "more data")):
+                file.write_text(text, encoding="utf-8")
+                self.refused(sentence, data=str(file))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,108 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Fits of random animals whose truth is known: do the intervals hold it as often as they say, and is there a bias?
+
+    fit_coverage.py FOLDER_OF_THE_PYTHON_PACKAGE [ANIMALS [FIRST]]
+
+Each animal has a body, a gait, noise, gaps and markers that are not quite where they are said to be; what is fitted is known
+strain (the exponent), a wave of stress (exponent, modulus, amplitude) or its frequency and phase. Prints a table, and fails if a
+share of intervals is outside of its binomial error (one in a thousand), or a mean error above a fifth of the deviation and
+outside of its own.
+"""
+import sys
+
+sys.path.insert(0, sys.argv[1])
+import numpy as np  # noqa: E402
+from scipy import stats  # noqa: E402
+
+import crawler  # noqa: E402
+from crawler.measured import Samples  # noqa: E402
+
+ALL, FIRST = (int(sys.argv[i]) if len(sys.argv) > i else default for i, default in ((2, 10), (3, 1)))
+CHANCE = 1e-3  # of a failure of a right program
+WAVE, STRAIN = "Active stress/Travelling wave/", "Active stress/Prescribed strain/"
+BODY = "Body/"
+
+
+def animal(number):
+    """A scene as a dict of entries, the variables with their ranges, and the random numbers."""
+    random = np.random.default_rng(number)
+    length, duration = random.uniform(0.5, 5), random.uniform(1.5, 3)
+    scene = {BODY + "Length": length, BODY + "Anchoring exponent": random.uniform(1, 3.5), "Time/End time": duration}
+    kind = ("strain", "wave", "clock")[number % 3]
+    if kind == "strain":
+        scene |= {"Model": "kinematic", "Active stress/Generator": "prescribed strain", STRAIN + "Given by": "wave",
+                  STRAIN + "Amplitude": random.uniform(0.1, 0.4), STRAIN + "Wave number": random.uniform(0.7, 1.5),
+                  STRAIN + "Wave speed": random.uniform(0.5, 1.5) * length}
+        return scene, {BODY + "Anchoring exponent": (0.1, 6)}, random
+    modulus, friction = random.uniform(0.5, 3), random.uniform(0.3, 1) / length ** 2
+    scene |= {BODY + "Elastic modulus": modulus, BODY + "Friction coefficient": friction, "Active stress/Generator": "travelling wave",
+              WAVE + "Amplitude": random.uniform(0.1, 0.3) * modulus, WAVE + "Wave number": random.uniform(0.7, 1.5),
+              WAVE + "Frequency": random.uniform(0.7, 1.3)}
+    if kind == "clock":
+        scene[WAVE + "Phase"] = random.uniform(-0.2, 0.2)
+        return scene, {WAVE + "Frequency": (0.5, 1.5), WAVE + "Phase": (-0.5, 0.5)}, random
+    return scene, {BODY + "Anchoring exponent": (0.1, 6), BODY + "Elastic modulus": (0.2, 8), WAVE + "Amplitude": (0.01, 2)}, random
+
+
+def measured(scene, random):
+    """Tracks with noise, gaps and misplaced markers, and what is said of them."""
+    length, n, n_t = scene[BODY + "Length"], int(random.integers(5, 10)), int(random.integers(30, 60))
+    said = np.linspace(0.05, 0.95, n) * length
+    noise, shift = random.uniform(0.002, 0.01) * length, random.uniform(0.002, 0.01) * length
+    places = np.clip(said + shift * random.standard_normal(n), 0, length)
+    t = np.sort(random.uniform(0, scene["Time/End time"], n_t))
+    x = crawler.run(scene, fields=t, places=places, accuracy=1e-8, check=True).fields.position
+    x = x + random.uniform(-5, 5) * length + noise * random.standard_normal(x.shape)
+    x[random.random(x.shape) < random.uniform(0, 0.2)] = np.nan
+    return (Samples("x", np.arange(float(n)), t, x, [str(i) for i in range(n)]),
+            {"markers_at": said, "place_deviation": shift, "standard_deviation": noise})
+
+
+def errors_of(number):
+    """For each variable: error over deviation, and whether the intervals have the truth."""
+    truth, variables, random = animal(number)
+    data, said = measured(truth, random)
+    scene = {name: value for name, value in truth.items()}
+    for name, (low, high) in variables.items():  # a start beside the truth
+        scene[name] = float(np.clip(truth[name] * random.uniform(0.8, 1.25) + (0.05 if "Phase" in name else 0), low, high))
+    found = crawler.fit(scene, data, variables, set={"Fit/Markers at": ", ".join(map(repr, said.pop("markers_at").tolist()))}, **said)
+    rows = []
+    for name, one in found.variables.items():
+        if one["determined"]:
+            within = [(ends[0] is None or ends[0] <= truth[name]) and (ends[1] is None or truth[name] <= ends[1])
+                      for ends in (one["interval_68"], one["interval_95"])]
+            rows.append((name.split("/")[-1], (one["value"] - truth[name]) / one["deviation"], *within, one["numerical_error"] / one["deviation"]))
+    return rows, found.goodness.probability, len(variables) - len(rows)
+
+
+def main():
+    """Prints the table and returns how much is wrong."""
+    import warnings
+    warnings.simplefilter("ignore")
+    rows, probabilities, untold = [], [], 0
+    for number in range(FIRST, FIRST + ALL):
+        some, probability, none = errors_of(number)
+        rows, untold = rows + some, untold + none
+        probabilities.append(probability)
+    wrong = 0
+    print(f"{ALL} animals from {FIRST} on; {untold} numbers that the data do not tell\n| number | fits | 68 % | 95 % | mean error/deviation | spread |")
+    print("|---|---|---|---|---|---|")
+    for name in [*sorted({row[0] for row in rows}), "all"]:
+        mine = [row for row in rows if name in ("all", row[0])]
+        n, errors = len(mine), np.array([row[1] for row in mine])
+        shares = []
+        for column, level in ((2, 0.6827), (3, 0.95)):
+            inside = sum(row[column] for row in mine)
+            wrong += stats.binomtest(inside, n, level).pvalue < CHANCE
+            shares.append(f"{100 * inside / n:.1f}")
+        wrong += abs(errors.mean()) > 0.2 and abs(errors.mean()) > stats.norm.isf(CHANCE / 2) / np.sqrt(n)
+        print(f"| {name} | {n} | {shares[0]} | {shares[1]} | {errors.mean():+.2f} | {errors.std():.2f} |")
+    print(f"numerical error over deviation: at most {max(row[4] for row in rows):.1e}")
+    wrong += stats.kstest(probabilities, "uniform").pvalue < CHANCE  # of chi-square, which is then right, too
+    print(f"probability of chi-square: uniform with {stats.kstest(probabilities, 'uniform').pvalue:.2g}; {wrong} wrong")
+    return wrong
+
+
+if __name__ == "__main__":
+    sys.exit(main())
