@@ -473,6 +473,48 @@ TEST_F(Commands, EntriesOfOtherFormulasAreNoted)
     contains(read_text(results / "log.txt"), "\"Active stress/Expression/Active stress\" has no effect with"));
 }
 
+TEST_F(Commands, ConstantsThatNoFormulaUsesAreNoted)
+{
+  const std::string lines =
+    in_section("Active stress", "set Generator = expression") +
+    in_section("Active stress/Expression", "set Active stress = A*sin(2*pi*(s+t))\nset Constants = A = 0.1, B = 2");
+  const std::string one = "\"B\" of \"Active stress/Expression/Constants\" has no effect with",
+                    all = "\"Active stress/Expression/Constants\" has no effect with";
+  const auto some_used  = run_program(folder.path, {"check", "-"}, scene + lines);
+  EXPECT_TRUE(contains(some_used.out, one)) << some_used.out << some_used.err;
+  const auto none_used = run_program(
+    folder.path, {"check", "-", "--set", "Active stress/Expression/Active stress=sin(2*pi*(s+t))/10"}, scene + lines);
+  EXPECT_TRUE(contains(none_used.out, all)) << none_used.out << none_used.err;
+  const auto all_used =
+    run_program(folder.path, {"check", "-", "--set", "Active stress/Expression/Constants=A = 0.1"}, scene + lines);
+  EXPECT_FALSE(contains(all_used.out, "has no effect")) << all_used.out;
+}
+
+/// A cycle stop needs three cycles, and only one is in the scene; the energy of the reduced levels balances at each
+/// point.
+TEST_F(Commands, EntriesThatTheSceneDoesNotNeedAreNoted)
+{
+  const auto said = [&](const std::vector<std::string> &settings) {
+    std::vector<std::string> words = {"check", "-", "--set", "Active stress/Optimal wave/Choose wave by=wave speed"};
+    for (const std::string &setting : settings)
+      words.insert(words.end(), {"--set", setting});
+    const auto result = run_program(folder.path, words, scene);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out;
+  };
+  const std::string none = "has no effect", stop = "\"Time/Cycle stop\" has no effect",
+                    ledger = "\"Output/Ledger tolerance\" has no effect", engine = "\"Time/Engine\" has no effect";
+  EXPECT_TRUE(contains(said({"Time/Cycle stop=off"}), stop));
+  EXPECT_FALSE(contains(said({"Time/Cycle stop=off", "Time/End time=4"}), none));
+  EXPECT_TRUE(contains(
+    said({"Time/Cycle stop=off", "Time/End time=4", "Time/Step control=fixed", "Time/Initial step=0.1"}), stop));
+  EXPECT_TRUE(contains(said({"Output/Ledger tolerance=0.1", "Model=perturbation"}), ledger));
+  EXPECT_TRUE(contains(said({"Output/Ledger tolerance=0.1", "Model=kinematic"}), ledger));
+  EXPECT_FALSE(contains(said({"Output/Ledger tolerance=0.1", "Model=nonlinear"}), none));
+  EXPECT_TRUE(contains(said({"Time/Engine=petsc", "Time/Integrator=bdf"}), engine));
+  EXPECT_FALSE(contains(said({"Time/Engine=petsc"}), none));
+}
+
 TEST_F(Commands, PetscOptionsAreRecorded)
 {
   ASSERT_EQ(run({"--", "-ts_type", "bdf"}).exit_code, 0);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <crawler/base/nearest_name.h>
+#include <crawler/lanes/lane_tables.h>
+#include <crawler/run/cycle_stop.h>
 #include <crawler/studies/core/entry_notes.h>
 #include <crawler/studies/core/entry_rules.h>
 
@@ -105,6 +108,35 @@ namespace crawler
       return notes;
     }
 
+    /// Constants that are not in their formula, while others of the list are.
+    std::vector<std::string>
+    unused_constants(const ParameterFile &file, const Declarations &declarations, const VariedEntries &varied)
+    {
+      std::vector<std::string> notes;
+      for (const auto &[path, formula_path, names] : constants_of_formulas(declarations))
+      {
+        const Assignment *const assignment = file.assignment_of(path);
+        const bool may_vary = varied.may_be_all || std::ranges::any_of(varied.paths, [&](const std::string &one) {
+                                return one == path || one == formula_path;
+                              });
+        if (assignment == nullptr || may_vary)
+          continue;
+        const std::string formula = declarations.value(formula_path);
+        std::vector<std::string> unused;
+        std::ranges::copy_if(
+          names, std::back_inserter(unused), [&](const std::string &name) { return !uses_name(formula, name); });
+        if (!unused.empty() && unused.size() < names.size())
+          notes.push_back(fmt::format("Note: {}: {} of \"{}\" {} no effect with \"{} = {}\"",
+                                      assignment->place,
+                                      quoted_list(unused),
+                                      path,
+                                      unused.size() == 1 ? "has" : "have",
+                                      formula_path,
+                                      formula));
+      }
+      return notes;
+    }
+
     /// "0,5" where a single number would do is a list of two, but most likely meant as 0.5.
     std::vector<std::string>
     decimal_commas(const ParameterFile &file, const Declarations &declarations)
@@ -149,8 +181,36 @@ namespace crawler
                    const ChosenValues &chosen)
   {
     auto notes = idle_entries(file, declarations, command, varied, chosen);
-    for (const std::string &note : decimal_commas(file, declarations))
-      notes.push_back(note);
+    std::ranges::copy(unused_constants(file, declarations, varied), std::back_inserter(notes));
+    std::ranges::copy(decimal_commas(file, declarations), std::back_inserter(notes));
     return notes;
+  }
+
+  void
+  add_notes_on_scene(const ParameterFile &file,
+                     const RunParameters &parameters,
+                     const Scene &scene,
+                     std::vector<std::string> &notes)
+  {
+    const auto add = [&](const std::string &path, const std::string &reason) {
+      const Assignment *const assignment = file.assignment_of(path);
+      if (assignment == nullptr)
+        return;
+      const std::string note = fmt::format("Note: {}: \"{}\" has no effect", assignment->place, path);
+      if (std::ranges::none_of(notes, [&](const std::string &other) { return other.starts_with(note); }))
+        notes.push_back(note + ", since " + reason);
+    };
+    if (parameters.time.engine == Engine::petsc && !fits_lanes(scene))
+      add("Time/Engine", "the fused engine is not for feedback by w_near or w_delayed");
+    if (parameters.time.cycle_stop == CycleStopMode::automatic)
+      return;
+    RunParameters with_stop   = parameters;
+    with_stop.time.cycle_stop = CycleStopMode::on;
+    if (!cycle_wish(with_stop, scene, /*has_pictures=*/false))
+      add("Time/Cycle stop",
+          !scene.is_alike_everywhere() ? "what the body does depends on its place or its past"
+          : !scene.active_stress->repetition()
+            ? "no period of the active stress is known"
+            : fmt::format("the active stress repeats fewer than {} times", CycleStop::fewest_cycles));
   }
 } // namespace crawler

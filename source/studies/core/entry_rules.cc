@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 
 namespace crawler
 {
@@ -41,14 +42,7 @@ namespace crawler
     auto
     has(const std::string &name)
     {
-      return [name](const std::string &formula) {
-        const auto in_name = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-        for (auto i = formula.find(name); i != std::string::npos; i = formula.find(name, i + 1))
-          if ((i == 0 || !in_name(formula[i - 1])) &&
-              (i + name.size() == formula.size() || !in_name(formula[i + name.size()])))
-            return true;
-        return false;
-      };
+      return [name](const std::string &formula) { return uses_name(formula, name); };
     }
 
     /// The rules within the section @p root of generators.
@@ -119,6 +113,19 @@ namespace crawler
         add("", {fmt::format("Edge width in {}", x)}, {fmt::format("Window in {}", x)}, is_set);
     }
 
+    /// Constants none of which is in their formula; those that an axis varies may be.
+    void
+    add_rules_of_constants(const Declarations &declarations, std::vector<EntryRule> &rules)
+    {
+      for (const auto &[path, formula, names] : constants_of_formulas(declarations))
+      {
+        const auto is_one_used = [names = names](const std::string &text) {
+          return std::ranges::any_of(names, [&](const std::string &name) { return uses_name(text, name); });
+        };
+        rules.push_back({{path}, {{formula, is_one_used}, {path, any_of({""})}}});
+      }
+    }
+
     /// The rules of what follows the active stress in the file.
     void
     add_rules_of_numerics(std::vector<EntryRule> &rules)
@@ -137,16 +144,24 @@ namespace crawler
                         time + "Cycle stop",
                         time + "Maximum number of steps",
                         time + "Wall time limit",
-                        time + "Checkpoint interval"},
+                        time + "Checkpoint interval",
+                        output + "Ledger tolerance"},
                        {{"Model", has_equation}}});
       rules.push_back(
         {{mesh + "Mesh tolerance", mesh + "Smallest cell"}, {{mesh + "Mesh", any_of({"adaptive", "automatic"})}}});
       rules.push_back({{mesh + "Mesh", mesh + "Mesh tolerance", mesh + "Smallest cell", mesh + "Degree"},
                        {{mesh + "Formulation", is_not_stretch}}});
+      // Where the fused engine does not fit, PETSc is no choice.
+      rules.push_back({{time + "Engine"}, {{time + "Integrator", any_of({"automatic", "radau 5", "radau 9"})}}});
+      rules.push_back({{time + "Engine"}, {{time + "Step control", any_of({"adaptive"})}}});
+      rules.push_back({{time + "Engine"}, {{mesh + "Mesh", any_of({"automatic", "uniform"})}}});
       rules.push_back({{time + "Order"}, {{time + "Integrator", any_of({"bdf", "automatic"})}}});
       rules.push_back(
         {{output + "Snapshot format", output + "Kymograph"}, {{output + "Number of snapshots", is_not(0.)}}});
       rules.push_back({{output + "Ledger tolerance"}, {{output + "Ledger", any_of({"true"})}}});
+      // Without a choice there is no cycle stop with fixed steps.
+      rules.push_back({{time + "Cycle stop"},
+                       {{time + "Cycle stop", any_of({"on"})}, {time + "Step control", any_of({"adaptive"})}}});
     }
 
     /// The rules of the studies, and what of the rest each command does not need.
@@ -188,6 +203,37 @@ namespace crawler
     }
   } // namespace
 
+  bool
+  uses_name(const std::string &formula, const std::string &name)
+  {
+    const auto in_name = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    for (auto i = formula.find(name); i != std::string::npos; i = formula.find(name, i + 1))
+      if ((i == 0 || !in_name(formula[i - 1])) &&
+          (i + name.size() == formula.size() || !in_name(formula[i + name.size()])))
+        return true;
+    return false;
+  }
+
+  std::vector<ConstantsOfFormula>
+  constants_of_formulas(const Declarations &declarations)
+  {
+    std::vector<ConstantsOfFormula> all;
+    std::string before;
+    for (const EntryInfo &entry : declarations.entries())
+    {
+      if (entry.expected.starts_with("a list name=number"))
+      {
+        all.push_back({entry.path, before, {}});
+        std::istringstream list(declarations.value(entry.path));
+        for (std::string item; std::getline(list, item, ',');)
+          if (const std::string name = trimmed(item.substr(0, item.find('='))); !name.empty())
+            all.back().names.push_back(name);
+      }
+      before = entry.path;
+    }
+    return all;
+  }
+
   const EntryRule *
   rule_against(const std::vector<EntryRule> &rules,
                const std::string &path,
@@ -222,6 +268,7 @@ namespace crawler
     rules.push_back(
       {{ground + "Expression", ground + "Constants"}, {{ground + "Friction law", any_of({"expression"})}}});
     rules.push_back({{ground + "Switching velocity"}, {{ground + "Backward ratio", is_not(1.)}}});
+    add_rules_of_constants(declarations, rules);
     add_rules_of_numerics(rules);
     add_rules_of_commands(rules);
     return rules;

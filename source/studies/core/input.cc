@@ -56,8 +56,8 @@ namespace crawler
       parameters.units.require_plain();
       Scene scene = parameters.create_scene();
       auto notes  = notes_on_entries(file, form.declarations, command);
-      for (const std::string &note : profiles_beyond_the_body(scene))
-        notes.push_back(note);
+      add_notes_on_scene(file, parameters, scene, notes);
+      std::ranges::copy(profiles_beyond_the_body(scene), std::back_inserter(notes));
       auto sensitivities = sensitivity_entries(form);
       for (const SensitivityEntry &one : sensitivities)
         if (one.is_part && to_number(form.declarations.value(one.path)) == 0.)
@@ -80,7 +80,7 @@ namespace crawler
   {
     const auto is_of_numerics = [](const Assignment &assignment) {
       return assignment.path.starts_with("Discretization/") || assignment.path.starts_with("Time/") ||
-             assignment.path == "Error estimate";
+             assignment.path == "Error estimate" || assignment.path == "Output/Ledger tolerance";
     };
     if (std::none_of(input.file.assignments().begin(), input.file.assignments().end(), is_of_numerics))
       return {};

@@ -487,8 +487,7 @@ namespace crawler
           parameters.accuracy, output.energy_balance, [&]() { return !stop_signal.arrived_anywhere(MPI_COMM_SELF); });
         result.setup_seconds = setup;
         level.describe_gait(result);
-        if (std::isfinite(result.net_friction)) // the series has no balance to check
-          check_identities(result, parameters);
+        check_identities(result, parameters);
         log.line(level.description());
         const auto is_stopped = [&]() { return stop_signal.arrived_anywhere(MPI_COMM_SELF); };
         if (!input.sensitivities.empty() && !differentiate(log, input, {}, folder, is_stopped, result))

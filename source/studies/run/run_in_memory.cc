@@ -64,8 +64,7 @@ namespace crawler
       ReducedModel level(input.scene, input.parameters.model);
       run.result = level.compute(input.parameters.accuracy, output.energy_balance, keep_going);
       level.describe_gait(run.result);
-      if (std::isfinite(run.result.net_friction)) // the series has no balance to check
-        check_identities(run.result, input.parameters);
+      check_identities(run.result, input.parameters);
       if (afterwards && run.result.time.status == Status::finished)
         afterwards(input, {}, run.result);
       if (!run.result.error || !(!kept.points.empty() || output.statistics))

@@ -86,6 +86,27 @@ namespace crawler
     return ParameterFile::read((design_->folder() / name).string());
   }
 
+  std::vector<std::string>
+  SweepPoints::notes(const std::string &command, const std::string &by) const
+  {
+    const VariedEntries varied = this->varied(by);
+    auto notes                 = notes_on_entries(file_, declarations(), command, varied);
+    const bool may_differ =
+      varied.may_be_all || std::ranges::any_of(varied.paths, [](const std::string &path) {
+        return path.starts_with("Active stress/") || path.starts_with("Ground/") || path.starts_with("Time/");
+      });
+    if (may_differ)
+      return notes;
+    try
+    {
+      add_notes_on_scene(file_, base_->parameters, base_->parameters.create_scene(), notes);
+    }
+    catch (const InputError &) // it is that of a point, and told there
+    {
+    }
+    return notes;
+  }
+
   /// One form serves all files: each entry is looked at by itself. A sum has entries of its own.
   void
   SweepPoints::require_scene_files(MPI_Comm communicator) const

@@ -3,6 +3,7 @@
 
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/parameter_file.h>
+#include <crawler/run/run_parameters.h>
 
 #include <map>
 #include <string>
@@ -29,4 +30,12 @@ namespace crawler
                    const std::string &command,
                    const VariedEntries &varied = {},
                    const ChosenValues &chosen  = {});
+
+  /// Adds notes on entries of @p file that have no effect in this scene, whatever the others are, unless these
+  /// @p notes have the entry already.
+  void
+  add_notes_on_scene(const ParameterFile &file,
+                     const RunParameters &parameters,
+                     const Scene &scene,
+                     std::vector<std::string> &notes);
 } // namespace crawler

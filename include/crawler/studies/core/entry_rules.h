@@ -31,6 +31,20 @@ namespace crawler
     std::vector<Chooser> choosers;
   };
 
+  /// An entry with the constants of a formula, which is declared behind that of the formula.
+  struct ConstantsOfFormula
+  {
+    std::string path, formula_path;
+    std::vector<std::string> names;
+  };
+
+  std::vector<ConstantsOfFormula>
+  constants_of_formulas(const Declarations &declarations);
+
+  /// Is the variable or constant @p name in the formula?
+  bool
+  uses_name(const std::string &formula, const std::string &name);
+
   /// The rules of all these entries: one without a rule always has an effect.
   std::vector<EntryRule>
   entry_rules(const Declarations &declarations);

@@ -60,10 +60,7 @@ namespace crawler
 
     /// On entries without an effect at any point.
     std::vector<std::string>
-    notes(const std::string &command = "sweep", const std::string &by = "Sweep/Axes") const
-    {
-      return notes_on_entries(file_, declarations(), command, varied(by));
-    }
+    notes(const std::string &command = "sweep", const std::string &by = "Sweep/Axes") const;
 
     /// The entries of a point; good until the next call.
     Form &
