@@ -2,13 +2,13 @@
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/parameters.h>
-#include <crawler/studies/core/variables.h>
 
 #include <limits>
 
 namespace crawler
 {
-  const std::string sweep_syntax = "\"Section/Entry : VALUES\", several of them separated by semicolons";
+  const std::string sweep_syntax     = "\"Section/Entry : VALUES\", several of them separated by semicolons";
+  const std::string variables_syntax = "\"Section/Entry : FROM to TO\", several of them separated by semicolons";
 
   void
   SweepParameters::add_parameters(Declarations &declarations)

@@ -12,6 +12,9 @@ namespace crawler
   /// What Sweep/Axes reads, in words.
   extern const std::string sweep_syntax;
 
+  /// What Optimize/Variables and Fit/Variables read, in words.
+  extern const std::string variables_syntax;
+
   /// Section "Sweep": which scenes `crawler sweep` computes (sweep_design.h reads the axes).
   struct SweepParameters
   {

@@ -15,9 +15,6 @@ namespace crawler
     double from, to, start; ///< range, and the value in the file [unit of the entry]
   };
 
-  /// What an entry for variables reads, in words.
-  inline const std::string variables_syntax = "\"Section/Entry : FROM to TO\", several of them separated by semicolons";
-
   /// Those that @p entry lists ("Optimize/Variables"). Throws InputError for it: names that are no numbers of the
   /// scene, empty or inadmissible ranges, values in the file outside of them.
   std::vector<Variable>
