@@ -42,6 +42,18 @@ def load():
     return crawler
 
 
+def fit_of_tracks(crawler):
+    """The fit of a worm whose tracks a run makes."""
+    import numpy
+    from crawler.measured import Samples
+    scene = str(SOURCE / "prm/studies/fit_worm.prm")
+    t, s = numpy.linspace(0, 12, 300), numpy.linspace(0, 3, 13)
+    set_truth = {"Fit/Variables": "", "Body/Elastic modulus": 1.3, "Body/Anchoring exponent": 2.4, "Active stress/Travelling wave/Amplitude": 0.25}
+    x = crawler.run(scene, set=set_truth, fields=t, places=s).fields.position
+    tracks = Samples("x", numpy.arange(13.), t, x + 0.01 * numpy.random.default_rng(1).standard_normal(x.shape), [str(i) for i in range(13)])
+    return lambda: crawler.fit(scene, tracks, markers_at=s)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=SOURCE / "build")
@@ -63,6 +75,7 @@ def main():
     entry = "Body/Elastic modulus"
     measure("batch, each of 64", lambda: crawler.batch([file] * 64), 5, 64)
     measure("sweep, each of 1024 points", lambda: crawler.sweep(file, {entry: stiffness}), 3, 1024)
+    measure("fit, 3 numbers to 13 markers x 300 frames", fit_of_tracks(crawler), 5)
     with tempfile.TemporaryDirectory() as folder:
         command = [program, "run", file, "--quiet", "--overwrite", "--output", folder + "/output"]
         measure("crawler run, a process with files", lambda: subprocess.run(command, check=True), 7)

@@ -72,6 +72,8 @@ def main():
     check(matplotlib.image.imread("output-fit_worm/fit.png").shape[0] > 300, "there is no picture")
     pathlib.Path("output-fit_worm/fit.png").unlink()
     check(crawler("plot", "output-fit_worm").returncode == 0 and pathlib.Path("output-fit_worm/fit.png").exists(), "plot draws no fit")
+    ended = crawler("report", "output-fit_worm")
+    check(ended.returncode == 2 and "crawler plot" in ended.stderr, f"report of a fit: {ended.stderr}")
     again = crawler("fit", "output-fit_worm/fitted.prm", "--output", "again")  # it starts where the first one ended
     other = json.loads(pathlib.Path("again/summary.json").read_text(encoding="utf-8"))["variables"]
     check(again.returncode == 0 and all(abs(other[name]["value"] - summary["variables"][name]["value"]) < 0.02 * other[name]["deviation"] for name in TRUTH),

@@ -158,6 +158,18 @@ class Untold(unittest.TestCase):
         self.assertIn("at its limit", " ".join(found.notes))
 
 
+class Files(unittest.TestCase):
+    """What crawler fit writes."""
+
+    def test_folder_is_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place = pathlib.Path(folder)
+            (place / "residuals.csv").write_text("t,place,data,model,residual\n0,1,2,2.5,-0.5\n", encoding="utf-8")
+            (place / "summary.json").write_text('{"status": "finished", "variables": {"Body/Length": {"value": 2}}}', encoding="utf-8")
+            study = crawler.read(place)
+            self.assertEqual((study.kind, study.variables["Body/Length"].value, float(study.table["residual"][0])), ("fit", 2, -0.5))
+
+
 class Refusals(unittest.TestCase):
     """One sentence each."""
 

@@ -78,7 +78,7 @@ class Result(Numbers):
 
 
 class Study(Numbers):
-    """The folder of a sweep, atlas, tradeoff or optimisation: the keys of its summary.json.
+    """The folder of a sweep, atlas, tradeoff, optimisation or fit: the keys of its summary.json.
 
     Besides: kind; table, a pandas.DataFrame (without pandas a dict of arrays); parameters; of an optimisation starts,
     a table, and best, the Results of the best gaits.
@@ -94,7 +94,7 @@ class Study(Numbers):
 
 
 def read(folder):
-    """The results in a folder of `crawler run`, sweep, atlas, tradeoff or optimize: a Result or a Study."""
+    """The results in a folder of `crawler run`, sweep, atlas, tradeoff, optimize or fit: a Result or a Study."""
     folder = pathlib.Path(folder)
     summary_file = folder / "summary.json"
     if not summary_file.is_file():
@@ -103,7 +103,7 @@ def read(folder):
     prm = folder / "parameters.prm"
     effective = prm.read_text(encoding="utf-8") if prm.exists() else ""
     for kind, name in (("atlas", "atlas.csv"), ("tradeoff", "tradeoff.csv"), ("optimize", "starts.csv"),
-                       ("sweep", "results.csv")):
+                       ("fit", "residuals.csv"), ("sweep", "results.csv")):
         if not (folder / name).exists():
             continue
         study = Study(summary, kind, _read_table(folder / ("results.csv" if kind == "optimize" else name)), effective)

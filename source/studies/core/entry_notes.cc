@@ -113,25 +113,26 @@ namespace crawler
     unused_constants(const ParameterFile &file, const Declarations &declarations, const VariedEntries &varied)
     {
       std::vector<std::string> notes;
-      for (const auto &[path, formula_path, names] : constants_of_formulas(declarations))
+      for (const ConstantsOfFormula &constants : constants_of_formulas(declarations))
       {
-        const Assignment *const assignment = file.assignment_of(path);
+        const Assignment *const assignment = file.assignment_of(constants.path);
         const bool may_vary = varied.may_be_all || std::ranges::any_of(varied.paths, [&](const std::string &one) {
-                                return one == path || one == formula_path;
+                                return one == constants.path || one == constants.formula_path;
                               });
         if (assignment == nullptr || may_vary)
           continue;
-        const std::string formula = declarations.value(formula_path);
+        const std::string formula = declarations.value(constants.formula_path);
         std::vector<std::string> unused;
-        std::ranges::copy_if(
-          names, std::back_inserter(unused), [&](const std::string &name) { return !uses_name(formula, name); });
-        if (!unused.empty() && unused.size() < names.size())
+        std::ranges::copy_if(constants.names, std::back_inserter(unused), [&](const std::string &name) {
+          return !uses_name(formula, name);
+        });
+        if (!unused.empty() && unused.size() < constants.names.size())
           notes.push_back(fmt::format("Note: {}: {} of \"{}\" {} no effect with \"{} = {}\"",
                                       assignment->place,
                                       quoted_list(unused),
-                                      path,
+                                      constants.path,
                                       unused.size() == 1 ? "has" : "have",
-                                      formula_path,
+                                      constants.formula_path,
                                       formula));
       }
       return notes;

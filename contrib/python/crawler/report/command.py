@@ -27,6 +27,8 @@ def kind_of(folder):
     expected = "the output folder of a run, sweep, atlas, tradeoff or optimisation is expected"
     if not os.path.isdir(folder):
         raise InputError(f'"{folder}" is {"a file" if os.path.exists(folder) else "not there"}, but {expected}')
+    if os.path.exists(os.path.join(folder, "residuals.csv")):
+        raise InputError(f'"{folder}" is the folder of a fit, which has no page; "crawler plot" draws it')
     for kind in KINDS:
         if os.path.exists(os.path.join(folder, kind[1])):
             return kind
