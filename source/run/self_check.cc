@@ -18,8 +18,6 @@ namespace crawler
     const bool own_numerics = parameters.time.tolerance ||
                               (parameters.time.integrator != "automatic" && parameters.time.integrator != "bdf") ||
                               parameters.time.order < 4 || parameters.time.step_control == StepControl::fixed;
-    if (result.model == Model::kinematic) // quadrature balances at each point
-      return least_residual;
     return parameters.output.energy_balance_tolerance.value_or(
       result.jumps_move ? residual_of_moving_jumps
       : own_numerics

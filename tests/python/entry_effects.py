@@ -229,7 +229,7 @@ STUDY_PAIRS = [
 # where there are several ranks.
 NOT_TO_BE_SEEN = {"Tradeoff/Repetitions", "Time/Checkpoint interval", "Discretization/Share cells"}
 # A limit is silent where nothing reaches it, and a switch where what it switches to has the same value; then this is set.
-LIMITS = {D + "Smallest cell", TABLE + "Outside in s", MODES + "Time harmonics"}
+LIMITS = {D + "Smallest cell", OUT + "Ledger tolerance", TABLE + "Outside in s", MODES + "Time harmonics"}
 WHAT_IT_SWITCHES_TO = {TRAVEL + "Given by": {TRAVEL + "Frequency": "1.5"}, OPTIMAL + "Root": {OPTIMAL + "Root index": "2"}}
 
 

@@ -144,8 +144,7 @@ namespace crawler
                         time + "Cycle stop",
                         time + "Maximum number of steps",
                         time + "Wall time limit",
-                        time + "Checkpoint interval",
-                        output + "Ledger tolerance"},
+                        time + "Checkpoint interval"},
                        {{"Model", has_equation}}});
       rules.push_back(
         {{mesh + "Mesh tolerance", mesh + "Smallest cell"}, {{mesh + "Mesh", any_of({"adaptive", "automatic"})}}});
@@ -159,6 +158,9 @@ namespace crawler
       rules.push_back(
         {{output + "Snapshot format", output + "Kymograph"}, {{output + "Number of snapshots", is_not(0.)}}});
       rules.push_back({{output + "Ledger tolerance"}, {{output + "Ledger", any_of({"true"})}}});
+      // The series has no balance to check.
+      rules.push_back(
+        {{output + "Ledger tolerance"}, {{"Model", any_of({"auto", "kinematic", "linear", "nonlinear"})}}});
       // Without a choice there is no cycle stop with fixed steps.
       rules.push_back({{time + "Cycle stop"},
                        {{time + "Cycle stop", any_of({"on"})}, {time + "Step control", any_of({"adaptive"})}}});
