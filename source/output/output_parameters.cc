@@ -20,7 +20,7 @@ namespace crawler
              "each stride and at least 128, of the last 20 strides if there are more, and each jump of the active "
              "stress.");
     declarations.flag("Statistics", statistics)
-      .means("Whether to write statistics.csv, a row for each time step and each snapshot.");
+      .means("Whether to write statistics.csv, a row for each time step and each snapshot until the end of the run.");
     declarations.flag("Ledger", energy_balance)
       .means("Whether to compute works, energies and the net friction in every step, and to check that they balance.");
     declarations.number("Ledger tolerance", energy_balance_tolerance, positive(), "1")

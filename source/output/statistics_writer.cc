@@ -56,7 +56,7 @@ namespace crawler
   void
   Statistics::observe(const Snapshot &snapshot)
   {
-    if (snapshot.is_step_end || snapshot.pictures.is_snapshot)
+    if (snapshot.is_step_end || (snapshot.pictures.is_snapshot && !snapshot.is_in_lost_step))
       write({snapshot.step,
              snapshot.integrals.displacement / length_,
              snapshot.stretch,

@@ -164,6 +164,7 @@ namespace crawler
     for (const auto &observer : observers)
       observer->observe({physical,
                          shown.is_step_end,
+                         /*is_in_lost_step=*/run_->diagnosis.has_value(),
                          shown.picture != nullptr ? shown.picture->kinds : PictureKinds(),
                          *mesh_.assembler,
                          mesh_number_,

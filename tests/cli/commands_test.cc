@@ -685,6 +685,20 @@ TEST_F(Commands, InversionInsideIsNamed)
   xml(results / "kymograph.vts");
 }
 
+TEST_F(Commands, StatisticsOfABodyThatInvertsEndWithTheAnswer)
+{
+  const std::string lines = in_section("Active stress", "set Generator = travelling wave") +
+                            in_section("Active stress/Travelling wave", "set Amplitude = 1.2");
+  const auto result = run({"--set", "Output/Number of snapshots=64"}, scene + lines);
+  ASSERT_EQ(result.exit_code, 4) << result.err;
+  const json summary = summary_of(results);
+  ASSERT_EQ(summary.at("status"), "inverted");
+  const auto last = cells_of(lines_of(read_text(results / "statistics.csv")).back());
+  EXPECT_EQ(std::stod(last.at(1)), summary.at("end_time"));
+  EXPECT_EQ(std::stod(last.at(3)), summary.at("displacement"));
+  EXPECT_GT(output_times_of(results).back(), summary.at("end_time")); // pictures go on until it inverts
+}
+
 /// m = 2 t on k = 1: the stretch of an end, 1 - m/k, is 0 at t = 0.5.
 TEST_F(Commands, InversionOfAnEndIsNamed)
 {

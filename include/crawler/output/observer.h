@@ -16,6 +16,7 @@ namespace crawler
   {
     const Step &step;           ///< with the time of this state, which may be within the step
     bool is_step_end;           ///< an accepted state
+    bool is_in_lost_step;       ///< seen before an inversion, but later than the answer's last state
     PictureKinds pictures;      ///< what it was asked for
     const Assembler &assembler; ///< mesh and formulation; may be another one in the next snapshot ...
     unsigned int mesh_number;   ///< ... and then this number is another one
