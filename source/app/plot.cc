@@ -52,7 +52,15 @@ namespace crawler
       {
         std::string first;
         std::getline(std::ifstream(path) >> std::ws, first);
-        return first.starts_with("s,t,") ? "table" : "calibration";
+        if (first.starts_with("s,t,"))
+          return "table";
+        if (first.find("reported_error") != std::string::npos)
+          return "calibration";
+        throw InputError(
+          fmt::format("\"{}\" has {} columns, but s, t and m (or strain) are expected, as \"crawler table\" "
+                      "writes them, or those of a calibration",
+                      path.string(),
+                      std::count(first.begin(), first.end(), ',') + 1));
       }
       if (!fs::is_directory(path, ignored))
         throw InputError(fmt::format("\"{}\" is not a folder; the output folder of a run or study is expected (or the "

@@ -82,6 +82,7 @@ REFUSED = [
     ([], 2, "the folder is missing"), (["nowhere"], 2, '"nowhere" is not a folder'),
     (["empty"], 2, "has nothing to draw"), (["run", "--kind", "kymogaph"], 2, '"kymograph"'),
     (["run", "--", "-ts_monitor"], 2, "no use for PETSc options"), (["run", "--lastt-stride"], 2, "--lastt-stride"),
+    (["many.csv"], 2, '"many.csv" has 4 columns, but s, t and m (or strain) are expected'),
     (["run", "--output", "no/picture.png"], 6, "no/picture.png")]
 # The same of scripts.
 REFUSED_BY_SCRIPTS = [
@@ -139,6 +140,7 @@ def words(picture):
 def make_folders():
     """One of each kind."""
     pathlib.Path("study.prm").write_text(STUDY, encoding="utf-8")
+    pathlib.Path("many.csv").write_text("t,a,b,c\n0,1,2,3\n", encoding="utf-8")
     pathlib.Path("calibration.csv").write_text(CALIBRATION, encoding="utf-8")
     pathlib.Path("empty").mkdir()
     for folder, (command, file, more, _) in STUDIES.items():

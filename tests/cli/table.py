@@ -56,7 +56,9 @@ end
 """
 # Arguments, exit code, what the one sentence has.
 REFUSED = [
-    ([], 2, "IN, OUT"), (["larva_raw.csv"], 2, "OUT"), (["a.csv", "b.csv", "c.csv"], 2, "c.csv"),
+    ([], 2, "IN, OUT missing"), (["larva_raw.csv", "out.csv", "--gap", "few"], 2, '"--gap" is "few", but a whole number is expected'),
+    (["larva_raw.csv", "out.csv", "--noise", "low"], 2, '"--noise" is "low", but a number is expected'),
+    (["larva_raw.csv", "out.csv", "--gap"], 2, 'a value is expected behind "--gap"'), (["larva_raw.csv"], 2, "OUT"), (["a.csv", "b.csv", "c.csv"], 2, "c.csv"),
     (["nowhere.csv", "out.csv"], 6, "nowhere.csv"), (["larva_raw.csv", "larva.csv"], 2, "--overwrite"),
     (["larva_raw.csv", "larva_raw.csv"], 2, "another name"), (["larva_raw.csv", "out.txt"], 2, ".csv"),
     (["larva_raw.csv", "no/out.csv"], 6, "no/out"), (["larva_raw.csv", "out.csv", "--smoth-t", "1"], 2, "--smooth-t"),
@@ -122,6 +124,10 @@ def tracks():
     error = np.sqrt(np.mean((e - truth)**2))
     check(error < 0.03, f"the strain is known to {error:.4f}")
     check((e[t == t.min()] == 0).all(), "the body begins at rest")
+    check("while the scene names" not in made.stdout, "the scene reads the new table")
+    other = crawler("table", "tracks_raw.csv", "others.csv", *TRACKS, "--scene", "kinematic.prm", "--copies", "8")
+    check("with the new table, while the scene names" in other.stdout and "tracks.csv" in other.stdout,
+          f"a scene that names another table is said to be computed with the new one: {other.stdout}{other.stderr}")
     check("the strain is held" in made.stdout and "copies" in made.stdout, "the report tells what is beyond the markers")
     check(abs(displacement("kinematic.prm", "tracks_run")) > 0.01, "the body moves by the strain")
     drawn = crawler("plot", "tracks.csv")

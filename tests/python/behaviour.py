@@ -60,6 +60,7 @@ def check_errors(folder):
     refused(lambda: crawler.run("no.prm"), crawler.FileError, "no.prm", "there is no such file")
     expect(issubclass(crawler.FileError, OSError), "FileError is not an OSError")
     refused(lambda: crawler.run(3), crawler.InputError, "the scene is 3")
+    refused(lambda: crawler.gradient(FILE, K, of="foo"), crawler.InputError, '"foo"', "displacement, stress_power", "gait.speed")
     refused(lambda: crawler.run({}), crawler.InputError, "sets nothing")
     refused(lambda: crawler.run(FILE, elastic_modul=2), crawler.InputError, "elastic_modul", '"elastic_modulus"')
     refused(lambda: crawler.run(FILE, amplitude=2), crawler.InputError, "amplitude", '"Active stress/', "full name")

@@ -10,6 +10,7 @@ import difflib
 import importlib
 import os
 import pathlib
+import re
 import sys
 
 STOPPED = 5  # exit code
@@ -82,6 +83,15 @@ def write_whole(path, content):
         raise FileError(f'cannot write "{path}": {error.strerror or error}') from None
 
 
+# Slips on a command line, in the words of argparse and in those of the program.
+SLIPS = ((r"^argument (\S+): invalid float value: '(.*)'$", r'"\1" is "\2", but a number is expected'),
+         (r"^argument (\S+): invalid int value: '(.*)'$", r'"\1" is "\2", but a whole number is expected'),
+         (r"^argument (\S+): invalid choice: '(.*)' \(choose from (.*)\)$", r'"\1" is "\2", but one of \3 is expected'),
+         (r"^argument (\S+): expected one argument$", r'a value is expected behind "\1"'),
+         (r"^the following arguments are required: (.*)$", r"\1 missing"),
+         (r"^unrecognized arguments: (.*)$", r'found "\1", but nothing more is expected'))
+
+
 class Parser(argparse.ArgumentParser):
     """Says what is wrong with the command line in one sentence."""
 
@@ -90,6 +100,8 @@ class Parser(argparse.ArgumentParser):
         if word != message.split(" ")[0] and word.startswith("-"):
             near = difflib.get_close_matches(word, self._option_string_actions, n=1, cutoff=0)
             message = f'unknown option "{word}"; the nearest is "{near[0]}"'
+        for pattern, sentence in SLIPS:
+            message = re.sub(pattern, sentence, message)
         complain(f"{message} (--help tells the arguments)")
         self.exit(InputError.code)
 

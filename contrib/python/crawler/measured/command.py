@@ -14,6 +14,7 @@ import tempfile
 import numpy as np
 
 from ..needs import FileError, InputError, Parser, write_whole
+from ..results import parameters_of
 from .options import NUMBER, TEXT, WHOLE, add_options, add_reading_options, parts_of, reading_of
 from .preparation import prepare
 from .samples import read_samples
@@ -85,13 +86,13 @@ def write_table(path, s, t, values, names):
 
 
 def displacements(scene, overrides, entry, tables):
-    """The rows of a sweep of the scene over tables, for which it reads each after the other; a dict of texts for each.
-    Raises InputError and FileError with the program's sentence."""
+    """The rows of a sweep of the scene over tables, for which it reads each after the other, a dict of texts for each; and
+    the table that the scene itself names. Raises InputError and FileError with the program's sentence."""
     with tempfile.TemporaryDirectory(prefix="crawler-table-") as folder:
         names = [os.path.join(folder, f"{k}.csv") for k in range(len(tables))]
         for name, table in zip(names, tables):
             write_table(name, table.s, table.t, table.values, ("s", "t", table.quantity))
-        settings = [*overrides, f"{entry}={names[0]}", "Sweep/Design=grid", f"Sweep/Axes={entry} : {', '.join(names)}"]
+        settings = [*overrides, "Sweep/Design=grid", f"Sweep/Axes={entry} : {', '.join(names)}"]
         output = os.path.join(folder, "sweep")
         end = subprocess.run([os.environ["CRAWLER_PROGRAM"], "sweep", scene, "--output", output, "--quiet",
                               *(word for setting in settings for word in ("--set", setting))], capture_output=True, text=True, check=False)
@@ -100,7 +101,8 @@ def displacements(scene, overrides, entry, tables):
             problem = re.sub(r'^--set "Sweep/Axes=.*?": ', "", problem).replace(folder + os.sep, "")
             raise FileError(problem) if end.returncode == FileError.code else InputError(problem)
         with open(os.path.join(output, "results.csv"), newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
+            rows = list(csv.DictReader(file))
+        return rows, parameters_of(pathlib.Path(output, "parameters.prm").read_text(encoding="utf-8"))[entry]
 
 
 def _prepared(copy, prepare_copy):
@@ -118,7 +120,7 @@ def uncertainty(options, samples, table, prepare_copy):
              for _ in range(n))
     entry = "Active stress/" + ("Table/File" if table.quantity == "m" else "Prescribed strain/File")
     noisy = [_prepared(copy, prepare_copy) for copy in noisy]
-    first, *rows = displacements(options.scene, options.set, entry, [table, *noisy])
+    (first, *rows), own = displacements(options.scene, options.set, entry, [table, *noisy])
     if first["status"] != "finished" or not first["displacement"]:
         raise InputError(f'"{options.scene}" with the new table: {first["message"] or first["status"]}')
     copies = [float(row["displacement"]) for row in rows if row["status"] == "finished" and row["displacement"]]
@@ -131,9 +133,10 @@ def uncertainty(options, samples, table, prepare_copy):
         raise InputError(f'"{options.scene}" does not read the table: "{entry}" does not change its displacement; the generator {reader} is '
                          "expected")
     bound, deviation = first["displacement_error.total"], np.std(copies, ddof=1)
+    note = "" if os.path.realpath(own) == os.path.realpath(options.output) else f'; with the new table, while the scene names "{own}"'
     return (f"displacement {float(first['displacement']):.8g} +- {f'{float(bound):.1e}' if bound else '?'} (numerical bound) +- "
             f"{deviation:.2g} (standard deviation by noise of {table.noise:.3g}, {len(copies)} copies, known to "
-            f"{100 / math.sqrt(2 * (len(copies) - 1)):.0f} %; their mean is {np.mean(copies):.8g})")
+            f"{100 / math.sqrt(2 * (len(copies) - 1)):.0f} %; their mean is {np.mean(copies):.8g}){note}")
 
 
 def main():
