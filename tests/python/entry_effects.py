@@ -40,7 +40,7 @@ SUM = M + "Sum/Term 1/"
 
 def write_files():
     """Tables along the body, along the ground, over body and time, and a plug-in."""
-    from math import pi, sin
+    from math import cos, pi, sin
     grid = [i / 10 for i in range(11)]
     (FILES / "body.csv").write_text("s,value\n" + "".join(f"{s},{1 + 0.3 * sin(3 * s)}\n" for s in grid))
     (FILES / "body2.csv").write_text("s,value\n" + "".join(f"{s},{1 + 0.2 * sin(3 * s)}\n" for s in grid))
@@ -52,6 +52,9 @@ def write_files():
         rows = [f"{s},{t},{size * (sin(2 * pi * (s + t)) - (sin(2 * pi * s) if column == 'strain' else 0))}\n"
                 for s in grid[:ends] for t in grid]
         (FILES / f"{name}.csv").write_text(f"s,t,{column}\n" + "".join(rows))
+    for name, size in (("tracks", 0.2), ("tracks2", 0.15)):
+        rows = [",".join(str(x) for x in (t, *(s + 0.1 * t - size / (2 * pi) * cos(2 * pi * (s + t)) for s in (0.1, 0.4, 0.9)))) for t in grid[:9]]
+        (FILES / f"{name}.csv").write_text("t,x1,x2,x3\n" + "\n".join(rows) + "\n")
     text = (pathlib.Path(SOURCE) / "contrib/plugin/peristalsis.cc").read_text()
     for name, start in (("plugin", "0.1"), ("plugin2", "0.2")):
         (FILES / f"{name}.cc").write_text(text.replace("0.1 * input.end_time", f"{start} * input.end_time"))
@@ -199,6 +202,9 @@ MAP = {**BY_SPEED, T + "End time": "0.3", "Atlas/First axis": "Body/Elastic modu
 TRADES = {**BY_SPEED, T + "End time": "0.1", **{"Tradeoff/" + name: value for name, value in {
     "Models": "nonlinear", "Formulations": "position", "Meshes": "uniform", "Engines": "fused", "Integrators": "radau 5",
     "Degrees": "2", "Cells": "4", "Tolerances": "1e-2", "Repetitions": "1"}.items()}}
+FITTED = {**WAVE_OF_STRAIN, **{"Fit/" + name: value for name, value in {
+    "Data": FILES / "tracks.csv", "Variables": f"{STRAIN}Amplitude : 0.01 to 0.4", "Markers at": "0.1, 0.4, 0.9", "Starts": "2",
+    "Standard deviation": "0.01"}.items()}}
 BEST = {**WAVE_OF_STRAIN, "Optimize/Variables": STRAIN + "Amplitude : 0.1 to 0.4"}
 # The same for studies: (command, scene, other values).
 STUDY_PAIRS = [
@@ -223,6 +229,9 @@ STUDY_PAIRS = [
     ("optimize", {**BEST, "Optimize/Work": "0.02",
                   "Optimize/Variables": f"{STRAIN}Amplitude : 0.1 to 0.4; {STRAIN}Wave speed : 0.5 to 2"},
      {"Optimize/Tolerance": "0.1", "Optimize/Most iterations": "1"}),
+    ("fit", FITTED, {"Fit/Data": FILES / "tracks2.csv", "Fit/Variables": f"{STRAIN}Amplitude : 0.02 to 0.4",
+                     "Fit/Markers at": "0.1, 0.5, 0.9", "Fit/Place deviation": "0.01", "Fit/Origin": "tail", "Fit/First time": "0.1",
+                     "Fit/Standard deviation": "0.02", "Fit/Starts": "3", "Fit/Seed": "2"}),
     ("optimize", {**BEST, "Optimize/Starts": "2"}, {"Optimize/Start spread": "0.5", "Optimize/Seed": "2"}),
 ]
 # How often a cost is measured is to be seen in nothing but its scatter, a checkpoint after a crash only; cells are shared
@@ -274,7 +283,7 @@ def outcome(scene, command="run"):
         return answer_in(folder), [line for line in log if "has no effect" in line]
     file = folder.parent / "scene.prm"
     file.write_text(crawler.to_prm(scene))
-    ended = call([PROGRAM, command, file, "--output", folder], variables=NO_PICTURES)
+    ended = call([PROGRAM, command, file, "--output", folder], variables={} if command == "fit" else NO_PICTURES)
     expect(0 <= ended.returncode < 100, f"{command} of {scene} ends with {ended.returncode}: {ended.stderr}")
     if ended.returncode == 2:
         return ended.stderr, []
@@ -381,7 +390,7 @@ def check_idle(each):
         expect(not changed, f"{changed} are noted, but change something in {scene}")
         expect(len(idle) > 20, f"{len(idle)} entries are noted in {scene}")
         for name, value in others.items() if each else ():
-            if name in idle or name in scene or name in NOT_TO_BE_SEEN | LIMITS or re.match("Sweep|Atlas|Optimize|Tradeoff", name):
+            if name in idle or name in scene or name in NOT_TO_BE_SEEN | LIMITS or re.match("Sweep|Atlas|Optimize|Fit|Tradeoff", name):
                 continue
             other, notes = outcome({**scene, name: value, **WHAT_IT_SWITCHES_TO.get(name, {})})
             expect(other != answer or any(f'"{name}" has no effect' in note for note in notes),

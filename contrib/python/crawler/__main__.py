@@ -14,7 +14,7 @@ COMMANDS = {"fit": ("fitting.command", ("numpy", "scipy")),  # module and what i
 
 
 def place_of_package():
-    """The folder of the package with its compiled part, which an installed program has where Python looks; else this one."""
+    """The folder of the package with its compiled part: of an installed program where Python looks; else this one."""
     places = [HERE.parent, *(HERE.parents[3].glob("lib/python3*/dist-packages") if len(HERE.parents) > 3 else ())]
     return next((place for place in places if any(place.glob("crawler/_core*"))), HERE.parent)
 
@@ -24,5 +24,5 @@ if __name__ == "__main__":
     from needs import need
     module, needed = COMMANDS[sys.argv[1]]
     need(*needed)
-    sys.path[0] = str(place_of_package())
+    sys.path[0] = str(place_of_package() if sys.argv[1] == "fit" else HERE.parent)
     importlib.import_module("crawler.needs").run_script(importlib.import_module(f"crawler.{module}").main)

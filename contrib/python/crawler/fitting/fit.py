@@ -10,7 +10,7 @@ from ..results import Numbers
 from .model import Model, require_enough
 from .uncertainty import LEVELS, Profile, correlation_in_time, covariance, in_words, probability, undetermined_directions
 
-FIRST_ACCURACY, LEAST_ACCURACY = 1e-5, 1e-11
+LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 1e-11  # of runs, whose differences are to be derivatives
 SHARE = 0.1           # largest numerical error, of the statistical one
 MOST_REFINEMENTS = 4
 CHANGE = 1e-3         # of chi-square, with data of known deviation, at which a search has ended
@@ -117,7 +117,7 @@ def find(model, n_starts=1, seed=1, progress=lambda text: None):
     data = model.data
     require_enough(data, model.names)
     problem = _Problem(model, data)
-    model.accuracy = FIRST_ACCURACY
+    model.accuracy = min(max(float(model.parameters["Accuracy"]), LEAST_ACCURACY), LARGEST_ACCURACY)
     starts, best = _starts(problem, n_starts, seed, progress)
     z, ended = best
     deviation, numerical = 1.0, None

@@ -78,7 +78,7 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
         if head or confidence:
             raise InputError('"--head" and "--confidence" are for markers, which this file has not')
         samples = Samples("m" if column == "m" else "strain", s, t, values)
-        _require_grid(samples, str(path))
+        _require_increasing(samples, str(path))
     words.append(f"{len(samples.s)} {'markers' if samples.quantity == 'x' else 'places'} x {len(samples.t)} times, "
                  f"{np.isnan(samples.values).sum()} gaps")
     samples.t = _converted(samples.t, "t", factor_t, shift_t, words)
@@ -264,9 +264,6 @@ def _on_grid(sheet, s, t, values, lines, kind, names=None):
                              "gaps")
     (s, i), (t, j) = (_distinct(axis) for axis in (s, t))
     of = "markers" if kind == "marker" else "places s"
-    if len(s) < LEAST or len(t) < LEAST:
-        raise InputError(f'"{sheet.name}" has {len(s)} different {of} and {len(t)} different times, but at least {LEAST} of each are '
-                         "expected")
     if len(s) * len(t) > MOST_GAPS * len(values):
         raise InputError(f'"{sheet.name}" has {len(values)} samples at {len(s)} different {of} and {len(t)} different times, but most '
                          "of them with each other are expected (all places sampled at the same times)")
@@ -294,10 +291,7 @@ def _distinct(values):
     return values[order][np.concatenate([[True], steps])], index
 
 
-def _require_grid(samples, name):
-    if len(samples.s) < LEAST or len(samples.t) < LEAST:
-        raise InputError(f'"{name}" has {len(samples.s)} different places s and {len(samples.t)} different times, but at least {LEAST} '
-                         "of each are expected")
+def _require_increasing(samples, name):
     for axis, values in (("s", samples.s), ("t", samples.t)):
         if not np.all(np.diff(values) > 0):
             raise InputError(f'"{axis}" of "{name}" does not increase, but increasing numbers are expected')
@@ -306,9 +300,6 @@ def _require_grid(samples, name):
 def _along_body(tracks, head, confidence, name, words):
     """Samples of markers from tail to head: places along the body, of which the head has the largest."""
     x, y, names = tracks.x.copy(), tracks.y, list(tracks.names)
-    if len(names) < LEAST or len(tracks.t) < LEAST:
-        raise InputError(f'"{name}" has {len(names)} different markers and {len(tracks.t)} different times, but at least {LEAST} of each '
-                         "are expected")
     if tracks.format not in ("wide", "long"):
         words.append(f"{tracks.format}: {len(names)} markers, {', '.join(names[:12])}{', ...' if len(names) > 12 else ''}")
     if head and head not in names:
