@@ -10,7 +10,7 @@ from ..results import Numbers
 from .model import Model, require_enough
 from .uncertainty import LEVELS, Profile, correlation_in_time, covariance, in_words, probability, undetermined_directions
 
-LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 1e-11  # of runs, whose differences are to be derivatives
+LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # of runs, whose differences are to be derivatives
 SHARE = 0.1           # largest numerical error, of the statistical one
 MOST_REFINEMENTS = 4
 CHANGE = 1e-3         # of chi-square, with data of known deviation, at which a search has ended
@@ -164,7 +164,7 @@ def _starts(problem, n_starts, seed, progress):
 def _shift(problem, z, jacobian):
     """By how much the numerical error of the runs changes the variables: as a run a thirtieth as wrong tells."""
     model = problem.model
-    finer, _ = model(problem.real(z), max(model.accuracy / 30, 1e-13))
+    finer, _ = model(problem.real(z), model.accuracy / 30)
     if not np.all(np.isfinite(finer)):
         return np.full(len(z), math.nan)
     values, basis = problem.run(z)
