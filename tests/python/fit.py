@@ -106,6 +106,22 @@ class Values(unittest.TestCase):
                 self.assertLess(one["numerical_error"], 0.1 * one["deviation"])
                 self.assertLess(abs(one["value"] - STRESS[name]), 5 * one["deviation"])
 
+    def test_numerical_error_holds(self):
+        for scene, names in ((STRESS, (P, K, AMPLITUDE)), (STRAIN, (P,))):
+            data = tracks(scene)
+            rough, fine = (fit(scene, data, *names, standard_deviation=NOISE, accuracy=accuracy) for accuracy in (1e-4, 1e-9))
+            for name in names:
+                one, other = rough.variables[name], fine.variables[name]
+                self.assertGreater(one["numerical_error"], 0)
+                self.assertLess(abs(one["value"] - other["value"]), one["numerical_error"] + other["numerical_error"] + 1e-4 * one["deviation"])
+
+    def test_lists_are_filled_up(self):
+        modes = {**STRAIN, "Active stress/Prescribed strain/Given by": "modes", "Active stress/Modes/Coefficients": "0, 0.2, 0.1"}
+        name = "Active stress/Modes/Coefficients[5]"
+        found = crawler.fit(modes, tracks({**modes, "Active stress/Modes/Coefficients": "0, 0.2, 0.1, 0, 0.05"}, 1e-3), {name: (-0.1, 0.2)},
+                            set={"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)}, standard_deviation=1e-3)
+        self.assertLess(abs(found.variables[name]["value"] - 0.05), 4 * found.variables[name]["deviation"])
+
     def test_places_of_the_first_frame(self):
         """Also of a body that has strain in the first frame, where markers are not where they are at rest."""
         for scene in (STRESS, STRAIN):

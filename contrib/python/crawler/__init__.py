@@ -221,7 +221,8 @@ def fit(scene, data=None, variables=None, *, set=None, verbose=False, **keywords
     if variables is not None:
         overrides.append(f"Fit/Variables={_ranges(variables)}")
     fitting = importlib.import_module(".fitting", __name__)
-    found, notes = fitting.fit(lambda more: _source(scene, [*overrides, *more]), data, print if verbose else lambda text: None)
+    model, notes = fitting.prepared(lambda more: _source(scene, [*overrides, *more]), data)
+    found = fitting.find(model, print if verbose else lambda text: None)
     _warn([*notes, *found.notes])
     return found
 

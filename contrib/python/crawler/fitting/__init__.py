@@ -7,16 +7,15 @@ from .data import Data, read_data
 from .fit import Fit, find
 from .model import Model
 
-__all__ = ["Data", "Fit", "Model", "find", "fit", "read_data"]
+__all__ = ["Data", "Fit", "Model", "find", "prepared", "read_data"]
 
 
-def fit(source, data=None, progress=lambda text: None, **reading):
-    """The Fit of a scene, and notes on its file: source(overrides) gives it with other values. data: a name, Samples, or None,
-    which stands for Fit/Data; reading: options of measured.read_samples(); progress gets sentences."""
+def prepared(source, data=None, **reading):
+    """The Model of a scene with its data, and notes on its file: source(overrides) gives it with other values. data: a name,
+    Samples, or None, which stands for Fit/Data; reading: options of measured.read_samples()."""
     effective, notes, variables = _compiled().variables_of_fit(source([]))
     parameters = parameters_of(effective)
     data = data if data is not None else parameters["Fit/Data"]
     if isinstance(data, str) and not data:
         raise InputError("Fit/Data is empty, but the name of a file with what was measured is expected (or --data)")
-    model = Model(source, parameters, variables, read_data(data, parameters, **reading))
-    return find(model, int(parameters["Fit/Starts"]), int(parameters["Fit/Seed"]), progress), notes
+    return Model(source, parameters, variables, read_data(data, parameters, **reading)), notes

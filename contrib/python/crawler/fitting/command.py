@@ -12,7 +12,7 @@ import numpy as np
 from .. import _source, to_prm
 from ..measured.options import add_reading_options, reading_of
 from ..needs import Failed, FileError, InputError, Parser, write_whole
-from . import fit
+from . import find, prepared
 from .fit import value_in_words
 
 PICTURE = pathlib.Path(__file__).absolute().parents[1] / "plot" / "fit.py"
@@ -62,14 +62,14 @@ def lines_of(found):
         yield f"{name:{width}}  {value_in_words(one)}{interval}"
     fits = (f"chi-square {goodness.chi_square:.5g} with {goodness.degrees_of_freedom} degrees of freedom (probability {goodness.probability:.2g})"
             if goodness.deviation_is_given else f"standard deviation of a datum {goodness.deviation_of_data:.3g}, from the residuals")
-    yield f"{goodness.n_data} data, {len(found.variables)} variables, {goodness.n_constants} for origin and places; {fits}"
-    for sentence in [*found.undetermined, *found.notes]:
+    yield f"data: {goodness.n_data}, variables: {len(found.variables)}, besides for origin and places: {goodness.n_constants}; {fits}"
+    alone = ["1 start: the minimum may be local (Fit/Starts)"] if len(found.starts) == 1 else []
+    for sentence in [*found.undetermined, *found.notes, *alone]:
         yield f"{sentence[0].upper()}{sentence[1:]}."
 
 
 def write(found, name, folder, settings):
     """All files of a fit; a sentence if there is no picture."""
-    folder.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(name, folder / "original.prm")
     text = f"include {os.path.abspath(name)}\n" + to_prm({**dict(one.split("=", 1) for one in settings), **found.settings})
     write_whole(folder / "fitted.prm", text.encode())
@@ -83,6 +83,22 @@ def write(found, name, folder, settings):
     write_whole(folder / "summary.json", (json.dumps(found, indent=2) + "\n").encode())
     drawn = subprocess.run([sys.executable, PICTURE, folder], capture_output=True, text=True, check=False)
     return "" if drawn.returncode == 0 else f"There is no picture: {drawn.stderr.strip()}. Draw it later with: crawler plot {folder}"
+
+
+def found_and_written(name, folder, model, settings, say):
+    """The Fit, whose files are in the folder then, and a sentence if there is no picture."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)  # or it is too late to say so
+    except OSError as error:
+        raise FileError(f'cannot write to "{folder}": {error.strerror}') from None
+    try:
+        found = find(model, say)
+        return found, write(found, name, folder, settings)
+    except OSError as error:
+        raise error if isinstance(error, FileError) else FileError(f'cannot write to "{folder}": {error.strerror or error}') from None
+    finally:
+        if not any(folder.iterdir()):
+            folder.rmdir()
 
 
 def table_of(fits):
@@ -107,23 +123,18 @@ def main():
     for setting in options.set:
         if "=" not in setting:
             raise InputError(f'"--set" is "{setting}", but "Section/Entry=value" is expected')
+    models = {name: prepared(lambda more, name=name: _source(name, [*options.set, *more]), options.data, **reading_of(options)) for name in folders}
+    if len({int(model.data.is_there.sum()) for model, _ in models.values()}) > 1:
+        raise InputError("the parameter files do not fit the same data, so they cannot be compared")
     fits = {}
     for name, folder in folders.items():
-        say(f"{name}:")
-        found, notes = fit(lambda more, name=name: _source(name, [*options.set, *more]), options.data, lambda text: say(f"  {text}"),
-                           **reading_of(options))
-        for note in notes:
-            say(f"  {note}")
-        try:
-            problem = write(found, name, folder, options.set)
-        except OSError as error:
-            raise error if isinstance(error, FileError) else FileError(f'cannot write to "{folder}": {error.strerror or error}') from None
+        model, notes = models[name]
+        say("\n  ".join([f"{name}:", *notes]))
+        found, problem = found_and_written(name, folder, model, options.set, lambda text: say(f"  {text}"))
         for line in [*lines_of(found), *filter(None, [problem]), f"Files in {folder}/"]:
             say(f"  {line}")
         fits[name] = found
     if len(fits) > 1:
-        if len({found.goodness.n_data for found in fits.values()}) > 1:
-            raise InputError("the parameter files do not fit the same data, so they cannot be compared")
         for line in table_of(fits):
             say(line)
     for name, found in fits.items():

@@ -5,9 +5,8 @@ import math
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..needs import InputError
+from ..needs import Failed, InputError
 from ..results import Numbers
-from .model import Model, require_enough
 from .uncertainty import LEVELS, Profile, correlation_in_time, covariance, in_words, probability, undetermined_directions
 
 LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # of runs, whose differences are to be derivatives
@@ -17,7 +16,8 @@ CHANGE = 1e-3         # of chi-square, with data of known deviation, at which a 
 MOST_STEPS = 60       # of a search
 MOST_MOVES, FAR_PLACE = 6, 1e-3  # of free places of markers; the latter in lengths of the body
 LEAST_NOISE = 1e-10   # relative to what the data vary; of data without noise
-NEAR = 1e-6           # to a limit, in ranges
+NEAR = 1e-3           # to a limit, in ranges
+MUCH = 100            # chi-square per degree of freedom that no noise has
 UNLIKELY = 1e-3       # probability of chi-square below which the scene does not fit
 
 
@@ -83,8 +83,8 @@ class _Problem:
         values, basis = self.run(z)
         columns = self.model.jacobian(self.real(z), None if both_sides else values) * self.width
         if not np.all(np.isfinite(columns)):
-            raise InputError(f"beside the values {', '.join(self.model.overrides(self.real(z)))} there is no run: {self.model.problem}; "
-                             "narrower ranges are expected")
+            values = ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.model.names, self.real(z)))
+            raise Failed(f"beside {values} there is no run: {self.model.problem}; narrower ranges are expected")
         return np.stack([self.scaled(one, basis) for one in np.moveaxis(columns, -1, 0)], axis=-1)
 
     def search(self, z):
@@ -99,6 +99,14 @@ class _Problem:
                 break
         return 2 * found.cost, z, found.status > 0
 
+    def improved(self, z, jacobian):
+        """One more step, with derivatives by differences on both sides, where no limit is in the way."""
+        step = np.linalg.lstsq(jacobian, self.residuals(z), rcond=1e-6)[0]
+        if np.any(z < NEAR) or np.any(z > 1 - NEAR) or np.any(z - step < 0) or np.any(z - step > 1):
+            return z
+        before, after = (np.sum(self.residuals(at) ** 2) for at in (z, z - step))
+        return z - step if after <= before else z
+
     def move_places(self, z):
         """Takes free places to where they fit best; is that far?"""
         data, length = self.data, self.model.parameters["Body/Length"]
@@ -112,17 +120,17 @@ class _Problem:
         return np.max(np.abs(data.places - before)) > FAR_PLACE * length
 
 
-def find(model, n_starts=1, seed=1, progress=lambda text: None):
-    """The Fit of a Model to its data. Raises InputError for data that cannot be used, and if no start can be run."""
+def find(model, progress=lambda text: None):
+    """The Fit of a Model to its data. Raises InputError if no start can be run, and Failed where there are no derivatives."""
     data = model.data
-    require_enough(data, model.names)
     problem = _Problem(model, data)
     model.accuracy = min(max(float(model.parameters["Accuracy"]), LEAST_ACCURACY), LARGEST_ACCURACY)
-    starts, best = _starts(problem, n_starts, seed, progress)
+    starts, best = _starts(problem, int(model.parameters["Fit/Starts"]), int(model.parameters["Fit/Seed"]), progress)
     z, ended = best
     deviation, numerical = 1.0, None
     for refinement in range(MOST_REFINEMENTS + 1):
         jacobian = problem.jacobian(z, both_sides=True)
+        z = problem.improved(z, jacobian)
         residual = problem.residuals(z)
         freedom = int(data.is_there.sum()) - len(z) - data.n_constants
         sum_of_squares = float(residual @ residual)
@@ -130,8 +138,7 @@ def find(model, n_starts=1, seed=1, progress=lambda text: None):
         loose, members = undetermined_directions(jacobian / deviation)
         involved = members.any(axis=0) if len(loose) else np.zeros(len(z), dtype=bool)
         spread = np.sqrt(np.diag(covariance(jacobian))) * deviation
-        finer = _shift(problem, z, jacobian)
-        numerical = np.abs(finer)
+        numerical = _numerical_error(problem, z, jacobian)
         worst = float(np.max(numerical[~involved] / np.maximum(spread[~involved], 1e-300), initial=0))
         if worst <= SHARE or refinement == MOST_REFINEMENTS or model.accuracy <= LEAST_ACCURACY:
             break
@@ -155,21 +162,26 @@ def _starts(problem, n_starts, seed, progress):
                        "values": dict(zip(model.names, problem.real(z).tolist()))})
         if squares < best[0]:
             best = (squares, z, ended)
-        progress(f"start {number + 1} of {n_starts}: " + (reason or f"sum of squares {squares:.6g}, least so far {best[0]:.6g}"))
+        rest = [math.sqrt(one / problem.data.is_there.sum()) * problem.scale for one in (squares, best[0])]
+        progress(f"start {number + 1} of {n_starts}: " + (reason or f"residuals {rest[0]:.6g} (root mean square), least so far {rest[1]:.6g}"))
     if best[0] == math.inf:
         raise InputError(f"the scene cannot be run at {'the start' if n_starts == 1 else f'any of {n_starts} starts'}: {starts[0]['reason']}")
     return starts, best[1:]
 
 
-def _shift(problem, z, jacobian):
-    """By how much the numerical error of the runs changes the variables: as a run a thirtieth as wrong tells."""
-    model = problem.model
+def _numerical_error(problem, z, jacobian):
+    """By how much the numerical error of the runs changes the variables: as a run a thirtieth as wrong tells, and as a
+    displacement would that is wrong by its bound at the end, and before in proportion to time."""
+    model, data = problem.model, problem.data
+    problem.last = None  # so that the bound is that of this run
+    values, basis = problem.run(z)
+    drift = model.bound / data.t[-1] if data.t[-1] > 0 else 0.0
+    drift = {"speed": drift * np.ones(values.shape), "strain": np.zeros(values.shape)}.get(data.kind, drift * data.t[:, None] + 0 * values)
     finer, _ = model(problem.real(z), model.accuracy / 30)
     if not np.all(np.isfinite(finer)):
         return np.full(len(z), math.nan)
-    values, basis = problem.run(z)
-    change = problem.scaled(values - finer, basis)
-    return np.linalg.lstsq(jacobian, change, rcond=1e-9)[0]
+    changes = np.stack([problem.scaled(values - finer, basis), problem.scaled(drift, basis)], axis=1)
+    return np.abs(np.linalg.lstsq(jacobian, changes, rcond=1e-9)[0]).sum(axis=1)
 
 
 def _described(problem, z, jacobian, deviation, numerical, loose, members, starts, ended):
@@ -202,14 +214,13 @@ def _described(problem, z, jacobian, deviation, numerical, loose, members, start
     p_value = probability(chi_square, freedom) if data.deviation else None
     if p_value is not None and p_value < UNLIKELY:
         notes.append(f"the scene does not fit the data: chi-square is {chi_square:.4g} with {freedom} degrees of freedom (probability {p_value:.1g}),"
-                     " so the deviations are too small; another scene, or another standard deviation, is expected")
+                     " so the deviations are too small; another scene, or another standard deviation, is expected"
+                     + (" (units? see \"--unit-of-s\" and \"--unit-of-t\")" if chi_square > MUCH * freedom else ""))
     if alike > 5 * chance:
         notes.append(f"residuals that are neighbours in time are alike (correlation {alike:.2g}): the scene does not describe all that the data "
                      "have, or their errors are not independent, and the deviations are too small")
     if not ended:
         notes.append(f"the search did not end within {MOST_STEPS} steps")
-    if len(starts) == 1:
-        notes.append("1 start: the minimum may be local (Fit/Starts)")
     worst = np.max(numerical[~involved] / np.maximum(spread[~involved], 1e-300), initial=0)
     if not worst <= SHARE:
         notes.append(f"the numerical error is up to {worst:.2g} of the statistical one")

@@ -18,8 +18,9 @@ class Model:
         """source(overrides): the scene with other values; variables: [(entry, from, to, start)]."""
         self.source, self.parameters, self.data = source, parameters, data
         self.names = [one[0] for one in variables]
+        require_enough(data, self.names)
         self.low, self.high, self.start = np.array([one[1:] for one in variables]).T
-        self.accuracy, self.n_runs, self.problem = None, 0, ""
+        self.accuracy, self.n_runs, self.problem, self.bound = None, 0, "", 0.0
 
     def overrides(self, x):
         """Entries with these values; a list as a whole."""
@@ -28,14 +29,11 @@ class Model:
             match = re.fullmatch(r"(.*)\[(\d+)\]", name)
             if match:
                 whole = lists.setdefault(match[1], str(self.parameters[match[1]]).split(","))
+                whole += ["0"] * (int(match[2]) - len(whole))  # as the program fills up a list
                 whole[int(match[2]) - 1] = repr(float(value))
             else:
                 others.append(f"{name}={float(value)!r}")
         return [*others, *(f"{name}={', '.join(map(str.strip, whole))}" for name, whole in lists.items())]
-
-    def summary(self, x, accuracy=None):
-        """What a run without fields says of itself."""
-        return json.loads(self._answer(x, accuracy or self.accuracy, None, None)["summary"])
 
     def _answer(self, x, accuracy, times, places):
         self.n_runs += 1
@@ -53,6 +51,7 @@ class Model:
         if summary["status"] != "finished" or "fields" not in answer:
             self.problem = f"{summary['reason']}: {summary['message']}"
             return np.full(data.values.shape, np.nan), None
+        self.bound = (summary.get("displacement_error") or {}).get("total") or 0.0
         fields = answer["fields"]
         if data.kind == "markers":
             return fields["displacement"] + data.places, fields["stretch"]
@@ -73,9 +72,11 @@ class Model:
                 up[j] = at
             elif down[j] < self.low[j] or value is not None:
                 down[j] = at
-            above = self(up)[0] if up[j] != at else value if value is not None else self(x)[0]
-            below = self(down)[0] if down[j] != at else value if value is not None else self(x)[0]
-            columns.append((above - below) / (up[j] - down[j]))
+            sides = [(side[j], self(side)[0]) for side in (up, down) if side[j] != at]
+            sides = [side for side in sides if np.all(np.isfinite(side[1]))]
+            if len(sides) < 2:  # at a limit, or the body inverts on the other side
+                sides.append((at, value if value is not None else self(x)[0]))
+            columns.append((sides[0][1] - sides[1][1]) / (sides[0][0] - sides[1][0]) if len(sides) == 2 else np.full(self.data.values.shape, np.nan))
         return np.stack(columns, axis=-1)
 
 
