@@ -4,8 +4,9 @@ from .. import _compiled
 from ..needs import InputError
 from ..results import parameters_of
 from .data import Data, read_data
-from .fit import Fit, find
+from .fit import find
 from .model import Model
+from .result import Fit
 
 __all__ = ["Data", "Fit", "Model", "find", "prepared", "read_data"]
 

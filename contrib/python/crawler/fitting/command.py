@@ -13,7 +13,7 @@ from .. import _source, to_prm
 from ..measured.options import add_reading_options, reading_of
 from ..needs import Failed, FileError, InputError, Parser, write_whole
 from . import find, prepared
-from .fit import value_in_words
+from .result import value_in_words
 
 PICTURE = pathlib.Path(__file__).absolute().parents[1] / "plot" / "fit.py"
 

@@ -156,13 +156,11 @@ class Profile:
 
 
 def correlation_in_time(residuals):
-    """Of residuals [time, place] that are neighbours in time, and its standard deviation if they were independent."""
+    """Of residuals [time, place] that are neighbours in time."""
     first, second = residuals[:-1], residuals[1:]
     both = ~np.isnan(first) & ~np.isnan(second)
     n, size = int(both.sum()), float(np.nanmean(residuals ** 2))
-    if n < 2 or size == 0:
-        return 0.0, math.inf
-    return float(np.mean(first[both] * second[both]) / size), 1 / math.sqrt(n)
+    return 0.0 if n < 2 or size == 0 else float(np.mean(first[both] * second[both]) / size)
 
 
 def probability(chi_square, freedom):

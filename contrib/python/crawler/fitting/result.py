@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What is said of a fit: values, deviations, intervals, what is not told, and whether the scene fits at all."""
+import dataclasses
+import math
+
+import numpy as np
+
+from ..results import Numbers
+from .uncertainty import LEVELS, Profile, correlation_in_time, covariance, in_words, probability
+
+SHARE = 0.1           # largest numerical error, of the statistical one
+MOST_STEPS = 60       # of a search
+NEAR = 1e-3           # to a limit, in ranges
+UNLIKELY = 1e-3       # probability of chi-square below which the scene does not fit
+MUCH = 100            # chi-square per degree of freedom that no noise has
+ALIKE = 5             # correlation of residuals in time, in its own deviations, that is not by chance
+
+
+class Fit(Numbers):
+    """What was found: the keys of summary.json (doc/fit.md). Besides: data; model and residuals, arrays [time, place] like
+    data.values; covariance, an array [variable, variable] in units of the entries; settings, the entries of the best scene."""
+
+    def __init__(self, found, data, model, settings, covariance_of_values):
+        super().__init__(found)
+        self.data, self.model, self.residuals = data, model, data.values - model
+        self.settings, self.covariance = settings, covariance_of_values
+
+    def __repr__(self):
+        return f"<crawler.Fit: {self.status}, " + ", ".join(f"{name} = {value_in_words(one)}" for name, one in self.variables.items()) + ">"
+
+
+def value_in_words(one):
+    """Of a variable, as in summary.json: value, statistical deviation, numerical error."""
+    if not one["determined"]:
+        return "not told by the data"
+    numerical = "?" if one["numerical_error"] is None else f"{one['numerical_error']:.1g}"
+    return f"{one['value']:.6g} +- {one['deviation']:.2g} +- {numerical} (numerical)"
+
+
+@dataclasses.dataclass
+class Best:
+    """Where a search has ended, in scaled variables (0 to 1 over the ranges)."""
+    z: np.ndarray           # [variable]
+    jacobian: np.ndarray    # [residual, variable]
+    deviation: float        # of a residual
+    numerical: np.ndarray   # [variable], errors; NaN where they are not known
+    loose: np.ndarray       # [direction, variable], what the data do not tell
+    members: np.ndarray     # [direction, variable], which variables belong to it
+    ended: bool             # in order
+
+    @property
+    def involved(self):
+        """[variable]: does it belong to such a direction?"""
+        return self.members.any(axis=0) if len(self.members) else np.zeros(len(self.z), dtype=bool)
+
+    @property
+    def spread(self):
+        """[variable], deviations."""
+        return np.sqrt(np.diag(covariance(self.jacobian))) * self.deviation
+
+    @property
+    def worst(self):
+        """The largest numerical error, of the statistical one."""
+        told = ~self.involved
+        return float(np.max(self.numerical[told] / np.maximum(self.spread[told], 1e-300), initial=0))
+
+
+def described(problem, best, starts):
+    """The Fit."""
+    model, data = problem.model, problem.data
+    values, residual, there = problem.real(best.z), problem.residuals(best.z), data.is_there
+    grid = np.full(data.values.shape, np.nan)
+    grid[there] = residual[:there.sum()]
+    variables, goodness = _variables(problem, best, values), _goodness(problem, best, residual, grid)
+    n, k = goodness["n_data"], len(values) + data.n_constants + (0 if data.deviation else 1)
+    likelihood = goodness["chi_square"] if data.deviation else n * math.log(max(float(residual @ residual), 1e-300) * problem.scale ** 2 / n)
+    matrix = covariance(best.jacobian)
+    found = {"status": "finished" if best.ended else "failed", "reason": "converged" if best.ended else "no_convergence",
+             "message": "" if best.ended else f"the search did not end within {MOST_STEPS} steps", "variables": variables,
+             "undetermined": [in_words(*one, model.names, values, problem.width) for one in zip(best.loose, best.members)],
+             "notes": list(_notes(best, variables, goodness)),
+             "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
+             "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
+             "accuracy": model.accuracy, "n_runs": model.n_runs, "starts": starts}
+    return Fit(found, data, data.values + grid * problem.scale, dict(one.split("=", 1) for one in model.overrides(values)),
+               matrix * best.deviation ** 2 * np.outer(problem.width, problem.width))
+
+
+def _variables(problem, best, values):
+    """All that is said of each variable."""
+    model, spread, width, variables = problem.model, best.spread, problem.width, {}
+    profile = Profile(lambda z: problem.residuals(z) / best.deviation, lambda z: problem.jacobian(z) / best.deviation, best.z)
+    for j, name in enumerate(model.names):
+        at, is_told = best.z[j], not best.involved[j]
+        one = {"value": float(values[j]) if is_told else None, "used": float(values[j]), "deviation": None, "numerical_error": None,
+               **{level: None for level in LEVELS}, "from": float(model.low[j]), "to": float(model.high[j]), "determined": is_told,
+               "at_limit": "from" if at < NEAR else "to" if at > 1 - NEAR else ""}
+        variables[name] = one
+        if is_told:
+            ends = profile.interval(j, spread[j])
+            one["deviation"] = float(spread[j] * width[j])
+            one["numerical_error"] = float(best.numerical[j] * width[j]) if math.isfinite(best.numerical[j]) else None
+            one.update({level: [None if end is None else float(model.low[j] + end * width[j]) for end in ends[level]] for level in LEVELS})
+    return variables
+
+
+def _goodness(problem, best, residual, grid):
+    """Does the scene fit the data? grid: residuals [time, place]."""
+    data, n = problem.data, int(problem.data.is_there.sum())
+    chi_square, freedom = float(residual @ residual) / best.deviation ** 2, n - len(best.z) - data.n_constants
+    return {"kind": data.kind, "n_data": n, "n_variables": len(best.z), "n_constants": data.n_constants, "chi_square": chi_square,
+            "degrees_of_freedom": freedom, "probability": probability(chi_square, freedom) if data.deviation else None,
+            "deviation_of_data": best.deviation * problem.scale, "deviation_is_given": data.deviation is not None,
+            "correlation_in_time": correlation_in_time(grid)}
+
+
+def _notes(best, variables, goodness):
+    """Sentences on what is perhaps not meant."""
+    for name, one in variables.items():
+        if one["at_limit"] and one["determined"]:
+            yield f"{name} is at its limit, {one['value']:.6g}: the best value may lie beyond it"
+    chi_square, freedom, p_value = (goodness[key] for key in ("chi_square", "degrees_of_freedom", "probability"))
+    if p_value is not None and p_value < UNLIKELY:
+        units = ' (units? see "--unit-of-s" and "--unit-of-t")' if chi_square > MUCH * freedom else ""
+        yield (f"the scene does not fit the data: chi-square is {chi_square:.4g} with {freedom} degrees of freedom (probability {p_value:.1g}), so "
+               f"the deviations are too small; another scene, or another standard deviation, is expected{units}")
+    if goodness["correlation_in_time"] > ALIKE / math.sqrt(goodness["n_data"]):
+        yield (f"residuals that are neighbours in time are alike (correlation {goodness['correlation_in_time']:.2g}): the scene does not describe "
+               "all that the data have, or their errors are not independent, and the deviations are too small")
+    if not best.ended:
+        yield f"the search did not end within {MOST_STEPS} steps"
+    if not best.worst <= SHARE:
+        yield ("the numerical error is not known" if math.isnan(best.worst) else
+               f"the numerical error is up to {best.worst:.2g} of the statistical one")
