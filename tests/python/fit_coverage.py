@@ -90,7 +90,7 @@ def print_table(animals):
     """Returns how much is wrong."""
     fitting = [one for one in animals if one[1] > CHANCE]  # of the others the program says that the scene does not fit
     rows, probabilities = [row for one in fitting for row in one[0]], [one[1] for one in fitting]
-    wrong = len(fitting) < 0.97 * len(animals)
+    wrong = int(len(fitting) < 0.97 * len(animals))
     print(f"{len(animals)} animals, of which {len(animals) - len(fitting)} are said not to fit (another minimum); "
           f"{sum(one[2] for one in fitting)} numbers that the data do not tell\n| number | fits | 68 % | 95 % | mean error/deviation | spread |")
     print("|---|---|---|---|---|---|")
