@@ -72,6 +72,15 @@ class Values(unittest.TestCase):
             for name in names:  # the mean over points is good to 1e-5
                 self.assertAlmostEqual(found.variables[name]["used"], STRESS[name], delta=5e-4, msg=data.quantity)
 
+    def test_more_starts_change_no_better_value(self):
+        """The random starts of this seed end elsewhere or fail; places of markers stay those of the best one."""
+        data = tracks(STRESS)
+        variables = {WAVE + "Frequency": (0.6, 3), AMPLITUDE: (0.02, 5)}
+        few, many = (crawler.fit(STRESS, data, variables, standard_deviation=NOISE, starts=n) for n in (1, 5))
+        self.assertGreater(max(one["residuals"] or 1 for one in many.starts), 2 * many.starts[0]["residuals"])
+        for name in variables:
+            self.assertLess(abs(few.variables[name]["value"] - many.variables[name]["value"]), 1e-2 * few.variables[name]["deviation"])
+
     def test_deviation_is_that_of_least_squares(self):
         """For one number it is noise over the norm of the derivatives; here those of runs beside the best one."""
         found = fit(STRAIN, tracks(STRAIN), P, standard_deviation=NOISE, set={"Fit/Origin": "tail"} | {"Fit/First time": 0})

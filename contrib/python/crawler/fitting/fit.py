@@ -123,22 +123,24 @@ def _looked_at(problem, z, ended):
 
 
 def _starts(problem, n_starts, seed, progress):
-    """Searches from all starts: a list of dicts, and the best as (scaled variables, did it end in order?)."""
-    model, random = problem.model, np.random.default_rng(seed)
-    first = (model.start - model.low) / problem.width
-    starts, best = [], (math.inf, first, False)
+    """Searches from all starts: a list of dicts, and the best as (scaled variables, did it end in order?), whose places are those
+    of the data then."""
+    model, data, random = problem.model, problem.data, np.random.default_rng(seed)
+    first, places = (model.start - model.low) / problem.width, data.places
+    starts, best, best_places = [], (math.inf, first, False), places
     for number in range(n_starts):
-        z = first if number == 0 else random.random(len(first))
-        squares, z, ended = problem.search(z)
+        data.places, problem.last = places, None
+        squares, z, ended = problem.search(first if number == 0 else random.random(len(first)))
         reason = "" if squares < math.inf else model.problem
-        starts.append({"start": number, "chi_square": squares if squares < math.inf else None, "reason": reason,
-                       "values": dict(zip(model.names, problem.real(z).tolist()))})
         if squares < best[0]:
-            best = (squares, z, ended)
-        rest = [math.sqrt(one / problem.data.is_there.sum()) * problem.scale for one in (squares, best[0])]
+            best, best_places = (squares, z, ended), data.places
+        rest = [math.sqrt(one / data.is_there.sum()) * problem.scale for one in (squares, best[0])]
+        starts.append({"start": number, "residuals": None if reason else rest[0], "reason": reason,
+                       "values": dict(zip(model.names, problem.real(z).tolist()))})
         progress(f"start {number + 1} of {n_starts}: " + (reason or f"residuals {rest[0]:.6g} (root mean square), least so far {rest[1]:.6g}"))
     if best[0] == math.inf:
         raise InputError(f"the scene cannot be run at {'the start' if n_starts == 1 else f'any of {n_starts} starts'}: {starts[0]['reason']}")
+    data.places, problem.last = best_places, None
     return starts, best[1:]
 
 

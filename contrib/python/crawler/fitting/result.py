@@ -89,7 +89,8 @@ def described(problem, best, starts):
 def _variables(problem, best, values):
     """All that is said of each variable."""
     model, spread, width, variables = problem.model, best.spread, problem.width, {}
-    profile = Profile(lambda z: problem.residuals(z) / best.deviation, lambda z: problem.jacobian(z) / best.deviation, best.z)
+    profile = Profile(lambda z: problem.residuals(z) / best.deviation, lambda z: problem.jacobian(z) / best.deviation, best.z,
+                      best.jacobian / best.deviation)
     for j, name in enumerate(model.names):
         at, is_told = best.z[j], not best.involved[j]
         one = {"value": float(values[j]) if is_told else None, "used": float(values[j]), "deviation": None, "numerical_error": None,

@@ -62,10 +62,10 @@ class Profile:
     """The least chi-square with one variable held fast: found by steps of the others with the derivatives at the best values,
     and, where it is no parabola, by searches."""
 
-    def __init__(self, residuals, jacobian, x):
-        """residuals(x), jacobian(x): of scaled residuals, NaN where there is no run; x: the best values."""
-        self.residuals, self.jacobian, self.x = residuals, jacobian, x
-        self.slopes = jacobian(x)
+    def __init__(self, residuals, jacobian, x, slopes):
+        """residuals(x), jacobian(x): of scaled residuals, NaN where there is no run; x: the best values; slopes: the
+        derivatives there."""
+        self.residuals, self.jacobian, self.x, self.slopes = residuals, jacobian, x, slopes
         self.least = float(np.sum(residuals(x) ** 2))
 
     def interval(self, j, deviation):
