@@ -101,23 +101,15 @@ class PointStudy(Study):
                 for name, column in self.columns(output).items() if not name.endswith("seconds")}
 
 
-class TradeoffStudy(Study):
-    """Rows in lines of JSON while it is under way, and a table at the end."""
+class TradeoffStudy(PointStudy):
+    """What a setting costs is no answer; one that did not finish has no seconds."""
 
     def done(self, output):
-        file = output / "tradeoff.csv"
-        rows = {int(row["index"]): float(row["seconds"]) if row["seconds"] else None
-                for row in (csv_rows(file) if file.exists() else [])}
-        for file in (output / "rows").glob("*.jsonl"):
-            for line in file.read_text(encoding="utf-8").splitlines():
-                row = json.loads(line)
-                rows[row["index"]] = row["seconds"]
-        return rows
+        return {row: seconds for row, seconds in super().done(output).items() if seconds == seconds}
 
     def answers(self, output):
-        own = ("model", "formulation", "mesh", "engine", "integrator", "degree", "cells", "mesh tolerance", "tolerance",
-               "status", "reason", "displacement", "error", "shown error", "below bar", "steps")
-        return sorted([row[name] for name in own] for row in csv_rows(output / "tradeoff.csv"))
+        costs = ("seconds", "spread", "repetitions", "memory", "pareto")
+        return {name: column for name, column in super().answers(output).items() if not name.endswith(costs)}
 
 
 class OptimizeStudy(Study):
@@ -224,7 +216,7 @@ def test_kills(folder):
                "--set", "Optimize/Starts=3")
     starts = [f"{case}-{start}.json" for case in (1, 2) for start in range(3)]
     studies = {**point_study,
-               "tradeoff": TradeoffStudy(("tradeoff", "scene.prm"), ("original.prm", "tradeoff.csv", "summary.json"), 60),
+               "tradeoff": TradeoffStudy(("tradeoff", "scene.prm"), "tradeoff", "tradeoff", "status", "seconds"),
                "optimize": OptimizeStudy(("optimize", PRM / "optimize_harmonics.prm", *budgets), starts, 0)}
     for name, study in studies.items():
         (folder / name).mkdir()

@@ -77,14 +77,6 @@ namespace crawler::test
     return result;
   }
 
-  /// Settings, and others that are stronger.
-  inline Settings
-  with(Settings settings, const Settings &others)
-  {
-    settings.insert(settings.end(), others.begin(), others.end());
-    return settings;
-  }
-
   /// A stress by a formula, friction exponent @p a.
   inline Settings
   expression(const double a, const std::string &formula, const double end_time = 1., const double k = 1.)

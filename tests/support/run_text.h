@@ -17,6 +17,14 @@ namespace crawler::test
 {
   using Settings = std::vector<std::pair<std::string, std::string>>;
 
+  /// Settings, and others that are stronger.
+  inline Settings
+  with(Settings settings, const Settings &others)
+  {
+    settings.insert(settings.end(), others.begin(), others.end());
+    return settings;
+  }
+
   /// A value as it stands in a parameter file.
   inline std::string
   text(const double value)

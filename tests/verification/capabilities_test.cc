@@ -27,7 +27,7 @@ namespace
   const Settings wave = test::with(test::wave(-1., 0.3, 1., 20.), {{"Accuracy", "1e-3"}});
 
   Settings
-  feedback(const std::string &formula)
+  wave_with_feedback(const std::string &formula)
   {
     return {{"Active stress/Generator", "strain feedback"},
             {"Active stress/Strain feedback/Active stress", "0.2*sin(2*pi*(s+t))*s*(1-s)*4" + formula},
@@ -45,9 +45,9 @@ namespace
      "the efficiency has no bound there"},
     {"gamma(x)", {{"Ground/Profile", "1+0.1*tanh(x)"}}, "strides depend on the place"},
     {"initial stretch", {{"Body/Initial stretch", "1+0.1*sin(pi*s)^2"}}, "batches start from rest"},
-    {"feedback by w, w_t", feedback("-0.1*(w-1)+0.05*w_t"), "no period is declared"},
-    {"feedback by w_near", {feedback("+0.1*(w_near-1)")}, "cells that are no neighbours are coupled"},
-    {"feedback by w_delayed", {feedback("+0.1*(w_delayed-1)")}, "the past is a part of the state"},
+    {"feedback by w, w_t", wave_with_feedback("-0.1*(w-1)+0.05*w_t"), "no period is declared"},
+    {"feedback by w_near", {wave_with_feedback("+0.1*(w_near-1)")}, "cells that are no neighbours are coupled"},
+    {"feedback by w_delayed", {wave_with_feedback("+0.1*(w_delayed-1)")}, "the past is a part of the state"},
     {"stretch form",
      {{"Discretization/Formulation", "stretch"}, {"Accuracy", "1e-2"}},
      "batches are in the position form"},

@@ -14,16 +14,10 @@
 #include <set>
 
 using namespace crawler;
+using test::with;
 
 namespace
 {
-  test::Settings
-  with(test::Settings settings, const test::Settings &more)
-  {
-    settings.insert(settings.end(), more.begin(), more.end());
-    return settings;
-  }
-
   /// The displacement of Fig. S1 with chi = 0.4 (doc/theory.md, section 5).
   constexpr double fig_s1 = 9.0072529800e-2;
   /// That of a = +1, c = -1, whose mirror image is c = 1.

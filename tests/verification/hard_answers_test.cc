@@ -2,12 +2,11 @@
 //
 // Scenes whose answers were once wrong, with bounds that said otherwise: events that samples miss, gaits of hundreds of
 // strides, soft bodies, meshes of the user's own.
-#include "../support/run_text.h"
+#include "../support/answers.h"
 #include "random_scenes.h"
 
 #include <crawler/accuracy/error_estimate.h>
 #include <crawler/run/result_table.h>
-#include <crawler/studies/core/compute.h>
 
 #include <gtest/gtest.h>
 
@@ -15,28 +14,11 @@
 #include <fstream>
 
 using namespace crawler;
+using test::answer_to;
+using test::never;
 
 namespace
 {
-  bool
-  never()
-  {
-    return false;
-  }
-
-  /// What `crawler run` answers, without files.
-  SimulationResult
-  answer_to(const test::Settings &settings)
-  {
-    Task task;
-    task.parameters = test::parameters_with(settings);
-    task.gait       = true;
-    compute_all({&task, 1}, HUGE_VAL, never);
-    if (task.error)
-      std::rethrow_exception(task.error);
-    return task.computed.result;
-  }
-
   void
   expect_within(const SimulationResult &result, const double exact, const double accuracy, const std::string &what)
   {

@@ -13,6 +13,7 @@
 #include <cmath>
 
 using namespace crawler;
+using test::with;
 
 namespace
 {
@@ -22,13 +23,6 @@ namespace
     const Parameters parameters = test::parameters_with(settings);
     const Scene scene           = parameters.create_scene();
     return ReducedModel(scene, model).compute(accuracy, true);
-  }
-
-  test::Settings
-  with(test::Settings settings, const test::Settings &more)
-  {
-    settings.insert(settings.end(), more.begin(), more.end());
-    return settings;
   }
 
   ModelChoice

@@ -11,6 +11,7 @@
 #include <cmath>
 
 using namespace crawler;
+using test::with;
 
 namespace
 {
@@ -145,13 +146,6 @@ namespace
   const test::Settings wave = {{"Active stress/Optimal wave/Choose wave by", "wave speed"},
                                {"Active stress/Optimal wave/Wave speed", "1.3"},
                                {"Active stress/Optimal wave/Perturbation parameter", "0.3"}};
-
-  test::Settings
-  with(test::Settings settings, const test::Settings &more)
-  {
-    settings.insert(settings.end(), more.begin(), more.end());
-    return settings;
-  }
 } // namespace
 
 TEST(RunGradient, OfPlainBodies)

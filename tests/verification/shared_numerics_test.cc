@@ -2,6 +2,8 @@
 //
 // Answers with numerics that neighbours in a sweep share (studies/sweep/sweep_numerics.h), against answers of runs that
 // are alone and a hundred times as accurate.
+#include "../support/answers.h"
+
 #include <crawler/run/result_table.h>
 #include <crawler/studies/sweep/sweep_numerics.h>
 
@@ -11,15 +13,10 @@
 #include <cmath>
 
 using namespace crawler;
+using test::never;
 
 namespace
 {
-  bool
-  never()
-  {
-    return false;
-  }
-
   bool
   always()
   {
@@ -47,13 +44,14 @@ namespace
     double least_part; ///< of the points that the shared numerics must answer
   };
 
-  const std::string wave = "subsection Active stress\n subsection Optimal wave\n set Choose wave by = wave speed\n "
-                           "set Wave speed = 1\n end\nend\n";
+  const std::string set_by_speed =
+    "subsection Active stress\n subsection Optimal wave\n set Choose wave by = wave speed\n "
+    "set Wave speed = 1\n end\nend\n";
 
   void
   expect_covered(const Family &family, const double accuracy)
   {
-    const std::string scene = wave + family.scene;
+    const std::string scene = set_by_speed + family.scene;
     SweepPoints points      = points_of(scene, family.axes, accuracy),
                 exact       = points_of(scene, family.axes, 0.01 * accuracy);
     SweepNumerics numerics(points), others(exact);
@@ -117,7 +115,8 @@ TEST(SharedNumerics, BoundsCoverTheErrors)
 /// Whoever asks, and in which order, gets the same.
 TEST(SharedNumerics, DependOnTheBlockAlone)
 {
-  SweepPoints points = points_of(wave, "Active stress/Optimal wave/Perturbation parameter : uniform(0.05, 0.45)", 1e-4);
+  SweepPoints points =
+    points_of(set_by_speed, "Active stress/Optimal wave/Perturbation parameter : uniform(0.05, 0.45)", 1e-4);
   const SweepBlock all = {0, n_points}, other = {0, n_points / 2};
   SweepNumerics forward(points), backward(points);
   const auto a             = forward.at(all, 0, always);
@@ -135,8 +134,9 @@ TEST(SharedNumerics, DependOnTheBlockAlone)
 TEST(SharedNumerics, BlocksOfDifferentKindsAreDivided)
 {
   SweepPoints points(MPI_COMM_SELF,
-                     ParameterFile::from_text(wave + "subsection Sweep\n set Axes = Time/Integrator : bdf, radau 9; "
-                                                     "Body/Anchoring exponent : linspace(1.5, 4, 300)\nend\n",
+                     ParameterFile::from_text(set_by_speed +
+                                                "subsection Sweep\n set Axes = Time/Integrator : bdf, radau 9; "
+                                                "Body/Anchoring exponent : linspace(1.5, 4, 300)\nend\n",
                                               "test.prm"));
   SweepNumerics numerics(points);
   const SweepBlock some = {280, 40};
@@ -152,8 +152,9 @@ TEST(SharedNumerics, AreForManyPoints)
 {
   SweepPoints points(
     MPI_COMM_SELF,
-    ParameterFile::from_text(
-      wave + "subsection Sweep\n set Axes = Body/Anchoring exponent : linspace(1.5, 4, 100)\nend\n", "test.prm"));
+    ParameterFile::from_text(set_by_speed +
+                               "subsection Sweep\n set Axes = Body/Anchoring exponent : linspace(1.5, 4, 100)\nend\n",
+                             "test.prm"));
   SweepNumerics numerics(points);
   EXPECT_EQ(numerics.at({0, 100}, 3, always).choice, nullptr);
 }

@@ -3,11 +3,10 @@
 // Extreme stretches after the active stress starts or jumps suddenly, where polynomials overshoot (doc/numerics.md,
 // "Extremes after sudden changes"): exact ones for a = 0, where v = w + m/k solves the heat equation with v = 1 at the
 // ends, and those of finer and finer runs.
-#include "../support/run_text.h"
+#include "../support/answers.h"
 
 #include <crawler/run/result_table.h>
 #include <crawler/scene/breaks.h>
-#include <crawler/studies/core/compute.h>
 
 #include <gtest/gtest.h>
 
@@ -15,20 +14,10 @@
 #include <numbers>
 
 using namespace crawler;
+using test::answer_to;
 
 namespace
 {
-  SimulationResult
-  answer_to(const test::Settings &settings)
-  {
-    Task task;
-    task.parameters = test::parameters_with(settings);
-    compute_all({&task, 1}, HUGE_VAL, []() { return false; });
-    if (task.error)
-      std::rethrow_exception(task.error);
-    return task.computed.result;
-  }
-
   /// Bound of the error of the number with that key.
   double
   bound(const SimulationResult &result, const std::string &key)

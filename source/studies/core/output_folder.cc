@@ -51,6 +51,7 @@ namespace crawler
                                                 "atlas.svg",
                                                 "tradeoff.csv",
                                                 "tradeoff.h5",
+                                                "tradeoff.h5.part",
                                                 "tradeoff.png",
                                                 "tradeoff.svg",
                                                 "recommendations.prm",

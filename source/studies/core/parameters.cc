@@ -74,14 +74,11 @@ namespace crawler
     declarations.text("Integrators", integrators, "a list of integrators as in the section Time")
       .means("The time integrators that it tries.");
     declarations.text("Degrees", degrees, "a list of whole numbers from 1 to 8").means("The degrees that it tries.");
-    declarations.text("Cells", cells, "\"automatic\" or a list of whole numbers")
-      .means("The numbers of cells of uniform meshes. Automatic: up to five for each degree, from the coarsest mesh "
-             "that is good for 3 % on (doc/numerics.md).");
+    declarations.text("Cells", cells, "a list of whole numbers").means("The numbers of cells of uniform meshes.");
     declarations.text("Mesh tolerances", mesh_tolerances, numbers, "1")
       .means("The tolerances of adaptive meshes, as in the section Discretization.");
     declarations.text("Tolerances", tolerances, numbers, "1")
-      .means("The time tolerances relative to the displacement, the loosest first. A mesh's list ends early where "
-             "tighter ones cannot reduce the error.");
+      .means("The time tolerances relative to the displacement.");
     declarations.whole_number("Repetitions", repetitions, 1, 1000)
       .means("The cost is the median of so many measurements, each of at least 5 ms.");
     declarations.number("Time limit per run", run_time_limit, positive(), "s")

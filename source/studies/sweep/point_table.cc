@@ -53,45 +53,6 @@ namespace crawler
         }
       return "";
     }
-
-    /// Of the rows of @p table.
-    std::vector<bool>
-    rows_that_are_there(const RowReader &rows, const PointTable &table, Log &log)
-    {
-      unsigned long n_damaged = 0;
-      constexpr double larger = 1.2;
-      std::vector<bool> done;
-      for (unsigned long first = 0; first < rows.n_rows(); first += rows_together)
-      {
-        const unsigned long n = std::min(rows_together, rows.n_rows() - first);
-        const auto column     = [&](const std::string &name) { return rows.read(rows.index_of(name), first, n); };
-        const Column is_done  = column(table.done);
-        for (unsigned long i = 0; i < n; ++i)
-          done.push_back(!text_of(is_done, i).empty());
-        if (const auto intact = rows.intact(table.written_columns(), first, n))
-          for (unsigned long i = 0; i < n; ++i)
-            if (done[first + i] && !(*intact)[i])
-            {
-              done[first + i] = false;
-              ++n_damaged;
-            }
-        for (const auto &[reason_name, seconds_name] : table.reasons_and_seconds)
-        {
-          const Column reason = column(reason_name), seconds = column(seconds_name);
-          for (unsigned long i = 0; i < n; ++i)
-            if (text_of(reason, i) == time_limit_reason &&
-                table.time_limit > larger * std::get<std::vector<double>>(seconds.values)[i])
-              done[first + i] = false;
-        }
-      }
-      if (n_damaged > 0)
-        log.warn(
-          fmt::format("warning: {} of the table {} not what was written, so the file was damaged; {} computed anew",
-                      counted(n_damaged, "row"),
-                      n_damaged == 1 ? "is" : "are",
-                      n_damaged == 1 ? "it is" : "they are"));
-      return done;
-    }
   } // namespace
 
   std::vector<RowFile::Column>
@@ -100,6 +61,44 @@ namespace crawler
     std::vector<RowFile::Column> list(columns.begin() + static_cast<std::ptrdiff_t>(n_known), columns.end());
     std::stable_partition(list.begin(), list.end(), [&](const RowFile::Column &column) { return column.name != done; });
     return list;
+  }
+
+  std::vector<bool>
+  rows_done(const RowReader &rows, const PointTable &table, Log &log)
+  {
+    unsigned long n_damaged = 0;
+    constexpr double larger = 1.2;
+    std::vector<bool> done;
+    for (unsigned long first = 0; first < rows.n_rows(); first += rows_together)
+    {
+      const unsigned long n = std::min(rows_together, rows.n_rows() - first);
+      const auto column     = [&](const std::string &name) { return rows.read(rows.index_of(name), first, n); };
+      const Column is_done  = column(table.done);
+      for (unsigned long i = 0; i < n; ++i)
+        done.push_back(!text_of(is_done, i).empty());
+      if (const auto intact = rows.intact(table.written_columns(), first, n))
+        for (unsigned long i = 0; i < n; ++i)
+          if (done[first + i] && !(*intact)[i])
+          {
+            done[first + i] = false;
+            ++n_damaged;
+          }
+      for (const auto &[reason_name, seconds_name] : table.reasons_and_seconds)
+      {
+        const Column reason = column(reason_name), seconds = column(seconds_name);
+        for (unsigned long i = 0; i < n; ++i)
+          if (text_of(reason, i) == time_limit_reason &&
+              table.time_limit > larger * std::get<std::vector<double>>(seconds.values)[i])
+            done[first + i] = false;
+      }
+    }
+    if (n_damaged > 0)
+      log.warn(
+        fmt::format("warning: {} of the table {} not what was written, so the file was damaged; {} computed anew",
+                    counted(n_damaged, "row"),
+                    n_damaged == 1 ? "is" : "are",
+                    n_damaged == 1 ? "it is" : "they are"));
+    return done;
   }
 
   std::vector<RowFile::Column>
@@ -136,6 +135,20 @@ namespace crawler
             }};
   }
 
+  void
+  warn_of_other_versions(StudyFolder &folder, const PointTable &table)
+  {
+    for (const auto &[name, version] : provenance("", ""))
+      if (name.starts_with("version of "))
+        if (const std::string was = read_attribute(folder.path() / table.file, table.group, name); was != version)
+          folder.log().warn(fmt::format("warning: the {} was {} when the {} began and is {}: new rows may differ from "
+                                        "old ones by round-off or more",
+                                        name,
+                                        was,
+                                        folder.kind().name,
+                                        version));
+  }
+
   std::vector<bool>
   begin_or_resume(StudyFolder &folder,
                   const PointTable &table,
@@ -169,16 +182,8 @@ namespace crawler
           changes.push_back(changed);
       return changes;
     });
-    for (const auto &[name, version] : provenance(points.effective(), ""))
-      if (name.starts_with("version of "))
-        if (const std::string was = read_attribute(path, table.group, name); was != version)
-          folder.log().warn(fmt::format("warning: the {} was {} when the {} began and is {}: new rows may differ from "
-                                        "old ones by round-off or more",
-                                        name,
-                                        was,
-                                        folder.kind().name,
-                                        version));
-    return rows_that_are_there(*rows, table, folder.log());
+    warn_of_other_versions(folder, table);
+    return rows_done(*rows, table, folder.log());
   }
 
   std::vector<bool>

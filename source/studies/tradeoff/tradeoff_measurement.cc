@@ -4,7 +4,6 @@
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
-#include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/study.h>
 #include <crawler/studies/tradeoff/tradeoff_measurement.h>
 #include <crawler/time/failure.h>
@@ -14,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <utility>
 
 #ifdef __GLIBC__
 #  include <malloc.h>
@@ -31,14 +31,6 @@ namespace crawler
     constexpr std::size_t batch_size = 8;
     /// The heap is looked at after each of so many steps, and then after every so many.
     constexpr unsigned long looks_at_heap = 64, steps_between_looks = 16;
-
-    void
-    not_computed(TradeoffRow &row, const std::string &status, const std::string &reason, const std::string &message)
-    {
-      row.status  = status;
-      row.reason  = reason;
-      row.message = message;
-    }
   } // namespace
 
   double
@@ -62,26 +54,24 @@ namespace crawler
 
   TradeoffMeasurement::TradeoffMeasurement(const Parameters &parameters,
                                            const Scene &scene,
-                                           const TradeoffFamily &family,
                                            const double size,
-                                           const std::function<bool()> &interrupted)
+                                           std::function<bool()> interrupted)
     : parameters_(parameters)
     , scene_(scene)
-    , family_(family)
     , size_(size)
-    , interrupted_(interrupted)
+    , interrupted_(std::move(interrupted))
   {
   }
 
-  /// What the family shares; false if there was no time for it.
+  /// What the mesh's settings share; false if there was no time for it.
   bool
   TradeoffMeasurement::choose(const Parameters &own, const double end)
   {
-    if (choice_ || family_.setting.has_no_mesh())
+    if (choice_ || setting_.has_no_mesh())
       return true;
     const double start = processor_seconds();
     choice_            = choose_numerics(MPI_COMM_SELF, own, scene_, [&]() { return now() < end && !interrupted_(); });
-    if (family_.setting.mesh == "adaptive")
+    if (setting_.mesh == "adaptive")
       choice_seconds_ = processor_seconds() - start;
     return choice_.has_value();
   }
@@ -91,9 +81,9 @@ namespace crawler
   TradeoffMeasurement::run(const Parameters &own, const Numerics &numerics, const KeepGoing &keep_going) const
   {
     const Simulation::Options options = {.energy_balance = own.output.energy_balance};
-    if (family_.setting.has_no_mesh())
+    if (setting_.has_no_mesh())
       return ReducedModel(scene_, own.model).compute(own.accuracy, own.output.energy_balance, keep_going);
-    if (!family_.setting.is_batch())
+    if (!setting_.is_batch())
     {
       Simulation simulation(MPI_COMM_SELF, scene_, own.time, numerics);
       return simulation.run({}, options, {}, keep_going);
@@ -109,35 +99,28 @@ namespace crawler
     return given_up;
   }
 
-  /// The setting with nothing measured.
-  TradeoffRow
-  TradeoffMeasurement::row_of(const std::size_t tolerance) const
-  {
-    TradeoffRow row;
-    row.index   = family_.first_index + tolerance;
-    row.setting = family_.setting;
-    return row;
-  }
-
-  TradeoffRow
-  TradeoffMeasurement::crashed(const std::size_t tolerance) const
-  {
-    TradeoffRow row       = row_of(tolerance);
-    row.setting.tolerance = family_.tolerances[tolerance];
-    not_computed(row, "failed", "crashed", crash_message);
-    return row;
-  }
-
   std::optional<TradeoffRow>
-  TradeoffMeasurement::measure(const std::size_t tolerance)
+  TradeoffMeasurement::measure(const TradeoffSetting &setting)
   {
-    TradeoffRow row = row_of(tolerance);
-    if (!family_.not_offered.empty())
+    if (!same_mesh(setting, setting_))
     {
-      not_computed(row, "not offered", "not_offered", family_.not_offered);
+      choice_.reset();
+      choice_seconds_ = TradeoffRow::unknown;
+      took_too_long_  = false;
+    }
+    setting_ = setting;
+    TradeoffRow row;
+    row.setting = setting;
+    if (!setting.not_offered.empty())
+    {
+      row.not_computed("not offered", "not_offered", setting.not_offered);
       return row;
     }
-    row.setting.tolerance = family_.tolerances[tolerance];
+    if (took_too_long_)
+    {
+      row.not_computed("stopped", time_limit_reason, "not tried: a looser tolerance on this mesh took too long");
+      return row;
+    }
     try
     {
       if (!measure(row))
@@ -145,16 +128,16 @@ namespace crawler
     }
     catch (const InputError &error)
     {
-      not_computed(row, "refused", "inadmissible", error.what());
+      row.not_computed("refused", "inadmissible", error.what());
     }
     catch (const FileError &error)
     {
-      not_computed(row, "failed", "exception", error.what());
+      row.not_computed("failed", "exception", error.what());
     }
     catch (...)
     {
       const TimeOutcome failure = failure_of(std::current_exception());
-      not_computed(row, word_of(failure.status), failure.reason, failure.message);
+      row.not_computed(word_of(failure.status), failure.reason, failure.message);
     }
     return row;
   }
@@ -166,7 +149,8 @@ namespace crawler
     const double limit = parameters_.tradeoff.run_time_limit, end = now() + limit;
     const Parameters own = with_setting(parameters_, row.setting, size_);
     const auto too_long  = [&]() {
-      not_computed(row, "stopped", "time_limit", fmt::format("stopped after {:g} s", limit));
+      row.not_computed("stopped", time_limit_reason, fmt::format("stopped after {:g} s", limit));
+      took_too_long_ = true;
       return !interrupted_();
     };
     if (!choose(own, end))
@@ -177,8 +161,6 @@ namespace crawler
       numerics           = choice_->numerics;
       numerics.tolerance = own.time.tolerance.value();
     }
-    if (!row.setting.is_batch())
-      row.prm = as_prm(own, row.setting);
     row.choice_seconds = choice_seconds_;
 
     const double heap_before   = heap_bytes();
@@ -208,15 +190,13 @@ namespace crawler
       row.newton_iterations = result.time.newton_iterations;
       row.most_cells        = std::max(result.most_cells, numerics.n_cells);
     }
-    // A level that does not promise what was asked for has an answer all the same, but no file can ask for it.
+    // A level that does not promise what was asked for has an answer all the same.
     const bool breaks_promise = row.reason == "accuracy_not_met" && std::isfinite(result.displacement);
     if (row.status != "finished" && !breaks_promise)
       return true;
     row.status = "finished";
     row.reason.clear();
-    if (breaks_promise)
-      row.prm.clear();
-    else
+    if (!breaks_promise)
       row.message.clear();
     row.displacement = result.displacement;
     row.memory       = most_heap - heap_before;

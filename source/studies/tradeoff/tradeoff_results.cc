@@ -21,22 +21,6 @@ namespace crawler
 
     constexpr unsigned int first_exponent = 2, last_exponent = 14;
 
-    const char *
-    yes_no(const bool value)
-    {
-      return value ? "true" : "false";
-    }
-
-    /// Do two rows differ by the time tolerance alone?
-    bool
-    same_mesh(const TradeoffSetting &a, const TradeoffSetting &b)
-    {
-      const auto same = [](const double x, const double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
-      return a.model == b.model && a.formulation == b.formulation && a.mesh == b.mesh && a.engine == b.engine &&
-             a.integrator == b.integrator && a.degree == b.degree && a.cells == b.cells &&
-             same(a.mesh_tolerance, b.mesh_tolerance);
-    }
-
     /// For each row the largest error of it and of all tighter tolerances on its mesh; infinite if one of them failed.
     std::vector<double>
     safe_errors(const TradeoffResults &results)
@@ -46,7 +30,7 @@ namespace crawler
       for (std::size_t i = rows.size(); i-- > 0;)
       {
         // A tighter tolerance for which there was no time says nothing against the looser ones.
-        safe[i] = !std::isnan(results.shown[i]) ? results.shown[i] : rows[i].reason == "time_limit" ? 0. : HUGE_VAL;
+        safe[i] = rows[i].is_finished() ? rows[i].shown_error : rows[i].reason == time_limit_reason ? 0. : HUGE_VAL;
         if (i + 1 < rows.size() && same_mesh(rows[i].setting, rows[i + 1].setting))
           safe[i] = std::max(safe[i], safe[i + 1]);
       }
@@ -62,8 +46,8 @@ namespace crawler
         const double wanted = std::pow(10., -static_cast<double>(exponent));
         std::size_t best    = results.rows.size();
         for (std::size_t i = 0; i < results.rows.size(); ++i)
-          if (results.rows[i].status == "finished" && results.rows[i].setting.is_batch() == batch &&
-              (batch || !results.rows[i].prm.empty()) && safe[i] <= wanted &&
+          if (results.rows[i].is_finished() && results.rows[i].setting.is_batch() == batch &&
+              !results.rows[i].breaks_promise() && safe[i] <= wanted &&
               (best == results.rows.size() || results.rows[i].seconds < results.rows[best].seconds))
             best = i;
         if (best == results.rows.size())
@@ -89,9 +73,9 @@ namespace crawler
     costs(const TradeoffResults &results, const std::size_t i)
     {
       const TradeoffRow &row  = results.rows[i];
-      const std::string error = results.errors[i] < results.shown[i]
-                                  ? fmt::format("error below the bar of {:.1e}", results.shown[i])
-                                  : fmt::format("error {:.1e}", results.errors[i]);
+      const std::string error = row.error < row.shown_error
+                                  ? fmt::format("error below the bar of {:.1e}", row.shown_error)
+                                  : fmt::format("error {:.1e}", row.error);
       return fmt::format("{}, {}{}{}",
                          error,
                          duration(row.seconds),
@@ -107,12 +91,12 @@ namespace crawler
       {
         const TradeoffRow &row = results.rows[i];
         array.push_back({{"accuracy", std::stod(fmt::format("1e-{}", exponent))},
-                         {"index", row.index},
+                         {"index", i},
                          {"setting", in_words(row.setting)},
-                         {"error", results.errors[i]},
+                         {"error", row.error},
                          {"seconds", row.seconds},
                          {"memory", row.memory},
-                         {"prm", row.prm.empty() ? Json(nullptr) : Json(row.prm)}});
+                         {"prm", row.setting.is_batch() ? Json(nullptr) : Json(results.prm(i))}});
       }
       return array;
     }
@@ -120,19 +104,24 @@ namespace crawler
     Json
     reference_json(const TradeoffReference &reference)
     {
-      const auto refined = [](const RefinedDisplacement &d) {
-        return d.method.empty()
-                 ? Json(nullptr)
-                 : Json{{"method", d.method}, {"displacement", d.displacement}, {"last_change", d.change}};
+      const auto answer = [](const TradeoffAnswer &a) {
+        return Json{{"method", a.method}, {"displacement", a.displacement}, {"error_bound", a.error_bound}};
       };
-      return {{"displacement", reference.displacement()},
+      return {{"displacement", reference.answer.displacement},
               {"bar", reference.bar},
               {"relative_bar", reference.relative_bar()},
               {"size", reference.size},
-              {"first", refined(reference.first)},
-              {"second", refined(reference.second)}};
+              {"answer", answer(reference.answer)},
+              {"check", reference.is_checked() ? answer(reference.check) : Json(nullptr)}};
     }
   } // namespace
+
+  std::size_t
+  TradeoffResults::n_tried() const
+  {
+    return static_cast<std::size_t>(
+      std::count_if(rows.begin(), rows.end(), [](const TradeoffRow &row) { return !row.status.empty(); }));
+  }
 
   std::vector<bool>
   pareto_front(const std::vector<double> &costs, const std::vector<double> &errors)
@@ -155,75 +144,35 @@ namespace crawler
     return front;
   }
 
-  TradeoffResults
-  evaluate(const TradeoffReference &reference, std::vector<TradeoffRow> rows)
+  std::string
+  TradeoffResults::prm(const std::size_t row) const
   {
-    TradeoffResults results;
-    results.reference = reference;
-    std::sort(rows.begin(), rows.end(), [](const TradeoffRow &a, const TradeoffRow &b) { return a.index < b.index; });
-    results.rows = std::move(rows);
-    std::vector<double> single, batch;
-    for (const TradeoffRow &row : results.rows)
+    const TradeoffSetting &setting = rows[row].setting;
+    return as_prm(with_setting(parameters, setting, reference.size), setting);
+  }
+
+  TradeoffResults
+  evaluate(const Parameters &parameters, const TradeoffReference &reference, std::vector<TradeoffRow> rows)
+  {
+    TradeoffResults results = {parameters, reference, std::move(rows), {}, {}};
+    for (const bool batch : {false, true})
     {
-      const double error = std::abs(row.displacement - reference.displacement()) / reference.size;
-      results.errors.push_back(error);
-      results.shown.push_back(std::isnan(error) ? error : std::max(error, reference.relative_bar()));
-      const bool is_batch = row.setting.is_batch();
-      single.push_back(is_batch ? TradeoffRow::unknown : row.seconds);
-      batch.push_back(is_batch ? row.seconds : TradeoffRow::unknown);
+      std::vector<double> costs, errors;
+      for (const TradeoffRow &row : results.rows)
+      {
+        const bool counts = row.is_finished() && row.setting.is_batch() == batch;
+        costs.push_back(counts ? row.seconds : TradeoffRow::unknown);
+        errors.push_back(counts ? row.shown_error : TradeoffRow::unknown);
+      }
+      const auto front = pareto_front(costs, errors);
+      for (std::size_t i = 0; i < front.size(); ++i)
+        if (results.rows[i].setting.is_batch() == batch && !results.rows[i].status.empty())
+          results.rows[i].pareto = front[i] ? "true" : "false";
     }
-    const auto single_front = pareto_front(single, results.shown), batch_front = pareto_front(batch, results.shown);
-    for (std::size_t i = 0; i < results.rows.size(); ++i)
-      results.on_front.push_back(single_front[i] || batch_front[i]);
     const auto safe               = safe_errors(results);
     results.recommendations       = recommend(results, safe, /*batch=*/false);
     results.batch_recommendations = recommend(results, safe, /*batch=*/true);
     return results;
-  }
-
-  Table
-  tradeoff_table(const TradeoffResults &results)
-  {
-    Table table;
-    const auto add =
-      [&](const std::string &name, const std::string &unit, const std::string &description, const auto &value) {
-        std::vector<std::decay_t<decltype(value(std::size_t()))>> values;
-        for (std::size_t i = 0; i < results.rows.size(); ++i)
-          values.push_back(value(i));
-        table.push_back({name, unit, description, std::move(values)});
-      };
-    const auto add_errors = [&]() {
-      add("error",
-          "1",
-          "distance of the displacement to the reference, over the size of the displacement",
-          [&](const std::size_t i) { return results.errors[i]; });
-      add("shown error", "1", "the same, but no smaller than the reference's bar", [&](const std::size_t i) {
-        return results.shown[i];
-      });
-      add("below bar",
-          "",
-          "true if the error cannot be told from 0: it is below the reference's bar",
-          [&](const std::size_t i) { return std::string(yes_no(results.errors[i] < results.shown[i])); });
-      add("pareto",
-          "",
-          "true if no other single run (for a batch: no other batch) is as cheap and as accurate, and better in one",
-          [&](const std::size_t i) { return std::string(yes_no(results.on_front[i])); });
-    };
-    add("index", "1", "number of the setting", [&](const std::size_t i) {
-      return static_cast<double>(results.rows[i].index);
-    });
-    for (const TradeoffColumn &column : tradeoff_columns())
-    {
-      const auto add_column = [&](const auto &kind) {
-        add(column.name, column.unit, column.description, [&](const std::size_t i) {
-          return std::get<std::decay_t<decltype(kind)>>(column.value_in(results.rows[i]));
-        });
-      };
-      std::visit(add_column, column.value_in(TradeoffRow()));
-      if (column.name == "displacement")
-        add_errors();
-    }
-    return table;
   }
 
   std::vector<std::string>
@@ -253,21 +202,8 @@ namespace crawler
       "# The cheapest settings that crawler tradeoff has found for this scene. Copy the block that you want into the\n"
       "# parameter file; errors are relative, costs are processor time of a run without snapshots.\n";
     for (const auto &[exponent, i] : results.recommendations)
-      text += fmt::format("\n# For 1e-{}: {}\n{}", exponent, costs(results, i), results.rows[i].prm);
+      text += fmt::format("\n# For 1e-{}: {}\n{}", exponent, costs(results, i), results.prm(i));
     return text;
-  }
-
-  std::pair<double, double>
-  Calibration::range() const
-  {
-    double least = TradeoffRow::unknown, most = least;
-    for (const auto *list : {&at_start, &at_end})
-      for (const double seconds : *list)
-      {
-        least = std::fmin(least, seconds);
-        most  = std::fmax(most, seconds);
-      }
-    return {least, most};
   }
 
   namespace
@@ -289,27 +225,21 @@ namespace crawler
     std::vector<std::string> reasons;
     for (const auto &[reason, n] : counts(results, &TradeoffRow::reason))
       reasons.push_back(fmt::format("{} {}", reason, n));
-    const auto [shortest, longest] = course.calibration.range();
-    auto statuses                  = counts(results, &TradeoffRow::status);
-    const auto on_front            = std::count(results.on_front.begin(), results.on_front.end(), true);
-    const auto below_bar = std::count_if(results.errors.begin(), results.errors.end(), [&](const double error) {
-      return error < results.reference.relative_bar();
-    });
-    return fmt::format("Tradeoff: {} settings tried of {}{}; {} finished, {} of them below the bar, {} on the Pareto "
-                       "fronts; gaps: {}. The same short run took {} to {}, over ranks and time. {:.0f} s on {}.",
-                       results.rows.size(),
-                       course.n_settings,
-                       course.status == "finished" && results.rows.size() < course.n_settings
-                         ? " (the others cannot be better than those on their mesh)"
-                         : "",
-                       statuses["finished"],
-                       below_bar,
-                       on_front,
-                       reasons.empty() ? "none" : fmt::format("{}", fmt::join(reasons, ", ")),
-                       duration(shortest),
-                       duration(longest),
-                       course.seconds,
-                       counted(course.n_ranks, "rank"));
+    auto statuses       = counts(results, &TradeoffRow::status);
+    const auto count_of = [&](const auto &is_one) {
+      return std::count_if(results.rows.begin(), results.rows.end(), is_one);
+    };
+    return fmt::format(
+      "Tradeoff: {} settings of {} tried; {} finished, {} of them below the bar, {} on the Pareto fronts; gaps: {}. "
+      "{:.0f} s on {}.",
+      results.n_tried(),
+      results.rows.size(),
+      statuses["finished"],
+      count_of([](const TradeoffRow &row) { return row.below_bar == "true"; }),
+      count_of([](const TradeoffRow &row) { return row.pareto == "true"; }),
+      reasons.empty() ? "none" : fmt::format("{}", fmt::join(reasons, ", ")),
+      course.seconds,
+      counted(course.n_ranks, "rank"));
   }
 
   std::string
@@ -317,24 +247,22 @@ namespace crawler
   {
     Json front = Json::array();
     for (std::size_t i = 0; i < results.rows.size(); ++i)
-      if (results.on_front[i])
-        front.push_back(results.rows[i].index);
-    const Json json = {
-      {"status", course.status},
-      {"reason", course.reason.empty() ? Json(nullptr) : Json(course.reason)},
-      {"reference", reference_json(results.reference)},
-      {"settings", course.n_settings},
-      {"tried", results.rows.size()},
-      {"statuses", counts(results, &TradeoffRow::status)},
-      {"reasons", counts(results, &TradeoffRow::reason)},
-      {"pareto", front},
-      {"recommendations", recommendations_json(results, results.recommendations)},
-      {"batch_recommendations", recommendations_json(results, results.batch_recommendations)},
-      {"calibration_seconds", {{"at_start", course.calibration.at_start}, {"at_end", course.calibration.at_end}}},
-      {"seconds", course.seconds},
-      {"ranks", course.n_ranks},
-      {"versions", versions()},
-      {"command_line", course.command_line}};
+      if (results.rows[i].pareto == "true")
+        front.push_back(i);
+    const Json json = {{"status", course.status},
+                       {"reason", course.reason.empty() ? Json(nullptr) : Json(course.reason)},
+                       {"reference", reference_json(results.reference)},
+                       {"settings", results.rows.size()},
+                       {"tried", results.n_tried()},
+                       {"statuses", counts(results, &TradeoffRow::status)},
+                       {"reasons", counts(results, &TradeoffRow::reason)},
+                       {"pareto", front},
+                       {"recommendations", recommendations_json(results, results.recommendations)},
+                       {"batch_recommendations", recommendations_json(results, results.batch_recommendations)},
+                       {"seconds", course.seconds},
+                       {"ranks", course.n_ranks},
+                       {"versions", versions()},
+                       {"command_line", course.command_line}};
     return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
   }
 } // namespace crawler

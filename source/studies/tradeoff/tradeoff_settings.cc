@@ -15,18 +15,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace crawler
 {
   namespace
   {
-    /// On a mesh with the relative error e, tolerances above this times e are left out.
-    constexpr double loosest_over_mesh_error = 1e4;
-    /// An error that changes by less than this part of itself, so many times, is that of the mesh.
-    constexpr double settled_change         = 0.1;
-    constexpr std::size_t settled_changes   = 2;
-    constexpr std::size_t failures_in_a_row = 3;
     /// First steps, relative to the duration, as numerics_choice.cc has them.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
 
@@ -97,6 +90,14 @@ namespace crawler
       return result;
     }
 
+    /// The lists of the section, read and sorted.
+    struct Lists
+    {
+      std::vector<std::string> models, formulations, meshes, engines, integrators;
+      std::vector<unsigned int> degrees, cells;
+      std::vector<double> mesh_tolerances, tolerances;
+    };
+
     /// Names of integrators. What is known against others is said.
     std::vector<std::string>
     read_integrators(const Parameters &parameters)
@@ -150,33 +151,81 @@ namespace crawler
     }
 
     /// A level without a mesh: one setting, or several of different Accuracy.
-    TradeoffFamily
-    reduced_family(const std::string &model,
-                   const TradeoffLists &lists,
-                   const Parameters &parameters,
-                   const Scene &scene)
+    void
+    add_reduced(std::vector<TradeoffSetting> &list,
+                const std::string &model,
+                const Lists &lists,
+                const Parameters &parameters,
+                const Scene &scene)
     {
-      TradeoffFamily family;
-      family.setting.model = model;
-      family.tolerances    = {loosest_accuracy};
+      TradeoffSetting setting;
+      setting.model = model;
       try
       {
         Parameters own = parameters;
         own.model      = from_word<Model>(model).value();
         choose_model(own, scene);
-        if (model == "kinematic") // a closed form has no tolerance
-          for (const double tolerance : lists.tolerances)
-            if (tolerance < loosest_accuracy)
-              family.tolerances.push_back(tolerance);
       }
       catch (const InputError &error)
       {
-        family.not_offered = error.what();
-        family.tolerances  = {TradeoffSetting::none};
+        setting.not_offered = error.what();
+        list.push_back(setting);
+        return;
       }
-      return family;
+      setting.tolerance = loosest_accuracy;
+      list.push_back(setting);
+      if (model == "kinematic") // a closed form has no tolerance
+        for (const double tolerance : lists.tolerances)
+          if (tolerance < loosest_accuracy)
+          {
+            setting.tolerance = tolerance;
+            list.push_back(setting);
+          }
+    }
+
+    /// Every mesh of one degree with every tolerance.
+    void
+    add_meshes(std::vector<TradeoffSetting> &list, TradeoffSetting setting, const Lists &lists)
+    {
+      const bool is_adaptive = setting.mesh == "adaptive";
+      for (std::size_t i = 0; i < (is_adaptive ? lists.mesh_tolerances.size() : lists.cells.size()); ++i)
+        for (const double tolerance : lists.tolerances)
+        {
+          if (is_adaptive)
+            setting.mesh_tolerance = lists.mesh_tolerances[i];
+          else
+            setting.cells = lists.cells[i];
+          setting.tolerance = tolerance;
+          list.push_back(setting);
+        }
+    }
+
+    Lists
+    read_lists(const Parameters &parameters)
+    {
+      const TradeoffParameters &texts = parameters.tradeoff;
+      Lists lists;
+      lists.models          = words(texts.models, "Models", {"perturbation", "kinematic", "nonlinear"});
+      lists.formulations    = words(texts.formulations, "Formulations", {"position", "stretch"});
+      lists.meshes          = words(texts.meshes, "Meshes", {"uniform", "adaptive"});
+      lists.engines         = words(texts.engines, "Engines", {"fused", "petsc", "batch"});
+      lists.integrators     = read_integrators(parameters);
+      lists.degrees         = whole_numbers(texts.degrees, "Degrees", ReferenceElement::highest_degree);
+      lists.cells           = whole_numbers(texts.cells, "Cells", 10000000);
+      lists.mesh_tolerances = numbers(texts.mesh_tolerances, "Mesh tolerances");
+      lists.tolerances      = numbers(texts.tolerances, "Tolerances");
+      return lists;
     }
   } // namespace
+
+  bool
+  same_mesh(const TradeoffSetting &a, const TradeoffSetting &b)
+  {
+    const auto same = [](const double x, const double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+    return a.model == b.model && a.formulation == b.formulation && a.mesh == b.mesh && a.engine == b.engine &&
+           a.integrator == b.integrator && a.degree == b.degree && a.cells == b.cells &&
+           same(a.mesh_tolerance, b.mesh_tolerance);
+  }
 
   std::string
   in_words(const TradeoffSetting &s)
@@ -200,114 +249,39 @@ namespace crawler
     return fmt::format("{}", fmt::join(parts, ", "));
   }
 
-  TradeoffLists
-  read_lists(const Parameters &parameters)
+  std::vector<TradeoffSetting>
+  settings_to_try(const Parameters &parameters, const Scene &scene)
   {
-    const TradeoffParameters &texts = parameters.tradeoff;
-    TradeoffLists lists;
-    lists.models          = words(texts.models, "Models", {"perturbation", "kinematic", "nonlinear"});
-    lists.formulations    = words(texts.formulations, "Formulations", {"position", "stretch"});
-    lists.meshes          = words(texts.meshes, "Meshes", {"uniform", "adaptive"});
-    lists.engines         = words(texts.engines, "Engines", {"fused", "petsc", "batch"});
-    lists.integrators     = read_integrators(parameters);
-    lists.degrees         = whole_numbers(texts.degrees, "Degrees", ReferenceElement::highest_degree);
-    lists.mesh_tolerances = numbers(texts.mesh_tolerances, "Mesh tolerances");
-    lists.tolerances      = numbers(texts.tolerances, "Tolerances");
-    if (trimmed(texts.cells) != "automatic")
-      lists.cells = whole_numbers(texts.cells, "Cells", 10000000);
-    return lists;
-  }
-
-  std::vector<TradeoffFamily>
-  families(const TradeoffLists &lists, const Parameters &parameters, const Scene &scene, const MeshErrors &meshes)
-  {
-    std::vector<TradeoffFamily> result;
-    unsigned long index = 0;
-    const auto add      = [&](const TradeoffSetting &setting, const std::vector<double> &tolerances) {
-      result.push_back({setting, tolerances, index, ""});
-      index += tolerances.size();
-    };
-    const auto add_meshes = [&](TradeoffSetting setting) {
-      if (setting.mesh == "adaptive")
-      {
-        for (const double mesh_tolerance : lists.mesh_tolerances)
-        {
-          setting.mesh_tolerance = mesh_tolerance;
-          add(setting, lists.tolerances);
-        }
-        return;
-      }
-      for (const auto &[cells, error] : meshes.at(setting.degree))
-      {
-        setting.cells = cells;
-        std::vector<double> tolerances;
-        for (const double tolerance : lists.tolerances)
-          if (tolerance <= loosest_over_mesh_error * error)
-            tolerances.push_back(tolerance);
-        if (tolerances.empty())
-          tolerances.push_back(lists.tolerances.back());
-        add(setting, tolerances);
-      }
-    };
+    const Lists lists = read_lists(parameters);
+    std::vector<TradeoffSetting> list;
     for (const std::string &model : lists.models)
       if (model != "nonlinear")
-      {
-        result.push_back(reduced_family(model, lists, parameters, scene));
-        result.back().first_index = index;
-        index += result.back().tolerances.size();
-      }
+        add_reduced(list, model, lists, parameters, scene);
     if (std::find(lists.models.begin(), lists.models.end(), "nonlinear") == lists.models.end())
-      return result;
+      return list;
     for (const std::string &formulation : lists.formulations)
       for (const std::string &mesh : lists.meshes)
         for (const std::string &engine : lists.engines)
           for (const std::string &integrator : lists.integrators)
           {
             TradeoffSetting setting;
-            setting.formulation   = formulation;
-            setting.mesh          = mesh;
-            setting.engine        = engine;
-            setting.integrator    = integrator;
-            const std::string why = refusal(setting, scene);
-            if (!why.empty())
+            setting.formulation = formulation;
+            setting.mesh        = mesh;
+            setting.engine      = engine;
+            setting.integrator  = integrator;
+            setting.not_offered = refusal(setting, scene);
+            if (!setting.not_offered.empty())
             {
-              result.push_back({setting, {TradeoffSetting::none}, index++, why});
+              list.push_back(setting);
               continue;
             }
             for (const unsigned int degree : formulation == "stretch" ? std::vector<unsigned int>{1} : lists.degrees)
             {
               setting.degree = degree;
-              add_meshes(setting);
+              add_meshes(list, setting, lists);
             }
           }
-    return result;
-  }
-
-  std::optional<std::size_t>
-  next_tolerance(const TradeoffFamily &family,
-                 const std::vector<TriedSetting> &tried,
-                 const double reference,
-                 const double bar)
-  {
-    const std::size_t n = tried.size();
-    if (n == 0)
-      return 0;
-    const TriedSetting &last = tried.back();
-    if (n == family.tolerances.size() || last.status == "refused" || last.reason == "time_limit")
-      return std::nullopt;
-    const auto error = [&](const std::size_t i) { return std::abs(tried[i].displacement - reference); };
-    if (last.status == "finished" && error(n - 1) <= bar)
-      return std::nullopt;
-    std::size_t failures = 0;
-    while (failures < n && tried[n - 1 - failures].status != "finished")
-      ++failures;
-    if (failures >= failures_in_a_row)
-      return std::nullopt;
-    std::size_t changes = 0;
-    while (changes + 1 < n && std::abs(tried[n - 1 - changes].displacement - tried[n - 2 - changes].displacement) <
-                                settled_change * error(n - 1 - changes))
-      ++changes;
-    return changes >= settled_changes ? std::nullopt : std::optional(n);
+    return list;
   }
 
   Parameters

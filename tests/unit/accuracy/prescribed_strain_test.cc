@@ -21,7 +21,7 @@ using namespace crawler;
 
 namespace
 {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
 
   test::Settings
   strain(const std::string &formula)

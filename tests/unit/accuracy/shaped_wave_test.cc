@@ -20,7 +20,7 @@ using test::values;
 
 namespace
 {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
 
   /// L = 2, gamma = 0.7, k = 3, chi = 0.3.
   Settings

@@ -25,7 +25,7 @@ namespace
     return fmt::format("{}", value);
   }
 
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
 
   double
   wave_of(const double s, const double t)

@@ -16,7 +16,7 @@ using namespace crawler;
 
 namespace
 {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
 
   Parameters
   linear(const std::string &formula, const double end_time = 1., const double k = 1., test::Settings more = {})

@@ -12,7 +12,7 @@ using namespace crawler;
 
 namespace
 {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
 
   Scene
   body(const double k, const double a)

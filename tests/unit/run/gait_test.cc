@@ -11,7 +11,7 @@
 namespace
 {
   using namespace crawler;
-  constexpr double pi        = std::numbers::pi;
+  using std::numbers::pi;
   constexpr unsigned int n_s = GaitMeter::n_pieces, n_t = GaitMeter::n_phases;
 
   /// Shows a meter the motion zeta = s + u(s,t) + D(t) with the work @p work(t), in steps.

@@ -11,7 +11,7 @@
 namespace
 {
   using namespace crawler;
-  constexpr double pi        = std::numbers::pi;
+  using std::numbers::pi;
   constexpr unsigned int n_s = GaitMeter::n_pieces, n_t = GaitMeter::n_phases;
 
   /// The wave in e(s,t) on a body of length 1: means over the pieces, at phases from @p start.

@@ -19,7 +19,7 @@ namespace
   const std::string section = "Active stress/Two-level wave/";
 
   Settings
-  wave(const double a, const Settings &own, const Settings &others = {})
+  two_level_wave(const double a, const Settings &own, const Settings &others = {})
   {
     Settings settings = {{"Active stress/Generator", "two-level wave"},
                          {"Body/Anchoring exponent", test::text(1. - a)}};
@@ -48,7 +48,7 @@ namespace
   {
     try
     {
-      test::parameters_with(wave(-1., own, others)).create_scene();
+      test::parameters_with(two_level_wave(-1., own, others)).create_scene();
       ADD_FAILURE() << entry << ": nothing is refused";
     }
     catch (const InputError &error)
@@ -62,7 +62,7 @@ namespace
 TEST(TwoLevelWave, HasItsTwoStrains)
 {
   const Settings own = {{"Smallest strain", "-0.2"}, {"Largest strain", "0.5"}, {"Share", "0.3"}};
-  const Scene scene  = test::parameters_with(wave(-1., own, {{"Body/Length", "2"}})).create_scene();
+  const Scene scene  = test::parameters_with(two_level_wave(-1., own, {{"Body/Length", "2"}})).create_scene();
   std::vector<double> e(6);
   const auto strain = scene.active_stress->prescribed_strain()->at({0., 0.06, 0.54, 0.6, 0.66, 1.94});
   strain->strain(/*t=*/0., e); // the fronts are about s = 0 and s = 0.3 L, 0.05 L wide
@@ -78,12 +78,13 @@ TEST(TwoLevelWave, TheBestShareIsThatOfTheTheory)
 {
   for (const double a : {-1., 2.})
   {
-    const auto best = numbers(wave(a, {{"Front width", "1e-3"}}));
+    const auto best = numbers(two_level_wave(a, {{"Front width", "1e-3"}}));
     EXPECT_NEAR(best.share, 1. / (1. + std::pow(1.3 / 0.7, 0.5 * a)), 1e-14);
     EXPECT_NEAR(best.bound, a < 0. ? 0.303515 : 0.659341, 5e-7);
     EXPECT_NEAR(best.merit, best.bound, 1e-3 * best.bound);
     for (const double other : {0.9 * best.share, 1.1 * best.share})
-      EXPECT_LT(numbers(wave(a, {{"Front width", "1e-3"}, {"Share", test::text(other)}})).merit, best.merit) << other;
+      EXPECT_LT(numbers(two_level_wave(a, {{"Front width", "1e-3"}, {"Share", test::text(other)}})).merit, best.merit)
+        << other;
   }
 }
 
@@ -94,8 +95,8 @@ TEST(TwoLevelWave, NearlyReachesTheBound)
   for (const auto &[a, front, to_head] :
        {std::tuple(-1., 0.05, false), {-1., 0.1, true}, {2., 0.05, true}, {2., 0.1, false}})
   {
-    const Settings settings =
-      wave(a, {{"Front width", test::text(front)}, {"Direction", to_head ? "from tail to head" : "from head to tail"}});
+    const Settings settings = two_level_wave(
+      a, {{"Front width", test::text(front)}, {"Direction", to_head ? "from tail to head" : "from head to tail"}});
     const auto result = kinematic(settings);
     const auto own    = numbers(settings);
     ASSERT_TRUE(result.gait_efficiency);
@@ -110,15 +111,15 @@ TEST(TwoLevelWave, NearlyReachesTheBound)
 TEST(TwoLevelWave, OnOtherGrounds)
 {
   const Settings newtonian = {{"Ground/Friction law", "Newtonian"}}, power = {{"Body/Anchoring exponent", "0"}};
-  EXPECT_NEAR(numbers(wave(1., {}, newtonian)).share, numbers(wave(1., {}, power)).share, 1e-14);
-  EXPECT_NEAR(numbers(wave(1., {}, newtonian)).merit, numbers(wave(1., {}, power)).merit, 1e-14);
+  EXPECT_NEAR(numbers(two_level_wave(1., {}, newtonian)).share, numbers(two_level_wave(1., {}, power)).share, 1e-14);
+  EXPECT_NEAR(numbers(two_level_wave(1., {}, newtonian)).merit, numbers(two_level_wave(1., {}, power)).merit, 1e-14);
   const auto on_expression = [](Settings own) {
     own.emplace_back("Front width", "0.02");
-    return wave(-1.,
-                own,
-                {{"Ground/Friction law", "expression"},
-                 {"Ground/Expression", "0.7/(0.2+w^2)"},
-                 {"Body/Friction coefficient", "2"}});
+    return two_level_wave(-1.,
+                          own,
+                          {{"Ground/Friction law", "expression"},
+                           {"Ground/Expression", "0.7/(0.2+w^2)"},
+                           {"Body/Friction coefficient", "2"}});
   };
   const auto result = kinematic(on_expression({}), 1e-6);
   const auto own    = numbers(on_expression({}));
@@ -137,19 +138,19 @@ TEST(TwoLevelWave, DoesTheWorkThatIsGiven)
                          {"Time/End time", "1.7"}};
   for (const auto &[n, phase] : {std::pair("1", "0.7"), {"2", "0"}})
   {
-    const auto result =
-      kinematic(wave(-1., {{"Given by", "work"}, {"Work", "0.25"}, {"Wave number", n}, {"Phase", phase}}, body));
+    const auto result = kinematic(
+      two_level_wave(-1., {{"Given by", "work"}, {"Work", "0.25"}, {"Wave number", n}, {"Phase", phase}}, body));
     EXPECT_NEAR(result.energy_balance->stress_work, 0.25, 1e-6 * 0.25) << n;
   }
   const auto by_speed =
-    numbers(wave(-1., {{"Given by", "wave speed"}, {"Wave speed", "0.6"}, {"Wave number", "2"}}, body));
+    numbers(two_level_wave(-1., {{"Given by", "wave speed"}, {"Wave speed", "0.6"}, {"Wave number", "2"}}, body));
   EXPECT_DOUBLE_EQ(by_speed.frequency, 0.4);
 }
 
 /// A ramp, so that the nonlinear model can start from rest; there the recovered stress brings the same motion about.
 TEST(TwoLevelWave, DrivesTheNonlinearModel)
 {
-  const Settings settings = wave(-1., {{"Ramp duration", "0.5"}}, {{"Accuracy", "1e-4"}});
+  const Settings settings = two_level_wave(-1., {{"Ramp duration", "0.5"}}, {{"Accuracy", "1e-4"}});
   const auto strain = kinematic(settings, 1e-6), full = test::run_with(settings).result;
   EXPECT_EQ(full.time.status, Status::finished);
   EXPECT_GT(strain.displacement, 0.05);

@@ -11,7 +11,8 @@ using namespace crawler;
 
 namespace
 {
-  constexpr double pi = std::numbers::pi, L = 2., T = 3.;
+  using std::numbers::pi;
+  constexpr double L = 2., T = 3.;
 
   std::vector<double>
   values(ActiveStressAtPoints &at, const double t, const std::size_t n)

@@ -100,7 +100,7 @@ TEST(Period, OfAWaveRepeatsItsStress)
 
 TEST(Period, OfFormulasIsFound)
 {
-  const double pi = std::numbers::pi;
+  using std::numbers::pi;
   EXPECT_NEAR(period_of("0.1*sin(2*pi*(s+t))").value(), 1., 1e-14);
   EXPECT_NEAR(period_of("0.1*sin(2*pi*(s-t/6.5))").value(), 6.5, 1e-13);
   EXPECT_NEAR(period_of("sin(s)*sin(sqrt(2)*t)^2").value(), pi / std::sqrt(2.), 1e-13);

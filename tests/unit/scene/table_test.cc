@@ -3,7 +3,7 @@
 // The generator "table"; reading and interpolating are in base/grid_table_test.cc.
 #include "../../support/hdf5_file.h"
 #include "../../support/program.h"
-#include "../../support/run_text.h"
+#include "../../support/stress.h"
 
 #include <crawler/base/exceptions.h>
 #include <crawler/scene/active_stress/optimal_wave.h>
@@ -15,10 +15,11 @@
 #include <numbers>
 
 using namespace crawler;
+using test::values;
 
 namespace
 {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
 
   /// A file with samples of f at n_s x n_t points over 0..length and from..to.
   class Samples
@@ -60,14 +61,6 @@ namespace
   wave_of(const double s, const double t)
   {
     return 0.1 * std::sin(2. * pi * (s + t));
-  }
-
-  std::vector<double>
-  values(const ActiveStress &stress, const std::vector<double> &points, const double t)
-  {
-    std::vector<double> m(points.size());
-    stress.at(points)->values(t, m);
-    return m;
   }
 
   /// What is wrong, with the name of the file left out.

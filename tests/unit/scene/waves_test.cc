@@ -15,7 +15,7 @@ using test::values;
 
 namespace
 {
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
 
   /// Settings of one generator, its entries without the section.
   Settings

@@ -46,7 +46,7 @@ class Tradeoff:
 
     def gaps(self):
         """Settings that did not finish, counted by their reason."""
-        return collections.Counter(row["reason"].replace("_", " ") for row in self.rows if row["status"] != "finished")
+        return collections.Counter(row["reason"].replace("_", " ") for row in self.rows if row["status"] not in ("finished", ""))
 
     def front(self, batch):
         """Times and errors on the Pareto front of single runs or batches, the cheapest first."""

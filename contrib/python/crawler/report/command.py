@@ -17,7 +17,7 @@ TIMES, FEWEST_TIMES = 640, 64  # of all kymographs of a page together, and of ea
 # What a folder may be: its kind, a file or folder that only it has, and the group of its table, which is that file or
 # the other one.
 KINDS = (("atlas", "atlas.h5", "atlas.h5", "atlas"), ("tradeoff", "tradeoff.h5", "tradeoff.h5", "tradeoff"),
-         ("tradeoff", "rows", None, None), ("optimisation", "starts", "results.h5", "optimize"),
+         ("optimisation", "starts", "results.h5", "optimize"),
          ("sweep", "results.h5", "results.h5", "results"), ("run", "summary.json", None, None),
          ("run", "statistics.csv", None, None))
 

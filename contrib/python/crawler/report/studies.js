@@ -171,7 +171,7 @@ function drawFronts(chart, explorer) {
 function showTradeoff() {
   const {reference} = summary, all = [...(summary.recommendations ?? []).map(one => [one, false]), ...(summary.batch_recommendations ?? []).map(one => [one, true])];
   if (reference) section('', el('p', {}, 'Reference: displacement ', exactly(reference.displacement, showWith(reference.displacement, reference.bar)), ` ± ${show(reference.bar, 2)}`,
-    ` by ${reference.first?.method ?? '?'}${reference.second ? ` and ${reference.second.method}` : ' alone'}. ${summary.tried} of ${summary.settings} settings were tried.`));
+    ` by ${reference.answer?.method ?? '?'}${reference.check ? `, checked by ${reference.check.method}` : ' alone'}. ${summary.tried} of ${summary.settings} settings were tried.`));
   if (all.length) section('What to use', el('p', {class: 'soft'}, 'The cheapest setting that is good enough; click for its lines of the parameter file.'), el('div', {class: 'scroll'}, el('table', {},
     el('thead', {}, el('tr', {}, ...['for', 'setting', 'error', 'time of a run'].map(name => el('th', {}, name)))), el('tbody', {}, ...all.map(([one, batch]) => el('tr', {},
       el('td', {class: 'value'}, tickText(one.accuracy, true), batch ? ' in a batch' : ''), el('td', {class: 'entry'}, one.prm ? el('details', {style: 'margin:0'}, el('summary', {}, one.setting), el('pre', {}, one.prm)) : one.setting),

@@ -52,9 +52,9 @@ namespace crawler
     std::string engines         = "fused, petsc, batch";
     std::string integrators     = "radau 5, radau 9, bdf";
     std::string degrees         = "2, 4, 6, 8";
-    std::string cells           = "automatic";
+    std::string cells           = "2, 4, 8, 16, 32";
     std::string mesh_tolerances = "logspace(-2, -8, 4)";
-    std::string tolerances      = "logspace(-2, -11, 10)";
+    std::string tolerances      = "logspace(-2, -10, 5)";
     unsigned int repetitions    = 3;
     double run_time_limit       = 10.;   ///< [s]
     double time_limit           = 3600.; ///< of all [s]

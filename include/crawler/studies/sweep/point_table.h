@@ -43,6 +43,14 @@ namespace crawler
   RowFile::Known
   known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design);
 
+  /// Which rows of @p table are there and whole; the log gets a warning of those that are damaged (one process).
+  std::vector<bool>
+  rows_done(const RowReader &rows, const PointTable &table, Log &log);
+
+  /// Rows of other versions of the libraries may differ from those that are computed now.
+  void
+  warn_of_other_versions(StudyFolder &folder, const PointTable &table);
+
   /// Makes the files of a new study, or, with --resume, looks for one that is the same. Returns which points have a
   /// row. Throws as StudyFolder::begin() and resume() (one process).
   std::vector<bool>

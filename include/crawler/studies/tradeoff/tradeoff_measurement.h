@@ -2,10 +2,11 @@
 #pragma once
 
 #include <crawler/accuracy/numerics_choice.h>
-#include <crawler/studies/tradeoff/tradeoff_rows.h>
+#include <crawler/studies/tradeoff/tradeoff_table.h>
 
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace crawler
 {
@@ -17,35 +18,28 @@ namespace crawler
   double
   heap_bytes();
 
-  /// Measures the settings of one family: what they share is chosen once.
+  /// Measures settings one after the other; what those of one mesh share is chosen once.
   class TradeoffMeasurement
   {
   public:
-    /// All references are kept. @p size is that to which tolerances are relative [length].
+    /// Both references are kept. @p size is that to which tolerances are relative [length].
     TradeoffMeasurement(const Parameters &parameters,
                         const Scene &scene,
-                        const TradeoffFamily &family,
                         double size,
-                        const std::function<bool()> &interrupted);
+                        std::function<bool()> interrupted);
 
     /**
-     * The row of a tolerance of the family: what `crawler run` computes without snapshots, on this rank alone. The
-     * first run gives displacement and memory, and must keep the time limit; the others are timed. The cost is the
-     * processor time to build the simulation and run it, without the choice of the numerics, in a process that has done
-     * so before. Nothing is returned if it was interrupted. What goes wrong is the status of the row.
+     * The row of a setting: what `crawler run` computes without snapshots, on this rank alone. The first run gives
+     * displacement and memory, and must keep the time limit, or tighter tolerances on the same mesh are not tried; the
+     * others are timed. The cost is the processor time to build the simulation and run it, without the choice of the
+     * numerics, in a process that has done so before. Nothing is returned if it was interrupted. What goes wrong is
+     * the status of the row.
      */
     std::optional<TradeoffRow>
-    measure(std::size_t tolerance);
-
-    /// The row of a tolerance that is given up because the program crashed there.
-    TradeoffRow
-    crashed(std::size_t tolerance) const;
+    measure(const TradeoffSetting &setting);
 
   private:
     using KeepGoing = std::function<bool()>;
-
-    TradeoffRow
-    row_of(std::size_t tolerance) const;
 
     bool
     choose(const Parameters &own, double end);
@@ -58,10 +52,11 @@ namespace crawler
 
     const Parameters &parameters_;
     const Scene &scene_;
-    const TradeoffFamily &family_;
     const double size_;
-    const std::function<bool()> &interrupted_;
+    const std::function<bool()> interrupted_;
+    TradeoffSetting setting_; ///< the last one
     std::optional<NumericsChoice> choice_;
     double choice_seconds_ = TradeoffRow::unknown;
+    bool took_too_long_    = false; ///< a looser tolerance on this mesh
   };
 } // namespace crawler

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <crawler/base/table.h>
-#include <crawler/studies/tradeoff/tradeoff_reference.h>
-#include <crawler/studies/tradeoff/tradeoff_rows.h>
+#include <crawler/studies/tradeoff/tradeoff_table.h>
 
 #include <string>
 #include <utility>
@@ -28,26 +27,26 @@ namespace crawler
   /// All rows with what they mean together.
   struct TradeoffResults
   {
+    const Parameters &parameters;
     TradeoffReference reference;
-    std::vector<TradeoffRow> rows; ///< by index
-    // For each row:
-    std::vector<double> errors; ///< relative, as measured [1]
-    std::vector<double> shown;  ///< the same, but no smaller than the reference's bar [1]
-    std::vector<bool> on_front; ///< among single runs, or among batches
+    std::vector<TradeoffRow> rows; ///< all settings
     std::vector<Recommendation> recommendations, batch_recommendations;
+
+    std::size_t
+    n_tried() const;
+
+    /// The entries with which `crawler run` gives this row.
+    std::string
+    prm(std::size_t row) const;
   };
 
   /**
-   * Errors, fronts, and the cheapest setting for 1e-2, 1e-3, ... as far as the bar allows: of those whose error, and
+   * The fronts, and the cheapest setting for 1e-2, 1e-3, ... as far as the bar allows: of those whose error, and
    * that of all tighter tolerances that were tried on their mesh, is below. So a lucky error is not recommended, nor is
    * a level whose own estimate of the error is larger than it promises.
    */
   TradeoffResults
-  evaluate(const TradeoffReference &reference, std::vector<TradeoffRow> rows);
-
-  /// The columns are a contract (doc/user_guide.md, "Trading accuracy for speed").
-  Table
-  tradeoff_table(const TradeoffResults &results);
+  evaluate(const Parameters &parameters, const TradeoffReference &reference, std::vector<TradeoffRow> rows);
 
   /// "For 1e-4 use ...", a line for each recommendation.
   std::vector<std::string>
@@ -57,23 +56,10 @@ namespace crawler
   std::string
   recommendations_prm(const TradeoffResults &results);
 
-  /// How long the same short run took on each rank, at the beginning and at the end [s]; not a number where it was
-  /// interrupted.
-  struct Calibration
-  {
-    std::vector<double> at_start, at_end;
-
-    /// The shortest and the longest time that is known.
-    std::pair<double, double>
-    range() const;
-  };
-
   /// How the study went, besides its results.
   struct TradeoffCourse
   {
     std::string status, reason; ///< finished, or stopped by signal or time_limit
-    unsigned long n_settings = 0;
-    Calibration calibration;
     double seconds       = 0.;
     unsigned int n_ranks = 1;
     std::string command_line;

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <random>
 
 using namespace crawler;
@@ -13,31 +13,48 @@ namespace
 {
   const double not_known = std::numeric_limits<double>::quiet_NaN();
 
-  /// A row of a single run whose displacement is off by @p error; the reference is 1.
-  TradeoffRow
-  row(const unsigned long index, const unsigned int cells, const double error, const double seconds)
-  {
-    TradeoffRow row;
-    row.index             = index;
-    row.setting.engine    = "fused";
-    row.setting.degree    = 4;
-    row.setting.cells     = cells;
-    row.prm               = "set Degree = 4\n";
-    row.status            = "finished";
-    row.displacement      = 1. + error;
-    row.seconds           = seconds;
-    row.setting.tolerance = 0.1;
-    return row;
-  }
-
+  /// The reference is 1.
   TradeoffReference
   reference(const double bar)
   {
     TradeoffReference reference;
-    reference.first = {"a method", 1., bar};
-    reference.bar   = bar;
-    reference.size  = 1.;
+    reference.answer = {"a method", 1., bar};
+    reference.bar    = bar;
+    reference.size   = 1.;
     return reference;
+  }
+
+  /// A row of a single run whose displacement is off by @p error.
+  TradeoffRow
+  row(const unsigned int cells, const double error, const double seconds)
+  {
+    TradeoffRow row;
+    row.setting.engine    = "fused";
+    row.setting.degree    = 4;
+    row.setting.cells     = cells;
+    row.setting.tolerance = 0.1;
+    row.status            = "finished";
+    row.displacement      = 1. + error;
+    row.seconds           = seconds;
+    return row;
+  }
+
+  TradeoffResults
+  results_of(const double bar, std::vector<TradeoffRow> rows)
+  {
+    static const Parameters parameters;
+    for (TradeoffRow &row : rows)
+      row.compare(reference(bar));
+    return evaluate(parameters, reference(bar), std::move(rows));
+  }
+
+  std::vector<bool>
+  front_of(const TradeoffResults &results)
+  {
+    std::vector<bool> front;
+    for (const TradeoffRow &row : results.rows)
+      front.push_back(row.pareto == "true");
+    return front;
   }
 } // namespace
 
@@ -75,11 +92,11 @@ TEST(ParetoFront, OfRandomPointsIsThatOfTheDefinition)
 
 TEST(Tradeoff, ErrorsBelowTheBarCountAsTheBar)
 {
-  const auto results = evaluate(reference(1e-6), {row(1, 8, 1e-9, 2.), row(0, 4, 1e-3, 1.), row(2, 16, 1e-8, 3.)});
-  EXPECT_EQ(results.rows[0].index, 0);
-  EXPECT_NEAR(results.errors[1], 1e-9, 1e-15);
-  EXPECT_EQ(results.shown[1], 1e-6);
-  EXPECT_EQ(results.on_front, (std::vector<bool>{true, true, false})); // the last one cannot be told from the middle
+  const auto results = results_of(1e-6, {row(4, 1e-3, 1.), row(8, 1e-9, 2.), row(16, 1e-8, 3.)});
+  EXPECT_NEAR(results.rows[1].error, 1e-9, 1e-15);
+  EXPECT_EQ(results.rows[1].shown_error, 1e-6);
+  EXPECT_EQ(results.rows[1].below_bar, "true");
+  EXPECT_EQ(front_of(results), (std::vector<bool>{true, true, false})); // the last one cannot be told from the middle
   ASSERT_FALSE(results.recommendations.empty());
   EXPECT_EQ(results.recommendations.back().exponent, 6); // nothing is said about 1e-7
 }
@@ -87,8 +104,7 @@ TEST(Tradeoff, ErrorsBelowTheBarCountAsTheBar)
 TEST(Tradeoff, RecommendsTheCheapestThatIsSafe)
 {
   // On 4 cells the error is small by luck: with a tighter tolerance it is that of the mesh, 5e-3.
-  const auto results =
-    evaluate(reference(1e-12), {row(0, 4, 1e-7, 1.), row(1, 4, 5e-3, 2.), row(2, 8, 9e-5, 3.), row(3, 8, 9e-6, 4.)});
+  const auto results = results_of(1e-12, {row(4, 1e-7, 1.), row(4, 5e-3, 2.), row(8, 9e-5, 3.), row(8, 9e-6, 4.)});
   ASSERT_EQ(results.recommendations.size(), 4);
   const std::vector<std::size_t> rows = {0, 2, 2, 3}; // for 1e-2, 1e-3, 1e-4, 1e-5
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -98,44 +114,67 @@ TEST(Tradeoff, RecommendsTheCheapestThatIsSafe)
   }
 }
 
+/// A level that says that its error may be larger is not recommended, nor a mesh whose tighter tolerances are not
+/// tried.
+TEST(Tradeoff, RecommendsNothingThatIsInDoubt)
+{
+  TradeoffRow level = row(0, 1e-9, 0.1), not_tried = row(8, 0., not_known);
+  level.setting       = {};
+  level.setting.model = "kinematic";
+  level.message       = "the error may be larger";
+  not_tried.status.clear();
+  const auto results = results_of(1e-12, {level, row(8, 1e-3, 1.), not_tried});
+  EXPECT_TRUE(results.recommendations.empty());
+  EXPECT_EQ(results.n_tried(), 2);
+}
+
 TEST(Tradeoff, BatchesHaveAFrontOfTheirOwn)
 {
-  auto batch           = row(1, 4, 1e-3, 0.1);
+  auto batch           = row(4, 1e-3, 0.1);
   batch.setting.engine = "batch";
-  auto gap             = row(2, 16, 0., not_known);
+  auto gap             = row(16, 0., not_known);
   gap.status           = "failed";
   gap.displacement     = not_known;
-  const auto results   = evaluate(reference(1e-12), {row(0, 4, 1e-3, 1.), batch, gap});
-  EXPECT_EQ(results.on_front, (std::vector<bool>{true, true, false}));
+  const auto results   = results_of(1e-12, {row(4, 1e-3, 1.), batch, gap});
+  EXPECT_EQ(front_of(results), (std::vector<bool>{true, true, false}));
   EXPECT_EQ(results.recommendations.size(), 2);
   EXPECT_EQ(results.batch_recommendations.size(), 2);
   EXPECT_EQ(results.batch_recommendations[0].row, 1);
 }
 
-TEST(TradeoffRows, ALineThatWasCutOffIsNoRow)
+/// What is read is what was written, also numbers that are not known, quotes and line breaks.
+TEST(TradeoffTable, KeepsAllThatIsInARow)
 {
-  const auto folder = std::filesystem::temp_directory_path() / "crawler_tradeoff_rows_test";
+  const auto folder = std::filesystem::temp_directory_path() / "crawler_tradeoff_table_test";
   std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder / "rows");
-  TradeoffRow first = row(7, 4, 0.1 + 1e-17, 1. / 3.), second = row(8, 4, not_known, not_known);
-  second.status  = "failed";
-  second.message = "with \"quotes\"\nand two lines";
-  for (const unsigned int rank : {0u, 1u})
-    TradeoffRowWriter(folder, rank).write(rank == 0 ? first : second);
+  std::filesystem::create_directories(folder);
+  TradeoffRow first = row(4, 0.1 + 1e-17, 1. / 3.), second = row(8, not_known, not_known);
+  second.not_computed("failed", "exception", "with \"quotes\"\nand two lines");
+  const std::vector<TradeoffSetting> settings = {first.setting, second.setting, row(16, 0., 0.).setting};
+  create_tradeoff_table(folder, settings, {});
   {
-    std::string line = pack({{9, row(9, 4, 0., 1.)}});
-    line.pop_back(); // its end
-    std::ofstream(folder / "rows" / "1.jsonl", std::ios::app) << line.substr(0, line.size() / 2);
-    std::ofstream(folder / "rows" / "2.jsonl") << line; // whole, but who knows: its end is missing
+    const PointTable table = tradeoff_table();
+    RowFile file(MPI_COMM_SELF, folder / table.file, table.group, table.written_columns());
+    file.write(0, {{written_row(first)}});
+    file.write(1, {{written_row(second)}});
   }
-  for (int i = 0; i < 2; ++i) // what was recovered is there the next time, too
-  {
-    const auto rows = recover_rows(folder);
-    ASSERT_EQ(rows.size(), 2);
-    EXPECT_EQ(pack({{7, rows.at(7)}}), pack({{7, first}}));
-    EXPECT_EQ(rows.at(7).seconds, 1. / 3.);
-    EXPECT_TRUE(std::isnan(rows.at(8).displacement));
-    EXPECT_EQ(rows.at(8).message, second.message);
-  }
+  const auto rows = read_rows(folder, settings);
+  ASSERT_EQ(rows.size(), 3);
+  EXPECT_EQ(rows[0].seconds, 1. / 3.);
+  EXPECT_EQ(rows[0].displacement, first.displacement);
+  EXPECT_TRUE(std::isnan(rows[1].displacement));
+  EXPECT_EQ(rows[1].message, second.message);
+  EXPECT_TRUE(rows[2].status.empty()); // not tried
   std::filesystem::remove_all(folder);
+}
+
+TEST(TradeoffReference, AsATextAndBack)
+{
+  TradeoffReference reference  = ::reference(1. / 3.);
+  reference.check              = {"another", 1. + 1e-15, 1e-9};
+  const TradeoffReference read = unpack_reference(pack(reference));
+  EXPECT_EQ(read.bar, reference.bar);
+  EXPECT_EQ(read.check.method, "another");
+  EXPECT_EQ(read.check.displacement, reference.check.displacement);
+  EXPECT_TRUE(read.is_checked());
 }

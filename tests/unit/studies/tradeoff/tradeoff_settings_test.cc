@@ -2,13 +2,13 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/parameters/parameter_file.h>
-#include <crawler/studies/tradeoff/tradeoff_reference.h>
 #include <crawler/studies/tradeoff/tradeoff_settings.h>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <set>
+#include <array>
+#include <string>
+#include <vector>
 
 using namespace crawler;
 
@@ -30,56 +30,54 @@ namespace
     return result;
   }
 
-  const std::string small = "set Degrees = 2, 4\nset Tolerances = 1e-4, 1e-2, 1e-6\nset Mesh tolerances = 1e-3\n";
-  const MeshErrors meshes = {{1, {{16, 1e-7}}}, {2, {{8, 1e-3}, {16, 1e-7}}}, {4, {{4, 1e-11}}}};
+  const std::string small =
+    "set Degrees = 2, 4\nset Cells = 8, 4\nset Tolerances = 1e-4, 1e-2, 1e-6\nset Mesh tolerances = 1e-3\n";
 
-  std::vector<TradeoffFamily>
-  families_of(const Parameters &p)
+  std::vector<TradeoffSetting>
+  settings_of(const Parameters &p)
   {
-    return families(read_lists(p), p, p.create_scene(), meshes);
-  }
-
-  TriedSetting
-  finished(const double displacement)
-  {
-    return {"finished", "", displacement};
+    return settings_to_try(p, p.create_scene());
   }
 } // namespace
 
-TEST(TradeoffLists, AreSortedAndChecked)
+TEST(TradeoffSettings, BadListsAreRefused)
 {
-  const auto lists = read_lists(parameters(small + "set Cells = 8, 4\n"));
-  EXPECT_EQ(lists.tolerances, (std::vector<double>{1e-2, 1e-4, 1e-6}));
-  EXPECT_EQ(lists.cells, (std::vector<unsigned int>{4, 8}));
-  EXPECT_EQ(lists.integrators, (std::vector<std::string>{"radau 5", "radau 9", "bdf"}));
-  for (const char *bad : {"set Degrees = 0\n", "set Tolerances = 1\n", "set Integrators = rosw\n", "set Engines =\n"})
-    EXPECT_THROW(read_lists(parameters(bad)), InputError) << bad;
+  for (const char *bad : {"set Degrees = 0\n",
+                          "set Tolerances = 1\n",
+                          "set Integrators = rosw\n",
+                          "set Engines =\n",
+                          "set Cells = automatic\n"})
+    EXPECT_THROW(settings_of(parameters(bad)), InputError) << bad;
 }
 
-TEST(TradeoffFamilies, EverySettingHasItsOwnNumber)
+/// Meshes from the coarsest on; on each the tolerances from the loosest on.
+TEST(TradeoffSettings, ThoseOfOneMeshFollowEachOther)
 {
-  std::set<unsigned long> indices;
-  unsigned long n = 0;
-  for (const TradeoffFamily &family : families_of(parameters(small)))
-    for (std::size_t i = 0; i < family.tolerances.size(); ++i, ++n)
-      indices.insert(family.first_index + i);
-  EXPECT_EQ(indices.size(), n);
-  EXPECT_EQ(*indices.rbegin(), n - 1);
+  std::vector<TradeoffSetting> own;
+  for (const TradeoffSetting &setting : settings_of(parameters(small)))
+    if (setting.engine == "fused" && setting.integrator == "radau 9" && setting.degree == 4)
+      own.push_back(setting);
+  ASSERT_EQ(own.size(), 2 * 3);
+  for (std::size_t i = 0; i < own.size(); ++i)
+  {
+    EXPECT_EQ(own[i].cells, i < 3 ? 4u : 8u);
+    EXPECT_EQ(own[i].tolerance, (std::array{1e-2, 1e-4, 1e-6})[i % 3]);
+    EXPECT_EQ(same_mesh(own[0], own[i]), i < 3);
+  }
 }
 
-TEST(TradeoffFamilies, WhatTheProgramCannotDoIsOneSettingWithItsReason)
+TEST(TradeoffSettings, WhatTheProgramCannotDoIsOneSettingWithItsReason)
 {
   unsigned int not_offered = 0;
-  for (const TradeoffFamily &family : families_of(parameters(small)))
+  for (const TradeoffSetting &setting : settings_of(parameters(small)))
   {
-    if (family.setting.has_no_mesh())
+    if (setting.has_no_mesh())
       continue;
-    const bool in_position = family.setting.formulation == "position",
-               fused       = family.setting.integrator != "bdf" && family.setting.mesh == "uniform";
-    const bool can_do =
-      family.setting.engine == "petsc" ? in_position : fused && (in_position || family.setting.engine == "fused");
-    EXPECT_EQ(family.not_offered.empty(), can_do) << in_words(family.setting);
-    EXPECT_EQ(family.setting.degree == 0, !can_do);
+    const bool in_position = setting.formulation == "position",
+               fused       = setting.integrator != "bdf" && setting.mesh == "uniform";
+    const bool can_do = setting.engine == "petsc" ? in_position : fused && (in_position || setting.engine == "fused");
+    EXPECT_EQ(setting.not_offered.empty(), can_do) << in_words(setting);
+    EXPECT_EQ(setting.degree == 0, !can_do);
     not_offered += !can_do;
   }
   // Position: all by PETSc; fused and batch have radau on uniform meshes. Stretch: the latter by fused only.
@@ -87,79 +85,47 @@ TEST(TradeoffFamilies, WhatTheProgramCannotDoIsOneSettingWithItsReason)
 }
 
 /// One stretch in each cell, whatever the degrees of the position form are.
-TEST(TradeoffFamilies, StretchHasDegreeOne)
+TEST(TradeoffSettings, StretchHasDegreeOne)
 {
   unsigned int n = 0;
-  for (const TradeoffFamily &family : families_of(parameters(small)))
-    if (family.setting.formulation == "stretch" && family.not_offered.empty())
+  for (const TradeoffSetting &setting : settings_of(parameters(small)))
+    if (setting.formulation == "stretch" && setting.not_offered.empty())
     {
-      EXPECT_EQ(family.setting.degree, 1u);
+      EXPECT_EQ(setting.degree, 1u);
       ++n;
     }
-  EXPECT_EQ(n, 2); // radau 5 and 9
+  EXPECT_EQ(n, 2 * 2 * 3); // radau 5 and 9, cells, tolerances
 }
 
-TEST(TradeoffFamilies, StretchIsNotForGroundsThatChange)
+TEST(TradeoffSettings, StretchIsNotForGroundsThatChange)
 {
   Parameters other     = parameters(small);
   other.ground.profile = "1+0.1*x";
   unsigned int n       = 0;
-  for (const TradeoffFamily &family : families_of(other))
-    if (family.setting.formulation == "stretch")
+  for (const TradeoffSetting &setting : settings_of(other))
+    if (setting.formulation == "stretch")
     {
-      EXPECT_NE(family.not_offered.find("depends on the place"), std::string::npos) << family.not_offered;
+      EXPECT_NE(setting.not_offered.find("depends on the place"), std::string::npos) << setting.not_offered;
       ++n;
     }
   EXPECT_EQ(n, 2 * 3 * 3);
 }
 
-TEST(TradeoffFamilies, LooseTolerancesAreNotForFineMeshes)
+TEST(TradeoffSettings, ReducedModelsHaveNoMesh)
 {
-  for (const TradeoffFamily &family : families_of(parameters(small)))
-    if (family.not_offered.empty() && family.setting.mesh == "uniform") // of the nonlinear model
-    {
-      const std::vector<double> expected = family.setting.cells == 8 ? std::vector<double>{1e-2, 1e-4, 1e-6}
-                                           : family.setting.cells == 16
-                                             ? std::vector<double>{1e-4, 1e-6}
-                                             : std::vector<double>{1e-6}; // the last one anyway
-      EXPECT_EQ(family.tolerances, expected) << in_words(family.setting);
-    }
-}
-
-TEST(TradeoffFamilies, ReducedModelsHaveNoMesh)
-{
-  const auto all = families_of(parameters(small));
-  EXPECT_EQ(in_words(all[0].setting), "model perturbation");
-  EXPECT_EQ(all[0].tolerances.size(), 1);
-  EXPECT_EQ(in_words(all[1].setting), "model kinematic");
-  EXPECT_EQ(all[1].tolerances, (std::vector<double>{0.1, 1e-2, 1e-4, 1e-6}));
-  EXPECT_EQ(all[1].first_index, 1);
-  EXPECT_EQ(all[2].first_index, 5);
+  const auto all = settings_of(parameters(small));
+  EXPECT_EQ(in_words(all[0]), "model perturbation, Accuracy 0.1");
+  for (std::size_t i = 0; i < 4; ++i)
+  {
+    EXPECT_EQ(all[1 + i].model, "kinematic");
+    EXPECT_EQ(all[1 + i].tolerance, (std::array{0.1, 1e-2, 1e-4, 1e-6})[i]);
+  }
+  EXPECT_EQ(all[5].model, "nonlinear");
   Parameters other              = parameters(small + "set Models = perturbation\n");
   other.active_stress.generator = "none";
-  const auto none               = families_of(other);
+  const auto none               = settings_of(other);
   ASSERT_EQ(none.size(), 1);
   EXPECT_NE(none[0].not_offered.find("a series for the optimal wave"), std::string::npos);
-}
-
-TEST(NextTolerance, EndsWhereTighterOnesCannotHelp)
-{
-  TradeoffFamily family;
-  family.tolerances = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
-  const auto next   = [&](const std::vector<TriedSetting> &tried) {
-    return next_tolerance(family, tried, /*reference=*/1., /*bar=*/1e-9);
-  };
-  EXPECT_EQ(next({}), 0);
-  EXPECT_EQ(next({finished(1.1), finished(1.01)}), 2);
-  EXPECT_EQ(next({finished(1.1), finished(1. + 1e-10)}), std::nullopt);                 // below the bar
-  EXPECT_EQ(next({finished(1.1), finished(1.01), finished(1.0101)}), 3);                // settled once
-  EXPECT_EQ(next({finished(1.01), finished(1.0101), finished(1.01011)}), std::nullopt); // and twice
-  EXPECT_EQ(next({{"stopped", "time_limit", HUGE_VAL}}), std::nullopt);
-  const TriedSetting failed{"failed", "newton_diverged", std::numeric_limits<double>::quiet_NaN()};
-  EXPECT_EQ(next({failed, failed}), 2);
-  EXPECT_EQ(next({failed, failed, failed}), std::nullopt);
-  EXPECT_EQ(next({failed, failed, finished(1.1), failed}), 4);
-  EXPECT_EQ(next({finished(1.1), finished(1.2), finished(1.3), finished(1.4), finished(1.5)}), std::nullopt); // the end
 }
 
 TEST(TradeoffSetting, AsTextIsWhatWasMeasured)
@@ -187,16 +153,4 @@ TEST(TradeoffSetting, AsTextIsWhatWasMeasured)
   EXPECT_EQ(pasted.time.integrator, "bdf");
   EXPECT_EQ(pasted.time.engine, Engine::petsc);
   EXPECT_EQ(as_prm(pasted, setting), as_prm(own, setting));
-}
-
-TEST(UsefulMeshes, AreEvenlySpacedFromPoorToWanted)
-{
-  using Meshes     = std::vector<std::pair<unsigned int, double>>;
-  const Meshes all = {{1, HUGE_VAL}, {2, 0.5}, {3, 1e-2}, {4, 1e-4}, {6, 1e-6}, {8, 1e-8}, {12, 1e-10}, {16, 1e-12}};
-  EXPECT_EQ(useful_meshes(all, 1e-5), (Meshes{{3, 1e-2}, {4, 1e-4}, {6, 1e-6}}));
-  const Meshes some = useful_meshes(all, 1e-13);
-  ASSERT_EQ(some.size(), 5);
-  EXPECT_EQ(some.front().first, 3);
-  EXPECT_EQ(some.back().first, 16);
-  EXPECT_EQ(useful_meshes({{1, HUGE_VAL}, {2, 0.5}}, 1e-3), (Meshes{{2, 0.5}}));
 }

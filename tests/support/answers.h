@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include "run_text.h"
+
+#include <crawler/studies/core/compute.h>
+
+#include <cmath>
+#include <exception>
+
+namespace crawler::test
+{
+  /// Nobody interrupts.
+  inline bool
+  never()
+  {
+    return false;
+  }
+
+  /// The result of `crawler run`, without files.
+  inline SimulationResult
+  answer_to(const Settings &settings)
+  {
+    Task task;
+    task.parameters = parameters_with(settings);
+    task.gait       = true;
+    compute_all({&task, 1}, HUGE_VAL, never);
+    if (task.error)
+      std::rethrow_exception(task.error);
+    return task.computed.result;
+  }
+} // namespace crawler::test
