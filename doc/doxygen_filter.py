@@ -3,8 +3,8 @@
 """What Doxygen reads instead of a file.  doxygen_filter.py FILE
 
 Markdown: headings get the anchors that links of the repository use (file name and heading: Doxygen's anchors are global),
-links to headings become references to them. C++: formulas of block comments (a paragraph indented by two) are indented
-far enough for Doxygen to print them as they are. No line is added or removed, so warnings name the right one.
+links to headings become references to them, formulas ($...$ and blocks marked math) get Doxygen's marks. C++: formulas
+of block comments (a paragraph indented by two) are indented far enough for Doxygen to print them as they are. No line is added or removed, so warnings name the right one.
 """
 import pathlib
 import re
@@ -18,6 +18,15 @@ def anchor(path, heading):
     place = "_".join(path.relative_to(ROOT).with_suffix("").parts)
     slug = re.sub(r"[^\w\- ]", "", heading.lstrip("#").strip().lower()).replace(" ", "-")
     return f"{place}--{slug}" if slug else place
+
+
+def formulas(line):
+    """A line whose formulas have Doxygen's marks."""
+    if line.startswith("    "):
+        return line
+    parts = re.split(r"(`[^`]*`)", line)  # every second one is code
+    parts[::2] = (re.sub(r"\$([^$\s](?:[^$]*[^$\s])?)\$", r"@f$\1@f$", part) for part in parts[::2])
+    return "".join(parts)
 
 
 def markdown(path, text):
@@ -42,7 +51,9 @@ def markdown(path, text):
                     name += "-1"
                 seen.add(name)
                 lines[n] += f" {{#{name}}}"
-        parts[i] = re.sub(r"\[([^\]]*)\]\(([^)\s]+)\)", link, "\n".join(lines))
+        parts[i] = re.sub(r"\[([^\]]*)\]\(([^)\s]+)\)", link, "\n".join(map(formulas, lines)))
+    for i in range(1, len(parts), 2):
+        parts[i] = re.sub(r"^```math\n(.*)```$", r"@f[\n\1@f]", parts[i], flags=re.DOTALL)
     return "".join(parts)
 
 
