@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The size and the structure of the program in numbers, as a Markdown table for doc/developer_guide.md.
+"""The size and the structure of the program in numbers, as a Markdown table.
 
     contrib/house.py [COMMIT]
 

@@ -4,7 +4,8 @@
 
 Markdown: headings get the anchors that links of the repository use (file name and heading: Doxygen's anchors are global),
 links to headings become references to them, formulas ($...$ and blocks marked math) get Doxygen's marks. C++: formulas
-of block comments (a paragraph indented by two) are indented far enough for Doxygen to print them as they are. No line is added or removed, so warnings name the right one.
+of block comments (a paragraph indented by two) are indented far enough for Doxygen to print them as they are. No line
+is added or removed, so warnings name the right one.
 """
 import pathlib
 import re
