@@ -3,7 +3,7 @@
 """What Doxygen reads instead of a file.  doxygen_filter.py FILE
 
 Markdown: headings get the anchors that links of the repository use (file name and heading: Doxygen's anchors are global),
-links to headings become references to them, formulas ($...$ and blocks marked math) get Doxygen's marks. C++: formulas
+links to headings become references to them, formulas ($...$, blocks marked math) get Doxygen's marks. C++: formulas
 of block comments (a paragraph indented by two) are indented far enough for Doxygen to print them as they are. No line
 is added or removed, so warnings name the right one.
 """
@@ -26,7 +26,8 @@ def formulas(line):
     if line.startswith("    "):
         return line
     parts = re.split(r"(`[^`]*`)", line)  # every second one is code
-    parts[::2] = (re.sub(r"\$([^$\s](?:[^$]*[^$\s])?)\$", r"@f$\1@f$", part) for part in parts[::2])
+    parts[::2] = (re.sub(r"\$([^$\s](?:[^$]*[^$\s])?)\$", r"@f$\1@f$", re.sub(r"\$\$(.+?)\$\$", r"@f[\1@f]", part))
+                  for part in parts[::2])
     return "".join(parts)
 
 
