@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -61,7 +60,7 @@ TEST(TradeoffSettings, ThoseOfOneMeshFollowEachOther)
   for (std::size_t i = 0; i < own.size(); ++i)
   {
     EXPECT_EQ(own[i].cells, i < 3 ? 4u : 8u);
-    EXPECT_EQ(own[i].tolerance, (std::array{1e-2, 1e-4, 1e-6})[i % 3]);
+    EXPECT_EQ(own[i].tolerance, (std::vector<double>{1e-2, 1e-4, 1e-6})[i % 3]);
     EXPECT_EQ(same_mesh(own[0], own[i]), i < 3);
   }
 }
@@ -118,7 +117,7 @@ TEST(TradeoffSettings, ReducedModelsHaveNoMesh)
   for (std::size_t i = 0; i < 4; ++i)
   {
     EXPECT_EQ(all[1 + i].model, "kinematic");
-    EXPECT_EQ(all[1 + i].tolerance, (std::array{0.1, 1e-2, 1e-4, 1e-6})[i]);
+    EXPECT_EQ(all[1 + i].tolerance, (std::vector<double>{0.1, 1e-2, 1e-4, 1e-6})[i]);
   }
   EXPECT_EQ(all[5].model, "nonlinear");
   Parameters other              = parameters(small + "set Models = perturbation\n");
