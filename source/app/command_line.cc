@@ -9,6 +9,7 @@
 #include <crawler/base/process.h>
 #include <crawler/base/standard_output.h>
 #include <crawler/lanes/forced_instruction_set.h>
+#include <crawler/studies/core/python.h>
 #include <crawler/time/failure.h>
 
 #include <fmt/format.h>
@@ -81,6 +82,10 @@ namespace crawler
       catch (const std::filesystem::filesystem_error &error)
       {
         return fail(ExitCode::file_error, in_words(error));
+      }
+      catch (const Stopped &error)
+      {
+        return fail(ExitCode::stopped, error.what());
       }
       catch (const std::exception &error)
       {

@@ -31,6 +31,74 @@ namespace crawler
           return text;
       }
     }
+
+    volatile std::sig_atomic_t child = 0;
+
+    void
+    pass_on(const int number, siginfo_t *const info, void *)
+    {
+      const int error       = errno;
+      const bool is_process = info->si_code <= 0; // a terminal sends its signals to the child, too
+      if (is_process)
+        kill(child, number);
+      errno = error;
+    }
+
+    /// Signals that stop the program go to its child as long as this lives; those that are ignored stay so. They wait
+    /// until there is a child.
+    class SignalsForChild
+    {
+    public:
+      SignalsForChild()
+      {
+        sigset_t ours;
+        sigemptyset(&ours);
+        for (const int number : numbers)
+          sigaddset(&ours, number);
+        sigprocmask(SIG_BLOCK, &ours, &mask_);
+        struct sigaction action = {};
+        action.sa_sigaction     = pass_on;
+        action.sa_flags         = SA_SIGINFO | SA_RESTART;
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+        {
+          sigaction(numbers[i], nullptr, &before_[i]);
+          if (before_[i].sa_handler != SIG_IGN)
+            sigaction(numbers[i], &action, nullptr);
+        }
+      }
+
+      ~SignalsForChild()
+      {
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+          sigaction(numbers[i], &before_[i], nullptr);
+        sigprocmask(SIG_SETMASK, &mask_, nullptr);
+      }
+
+      SignalsForChild(const SignalsForChild &) = delete;
+
+      /// Starts the child, with the signals as they were before. Returns whether it has started.
+      bool
+      start(pid_t &id, std::vector<char *> &words, const posix_spawn_file_actions_t &actions)
+      {
+        posix_spawnattr_t attributes;
+        posix_spawnattr_init(&attributes);
+        posix_spawnattr_setsigmask(&attributes, &mask_);
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+        const bool started = posix_spawnp(&id, words[0], &actions, &attributes, words.data(), environ) == 0;
+        posix_spawnattr_destroy(&attributes);
+        if (started)
+        {
+          child = id;
+          sigprocmask(SIG_SETMASK, &mask_, nullptr);
+        }
+        return started;
+      }
+
+    private:
+      static constexpr std::array<int, 3> numbers = {{SIGINT, SIGTERM, SIGUSR1}};
+      std::array<struct sigaction, numbers.size()> before_;
+      sigset_t mask_;
+    };
   } // namespace
 
   unsigned int
@@ -61,8 +129,9 @@ namespace crawler
     if (!shown)
       posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, pipe_of_errors[1], STDERR_FILENO);
-    pid_t id    = 0;
-    end.started = posix_spawnp(&id, pointers[0], &actions, nullptr, pointers.data(), environ) == 0;
+    pid_t id = 0;
+    SignalsForChild signals;
+    end.started = signals.start(id, pointers, actions);
     posix_spawn_file_actions_destroy(&actions);
     close(pipe_of_errors[1]);
     end.errors = all_of(pipe_of_errors[0]);

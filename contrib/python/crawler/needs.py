@@ -11,9 +11,10 @@ import importlib
 import os
 import pathlib
 import re
+import signal
 import sys
 
-STOPPED = 5  # exit code
+STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)
 DEBIANS_PYTHON, LACKING = "/usr/bin/python3", "CRAWLER_LACKING_PYTHON"  # the latter: what another Python lacks
 PACKAGES = {name: f"python3-{name}" for name in ("h5py", "matplotlib", "numpy", "scipy")}
 
@@ -31,6 +32,11 @@ class FileError(OSError):
 class Failed(RuntimeError):
     """What was asked for could not be computed."""
     code = 3
+
+
+class Stopped(RuntimeError):
+    """A signal has stopped what was to be done."""
+    code = 5
 
 
 def script():
@@ -106,17 +112,27 @@ class Parser(argparse.ArgumentParser):
         self.exit(InputError.code)
 
 
+def _stop(_number, _frame):
+    """The first signal stops the script in order; more of them change nothing."""
+    for number in STOPPING:
+        signal.signal(number, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
+
 def run_script(main):
     """Calls main() and says in one sentence what went wrong."""
+    for number in STOPPING:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, _stop)
     try:
         main()
         sys.stdout.flush()
-    except (InputError, FileError, Failed) as error:
+    except (InputError, FileError, Failed, Stopped) as error:
         complain(error)
         sys.exit(error.code)
     except KeyboardInterrupt:
         complain("stopped by a signal")
-        sys.exit(STOPPED)
+        sys.exit(Stopped.code)
     except OSError as error:
         if error.filename is None:  # of standard output; what is left of it would be another error at the end
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

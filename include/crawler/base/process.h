@@ -21,7 +21,8 @@ namespace crawler
   };
 
   /// Runs another program, which is looked for in the PATH, without input, and waits for its end. What it writes to its
-  /// standard output is shown if @p shown.
+  /// standard output is shown if @p shown. Signals that stop this process (SIGINT, SIGTERM, SIGUSR1) stop that program
+  /// instead.
   ProgramEnd
   run_program(const std::vector<std::string> &command, bool shown);
 

@@ -63,6 +63,8 @@ namespace crawler
       throw FileError(end.problem, /*on_all_ranks=*/true);
     if (end.status == static_cast<int>(ExitCode::bad_input) || end.status == EX_UNAVAILABLE)
       throw InputError(end.problem);
+    if (end.status == static_cast<int>(ExitCode::stopped))
+      throw Stopped(end.problem);
     if (end.status == static_cast<int>(ExitCode::numerical_failure))
       throw std::runtime_error(end.problem);
     if (end.status != 0)

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <stdexcept>
+#include <string>
 
 using namespace crawler;
 
@@ -27,6 +29,23 @@ TEST(Process, ASignalOrAMissingProgramIsNoStatus)
 {
   EXPECT_EQ(run_program({"sh", "-c", "kill -9 $$"}, false).status, -1);
   EXPECT_FALSE(run_program({"no-such-program-here"}, false).started);
+}
+
+TEST(Process, SignalsThatStopThisOneGoToIt)
+{
+  const auto end_of = [](const std::string &name) {
+    return run_program(
+      {"sh", "-c", "trap 'exit 5' " + name + "; kill -" + name + " $PPID; while :; do sleep 0.01; done"}, false);
+  };
+  for (const std::string name : {"INT", "TERM", "USR1"})
+    EXPECT_EQ(end_of(name).status, 5) << name;
+}
+
+TEST(Process, SignalsThatAreIgnoredStopNeither)
+{
+  const auto before = std::signal(SIGTERM, SIG_IGN);
+  EXPECT_EQ(run_program({"sh", "-c", "kill -TERM $PPID; kill -TERM $$; exit 3"}, false).status, 3);
+  EXPECT_EQ(std::signal(SIGTERM, before), SIG_IGN);
 }
 
 TEST(Process, ACopyTriesWhatMayCrashOrNeverEnd)

@@ -4,11 +4,19 @@
 #include <crawler/studies/core/log.h>
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace crawler
 {
+  /// A signal has stopped a part of the program that is written in Python.
+  class Stopped : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+
   /// How a part of the program that is written in Python ended.
   struct PythonEnd
   {
@@ -21,7 +29,7 @@ namespace crawler
   PythonEnd
   call_python(const std::string &script, const std::vector<std::string> &arguments, bool shown);
 
-  /// The same, shown; throws InputError and FileError with what the script says.
+  /// The same, shown; throws InputError, FileError and Stopped with what the script says.
   void
   hand_over_to_python(const std::string &script, const std::vector<std::string> &arguments);
 
