@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""crawler fit: its files, its picture, the scene it writes, the comparison of scenes, and refusals.
+"""crawler fit: its files, its picture, the scene it writes, the comparison of scenes, what stops and resumes, and refusals.
 
     python3 fit.py PATH_TO_CRAWLER
 """
@@ -28,14 +28,66 @@ REFUSED = [
     (["fit_worm.prm", "--set", "Body/Lenght=3"], 2, "Length"), (["fit_worm.prm", "--set", "Fit/Data="], 2, "Fit/Data is empty"),
     (["fit_worm.prm", "--set", "Fit/Variables="], 2, "Variables is empty"), (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
     (["fit_worm.prm", "--output", "fit_worm.prm"], 2, "is a file"), (["fit_worm.prm", "--output", "other", "--overwrite"], 2, "not the folder of a fit"),
+    (["fit_worm.prm", "--workers", "0"], 2, "from 1"), (["fit_worm.prm", "--workers", "two"], 2, "whole number"),
     (["fit_worm.prm", "--set", "Fit/Markers at=0,1"], 2, "9 markers"), (["fit_worm.prm", "other/fit_worm.prm"], 2, "same name")]
+THREE = ("fit", "three.prm")
 checks = Checks()
 check = checks.expect
 
 
-def crawler(*arguments):
+def crawler(*arguments, stop_at=None):
     """Runs the program."""
-    return call([PROGRAM, *arguments], os.getcwd())
+    return call([PROGRAM, *arguments], os.getcwd(), stop_at)
+
+
+def contents(folder):
+    """The files of a fit but for its picture, those of its starts too; of summary.json without how it was called."""
+    files = {str(file.relative_to(folder)): file.read_bytes() for file in pathlib.Path(folder).rglob("*") if file.is_file() and file.suffix != ".png"}
+    files["summary.json"] = {key: value for key, value in json.loads(files["summary.json"]).items() if key != "command_line"}
+    return files
+
+
+def resumes():
+    """A fit that is stopped or killed leaves what it has found, and goes on to the result of an undisturbed one, as does one on
+    several processes; nothing else is gone on with."""
+    pathlib.Path("three.prm").write_text("include fit_worm.prm\nsubsection Fit\n  set Variables = Body/Anchoring exponent : 0.5 to 5\n  set Starts = 3\nend\n",
+                                         encoding="utf-8")
+    ended = crawler(*THREE, "--output", "whole")
+    check(ended.returncode == 0, f"three starts end with {ended.returncode}: {ended.stderr}")
+    whole = contents("whole")
+    n_steps = 3000  # in the third start
+    for place, code, status in ((f"step:{n_steps}:TERM", 5, "stopped"), ("step:500:INT", 5, "stopped"), (f"step:{n_steps}:KILL", 3, None),
+                                ("step:1:USR1", 5, None)):
+        shutil.rmtree("part", ignore_errors=True)
+        ended = crawler(*THREE, "--output", "part", stop_at=place)
+        check(ended.returncode == code and ended.stderr.count("\n") == 1, f"{place}: {ended.returncode}, {ended.stderr}")
+        summary = pathlib.Path("part/summary.json")
+        left = json.loads(summary.read_text(encoding="utf-8")) if summary.exists() else {"status": None}
+        check(left["status"] == status and ("--resume goes on" in ended.stderr or code == 3), f"{place} leaves {left['status']}: {ended.stderr}")
+        if status and str(n_steps) in place:
+            check(len(left["starts"]) == 2 and all(one["value"] is not None and one["deviation"] is None for one in left["variables"].values())
+                  and "(so far)" in ended.stdout, f"{place}: {left}")
+        ended = crawler(*THREE, "--output", "part")
+        check(ended.returncode == 2 and "--resume goes on" in ended.stderr, f"{place}, called again: {ended.stderr}")
+        ended = crawler(*THREE, "--output", "part", "--resume")
+        check(ended.returncode == 0 and contents("part") == whole, f"{place} and --resume: {ended.stderr}")
+        check(("2 of 3 starts" in ended.stdout) == (str(n_steps) in place), f"{place}: --resume searches again: {ended.stdout}")
+    ended = crawler(*THREE, "--output", "shared", "--workers", "2")
+    check(ended.returncode == 0 and contents("shared") == whole, f"two processes find something else: {ended.stderr}")
+    pathlib.Path("part/starts/1.json").write_text("{", encoding="utf-8")
+    pathlib.Path("part/summary.json").unlink()
+    ended = crawler(*THREE, "--output", "part", "--resume")
+    check(ended.returncode == 0 and "2 of 3" in ended.stdout and contents("part") == whole, f"a damaged start: {ended.stderr}")
+    fewer = crawler("fit", "three.prm", "--set", "Fit/Starts=2", "--output", "part", "--resume")
+    check(fewer.returncode == 0 and "start 3" not in fewer.stdout and "2 of 2" in fewer.stdout, f"fewer starts: {fewer.stdout}{fewer.stderr}")
+    lines = pathlib.Path("fit_worm.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    pathlib.Path("other.csv").write_text("".join(lines[:-1]), encoding="utf-8")
+    shutil.copy("fit_worm.csv", "same.csv")
+    check(crawler(*THREE, "--output", "part", "--resume", "--data", "same.csv", "--quiet").returncode == 0, "the same data in another file are refused")
+    for arguments, phrase in ((("--set", "Body/Length=3.1"), "Body/Length was 3 and is 3.1"), (("--data", "other.csv"), "other data"),
+                              (("--overwrite",), "contradict"), (("--output", "run"), "no fit that could be resumed")):
+        ended = crawler(*THREE, "--output", "part", "--resume", *arguments)
+        check(ended.returncode == 2 and phrase in ended.stderr and ended.stderr.count("\n") == 1, f"--resume {arguments}: {ended.stderr}")
 
 
 def refuses():
@@ -72,8 +124,6 @@ def main():
     check(matplotlib.image.imread("output-fit_worm/fit.png").shape[0] > 300, "there is no picture")
     pathlib.Path("output-fit_worm/fit.png").unlink()
     check(crawler("plot", "output-fit_worm").returncode == 0 and pathlib.Path("output-fit_worm/fit.png").exists(), "plot draws no fit")
-    ended = crawler("report", "output-fit_worm")
-    check(ended.returncode == 2 and "crawler plot" in ended.stderr, f"report of a fit: {ended.stderr}")
     again = crawler("fit", "output-fit_worm/fitted.prm", "--output", "again")  # it starts where the first one ended
     other = json.loads(pathlib.Path("again/summary.json").read_text(encoding="utf-8"))["variables"]
     check(again.returncode == 0 and all(abs(other[name]["value"] - summary["variables"][name]["value"]) < 0.02 * other[name]["deviation"] for name in TRUTH),
@@ -89,6 +139,7 @@ def main():
     check(quiet.returncode == 0 and quiet.stdout == "", "--quiet prints")
     ended = crawler("run", "fit_worm.prm", "--output", "run")
     check(ended.returncode == 0 and 'section "Fit" has no effect with "crawler run"' in ended.stdout, f"a run does not note section Fit: {ended.stdout}")
+    resumes()
 
 
 if __name__ == "__main__":

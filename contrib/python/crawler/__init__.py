@@ -221,7 +221,7 @@ def fit(scene, data=None, variables=None, *, set=None, verbose=False, **keywords
     if variables is not None:
         overrides.append(f"Fit/Variables={_ranges(variables)}")
     fitting = importlib.import_module(".fitting", __name__)
-    model, notes = fitting.prepared(lambda more: _source(scene, [*overrides, *more]), data)
+    model, notes = fitting.prepared(scene, overrides, data)
     found = fitting.find(model, print if verbose else lambda text: None)
     _warn([*notes, *found.notes])
     return found

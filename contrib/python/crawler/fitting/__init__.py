@@ -4,19 +4,20 @@ from .. import _compiled
 from ..needs import InputError
 from ..results import parameters_of
 from .data import Data, read_data
-from .fit import find
-from .model import Model
+from .fit import Interrupted, find
+from .model import Model, Scene
 from .result import Fit
 
-__all__ = ["Data", "Fit", "Model", "find", "prepared", "read_data"]
+__all__ = ["Data", "Fit", "Interrupted", "Model", "find", "prepared", "read_data"]
 
 
-def prepared(source, data=None, **reading):
-    """The Model of a scene with its data, and notes on its file: source(overrides) gives it with other values. data: a name,
-    Samples, or None, which stands for Fit/Data; reading: options of measured.read_samples()."""
-    effective, notes, variables = _compiled().variables_of_fit(source([]))
+def prepared(scene, settings, data=None, **reading):
+    """The Model of a scene (a file, its text or a dict) with its data, and notes on it. settings: ["Body/Length=2", ...]; data: a
+    name, Samples, or None, which stands for Fit/Data; reading: options of measured.read_samples(). Raises InputError, FileError."""
+    scene = Scene(scene, settings)
+    effective, notes, variables = _compiled().variables_of_fit(scene())
     parameters = parameters_of(effective)
     data = data if data is not None else parameters["Fit/Data"]
     if isinstance(data, str) and not data:
         raise InputError("Fit/Data is empty, but the name of a file with what was measured is expected (or --data)")
-    return Model(source, parameters, variables, read_data(data, parameters, **reading)), notes
+    return Model(scene, effective, variables, read_data(data, parameters, **reading)), notes

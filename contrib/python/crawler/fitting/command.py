@@ -1,21 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """crawler fit: numbers of scenes from measured data, with their uncertainty; of several scenes, which the data prefer."""
-import json
 import os
 import pathlib
-import shutil
-import subprocess
+import shlex
 import sys
 
-import numpy as np
-
-from .. import _source, to_prm
 from ..measured.options import add_reading_options, reading_of
-from ..needs import Failed, FileError, InputError, Parser, write_whole
-from . import find, prepared
+from ..needs import Failed, InputError, Parser, Stopped
+from . import Interrupted, find, prepared
+from .folder import Folder
 from .result import value_in_words
-
-PICTURE = pathlib.Path(__file__).absolute().parents[1] / "plot" / "fit.py"
 
 DESCRIPTION = """Finds numbers of a parameter file, with their uncertainty, from measured data (section Fit; doc/fit.md). With several
 files all are fitted to the same data, and a table says which of them the data prefer."""
@@ -28,29 +22,20 @@ def command_line():
     parser.add_argument("--data", metavar="FILE", help="what was measured (default: Fit/Data)")
     parser.add_argument("--set", action="append", default=[], metavar="ENTRY=VALUE", help="sets an entry (repeatable)")
     parser.add_argument("--output", metavar="DIR", help="output folder (default: output-NAME for NAME.prm)")
+    parser.add_argument("--resume", action="store_true", help="goes on with a fit that was stopped or killed; begins it if there is nothing yet")
     parser.add_argument("--overwrite", action="store_true", help="replaces the results in the output folder")
+    parser.add_argument("--workers", metavar="N", type=int, default=1, help="so many processes share the starts (Fit/Starts)")
     parser.add_argument("--quiet", action="store_true", help="prints nothing but errors")
     add_reading_options(parser)
     return parser
 
 
-def folder_of(name, options):
+def path_of(name, options):
     """The output folder of a parameter file."""
     stem = pathlib.Path(name).stem
     if options.output is None:
         return pathlib.Path(f"output-{stem}")
     return pathlib.Path(options.output) / stem if len(options.files) > 1 else pathlib.Path(options.output)
-
-
-def require_new(folder, overwrite):
-    """Raises InputError if the folder has something that is not to be replaced."""
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f'"{folder}" is a file, but a folder is expected')
-    if folder.exists() and any(folder.iterdir()):
-        if not overwrite:
-            raise InputError(f'"{folder}" exists and is not empty; another folder or "--overwrite" is expected')
-        if not (folder / "residuals.csv").exists():
-            raise InputError(f'"{folder}" is not the folder of a fit, so "--overwrite" replaces nothing in it; another folder is expected')
 
 
 def lines_of(found):
@@ -60,6 +45,8 @@ def lines_of(found):
         ends = one["interval_95"] or [None, None]
         interval = "" if not one["determined"] else " 95 %: " + " to ".join("the limit" if end is None else f"{end:.6g}" for end in ends)
         yield f"{name:{width}}  {value_in_words(one)}{interval}"
+    if found.status == "stopped":
+        return
     fits = (f"chi-square {goodness.chi_square:.5g} with {goodness.degrees_of_freedom} degrees of freedom (probability {goodness.probability:.2g})"
             if goodness.deviation_is_given else f"standard deviation of a datum {goodness.deviation_of_data:.3g}, from the residuals")
     yield f"data: {goodness.n_data}, variables: {len(found.variables)}, besides for origin and places: {goodness.n_constants}; {fits}"
@@ -68,74 +55,91 @@ def lines_of(found):
         yield f"{sentence[0].upper()}{sentence[1:]}."
 
 
-def write(found, name, folder, settings):
-    """All files of a fit; a sentence if there is no picture."""
-    shutil.copyfile(name, folder / "original.prm")
-    text = f"include {os.path.abspath(name)}\n" + to_prm({**dict(one.split("=", 1) for one in settings), **found.settings})
-    write_whole(folder / "fitted.prm", text.encode())
-    data = found.data
-    rows = ["t,place,data,model,residual"]
-    places = data.places if len(data.places) else np.full(1, np.nan)
-    for i, t in enumerate(data.t):
-        rows += [f"{t:.12g},{places[j]:.12g},{data.values[i, j]:.12g},{found.model[i, j]:.12g},{found.residuals[i, j]:.6g}"
-                 for j in range(data.values.shape[1]) if data.is_there[i, j]]
-    write_whole(folder / "residuals.csv", ("\n".join(rows) + "\n").encode())
-    write_whole(folder / "summary.json", (json.dumps(found, indent=2) + "\n").encode())
-    drawn = subprocess.run([sys.executable, PICTURE, folder], capture_output=True, text=True, check=False)
-    return "" if drawn.returncode == 0 else f"There is no picture: {drawn.stderr.strip()}. Draw it later with: crawler plot {folder}"
+def found_and_written(name, folder, model, options, say):
+    """The Fit, whose files are in the folder then. Raises Stopped when it was interrupted; the files are there, too."""
+    def write(found):
+        measured = options.data if options.data is not None else model.parameters["Fit/Data"]
+        found["measured"] = {"file": os.path.abspath(measured), "reading": reading_of(options)}
+        found["command_line"] = shlex.join(["crawler", *(word for word in sys.argv[1:] if word not in ("--resume", "--overwrite", "--quiet"))])
+        folder.write(found, options.set, name)
 
-
-def found_and_written(name, folder, model, settings, say):
-    """The Fit, whose files are in the folder then, and a sentence if there is no picture."""
+    kept = folder.begin(name, model)
     try:
-        folder.mkdir(parents=True, exist_ok=True)  # or it is too late to say so
+        found = find(model, say, kept, options.workers)
+        write(found)
+        problem = folder.draw()
+        for line in [*lines_of(found), *filter(None, [problem]), f"Files in {folder.path}/"]:
+            say(line)
+        return found
+    except Interrupted as interrupted:
+        so_far = interrupted.so_far
+        if so_far is None:
+            raise Stopped("stopped by a signal before there were values; --resume goes on") from None
+        write(so_far)
+        for line in [*lines_of(so_far), f"Files in {folder.path}/"]:
+            say(line)
+        raise Stopped(so_far.message) from None
+    except (InputError, Failed):
+        if not kept:
+            folder.clear()
+        raise
     except OSError as error:
-        raise FileError(f'cannot write to "{folder}": {error.strerror}') from None
-    try:
-        found = find(model, say)
-        return found, write(found, name, folder, settings)
-    except OSError as error:
-        raise error if isinstance(error, FileError) else FileError(f'cannot write to "{folder}": {error.strerror or error}') from None
+        raise folder.problem(error) from None
     finally:
-        if not any(folder.iterdir()):
-            folder.rmdir()
+        folder.leave()
 
 
-def table_of(fits):
-    """Scenes in the order in which the data prefer them (Akaike), as lines."""
+def compared(fits):
+    """Scenes in the order in which the data prefer them (Akaike): a list of dicts."""
     best = {key: min(found.information[key] for found in fits.values()) for key in ("aic", "bic")}
-    width = max(map(len, fits))
+    return [{"scene": name, "variables": len(found.variables), "chi_square": found.goodness.chi_square,
+             **{key: found.information[key] - best[key] for key in best}} for name, found in sorted(fits.items(), key=lambda one: one[1].information.aic)]
+
+
+def table_of(rows):
+    """The same as lines."""
+    width = max(len(row["scene"]) for row in rows)
     yield f"{'scene':{width}}  variables  chi-square  AIC - least  BIC - least"
-    for name, found in sorted(fits.items(), key=lambda one: one[1].information.aic):
-        yield (f"{name:{width}}  {len(found.variables):9}  {found.goodness.chi_square:10.5g}  {found.information.aic - best['aic']:11.4g}  "
-               f"{found.information.bic - best['bic']:11.4g}")
+    for row in rows:
+        yield f"{row['scene']:{width}}  {row['variables']:9}  {row['chi_square']:10.5g}  {row['aic']:11.4g}  {row['bic']:11.4g}"
+
+
+def require_sense(options):
+    """Raises InputError where options contradict each other or mean nothing."""
+    if options.resume and options.overwrite:
+        raise InputError("--resume and --overwrite contradict each other; one of them is expected")
+    if options.workers < 1:
+        raise InputError(f'"--workers" is {options.workers}, but a number of processes from 1 is expected')
+    ranks = int(os.environ.get("OMPI_COMM_WORLD_SIZE", os.environ.get("PMI_SIZE", "1")))
+    if ranks > 1:
+        raise InputError(f'{ranks} processes of mpirun were started, but a fit begins its own; "crawler fit --workers {ranks}" is expected')
+    if len(set(map(lambda name: pathlib.Path(name).stem, options.files))) < len(options.files):
+        raise InputError("two of the parameter files have the same name, but names of their own are expected, as their folders have them")
+    for setting in options.set:
+        if "=" not in setting:
+            raise InputError(f'"--set" is "{setting}", but "Section/Entry=value" is expected')
 
 
 def main():
     """Fits, writes and tells."""
     options = command_line().parse_args(sys.argv[2:])
     say = (lambda text: None) if options.quiet else (lambda text: print(text, flush=True))
-    if len(set(map(lambda name: pathlib.Path(name).stem, options.files))) < len(options.files):
-        raise InputError("two of the parameter files have the same name, but names of their own are expected, as their folders have them")
-    folders = {name: folder_of(name, options) for name in options.files}
-    for folder in folders.values():
-        require_new(folder, options.overwrite)
-    for setting in options.set:
-        if "=" not in setting:
-            raise InputError(f'"--set" is "{setting}", but "Section/Entry=value" is expected')
-    models = {name: prepared(lambda more, name=name: _source(name, [*options.set, *more]), options.data, **reading_of(options)) for name in folders}
+    require_sense(options)
+    folders = {name: Folder(path_of(name, options), options.resume, options.overwrite) for name in options.files}
+    models = {name: prepared(name, options.set, options.data, **reading_of(options)) for name in folders}
     if len({int(model.data.is_there.sum()) for model, _ in models.values()}) > 1:
         raise InputError("the parameter files do not fit the same data, so they cannot be compared")
     fits = {}
     for name, folder in folders.items():
         model, notes = models[name]
         say("\n  ".join([f"{name}:", *notes]))
-        found, problem = found_and_written(name, folder, model, options.set, lambda text: say(f"  {text}"))
-        for line in [*lines_of(found), *filter(None, [problem]), f"Files in {folder}/"]:
-            say(f"  {line}")
-        fits[name] = found
+        fits[name] = found_and_written(name, folder, model, options, lambda text: say(f"  {text}"))
     if len(fits) > 1:
-        for line in table_of(fits):
+        rows = compared(fits)
+        for name, found in fits.items():
+            found["comparison"] = rows
+            folders[name].write_summary(found)
+        for line in table_of(rows):
             say(line)
     for name, found in fits.items():
         if found.status != "finished":

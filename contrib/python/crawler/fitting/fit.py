@@ -5,8 +5,9 @@ import math
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..needs import Failed, InputError
-from .result import MOST_STEPS, NEAR, SHARE, Best, described
+from ..needs import Failed
+from .result import MOST_STEPS, NEAR, SHARE, Best, described, unfinished
+from .starts import best_of_starts, table_of_starts
 from .uncertainty import undetermined_directions
 
 LARGEST_ACCURACY, LEAST_ACCURACY = 1e-4, 3e-11  # of runs, whose differences are to be derivatives
@@ -25,6 +26,7 @@ class Problem:
         self.scale = data.deviation or float(np.nanstd(data.values - np.nanmean(data.values, axis=0))) or 1.0
         self.n_rows = len(data.places) if 0 < data.place_deviation < math.inf else 0  # that hold places fast
         self.last = None  # scaled variables, values of the last run, and what the nuisance cannot change
+        self.least = (math.inf, None, data.places)  # sum of squares that was seen, with its scaled variables and places
 
     def run(self, z):
         """What the scene says [time, place], and an orthonormal basis of what origin and places change."""
@@ -51,7 +53,19 @@ class Problem:
     def residuals(self, z):
         """One for each datum, and for each place that is held."""
         values, basis = self.run(z)
-        return self.scaled(values - self.data.values, basis)
+        residuals = self.scaled(values - self.data.values, basis)
+        self.see(float(residuals @ residuals), z)
+        return residuals
+
+    def see(self, squares, z):
+        """Notes the least sum of squares."""
+        if squares < self.least[0]:
+            self.least = (squares, np.array(z), self.data.places)
+
+    def go_to_least(self):
+        """Takes places to where they were at the least sum of squares that was seen; has any been?"""
+        self.data.places, self.last = self.least[2], None
+        return self.least[0] < math.inf
 
     def jacobian(self, z, both_sides=False):
         """[residual, variable], with origin and places where they are (Kaufman, BIT 15, 49, 1975)."""
@@ -95,20 +109,37 @@ class Problem:
         return np.max(np.abs(data.places - before)) > FAR_PLACE * length
 
 
-def find(model, progress=lambda text: None):
-    """The Fit of a Model to its data. Raises InputError if no start can be run, and Failed where there are no derivatives."""
-    problem = Problem(model, model.data)
+class Interrupted(KeyboardInterrupt):
+    """A fit was interrupted. so_far: a Fit with the best values up to then, without deviations; None before there are any."""
+
+    def __init__(self, so_far):
+        super().__init__()
+        self.so_far = so_far
+
+
+def find(model, progress=lambda text: None, kept=None, workers=1):
+    """The Fit of a Model to its data.
+
+    progress: is told what happens; kept: a dict of finished starts, which are not searched again, and to which others are added;
+    workers: so many processes share the starts. Raises InputError if no start can be run, Failed where there are no derivatives,
+    and Interrupted.
+    """
+    problem, kept = Problem(model, model.data), {} if kept is None else kept
     model.accuracy = min(max(float(model.parameters["Accuracy"]), LEAST_ACCURACY), LARGEST_ACCURACY)
-    starts, (z, ended) = _starts(problem, int(model.parameters["Fit/Starts"]), int(model.parameters["Fit/Seed"]), progress)
-    for refinement in range(MOST_REFINEMENTS + 1):
-        best = _looked_at(problem, z, ended)
-        if best.worst <= SHARE or refinement == MOST_REFINEMENTS or model.accuracy <= LEAST_ACCURACY:
-            break
-        model.accuracy = max(model.accuracy * min(0.3, 0.3 * SHARE / best.worst), LEAST_ACCURACY)
-        progress(f"accuracy {model.accuracy:.1g}, so that the numerical error is small beside the statistical one")
-        problem.last = None
-        _, z, ended = problem.search(z)
-    return described(problem, best, starts)
+    try:
+        z, ended = best_of_starts(problem, kept, workers, progress)
+        for refinement in range(MOST_REFINEMENTS + 1):
+            best = _looked_at(problem, z, ended)
+            if best.worst <= SHARE or refinement == MOST_REFINEMENTS or model.accuracy <= LEAST_ACCURACY:
+                break
+            model.accuracy = max(model.accuracy * min(0.3, 0.3 * SHARE / best.worst), LEAST_ACCURACY)
+            progress(f"accuracy {model.accuracy:.1g}, so that the numerical error is small beside the statistical one")
+            problem.last = None
+            _, z, ended = problem.search(z)
+        return described(problem, best, table_of_starts(problem, kept))
+    except KeyboardInterrupt:
+        starts = table_of_starts(problem, kept)
+        raise Interrupted(unfinished(problem, starts) if problem.go_to_least() else None) from None
 
 
 def _looked_at(problem, z, ended):
@@ -120,28 +151,6 @@ def _looked_at(problem, z, ended):
     deviation = 1.0 if data.deviation else max(math.sqrt(float(residual @ residual) / freedom), LEAST_NOISE)
     loose, members = undetermined_directions(jacobian / deviation)
     return Best(z, jacobian, deviation, _numerical_error(problem, z, jacobian), loose, members, ended)
-
-
-def _starts(problem, n_starts, seed, progress):
-    """Searches from all starts: a list of dicts, and the best as (scaled variables, did it end in order?), whose places are those
-    of the data then."""
-    model, data, random = problem.model, problem.data, np.random.default_rng(seed)
-    first, places = (model.start - model.low) / problem.width, data.places
-    starts, best, best_places = [], (math.inf, first, False), places
-    for number in range(n_starts):
-        data.places, problem.last = places, None
-        squares, z, ended = problem.search(first if number == 0 else random.random(len(first)))
-        reason = "" if squares < math.inf else model.problem
-        if squares < best[0]:
-            best, best_places = (squares, z, ended), data.places
-        rest = [math.sqrt(one / data.is_there.sum()) * problem.scale for one in (squares, best[0])]
-        starts.append({"start": number, "residuals": None if reason else rest[0], "reason": reason,
-                       "values": dict(zip(model.names, problem.real(z).tolist()))})
-        progress(f"start {number + 1} of {n_starts}: " + (reason or f"residuals {rest[0]:.6g} (root mean square), least so far {rest[1]:.6g}"))
-    if best[0] == math.inf:
-        raise InputError(f"the scene cannot be run at {'the start' if n_starts == 1 else f'any of {n_starts} starts'}: {starts[0]['reason']}")
-    data.places, problem.last = best_places, None
-    return starts, best[1:]
 
 
 def _numerical_error(problem, z, jacobian):

@@ -1,22 +1,35 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The numbers that a run gives where there are data, and their derivatives."""
+import dataclasses
 import json
 import re
 
 import numpy as np
 
-from .. import _compiled
+from .. import _compiled, _source
 from ..needs import InputError
+from ..results import parameters_of
 
 STEP = 1e-4  # of differences, relative to a value
 
 
-class Model:
-    """A scene as a function of its variables."""
+@dataclasses.dataclass
+class Scene:
+    """A parameter file (or its text, or a dict) with settings, ["Body/Length=2", ...]."""
+    scene: object
+    settings: list
 
-    def __init__(self, source, parameters, variables, data):
-        """source(overrides): the scene with other values; variables: [(entry, from, to, start)]."""
-        self.source, self.parameters, self.data = source, parameters, data
+    def __call__(self, more=()):
+        """What the compiled part reads, with more settings."""
+        return _source(self.scene, [*self.settings, *more])
+
+
+class Model:
+    """A scene as a function of its variables. It can be sent to another process."""
+
+    def __init__(self, scene, effective, variables, data):
+        """scene: a Scene; effective: its parameters.prm; variables: [(entry, from, to, start)]; data: Data."""
+        self.scene, self.effective, self.parameters, self.data = scene, effective, parameters_of(effective), data
         self.names = [one[0] for one in variables]
         require_enough(data, self.names)
         self.low, self.high, self.start = np.array([one[1:] for one in variables]).T
@@ -39,7 +52,7 @@ class Model:
         self.n_runs += 1
         settings = [*self.overrides(x), "Output/Number of snapshots=0", "Output/Statistics=false", "Output/Sensitivities=",
                     f"Accuracy={accuracy!r}"]
-        return _compiled().run(self.source(settings), times, places)
+        return _compiled().run(self.scene(settings), times, places)
 
     def __call__(self, x, accuracy=None):
         """The numbers [time, place], and the stretch there if places are free; NaN if the run does not finish, for which problem

@@ -31,6 +31,8 @@ class Fit(Numbers):
 
 def value_in_words(one):
     """Of a variable, as in summary.json: value, statistical deviation, numerical error."""
+    if one["determined"] is None:
+        return f"{one['value']:.6g} (so far)"
     if not one["determined"]:
         return "not told by the data"
     numerical = "?" if one["numerical_error"] is None else f"{one['numerical_error']:.1g}"
@@ -65,6 +67,23 @@ class Best:
         return float(np.max(self.numerical[told] / np.maximum(self.spread[told], 1e-300), initial=0))
 
 
+def unfinished(problem, starts):
+    """The Fit of a search that was interrupted: the least sum of squares that was seen, without deviations."""
+    model, data = problem.model, problem.data
+    squares, z, _ = problem.least
+    values, grid = problem.real(z), np.full(data.values.shape, np.nan)
+    grid[data.is_there] = problem.residuals(z)[:data.is_there.sum()]
+    variables = {name: {"value": float(value), "used": float(value), "deviation": None, "numerical_error": None, **{level: None for level in LEVELS}, "profile": [],
+                        "from": float(low), "to": float(high), "determined": None, "at_limit": ""}
+                 for name, value, low, high in zip(model.names, values, model.low, model.high)}
+    goodness = {"kind": data.kind, "n_data": int(data.is_there.sum()), "n_variables": len(z), "n_constants": data.n_constants}
+    found = {"status": "stopped", "reason": "signal", "message": f"stopped by a signal after {len(starts)} of "
+             f"{int(model.parameters['Fit/Starts'])} starts; --resume goes on", "variables": variables, "undetermined": [], "notes": [],
+             "goodness": goodness, "residuals": math.sqrt(squares / goodness["n_data"]) * problem.scale, "accuracy": model.accuracy,
+             "n_runs": model.n_runs, "starts": starts}
+    return Fit(found, data, data.values + grid * problem.scale, dict(one.split("=", 1) for one in model.overrides(values)), None)
+
+
 def described(problem, best, starts):
     """The Fit."""
     model, data = problem.model, problem.data
@@ -94,14 +113,15 @@ def _variables(problem, best, values):
     for j, name in enumerate(model.names):
         at, is_told = best.z[j], not best.involved[j]
         one = {"value": float(values[j]) if is_told else None, "used": float(values[j]), "deviation": None, "numerical_error": None,
-               **{level: None for level in LEVELS}, "from": float(model.low[j]), "to": float(model.high[j]), "determined": is_told,
+               **{level: None for level in LEVELS}, "profile": [], "from": float(model.low[j]), "to": float(model.high[j]), "determined": is_told,
                "at_limit": "from" if at < NEAR else "to" if at > 1 - NEAR else ""}
         variables[name] = one
         if is_told:
-            ends = profile.interval(j, spread[j])
+            ends, curve = profile.interval(j, spread[j])
             one["deviation"] = float(spread[j] * width[j])
             one["numerical_error"] = float(best.numerical[j] * width[j]) if math.isfinite(best.numerical[j]) else None
             one.update({level: [None if end is None else float(model.low[j] + end * width[j]) for end in ends[level]] for level in LEVELS})
+            one["profile"] = [[float(model.low[j] + x * width[j]), float(rise)] for x, rise in curve]
     return variables
 
 

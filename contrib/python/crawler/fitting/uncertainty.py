@@ -15,6 +15,7 @@ PART = 0.01         # of a direction, from which on a variable may belong to it
 LEVELS = {"interval_68": 1.0, "interval_95": 1.959963984540054}  # standard deviations of a normal distribution
 FAR = 2.0           # standard deviations at which the profile is looked at
 ROUGH = 0.25        # relative difference of a profile from a parabola beyond which it is followed further
+CURVE = 11          # points at one side of a profile that is nearly a parabola
 MOST_LOOKS = 15     # at one side of a profile
 
 
@@ -69,26 +70,30 @@ class Profile:
         self.least = float(np.sum(residuals(x) ** 2))
 
     def interval(self, j, deviation):
-        """{name: [low, high]} in scaled variables for LEVELS; an end is None where the range ends before."""
-        ends = {name: [None, None] for name in LEVELS}
+        """{name: [low, high]} in scaled variables for LEVELS; an end is None where the range ends before. And the profile itself:
+        pairs of the variable, increasing, and the rise of chi-square."""
+        ends, curve = {name: [None, None] for name in LEVELS}, [(self.x[j], 0.0)]
         for side in (-1, 1):
             reach = (self.x[j] if side < 0 else 1 - self.x[j]) / deviation
-            for name, z in self._ends(j, side * deviation, reach).items():
+            found, points = self._ends(j, side * deviation, reach)
+            for name, z in found.items():
                 ends[name][(side + 1) // 2] = None if z is None else self.x[j] + side * z * deviation
-        return ends
+            curve += [(self.x[j] + side * z * deviation, root ** 2) for z, root in points if 0 < z and root < math.inf]
+        return ends, sorted(curve)
 
     def _ends(self, j, unit, reach):
-        """How many units off chi-square has risen by the square of each level."""
+        """How many units off chi-square has risen by the square of each level, and pairs of units and the root of the rise."""
         z = min(FAR, reach)
         root = self._root_near(j, unit, z) if z > 0 else 0.0
         if z == 0 or not abs(root / z - 1) <= ROUGH:
             points = [(0.0, 0.0, self.x)]  # units, root of the rise, values of the variables
-            return {name: self._searched(level, points, j, unit, reach) for name, level in LEVELS.items()}
+            ends = {name: self._searched(level, points, j, unit, reach) for name, level in LEVELS.items()}
+            return ends, [point[:2] for point in points]
         a, ends = (root / z - 1) / z, {}  # root of the rise = z (1 + a z)
         for name, level in LEVELS.items():
             ends[name] = level if abs(a * level) < 1e-6 else (math.sqrt(max(1 + 4 * a * level, 0.0)) - 1) / (2 * a)
             ends[name] = None if ends[name] > reach else ends[name]
-        return ends
+        return ends, [(one, one * (1 + a * one)) for one in np.linspace(0, min(1.25 * FAR, reach), CURVE)]
 
     def _guess(self, j, at, x):
         """The variables with j there, and the others best if the residuals at x change as at the best values."""

@@ -35,3 +35,8 @@ def parts_of(options, names):
 def reading_of(options):
     """The arguments of read_samples() that are set."""
     return parts_of(options, {name.replace("-", "_") for name, _, _ in READING})
+
+
+def words_of(reading):
+    """What reading_of() gives, as words of a command line."""
+    return [word for name, value in reading.items() for word in (f"--{name.replace('_', '-')}", str(value))]

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The output folder of a fit: who may write there, what is kept for --resume, and the files at the end."""
+import fcntl
+import hashlib
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+
+from .. import to_prm
+from ..measured.options import words_of
+from ..needs import FileError, InputError, write_whole
+from ..results import parameters_of
+
+PICTURE = pathlib.Path(__file__).absolute().parents[1] / "plot" / "fit.py"
+LOCK, INPUTS = "study.lock", "inputs.json"  # the latter: what the answer depends on besides parameters.prm
+EARLY = ("original.prm", "parameters.prm")  # are there before INPUTS
+OWN = (*EARLY, INPUTS, "fitted.prm", "residuals.csv", "summary.json", "fit.png", "report.html")
+FREE = ("Fit/Starts", "Fit/Data")  # entries that --resume does not compare; of data only the numbers count
+
+
+class Folder:
+    """A folder in which a fit is done."""
+
+    def __init__(self, path, resume, overwrite):
+        """Writes nothing yet. Raises InputError if there is something that is not to be replaced or gone on with."""
+        self.path, self.resume, self.overwrite, self.lock = pathlib.Path(path), resume, overwrite, None
+        self.require_usable()
+
+    def require_usable(self):
+        """Raises InputError if the folder is not free, not that of a fit, or not to be replaced."""
+        if self.path.exists() and not self.path.is_dir():
+            raise InputError(f'"{self.path}" is a file, but a folder is expected')
+        names = {file.name for file in self.path.iterdir()} - {LOCK} if self.path.exists() else set()
+        is_fit = INPUTS in names or names <= {*EARLY, *(f"{name}.part" for name in (*EARLY, INPUTS))}
+        links = [name for name in (LOCK, "starts", *OWN) if (self.path / name).is_symlink()]
+        if links:
+            raise FileError(f'"{self.path / links[0]}" is a link, but one of the program\'s own is expected')
+        if self.resume and not is_fit:
+            raise InputError(f'"{self.path}" has no fit that could be resumed; another folder is expected for --output, or --overwrite')
+        if self.overwrite and not is_fit:
+            raise InputError(f'"{self.path}" is not the folder of a fit, so "--overwrite" replaces nothing in it; another folder is expected')
+        if names and not self.resume and not self.overwrite:
+            if is_fit and not self.is_finished():
+                raise InputError(f'the output folder "{self.path}" has a fit that was broken off; --resume goes on with it (--overwrite begins '
+                                 "anew, --output gives another folder)")
+            raise InputError(f'the output folder "{self.path}" is not empty; give another one with --output, or --overwrite to replace the '
+                             "results in it")
+
+    def is_finished(self):
+        """Has the fit that was done here come to its end?"""
+        try:
+            return json.loads((self.path / "summary.json").read_text(encoding="utf-8"))["status"] != "stopped"
+        except (OSError, LookupError, TypeError, ValueError):
+            return False
+
+    def begin(self, name, model):
+        """Makes and locks the folder; the starts that are kept there. name: of the parameter file. Raises InputError if the
+        fit in it has another scene or other data."""
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+            self.lock = _locked(self.path / LOCK)
+            self.require_usable()  # whoever had the lock may have written
+            inputs = {"data": _digest(model.data), "files": _files_of(model.parameters)}
+            if self.resume and (self.path / INPUTS).exists():
+                self.require_same(model, inputs)
+            else:
+                self.clear()
+                (self.path / "starts").mkdir()
+                write_whole(self.path / "original.prm", pathlib.Path(name).read_bytes())
+                write_whole(self.path / "parameters.prm", model.effective.encode())
+                write_whole(self.path / INPUTS, _bytes(inputs))
+            return Starts(self.path / "starts", len(model.names), len(model.data.places))
+        except (OSError, InputError) as error:
+            self.leave()
+            raise error if isinstance(error, (FileError, InputError)) else self.problem(error) from None
+
+    def require_same(self, model, inputs):
+        """Raises InputError if the scene or the data are not those of the fit that is here."""
+        try:
+            effective = (self.path / "parameters.prm").read_text(encoding="utf-8")
+            kept = json.loads((self.path / INPUTS).read_text(encoding="utf-8"))
+            files = kept["files"]
+            other_data = kept["data"] != inputs["data"]
+        except (OSError, LookupError, TypeError, ValueError):
+            raise InputError(f'the fit in "{self.path}" is damaged: {INPUTS} or parameters.prm cannot be read; --overwrite begins anew') from None
+        before = parameters_of(effective)
+        changes = [f"{entry} was {_text(before.get(entry))} and is {_text(model.parameters.get(entry))}" for entry in sorted({*before, *model.parameters})
+                   if before.get(entry) != model.parameters.get(entry) and entry not in FREE]
+        changes += [f'the file "{file}" has changed' for file in sorted({*files, *inputs["files"]}) if files.get(file) != inputs["files"].get(file)]
+        if changes:
+            raise InputError(f'the fit in "{self.path}" was made with other parameters: {", ".join(changes)}; it can be resumed with the same '
+                             "ones only (but for Fit/Starts)")
+        if other_data:
+            raise InputError(f'the fit in "{self.path}" was made with other data; it can be resumed with the same ones only')
+        write_whole(self.path / "parameters.prm", model.effective.encode())
+
+    def clear(self):
+        """Removes what a fit writes."""
+        for name in OWN:
+            (self.path / name).unlink(missing_ok=True)
+        for file in (self.path / "starts").glob("*.json*"):
+            file.unlink()
+        if (self.path / "starts").is_dir():
+            (self.path / "starts").rmdir()
+
+    def leave(self):
+        """Gives the folder free; one in which nothing is goes."""
+        if self.lock is None:
+            return
+        (self.path / LOCK).unlink(missing_ok=True)
+        os.close(self.lock)
+        self.lock = None
+        if self.path.is_dir() and not any(self.path.iterdir()):
+            self.path.rmdir()
+
+    def problem(self, error):
+        """A FileError of an OSError."""
+        return error if isinstance(error, FileError) else FileError(f'cannot write to "{self.path}": {error.strerror or error}')
+
+    def write(self, found, settings, name):
+        """The files of a fit. settings: ["Body/Length=2", ...], of the parameter file name."""
+        again = " ".join(["crawler fit fitted.prm", *words_of(found["measured"]["reading"])])
+        entries = {**dict(one.split("=", 1) for one in settings), **found.settings, "Fit/Data": found["measured"]["file"]}
+        text = f"# The scene with the values that a fit found; the fit again: {again}\ninclude {os.path.abspath(name)}\n{to_prm(entries)}"
+        write_whole(self.path / "fitted.prm", text.encode())
+        data, rows = found.data, ["t,place,data,model,residual"]
+        places = data.places if len(data.places) else np.full(1, np.nan)
+        for i, t in enumerate(data.t):
+            rows += [f"{t:.12g},{places[j]:.12g},{data.values[i, j]:.12g},{found.model[i, j]:.12g},{found.residuals[i, j]:.6g}"
+                     for j in range(data.values.shape[1]) if data.is_there[i, j]]
+        write_whole(self.path / "residuals.csv", ("\n".join(rows) + "\n").encode())
+        self.write_summary(found)
+
+    def write_summary(self, found):
+        """summary.json."""
+        write_whole(self.path / "summary.json", _bytes(found))
+
+    def draw(self):
+        """The picture; a sentence if there is none."""
+        drawn = subprocess.run([sys.executable, PICTURE, self.path], capture_output=True, text=True, check=False)
+        return "" if drawn.returncode == 0 else f"There is no picture: {drawn.stderr.strip()}. Draw it later with: crawler plot {self.path}"
+
+
+class Starts(dict):
+    """Finished starts by their numbers, each in a file; those that are damaged are searched again."""
+
+    def __init__(self, folder, n_variables, n_places):
+        super().__init__()
+        self.folder = folder
+        folder.mkdir(exist_ok=True)
+        for file in folder.glob("*.json"):
+            try:
+                one = json.loads(file.read_text(encoding="utf-8"))
+                one["squares"] = math.inf if one["squares"] is None else float(one["squares"])
+                is_whole = (f'{one["start"]}.json' == file.name and len(one["z"]) == n_variables and len(one["places"]) == n_places
+                            and {"ended", "reason", "n_runs"} <= one.keys() and np.all(np.isfinite([*one["z"], *one["places"]])))
+            except (OSError, LookupError, TypeError, ValueError):
+                continue
+            if is_whole:
+                super().__setitem__(one["start"], one)
+
+    def __setitem__(self, number, one):
+        write_whole(self.folder / f"{number}.json", _bytes({**one, "squares": one["squares"] if math.isfinite(one["squares"]) else None}))
+        super().__setitem__(number, one)
+
+
+def _bytes(content):
+    return (json.dumps(content, indent=2) + "\n").encode()
+
+
+def _text(value):
+    return f"{value:g}" if isinstance(value, float) else f'"{value}"' if value is not None else "not there"
+
+
+def _digest(data):
+    """Of all numbers that were measured, and where they are."""
+    digest = hashlib.sha256(data.kind.encode())
+    for values in (data.t, data.places, data.values):
+        digest.update(np.ascontiguousarray(values, dtype=float).tobytes())
+    return digest.hexdigest()
+
+
+def _files_of(parameters):
+    """Digests of the files that a scene reads."""
+    names = [value for entry, value in parameters.items() if entry not in FREE and isinstance(value, str)
+             and value.lower().endswith((".csv", ".h5", ".hdf5")) and os.path.isfile(value)]
+    return {name: hashlib.sha256(pathlib.Path(name).read_bytes()).hexdigest() for name in names}
+
+
+def _locked(path):
+    """The lock of a folder in which one study writes at a time, as a descriptor. Raises InputError if another one has it."""
+    while True:
+        lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(lock)
+            raise InputError(f'another study writes to "{path.parent}"; another folder is expected for --output, or that the other one has '
+                             "ended") from None
+        except OSError:
+            return lock  # a file system without locks
+        if path.exists() and os.path.samestat(os.fstat(lock), os.stat(path)):
+            return lock
+        os.close(lock)  # the other one has removed it meanwhile

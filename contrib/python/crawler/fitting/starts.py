@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Searches from several starts, in this process or in others. What a start finds depends on nothing but the start, so that the
+result is the same on any number of processes, and of a fit that was interrupted."""
+import concurrent.futures
+import math
+import multiprocessing
+import os
+import signal
+import threading
+
+import numpy as np
+
+from ..needs import Failed, InputError
+
+
+def best_of_starts(problem, kept, workers, progress):
+    """The best of all starts as (scaled variables, did it end in order?); places of the data are those of this start then.
+
+    kept: {number: what search_from() gives} of starts that are finished; the others are added to it.
+    """
+    model, places = problem.model, problem.data.places
+    points = first_points(model, int(model.parameters["Fit/Starts"]), int(model.parameters["Fit/Seed"]))
+    missing = {number: z for number, z in enumerate(points) if number not in kept}
+    for one in wanted_of(problem, kept):
+        _see(problem, one)
+    if len(missing) < len(points):
+        progress(f"{len(points) - len(missing)} of {len(points)} starts are there already")
+    searched = _searched_by_others if min(workers, len(missing)) > 1 else _searched_here
+    for found in searched(problem, missing, min(workers, len(missing))):
+        kept[found["start"]] = found
+        _see(problem, found)
+        least = _root_mean_square(problem, min(one["squares"] for one in wanted_of(problem, kept)))
+        progress(f"start {found['start'] + 1} of {len(points)}: " + (
+            found["reason"] or f"residuals {_root_mean_square(problem, found['squares']):.6g} (root mean square), least so far {least:.6g}"))
+    best = min(wanted_of(problem, kept), key=lambda one: one["squares"])
+    model.n_runs = sum(one["n_runs"] for one in wanted_of(problem, kept))
+    if best["squares"] == math.inf:
+        raise InputError(f"the scene cannot be run at {'the start' if len(points) == 1 else f'any of {len(points)} starts'}: {kept[0]['reason']}")
+    problem.data.places, problem.last = np.array(best["places"]) if len(places) else places, None
+    return np.array(best["z"]), best["ended"]
+
+
+def first_points(model, n, seed):
+    """Where n searches start, in scaled variables: at the values of the scene, and at random ones. More starts begin with these."""
+    random = np.random.default_rng(seed)
+    return [(model.start - model.low) / (model.high - model.low), *(random.random(len(model.start)) for _ in range(n - 1))]
+
+
+def wanted_of(problem, kept):
+    """The finished ones of the starts that the scene asks for, in their order."""
+    return [one for number, one in sorted(kept.items()) if number < int(problem.model.parameters["Fit/Starts"])]
+
+
+def search_from(problem, number, z, places):
+    """One start: numbers, texts and lists that a JSON file keeps exactly."""
+    model = problem.model
+    problem.data.places, problem.last, before = places, None, model.n_runs
+    squares, z, ended = problem.search(z)
+    return {"start": number, "squares": squares, "z": z.tolist(), "places": problem.data.places.tolist(), "ended": ended,
+            "reason": "" if squares < math.inf else model.problem, "n_runs": model.n_runs - before}
+
+
+def table_of_starts(problem, kept):
+    """[{start, residuals, reason, values}] of finished starts: residuals is the root of their mean square, None if there is no run."""
+    return [{"start": one["start"], "residuals": None if one["reason"] else _root_mean_square(problem, one["squares"]), "reason": one["reason"],
+             "values": dict(zip(problem.model.names, problem.real(one["z"]).tolist()))} for one in wanted_of(problem, kept)]
+
+
+def _root_mean_square(problem, squares):
+    return math.sqrt(squares / problem.data.is_there.sum()) * problem.scale
+
+
+def _see(problem, found):
+    """Tells the problem what a start found."""
+    before = problem.data.places
+    problem.data.places = np.array(found["places"])
+    problem.see(found["squares"], found["z"])
+    problem.data.places = before
+
+
+def _searched_here(problem, missing, _workers):
+    """What search_from() gives, one after the other."""
+    places = problem.data.places
+    for number, z in missing.items():
+        yield search_from(problem, number, z, places)
+    problem.data.places = places
+
+
+def _searched_by_others(problem, missing, workers):
+    """The same by other processes, in the order in which they end."""
+    with concurrent.futures.ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _begin_worker, (type(problem), problem.model)) as pool:
+        try:
+            for future in concurrent.futures.as_completed([pool.submit(_search_in_worker, number, z) for number, z in missing.items()]):
+                yield future.result()
+        except concurrent.futures.process.BrokenProcessPool:
+            raise Failed("a process that searched was killed, perhaps for want of memory; --resume goes on") from None
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for worker in multiprocessing.active_children():
+                worker.terminate()
+            raise
+
+
+def _begin_worker(kind, model):
+    """Ctrl-C is for the process that has started this one, and this one ends with it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=lambda: (multiprocessing.parent_process().join(), os._exit(1)), daemon=True).start()
+    _search_in_worker.problem = kind(model, model.data)
+
+
+def _search_in_worker(number, z):
+    """search_from() with the problem of this process, whose places are moved by a search."""
+    problem = _search_in_worker.problem
+    places = problem.data.places
+    try:
+        return search_from(problem, number, z, places)
+    finally:
+        problem.data.places = places
