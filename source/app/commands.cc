@@ -155,7 +155,7 @@ namespace crawler
     for (const auto &[name, description] : commands_in_python)
       if (CLI::App *const command = app_.add_subcommand(name, description); command->get_name() == "report")
       {
-        command->add_option("DIR", options_.file, "Output folder of a run, sweep, atlas, tradeoff or optimisation")
+        command->add_option("DIR", options_.file, "Output folder of a run, sweep, atlas, tradeoff, optimisation or fit")
           ->required();
         command->add_flag("--quiet", options_.quiet, "Prints nothing but errors");
       }

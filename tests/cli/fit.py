@@ -67,6 +67,9 @@ def resumes():
         if status and str(n_steps) in place:
             check(len(left["starts"]) == 2 and all(one["value"] is not None and one["deviation"] is None for one in left["variables"].values())
                   and "(so far)" in ended.stdout, f"{place}: {left}")
+        for command in ("report", "plot") if status else ():
+            ended = crawler(command, "part")
+            check(ended.returncode == 0, f"{command} of a fit that was stopped: {ended.stderr}")
         ended = crawler(*THREE, "--output", "part")
         check(ended.returncode == 2 and "--resume goes on" in ended.stderr, f"{place}, called again: {ended.stderr}")
         ended = crawler(*THREE, "--output", "part", "--resume")

@@ -56,7 +56,8 @@ subsection Optimize
   set Largest strain  = 0.3
 end
 """
-FOLDERS = ("run", "sweep", "atlas", "tradeoff", "optimisation")
+FOLDERS = ("run", "sweep", "atlas", "tradeoff", "optimisation", "fit")
+STUDIES = pathlib.Path(__file__).resolve().parents[2] / "prm/studies"
 checks = Checks()
 check = checks.expect
 
@@ -68,7 +69,7 @@ class Program:
         self.path, self.folder = path, folder
 
     def __call__(self, *arguments):
-        return call([self.path, *arguments], self.folder, variables={} if arguments[0] == "report" else NO_PICTURES)
+        return call([self.path, *arguments], self.folder, variables={} if arguments[0] in ("report", "fit") else NO_PICTURES)
 
     def study(self, command, scene, output, **entries):
         """Writes a parameter file and runs it; entries with _ for blanks and __ for slashes."""
@@ -89,6 +90,9 @@ def make_studies(program):
                   Tradeoff__Meshes="uniform", Tradeoff__Engines="fused, batch", Tradeoff__Integrators="radau 5",
                   Tradeoff__Degrees="4", Tradeoff__Tolerances="1e-2, 1e-5", Tradeoff__Repetitions="1")
     program.study("optimize", STRAIN, "optimisation")
+    shutil.copy(STUDIES / "fit_worm.csv", program.folder)
+    program.study("fit", (STUDIES / "fit_worm.prm").read_text(encoding="utf-8"), "fit", Fit__Starts="2",
+                  Fit__Variables=f"{P} : 0.5 to 5; Body/Friction coefficient : 0.5 to 2")
     program.study("run", WAVE.replace("wave speed", "wave speed # <b>"), "<b>inverted", Body__Anchoring_exponent="0",
                   **{CHI.replace("/", "__").replace(" ", "_"): "0.6"})
     program.study("run", FORMULAS, "sudden", Active_stress__Expression__Active_stress="0.2*sin(2*pi*(s+t))",
@@ -137,7 +141,8 @@ def test_content(program):
     for name, file, columns in (("sweep", "results.csv", (P, CHI, "displacement", "errors.stress_power", "status", "reason")),
                                 ("atlas", "atlas.csv", (CHI, P, "outcome", "run displacement")),
                                 ("tradeoff", "tradeoff.csv", ("error", "seconds", "pareto")),
-                                ("optimisation", "results.csv", ("evaluation", "objective", "violation"))):
+                                ("optimisation", "results.csv", ("evaluation", "objective", "violation")),
+                                ("fit", "residuals.csv", ("t", "place", "data", "model", "residual"))):
         rows = rows_of(folder / name / file)
         good = all(value == (None if row[key] == "" else float(row[key]) if isinstance(value, (int, float)) else row[key])
                    for key in columns for value, row in zip(column(data[name], key), rows))
@@ -317,6 +322,18 @@ def test_run_in_browser(browser, folder):
     check("inverted_inside" in text and "What to do: a property of the model" in text, "a failure comes with advice")
 
 
+def test_fit_in_browser(browser, folder):
+    """Values, profiles, correlation, starts; data with the run through them, and the map of residuals."""
+    browser.open(folder / "fit/report.html")
+    summary = json.loads((folder / "fit/summary.json").read_text(encoding="utf-8"))
+    shown = browser.ask("[...document.querySelectorAll('td data')].map(one => Number(one.value))")
+    for one in summary["variables"].values():
+        check({one["value"], *one["interval_95"]} <= set(shown), f"{one} is shown")
+    check(summary["correlation"][0][1] in shown and all(one["residuals"] in shown for one in summary["starts"]), "correlation and starts")
+    captions = browser.ask("[...document.querySelectorAll('figcaption')].map(one => one.textContent)")
+    check(any("540 measured numbers, dots" in text for text in captions) and any("a map" in text for text in captions), f"data and residuals: {captions}")
+
+
 def test_map_in_browser(browser, folder):
     """Points by pointer and keys: stored ones with their kymograph, others with their command."""
     browser.open(folder / "sweep/report.html", 1200, 1000)
@@ -371,6 +388,7 @@ def main():
         with Browser() as browser:
             test_in_browser(browser, program.folder)
             test_run_in_browser(browser, program.folder)
+            test_fit_in_browser(browser, program.folder)
             test_map_in_browser(browser, program.folder)
             test_point_command(program, browser)
             test_large(program, browser)

@@ -57,14 +57,17 @@ def draw_variables(axes, variables):
     for row, (name, one) in enumerate(reversed(variables.items())):
         low, width = one["from"], one["to"] - one["from"]
         axes.plot([0, 1], [row, row], color="0.8", linewidth=6, solid_capstyle="butt")
-        if not one["determined"]:
+        if one["determined"] is False:
             text = "not told by the data"
+        elif one["determined"] is None:
+            text = f"{one['value']:.5g} so far"
         else:
             for level, thickness in (("interval_95", 1.5), ("interval_68", 4)):
                 ends = [edge if end is None else (end - low) / width for end, edge in zip(one[level], (0, 1))]
                 axes.plot(ends, [row, row], color=COLOURS[0], linewidth=thickness, solid_capstyle="butt")
-            axes.plot((one["value"] - low) / width, row, "|", color=COLOURS[1], markersize=14, markeredgewidth=1.5)
             text = f"{one['value']:.5g} $\\pm$ {one['deviation']:.2g}"
+        if one["value"] is not None:
+            axes.plot((one["value"] - low) / width, row, "|", color=COLOURS[1], markersize=14, markeredgewidth=1.5)
         axes.text(0.5, row + 0.22, f"{name.split('/')[-1]}: {text}", ha="center", fontsize=9)
         axes.text(0, row - 0.32, f"{one['from']:g}", fontsize=8, ha="left", color="0.4")
         axes.text(1, row - 0.32, f"{one['to']:g}", fontsize=8, ha="right", color="0.4")

@@ -8,27 +8,24 @@ import sys
 
 from ..needs import InputError, Parser, write_whole
 from ..results import entries_of
-from .folder import parameters_in, run_in, runs_within, summary_in, table_in, text_of, units_of
+from .folder import data_of_fit, parameters_in, run_in, runs_within, summary_in, table_in, text_of, units_of
 
 HERE = pathlib.Path(__file__).resolve().parent
-SCRIPTS = ("base.js", "plot.js", "body.js", "run.js", "explorer.js", "studies.js")
+SCRIPTS = ("base.js", "plot.js", "body.js", "run.js", "explorer.js", "fit.js", "studies.js")
 TIMES, FEWEST_TIMES = 640, 64  # of all kymographs of a page together, and of each
 
-# What a folder may be: its kind, a file or folder that only it has, and the group of its table, which is that file or
-# the other one.
+# What a folder may be: its kind, a file or folder that only it has, its table, and the group in it.
 KINDS = (("atlas", "atlas.h5", "atlas.h5", "atlas"), ("tradeoff", "tradeoff.h5", "tradeoff.h5", "tradeoff"),
-         ("optimisation", "starts", "results.h5", "optimize"),
+         ("fit", "inputs.json", "residuals.csv", None), ("optimisation", "starts", "results.h5", "optimize"),
          ("sweep", "results.h5", "results.h5", "results"), ("run", "summary.json", None, None),
          ("run", "statistics.csv", None, None))
 
 
 def kind_of(folder):
     """One of KINDS. Raises InputError if the folder is none of a command."""
-    expected = "the output folder of a run, sweep, atlas, tradeoff or optimisation is expected"
+    expected = "the output folder of a run, sweep, atlas, tradeoff, optimisation or fit is expected"
     if not os.path.isdir(folder):
         raise InputError(f'"{folder}" is {"a file" if os.path.exists(folder) else "not there"}, but {expected}')
-    if os.path.exists(os.path.join(folder, "residuals.csv")):
-        raise InputError(f'"{folder}" is the folder of a fit, which has no page; "crawler plot" draws it')
     for kind in KINDS:
         if os.path.exists(os.path.join(folder, kind[1])):
             return kind
@@ -63,7 +60,7 @@ def data_of(folder, kind):
             "summary": summary_in(folder), "parameters": parameters_in(folder, effective, entries),
             "entries": own["numbers"], "units": units_of(entries), "reasons": reasons(), "table": None, "more_runs": []}
     if table and (folder / table).exists():
-        data["table"] = table_in(folder / table, group)
+        data["table"] = table_in(folder / table, group) if group else data_of_fit(folder / table, data["summary"] or {})
     if name == "run":
         return {**data, "runs": [run_in(folder, "", TIMES)]}
     within = runs_within(folder, "points" if name in ("sweep", "atlas") else "")
@@ -84,7 +81,7 @@ def main():
     """crawler report DIR [--quiet]"""
     parser = Parser(prog="crawler report", description="Makes a page for browsers, report.html, of the output folder of "
                     "any other command.")
-    parser.add_argument("folder", metavar="DIR", help="Output folder of a run, sweep, atlas, tradeoff or optimisation")
+    parser.add_argument("folder", metavar="DIR", help="Output folder of a run, sweep, atlas, tradeoff, optimisation or fit")
     parser.add_argument("--quiet", action="store_true", help="Prints nothing but errors")
     options = parser.parse_args(sys.argv[2:])
     kind, folder = kind_of(options.folder), pathlib.Path(options.folder)

@@ -1,6 +1,6 @@
 // A table of many points: a map, lines or dots over columns that can be chosen, and the details of one point.
 
-const NOUN = {tradeoff: 'setting', optimisation: 'gait'}[page.kind] ?? 'point';
+const NOUN = {tradeoff: 'setting', optimisation: 'gait', fit: 'measured number'}[page.kind] ?? 'point';
 const GOOD = ['finished', 'agree']; // green
 
 class Explorer {

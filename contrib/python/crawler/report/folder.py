@@ -76,6 +76,20 @@ def run_in(folder, title, most_times):
     return run
 
 
+def data_of_fit(path, summary):
+    """The table of what was measured, as table_in() gives it: time, place, data, the best run, and the residuals."""
+    unit = {"strain": "1", "speed": "length/time"}.get(summary.get("goodness", {}).get("kind"), "length")
+    meanings = {"t": ("time", "time of the run"), "place": ("length", "where on the undeformed body"), "data": (unit, "what was measured"),
+                "model": (unit, "the best run"), "residual": (unit, "data less run, without what origin and places can take up")}
+    columns = read_columns(path)
+    if list(columns) != list(meanings) or not all(isinstance(column, np.ndarray) for column in columns.values()):
+        raise InputError(f'"{path}" is damaged: the columns {", ".join(meanings)} with numbers are expected')
+    rows = some(len(columns["t"]), MOST_ROWS)
+    digits = None if len(rows) <= MOST_STEPS else DIGITS
+    return {"all_rows": len(columns["t"]), "rows": len(rows), "left_out": [],
+            "columns": [Column(name, *meanings[name], column[rows], digits).json() for name, column in columns.items() if np.any(np.isfinite(column))]}
+
+
 def runs_within(folder, inner):
     """The runs within a study, as "points/5" or "best-2": its optima, or in the folder @p inner the points whose fields
     were kept, by their numbers."""

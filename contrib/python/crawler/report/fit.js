@@ -1,0 +1,77 @@
+// What a fit has found: values and profiles, what the data do not tell, and the data beside the best run.
+
+const tableOf = (heads, rows, soft = []) => el('div', {class: 'scroll'}, el('table', {},
+  el('thead', {}, el('tr', {}, ...heads.map((name, i) => el('th', {class: soft.includes(i) && 'wide-only'}, name)))),
+  el('tbody', {}, ...rows.map(cells => el('tr', {}, ...cells.map((cell, i) => el('td', {class: (i ? 'value' : 'entry') + (soft.includes(i) ? ' wide-only' : '')}, ...[cell].flat())))))));
+const sentence = text => `${text[0].toUpperCase()}${text.slice(1)}.`;
+const told = () => Object.entries(summary.variables ?? {}).filter(([, one]) => one.determined);
+
+function showValues() {
+  const unit = entry => unitText(page.parameters.entries.find(one => one.entry === entry.replace(/\[\d+\]$/, ''))?.unit), between = (ends, one) => !ends ? '–'
+    : [0, 1].flatMap(i => [i ? ' to ' : '', ends[i] === null ? 'the limit' : exactly(ends[i], showWith(ends[i], one.deviation))]);
+  const box = section('Values'), rows = Object.entries(summary.variables ?? {}).map(([entry, one]) => [[...brokenAtSlashes(entry)],
+    one.determined === false ? 'not told by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : '', el('span', {class: 'unit'}, ' ' + unit(entry))],
+    show(one.numerical_error, 2), between(one.interval_68, one), between(one.interval_95, one), `${show(one.from)} to ${show(one.to)}`]);
+  box.append(tableOf(['entry', 'value ± deviation', 'numerical error', '68 %', '95 %', 'range'], rows, [2, 3, 5]));
+  const {goodness: fit = {}} = summary;
+  if (known(fit.chi_square)) box.append(el('p', {}, `${plural(fit.n_data, 'measured number')}, ${plural(fit.degrees_of_freedom, 'degree')} of freedom. `, fit.deviation_is_given
+    ? `Chi-square is ${show(fit.chi_square, 5)}; noise alone gives as much or more with the probability ${show(fit.probability, 2)}.`
+    : `The standard deviation of a datum is ${show(fit.deviation_of_data, 3)}, from the residuals: whether the scene fits cannot be told.`,
+    ` Residuals that are neighbours in time have the correlation ${show(fit.correlation_in_time, 2)}.`));
+  for (const text of [...summary.undetermined ?? [], ...summary.notes ?? []]) box.append(el('div', {class: 'notice unfinished', role: 'note'}, el('p', {}, sentence(text))));
+}
+
+/** The rise of chi-square with each variable held off its best value and the others free. */
+function showProfiles() {
+  const lines = told().map(([entry, one]) => [entry, one.profile.map(([x]) => (x - one.value) / one.deviation), one.profile.map(([, rise]) => rise)]).filter(([, x]) => x.length > 1);
+  if (!lines.length) return;
+  const box = figure('Profiles.', 'Chi-square with a variable held there and the others free; where it has risen by 1 and 3.84 (grey) the intervals of 68 % and 95 % end. Dashed: the parabola of a linear model.');
+  section('How well the data tell them', box);
+  const [low, high] = range(lines.flatMap(([, x]) => x)), parabola = Array.from({length: 101}, (_, i) => low + i / 100 * (high - low));
+  new Chart(box, {height: 260, label: 'profiles of chi-square', axes: () => ({x: {...padded([low, high]), title: 'value less the best one, in standard deviations'},
+    y: {low: 0, high: Math.min(9, Math.max(5, ...lines.flatMap(([, , rise]) => rise))), title: 'rise of chi-square'}}),
+  paint: chart => {
+    for (const rise of [1, 3.8415]) chart.polyline([chart.x.low, chart.x.high], [rise, rise], ink('grid'), {width: 2});
+    chart.context.setLineDash([4, 4]);
+    chart.polyline(parabola, parabola.map(x => x * x), ink('soft'), {width: 1});
+    chart.context.setLineDash([]);
+    lines.forEach(([, x, rise], i) => chart.polyline(x, rise, series(i)));
+  }});
+  legend(box, lines.map(([entry], i) => [shortName(entry), `var(--c${i % 7 + 1})`]));
+}
+
+function showCorrelation() {
+  const names = Object.keys(summary.variables ?? {}), {correlation} = summary;
+  if (names.length < 2 || !correlation) return;
+  section('Correlation of the values', el('p', {class: 'soft'}, 'Near 1 or −1: what one does, the other can undo.'),
+    tableOf(['', ...names.map(shortName)], names.map((name, i) => [[...brokenAtSlashes(name)], ...names.map((_, j) => exactly(correlation[i][j], show(correlation[i][j], 3)))])));
+}
+
+/** The best run through the data of each place. */
+function drawBestRun(chart, explorer) {
+  if (explorer.x !== 't' || explorer.y !== 'data') return;
+  const [t, place, model] = ['t', 'place', 'model'].map(name => explorer.columns.get(name)), lines = new Map();
+  for (const row of explorer.list) { const key = place?.number(row); lines.set(key, [...lines.get(key) ?? [], row]); }
+  for (const rows of lines.values()) {
+    rows.sort((a, b) => t.number(a) - t.number(b));
+    chart.polyline(rows.map(row => t.number(row)), rows.map(row => model.number(row)), ink('ink'), {width: 1});
+  }
+}
+
+function showFit() {
+  showValues();
+  showProfiles();
+  showCorrelation();
+  if (page.table) {
+    const details = () => {}, box = section('Data and the best run');
+    new Explorer(box, page.table, {axes: [], details, decorate: drawBestRun, first: {x: ['t'], y: ['data'], colour: ['place', 't']}});
+    box.append(el('p', {class: 'soft small'}, 'Dots: the data. Lines: the best run.'));
+    new Explorer(section('Residuals', el('p', {class: 'soft'}, 'Data less run. Patches or stripes are what the scene does not describe; noise has none.')), page.table,
+      {axes: ['t', 'place'], details, first: {x: ['place', 't'], y: page.table.columns.some(column => column.name === 'place') ? ['t'] : ['residual'], colour: ['residual']}});
+  }
+  const starts = summary.starts ?? [], {comparison} = summary;
+  if (starts.length > 1) section('Starts', tableOf(['start', 'residuals (root mean square)', ...Object.keys(starts[0].values).map(shortName)],
+    starts.map(one => [String(one.start + 1), one.reason || exactly(one.residuals), ...Object.values(one.values).map(value => exactly(value))])));
+  if (comparison) section('Which scene the data prefer', el('p', {class: 'soft'}, 'Information criteria of Akaike and Bayes, less the least one; a difference of 10 is strong evidence.'),
+    tableOf(['scene', 'variables', 'chi-square', 'AIC', 'BIC'], comparison.map(one => [one.scene, ...[one.variables, one.chi_square, one.aic, one.bic].map(value => exactly(value))])));
+}
