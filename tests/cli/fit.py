@@ -41,8 +41,8 @@ def crawler(*arguments, stop_at=None):
 
 
 def contents(folder):
-    """The files of a fit but for its picture, those of its starts too; of summary.json without how it was called."""
-    files = {str(file.relative_to(folder)): file.read_bytes() for file in pathlib.Path(folder).rglob("*") if file.is_file() and file.suffix != ".png"}
+    """The files of a fit but for picture and page, those of its starts too; of summary.json without how it was called."""
+    files = {str(file.relative_to(folder)): file.read_bytes() for file in pathlib.Path(folder).rglob("*") if file.is_file() and file.suffix not in (".png", ".html")}
     files["summary.json"] = {key: value for key, value in json.loads(files["summary.json"]).items() if key != "command_line"}
     return files
 
@@ -56,8 +56,8 @@ def resumes():
     check(ended.returncode == 0, f"three starts end with {ended.returncode}: {ended.stderr}")
     whole = contents("whole")
     n_steps = 3000  # in the third start
-    for place, code, status in ((f"step:{n_steps}:TERM", 5, "stopped"), ("step:500:INT", 5, "stopped"), (f"step:{n_steps}:KILL", 3, None),
-                                ("step:1:USR1", 5, None)):
+    for place, code, status in ((f"step:{n_steps}:TERM", 5, "stopped"), ("step:500:USR1", 5, "stopped"), (f"step:{n_steps}:KILL", 3, None),
+                                ("step:1:TERM", 5, None)):
         shutil.rmtree("part", ignore_errors=True)
         ended = crawler(*THREE, "--output", "part", stop_at=place)
         check(ended.returncode == code and ended.stderr.count("\n") == 1, f"{place}: {ended.returncode}, {ended.stderr}")

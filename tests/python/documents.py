@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The examples of doc/python.md run, one after the other as they stand, and notebooks find what they say: the tutorial an
 optimum better than its neighbours, and the spread that the first-order uncertainty predicts; with "all" that of the measured
-animal the displacement of the true strain, and that of the robot a better gait on no more work than it may do.
+animal the displacement of the true strain, that of the fitted one what made its tracks, and that of the robot a better gait on no more work than it may do.
 
     python3 documents.py FOLDER_OF_THE_PACKAGE [all]
 """
@@ -72,6 +72,10 @@ def check_others(folder):
     text = printed_by("measured_animal", folder, 1)
     found, spread, expected = map(float, re.search(r"displacement (\S+) mm \+- (\S+) .* gives (\S+)", text).groups())
     expect(abs(found - expected) < 4 * spread, f"measured animal: {found} +- {spread}, expected {expected}")
+    text = printed_by("fitted_animal", folder, 1)
+    for value, deviation, truth in re.findall(r": (\S+) \+- (\S+), 95 %.*truth (\S+)", text):
+        expect(abs(float(value) - float(truth)) < 4 * float(deviation), f"fitted animal: {value} +- {deviation}, but {truth} made the tracks")
+    expect(text.count("truth") == 3 and "common factor" in text and float(re.search(r"fit: (\S+);", text)[1]) > 10, f"fitted animal: {text}")
     text = printed_by("robot_design", folder, 2)
     start, work, best, used = map(float, re.search(r"displacement (\S+) on a work of (\S+) .*, (\S+) on (\S+) at", text).groups())
     expect(best > 2 * start and work < used <= 0.0501, f"robot: {start} on {work}, {best} on {used}")
