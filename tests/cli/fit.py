@@ -28,6 +28,8 @@ REFUSED = [
     (["fit_worm.prm", "--set", "Body/Lenght=3"], 2, "Length"), (["fit_worm.prm", "--set", "Fit/Data="], 2, "Fit/Data is empty"),
     (["fit_worm.prm", "--set", "Fit/Variables="], 2, "Variables is empty"), (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
     (["fit_worm.prm", "--output", "fit_worm.prm"], 2, "is a file"), (["fit_worm.prm", "--output", "other", "--overwrite"], 2, "not the folder of a fit"),
+    (["fit_worm.prm", "--set", "Fit/Variables=Active stress/Travelling wave/Amplitude : 5 to 6", "--set",
+      "Active stress/Travelling wave/Amplitude=5.5"], 2, "cannot be run"),
     (["fit_worm.prm", "--workers", "0"], 2, "from 1"), (["fit_worm.prm", "--workers", "two"], 2, "whole number"),
     (["fit_worm.prm", "--set", "Fit/Markers at=0,1"], 2, "9 markers"), (["fit_worm.prm", "other/fit_worm.prm"], 2, "same name")]
 THREE = ("fit", "three.prm")
@@ -75,12 +77,16 @@ def resumes():
         ended = crawler(*THREE, "--output", "part", "--resume")
         check(ended.returncode == 0 and contents("part") == whole, f"{place} and --resume: {ended.stderr}")
         check(("2 of 3 starts" in ended.stdout) == (str(n_steps) in place), f"{place}: --resume searches again: {ended.stdout}")
-    ended = crawler(*THREE, "--output", "shared", "--workers", "2")
+    ended = crawler(*THREE, "--output", "shared", "--workers", "2", stop_at="step:1200:KILL")  # in a second start
+    check(ended.returncode == 5 and "--resume goes on" in ended.stderr, f"a process that is killed: {ended.returncode}, {ended.stderr}")
+    ended = crawler(*THREE, "--output", "shared", "--workers", "2", "--resume")
     check(ended.returncode == 0 and contents("shared") == whole, f"two processes find something else: {ended.stderr}")
     pathlib.Path("part/starts/1.json").write_text("{", encoding="utf-8")
     pathlib.Path("part/summary.json").unlink()
     ended = crawler(*THREE, "--output", "part", "--resume")
     check(ended.returncode == 0 and "2 of 3" in ended.stdout and contents("part") == whole, f"a damaged start: {ended.stderr}")
+    ended = call(["bash", "-c", f"'{PROGRAM}' {' '.join(THREE)} --output unread | head -n 1; exit ${{PIPESTATUS[0]}}"], os.getcwd())
+    check(ended.returncode == 0 and not ended.stderr and contents("unread") == whole, f"a reader that leaves: {ended.returncode}, {ended.stderr}")
     fewer = crawler("fit", "three.prm", "--set", "Fit/Starts=2", "--output", "part", "--resume")
     check(fewer.returncode == 0 and "start 3" not in fewer.stdout and "2 of 2" in fewer.stdout, f"fewer starts: {fewer.stdout}{fewer.stderr}")
     lines = pathlib.Path("fit_worm.csv").read_text(encoding="utf-8").splitlines(keepends=True)

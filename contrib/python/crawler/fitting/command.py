@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """crawler fit: numbers of scenes from measured data, with their uncertainty; of several scenes, which the data prefer."""
+import contextlib
 import os
 import pathlib
 import shlex
@@ -80,11 +81,8 @@ def found_and_written(name, folder, model, options, say):
             say(line)
         raise Stopped(so_far.message) from None
     except (InputError, Failed):
-        if not kept:
-            folder.clear()
+        folder.clear()  # the same again would end in the same way
         raise
-    except OSError as error:
-        raise folder.problem(error) from None
     finally:
         folder.leave()
 
@@ -110,9 +108,9 @@ def require_sense(options):
         raise InputError("--resume and --overwrite contradict each other; one of them is expected")
     if options.workers < 1:
         raise InputError(f'"--workers" is {options.workers}, but a number of processes from 1 is expected')
-    ranks = int(os.environ.get("OMPI_COMM_WORLD_SIZE", os.environ.get("PMI_SIZE", "1")))
+    ranks = max(int(os.environ.get(name, "1")) for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"))
     if ranks > 1:
-        raise InputError(f'{ranks} processes of mpirun were started, but a fit begins its own; "crawler fit --workers {ranks}" is expected')
+        raise InputError(f'{ranks} processes of mpirun or srun were started, but a fit begins its own; "crawler fit --workers {ranks}" is expected')
     if len(set(map(lambda name: pathlib.Path(name).stem, options.files))) < len(options.files):
         raise InputError("two of the parameter files have the same name, but names of their own are expected, as their folders have them")
     for setting in options.set:
@@ -120,10 +118,16 @@ def require_sense(options):
             raise InputError(f'"--set" is "{setting}", but "Section/Entry=value" is expected')
 
 
+def print_anyway(text):
+    """Prints; a fit goes on where nobody reads it or there is no place for it, of which run_script() speaks at the end."""
+    with contextlib.suppress(OSError):
+        print(text, flush=True)
+
+
 def main():
     """Fits, writes and tells."""
     options = command_line().parse_args(sys.argv[2:])
-    say = (lambda text: None) if options.quiet else (lambda text: print(text, flush=True))
+    say = (lambda text: None) if options.quiet else print_anyway
     require_sense(options)
     folders = {name: Folder(path_of(name, options), options.resume, options.overwrite) for name in options.files}
     models = {name: prepared(name, options.set, options.data, **reading_of(options)) for name in folders}

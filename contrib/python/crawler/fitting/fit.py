@@ -122,7 +122,7 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
 
     progress: is told what happens; kept: a dict of finished starts, which are not searched again, and to which others are added;
     workers: so many processes share the starts. Raises InputError if no start can be run, Failed where there are no derivatives,
-    and Interrupted.
+    Interrupted, and Stopped if one of several processes is killed.
     """
     problem, kept = Problem(model, model.data), {} if kept is None else kept
     model.accuracy = min(max(float(model.parameters["Accuracy"]), LEAST_ACCURACY), LARGEST_ACCURACY)

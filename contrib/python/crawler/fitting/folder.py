@@ -77,7 +77,9 @@ class Folder:
             return Starts(self.path / "starts", len(model.names), len(model.data.places))
         except (OSError, InputError) as error:
             self.leave()
-            raise error if isinstance(error, (FileError, InputError)) else self.problem(error) from None
+            if isinstance(error, (FileError, InputError)):
+                raise
+            raise FileError(f'cannot write to "{self.path}": {error.strerror or error}') from None
 
     def require_same(self, model, inputs):
         """Raises InputError if the scene or the data are not those of the fit that is here."""
@@ -117,10 +119,6 @@ class Folder:
         self.lock = None
         if self.path.is_dir() and not any(self.path.iterdir()):
             self.path.rmdir()
-
-    def problem(self, error):
-        """A FileError of an OSError."""
-        return error if isinstance(error, FileError) else FileError(f'cannot write to "{self.path}": {error.strerror or error}')
 
     def write(self, found, settings, name):
         """The files of a fit. settings: ["Body/Length=2", ...], of the parameter file name."""

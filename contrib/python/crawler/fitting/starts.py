@@ -10,7 +10,7 @@ import threading
 
 import numpy as np
 
-from ..needs import Failed, InputError
+from ..needs import InputError, Stopped
 
 
 def best_of_starts(problem, kept, workers, progress):
@@ -93,7 +93,7 @@ def _searched_by_others(problem, missing, workers):
             for future in concurrent.futures.as_completed([pool.submit(_search_in_worker, number, z) for number, z in missing.items()]):
                 yield future.result()
         except concurrent.futures.process.BrokenProcessPool:
-            raise Failed("a process that searched was killed, perhaps for want of memory; --resume goes on") from None
+            raise Stopped("a process of the fit was killed, perhaps for want of memory; --resume goes on") from None
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             for worker in multiprocessing.active_children():
