@@ -87,6 +87,8 @@ def resumes():
     check(ended.returncode == 0 and "2 of 3" in ended.stdout and contents("part") == whole, f"a damaged start: {ended.stderr}")
     ended = call(["bash", "-c", f"'{PROGRAM}' {' '.join(THREE)} --output unread | head -n 1; exit ${{PIPESTATUS[0]}}"], os.getcwd())
     check(ended.returncode == 0 and not ended.stderr and contents("unread") == whole, f"a reader that leaves: {ended.returncode}, {ended.stderr}")
+    ended = call(["bash", "-c", f"'{PROGRAM}' {' '.join(THREE)} --output unread --resume > /dev/full"], os.getcwd())
+    check(ended.returncode == 6 and "standard output" in ended.stderr and contents("unread") == whole, f"no place for the text: {ended.stderr}")
     fewer = crawler("fit", "three.prm", "--set", "Fit/Starts=2", "--output", "part", "--resume")
     check(fewer.returncode == 0 and "start 3" not in fewer.stdout and "2 of 2" in fewer.stdout, f"fewer starts: {fewer.stdout}{fewer.stderr}")
     lines = pathlib.Path("fit_worm.csv").read_text(encoding="utf-8").splitlines(keepends=True)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """crawler fit: numbers of scenes from measured data, with their uncertainty; of several scenes, which the data prefer."""
-import contextlib
 import os
 import pathlib
 import shlex
@@ -118,16 +117,29 @@ def require_sense(options):
             raise InputError(f'"--set" is "{setting}", but "Section/Entry=value" is expected')
 
 
-def print_anyway(text):
-    """Prints; a fit goes on where nobody reads it or there is no place for it, of which run_script() speaks at the end."""
-    with contextlib.suppress(OSError):
-        print(text, flush=True)
+class Screen:
+    """Prints, unless it is to be quiet. A fit goes on where nobody reads it or there is no place for it."""
+
+    def __init__(self, quiet):
+        self.quiet, self.problem = quiet, None
+
+    def __call__(self, text):
+        try:
+            if not self.quiet:
+                print(text, flush=True)
+        except OSError as error:
+            self.problem = error
+
+    def require_written(self):
+        """Raises the OSError of a text that is lost."""
+        if self.problem is not None:
+            raise self.problem
 
 
 def main():
     """Fits, writes and tells."""
     options = command_line().parse_args(sys.argv[2:])
-    say = (lambda text: None) if options.quiet else print_anyway
+    say = Screen(options.quiet)
     require_sense(options)
     folders = {name: Folder(path_of(name, options), options.resume, options.overwrite) for name in options.files}
     models = {name: prepared(name, options.set, options.data, **reading_of(options)) for name in folders}
@@ -148,3 +160,4 @@ def main():
     for name, found in fits.items():
         if found.status != "finished":
             raise Failed(f'the search for "{name}" did not end: the result is not the best one')
+    say.require_written()
