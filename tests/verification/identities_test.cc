@@ -9,16 +9,10 @@
 #include <numbers>
 
 using namespace crawler;
+using test::with;
 
 namespace
 {
-  test::Settings
-  with(test::Settings settings, const test::Settings &more)
-  {
-    settings.insert(settings.end(), more.begin(), more.end());
-    return settings;
-  }
-
   /// Explicit numerics: no pilot runs, and the same mesh for both of a pair.
   const test::Settings numerics = {
     {"Discretization/Degree", "4"}, {"Discretization/Number of cells", "10"}, {"Time/Tolerance", "1e-9"}};

@@ -3,10 +3,9 @@
 
 #include <ROL_Bounds.hpp>
 #include <ROL_ParameterList.hpp>
-#include <ROL_Problem.hpp>
-#include <ROL_Solver.hpp>
 #include <ROL_StdObjective.hpp>
 #include <ROL_StdVector.hpp>
+#include <ROL_TypeB_LinMoreAlgorithm.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -149,7 +148,6 @@ namespace crawler
     {
       constexpr int most_steps = 200;
       ROL::ParameterList list;
-      list.sublist("Step").set("Type", "Trust Region");
       ROL::ParameterList &test = list.sublist("Status Test");
       test.set("Gradient Tolerance", tolerance);
       test.set("Step Tolerance", 1e-2 * tolerance);
@@ -184,20 +182,17 @@ namespace crawler
     const bool has_limits = !problem.lower().empty();
     unsigned int n_idle   = 0; // iterations in which nothing became better
     double inner = has_limits ? std::max(first_tolerance, tolerance) : tolerance, before = HUGE_VAL;
+    ROL::Bounds<double> limits(vector_of(List(y.size(), 0.)), vector_of(List(y.size(), 1.)));
     std::ostringstream unread;
     for (unsigned int i = 1; i <= most_iterations; ++i)
     {
-      const ROL::Ptr<ROL::Problem<double>> rol = ROL::makePtr<ROL::Problem<double>>(lagrangian, unknowns);
-      rol->addBoundConstraint(
-        ROL::makePtr<ROL::Bounds<double>>(vector_of(List(y.size(), 0.)), vector_of(List(y.size(), 1.))));
-      rol->finalize(false, false, unread);
       ROL::ParameterList list = settings(inner);
-      ROL::Solver<double> solver(rol, list);
-      solver.solve(unread);
-      const ROL::EExitStatus end = solver.getAlgorithmState()->statusFlag;
+      ROL::TypeB::LinMoreAlgorithm<double> algorithm(list);
+      algorithm.run(*unknowns, *lagrangian, limits, unread);
+      const ROL::EExitStatus end = algorithm.getState()->statusFlag;
       // Steps that became small since gaits there are impossible are no sign of an optimum.
       std::string impossible;
-      if (end == ROL::EXITSTATUS_STEPTOL && solver.getAlgorithmState()->gnorm > inner)
+      if (end == ROL::EXITSTATUS_STEPTOL && algorithm.getState()->gnorm > inner)
         impossible = problem.latest_beside(*unknowns->getVector()).problem;
       const bool is_good = (end == ROL::EXITSTATUS_CONVERGED || end == ROL::EXITSTATUS_STEPTOL) && impossible.empty();
       if (!impossible.empty())
