@@ -17,9 +17,9 @@ namespace crawler::test
     return false;
   }
 
-  /// The result of `crawler run`, without files.
-  inline SimulationResult
-  answer_to(const Settings &settings)
+  /// What `crawler run` computes, without files.
+  inline Computed
+  computed(const Settings &settings)
   {
     Task task;
     task.parameters = parameters_with(settings);
@@ -27,6 +27,12 @@ namespace crawler::test
     compute_all({&task, 1}, HUGE_VAL, never);
     if (task.error)
       std::rethrow_exception(task.error);
-    return task.computed.result;
+    return task.computed;
+  }
+
+  inline SimulationResult
+  answer_to(const Settings &settings)
+  {
+    return computed(settings).result;
   }
 } // namespace crawler::test

@@ -53,7 +53,8 @@ namespace crawler::test
     NumericsChoice choice;
   };
 
-  /// What `crawler run` computes with these parameters and this scene, without files.
+  /// The run with the numerics that the program chooses, without what the adjoint knows of its error (answers.h has
+  /// that).
   inline Outcome
   run_with(const Parameters &parameters,
            const Scene &scene,
