@@ -10,6 +10,7 @@ import os
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 
@@ -81,6 +82,15 @@ def resumes():
     check(ended.returncode == 5 and "--resume goes on" in ended.stderr, f"a process that is killed: {ended.returncode}, {ended.stderr}")
     ended = crawler(*THREE, "--output", "shared", "--workers", "2", "--resume")
     check(ended.returncode == 0 and contents("shared") == whole, f"two processes find something else: {ended.stderr}")
+    with subprocess.Popen([PROGRAM, *THREE, "--output", "orphan"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while "start 1 of 3" not in process.stdout.readline():
+            check(process.poll() is None, "three starts end before the first")
+        process.kill()
+        process.stdout.read()  # comes to its end when the part in Python has ended, too
+    summary = pathlib.Path("orphan/summary.json")
+    check(not summary.exists() or json.loads(summary.read_text(encoding="utf-8"))["status"] == "stopped", "a program that is killed leaves its fit behind")
+    ended = crawler(*THREE, "--output", "orphan", "--resume")
+    check(ended.returncode == 0 and contents("orphan") == whole, f"--resume behind a program that was killed: {ended.stderr}")
     pathlib.Path("part/starts/1.json").write_text("{", encoding="utf-8")
     pathlib.Path("part/summary.json").unlink()
     ended = crawler(*THREE, "--output", "part", "--resume")

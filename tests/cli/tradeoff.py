@@ -168,6 +168,45 @@ def check_crashes(output, whole):
           and sum(row["status"] == "finished" for row in rows) > 50, f"a setting that crashed twice: {done}, {crashed}")
 
 
+def check_reference(output):
+    """A study that is stopped while its reference is made goes on; without a reference the summary says why; errors are relative
+    to the displacement, also to a small one."""
+    quick = ("--set", "Tradeoff/Models=kinematic")
+    stopped = study(output, *quick, stop_at="step:1:TERM")
+    summary = summary_of(output)
+    check(stopped.returncode == 5 and summary["status"] == "stopped" and summary["reference"] is None and not table(output),
+          f"stopped in the reference: {stopped}")
+    done = study(output, *quick, "--resume")
+    check(done.returncode == 0 and len(table(output)) == summary["settings"] and "nothing to recommend" in done.stdout,
+          f"and goes on: {done}")
+    inverts = study(output, *quick, "--overwrite", "--set", "Active stress/Optimal wave/Perturbation parameter=1.5")
+    summary = summary_of(output)
+    check(inverts.returncode == 4 and summary["status"] == "inverted" and "inverted" in summary["message"]
+          and summary["reference"] is None, f"a body that inverts: {inverts}, {summary}")
+    page = call([PROGRAM, "report", output.name], output.parent)
+    check(page.returncode == 0, f"its page: {page}")
+    late = study(output, *quick, "--overwrite", "--set", "Tradeoff/Time limit per run=1e-6")
+    check(late.returncode == 3 and "Time limit per run" in late.stderr, f"no time for a reference: {late}")
+    small = study(output, *quick, "--overwrite", "--set", "Active stress/Optimal wave/Perturbation parameter=0.01")
+    reference = summary_of(output)["reference"]
+    check(small.returncode == 0 and 0 < reference["displacement"] < 1e-4 and reference["size"] == reference["displacement"],
+          f"a small displacement: {small.stderr}, {reference}")
+
+
+def check_strides(folder):
+    """Steps end where the last stride begins, as in a run: what is pasted has the same error to the last digit, whatever Model is."""
+    few = ("Tradeoff/Models=nonlinear", "Tradeoff/Engines=fused", "Tradeoff/Meshes=uniform", "Tradeoff/Formulations=position",
+           "Tradeoff/Integrators=radau 5", "Tradeoff/Degrees=4", "Tradeoff/Cells=4", "Tradeoff/Tolerances=1e-2", "Time/End time=3",
+           "Model=auto")
+    result = study(folder / "strides", *(word for entry in few for word in ("--set", entry)))
+    advice = summary_of(folder / "strides")["recommendations"][0]
+    pathlib.Path(folder, "strides.prm").write_text(BODY + advice["prm"], encoding="utf-8")
+    call([PROGRAM, "run", "strides.prm", "--quiet", "--output", "pasted", "--set", "Time/End time=3"], folder)
+    run, row = summary_of(folder / "pasted"), table(folder / "strides")[0]
+    check(result.returncode == 0 and advice["prm"].startswith("set Model = nonlinear") and run["displacement"] == number(row["displacement"]),
+          f"three strides: {run['displacement']}, {row}")
+
+
 def check_stops(output, expected):
     """Kills of the only process and of one rank of two, signals and the limit of time lose nothing but what was under way.
 
@@ -236,6 +275,8 @@ def main():
             if ranks == 1:
                 check_advice(folder, output, result.stdout)
         check(all_answers[1] == all_answers[2], "the same settings and errors on 1 and 2 ranks")
+        check_reference(folder / "reference")
+        check_strides(folder)
         check_crashes(folder / "crashed", table(folder / "on-1"))
         check_stops(folder / "stopped", all_answers[1])
     checks.end()

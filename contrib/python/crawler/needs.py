@@ -6,6 +6,7 @@ file that cannot be written) or 69 (no Python has the modules that it needs).
 """
 import argparse
 import contextlib
+import ctypes
 import difflib
 import importlib
 import os
@@ -119,8 +120,15 @@ def _stop(_number, _frame):
     raise KeyboardInterrupt
 
 
+def _end_with_the_program():
+    """A program that is killed takes the script with it that it waits for (prctl(2), PR_SET_PDEATHSIG)."""
+    if "CRAWLER_PROGRAM" in os.environ and hasattr(ctypes.CDLL(None), "prctl"):
+        ctypes.CDLL(None).prctl(1, signal.SIGTERM)
+
+
 def run_script(main):
     """Calls main() and says in one sentence what went wrong."""
+    _end_with_the_program()
     for number in STOPPING:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _stop)

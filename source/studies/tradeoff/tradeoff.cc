@@ -139,9 +139,9 @@ namespace crawler
     ExitCode
     no_reference(const TradeoffReference &reference, Log &log)
     {
-      if (reference.status == "stopped" && reference.message.empty())
+      if (reference.status == "stopped")
       {
-        log.warn("stopped while the reference was made; --resume starts with it");
+        log.warn(reference.message + "; --resume starts with the reference");
         return ExitCode::stopped;
       }
       log.warn("the nonlinear model gives no displacement to measure errors against: " + reference.message);
@@ -205,9 +205,14 @@ namespace crawler
       log.line(in_words(results, course));
       for (const std::string &line : recommendation_lines(results))
         log.line(line);
-      if (!results.recommendations.empty()) // there is something to draw
+      const auto &blocks = results.recommendations;
+      if (!blocks.empty()) // there is something to draw
         draw("tradeoff", folder, log);
-      log.line(fmt::format("Results are in {0}/; {0}/recommendations.prm has the blocks to paste.", folder.string()));
+      else if (course.status == "finished")
+        log.line("No setting has a displacement that is good for 1e-2: there is nothing to recommend.");
+      log.line(fmt::format("Results are in {}/{}.",
+                           folder.string(),
+                           blocks.empty() ? "" : "; recommendations.prm has the blocks to paste"));
     }
   } // namespace
 
@@ -235,7 +240,7 @@ namespace crawler
                          n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
     for (const std::string &note : input.notes)
       log.line(note);
-    if (text.empty())
+    if (text.empty() || unpack_reference(text).status != "finished")
     {
       // On every rank alike, so that none has an idle core beside it; the first one's is used.
       log.line("Making the reference ...");
@@ -243,12 +248,9 @@ namespace crawler
       text              = broadcast(pack(make_reference(parameters, interrupted, report)), communicator);
     }
     const TradeoffReference reference = unpack_reference(text);
-    if (reference.status != "finished")
-    {
-      folder.leave();
-      return no_reference(reference, log);
-    }
-    report_reference(reference, parameters, log);
+    const bool has_reference          = reference.status == "finished";
+    if (has_reference)
+      report_reference(reference, parameters, log);
     if (n_done == 0)
       on_first_rank(communicator, [&]() {
         auto attributes                 = provenance(input.effective, options.command_line);
@@ -258,26 +260,29 @@ namespace crawler
       });
 
     const Study study{parameters, input.scene, reference, settings, std::move(done)};
-    const bool is_whole = measure_all(communicator, study, path, interrupted, log);
+    const bool is_whole = has_reference && measure_all(communicator, study, path, interrupted, log);
+    ExitCode code       = is_whole ? ExitCode::finished : ExitCode::stopped;
+    if (!has_reference)
+      code = no_reference(reference, log);
     on_first_rank(communicator, [&]() {
       folder.require_in_place();
       const TradeoffResults results = evaluate(parameters, reference, read_rows(path, settings));
-      const std::string reason      = is_whole ? "" : is_out_of_time() ? "time_limit" : "signal";
+      const std::string reason      = code != ExitCode::stopped ? "" : is_out_of_time() ? "time_limit" : "signal";
       write_results(path,
                     results,
-                    {is_whole ? "finished" : "stopped",
+                    {has_reference && !is_whole ? "stopped" : reference.status,
                      reason,
                      now() - start,
                      static_cast<unsigned int>(size_of(communicator)),
                      options.command_line},
                     log);
-      if (!is_whole)
+      if (has_reference && !is_whole)
         log.warn(fmt::format("stopped by {} after {} settings; --resume goes on",
                              reason == "signal" ? "a signal" : "Tradeoff/Time limit",
                              results.n_tried()));
       folder.leave();
       return "";
     });
-    return is_whole ? ExitCode::finished : ExitCode::stopped;
+    return code;
   }
 } // namespace crawler

@@ -63,24 +63,14 @@ namespace crawler
   {
   }
 
-  /// What the mesh's settings share; false if there was no time for it.
-  bool
-  TradeoffMeasurement::choose(const Parameters &own, const double end)
-  {
-    if (choice_ || setting_.has_no_mesh())
-      return true;
-    const double start = processor_seconds();
-    choice_            = choose_numerics(MPI_COMM_SELF, own, scene_, [&]() { return now() < end && !interrupted_(); });
-    if (setting_.mesh == "adaptive")
-      choice_seconds_ = processor_seconds() - start;
-    return choice_.has_value();
-  }
-
   /// One run on this level or mesh, or a batch of runs that are all alike, of which the first is returned.
   SimulationResult
   TradeoffMeasurement::run(const Parameters &own, const Numerics &numerics, const KeepGoing &keep_going) const
   {
-    const Simulation::Options options = {.energy_balance = own.output.energy_balance};
+    // A single run is that of crawler run, whose steps end where the last stride begins.
+    const Simulation::Options options = {.energy_balance = own.output.energy_balance,
+                                         .gait           = setting_.is_batch() ? Simulation::GaitWish::none
+                                                                               : Simulation::GaitWish::any};
     if (setting_.has_no_mesh())
       return ReducedModel(scene_, own.model).compute(own.accuracy, own.output.energy_balance, keep_going);
     if (!setting_.is_batch())
@@ -102,13 +92,8 @@ namespace crawler
   std::optional<TradeoffRow>
   TradeoffMeasurement::measure(const TradeoffSetting &setting)
   {
-    if (!same_mesh(setting, setting_))
-    {
-      choice_.reset();
-      choice_seconds_ = TradeoffRow::unknown;
-      took_too_long_  = false;
-    }
-    setting_ = setting;
+    took_too_long_ = took_too_long_ && same_mesh(setting, setting_);
+    setting_       = setting;
     TradeoffRow row;
     row.setting = setting;
     if (!setting.not_offered.empty())
@@ -153,15 +138,17 @@ namespace crawler
       took_too_long_ = true;
       return !interrupted_();
     };
-    if (!choose(own, end))
-      return too_long();
     Numerics numerics;
-    if (choice_)
+    if (!setting_.has_no_mesh())
     {
-      numerics           = choice_->numerics;
-      numerics.tolerance = own.time.tolerance.value();
+      const double start_of_choice = processor_seconds();
+      const auto choice = choose_numerics(MPI_COMM_SELF, own, scene_, [&]() { return now() < end && !interrupted_(); });
+      if (!choice)
+        return too_long();
+      numerics = choice->numerics;
+      if (setting_.mesh == "adaptive")
+        row.choice_seconds = processor_seconds() - start_of_choice;
     }
-    row.choice_seconds = choice_seconds_;
 
     const double heap_before   = heap_bytes();
     double most_heap           = heap_before;
@@ -183,7 +170,7 @@ namespace crawler
     row.status  = word_of(result.time.status);
     row.reason  = result.time.reason;
     row.message = result.time.message;
-    if (choice_)
+    if (!setting_.has_no_mesh())
     {
       row.steps             = result.time.steps;
       row.rejected_steps    = result.time.rejected_steps;

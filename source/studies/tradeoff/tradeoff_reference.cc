@@ -21,6 +21,7 @@ namespace crawler
     constexpr double time_factor = 2.;
     /// Values of Accuracy: from these on, by this factor, down to the loosest that is any use.
     constexpr double first_accuracy = 1e-12, first_of_check = 1e-10, next = 100., loosest = 1e-4, loosest_check = 1e-6;
+    constexpr double coarse_accuracy = 1e-3;
 
     /// Nonlinear model, and numerics that the program chooses.
     Parameters
@@ -77,8 +78,8 @@ namespace crawler
           reference_.check = answer(own, first_of_check, loosest_check);
         if (interrupted_())
         {
-          reference_.status = "stopped";
-          reference_.message.clear();
+          reference_.status  = "stopped";
+          reference_.message = "stopped while the reference was made";
         }
         else if (!reference_.answer.method.empty())
           finish(parameters);
@@ -92,6 +93,15 @@ namespace crawler
         const TradeoffAnswer &answer = reference_.answer, &check = reference_.check;
         reference_.status = "finished";
         reference_.message.clear();
+        // What Accuracy is relative to, where round-off does not count.
+        reference_.size = std::abs(answer.displacement);
+        Task task;
+        task.parameters          = with_free_numerics(parameters);
+        task.parameters.accuracy = coarse_accuracy;
+        compute_all({&task, 1}, time_factor * parameters.tradeoff.run_time_limit, interrupted_);
+        const double size = task.computed.choice.wanted_error / coarse_accuracy;
+        if (!task.error && size > 1.01 * reference_.size) // the deformation counts
+          reference_.size = size;
         if (!(reference_.size > 0.))
           reference_.size = parameters.body.length;
         reference_.bar = answer.error_bound + round_off * reference_.size;
@@ -111,10 +121,8 @@ namespace crawler
           compute_all({&task, 1}, time_factor * parameters.tradeoff.run_time_limit, interrupted_);
           const SimulationResult &result = task.computed.result;
           const TimeOutcome outcome      = outcome_of(task);
-          if (outcome.status == Status::finished && result.error)
+          if (outcome.status == Status::finished && result.error && std::isfinite(result.error->total))
           {
-            if (reference_.size == 0.)
-              reference_.size = task.computed.choice.wanted_error / accuracy;
             const auto &numerics = task.computed.choice.numerics;
             TradeoffAnswer found = {fmt::format("{}, {}, {}, degree {}, Accuracy {:.0e}",
                                                 numerics.formulation == Formulation::stretch ? "stretch" : "position",
@@ -131,8 +139,14 @@ namespace crawler
                                 found.error_bound));
             return found;
           }
-          reference_.status  = word_of(outcome.status);
-          reference_.message = outcome.message;
+          // The run took too long, or the one that measures its error.
+          const bool is_late = outcome.status == Status::finished || task.is_out_of_time;
+          reference_.status  = is_late ? "failed" : word_of(outcome.status);
+          reference_.message =
+            is_late
+              ? fmt::format("no run whose error is known within {:g} s; a larger Tradeoff/Time limit per run is needed",
+                            time_factor * parameters.tradeoff.run_time_limit)
+              : outcome.message;
           if (outcome.status == Status::inverted)
             break;
         }

@@ -104,6 +104,8 @@ namespace crawler
     Json
     reference_json(const TradeoffReference &reference)
     {
+      if (reference.status != "finished")
+        return nullptr;
       const auto answer = [](const TradeoffAnswer &a) {
         return Json{{"method", a.method}, {"displacement", a.displacement}, {"error_bound", a.error_bound}};
       };
@@ -148,7 +150,9 @@ namespace crawler
   TradeoffResults::prm(const std::size_t row) const
   {
     const TradeoffSetting &setting = rows[row].setting;
-    return as_prm(with_setting(parameters, setting, reference.size), setting);
+    const bool other_model         = !setting.has_no_mesh() && parameters.model != Model::nonlinear;
+    return (other_model ? "set Model = nonlinear\n" : "") +
+           as_prm(with_setting(parameters, setting, reference.size), setting);
   }
 
   TradeoffResults
@@ -251,6 +255,7 @@ namespace crawler
         front.push_back(i);
     const Json json = {{"status", course.status},
                        {"reason", course.reason.empty() ? Json(nullptr) : Json(course.reason)},
+                       {"message", results.reference.message.empty() ? Json(nullptr) : Json(results.reference.message)},
                        {"reference", reference_json(results.reference)},
                        {"settings", results.rows.size()},
                        {"tried", results.n_tried()},

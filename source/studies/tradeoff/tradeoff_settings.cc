@@ -320,10 +320,9 @@ namespace crawler
         "set Model    = {}\nset Accuracy = {}\n", word_of(parameters.model), to_text(parameters.accuracy));
     const DiscretizationParameters &d = parameters.discretization;
     const TimeParameters &t           = parameters.time;
-    std::string text                  = fmt::format("# with Model = {}\nsubsection Discretization\n"
+    std::string text                  = fmt::format("subsection Discretization\n"
                                                     "  set Formulation     = {}\n  set Mesh            = {}\n"
                                                     "  set Degree          = {}\n",
-                                   word_of(parameters.model),
                                    word_of(d.formulation),
                                    word_of(d.mesh),
                                    d.degree.value());

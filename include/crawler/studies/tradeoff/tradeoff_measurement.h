@@ -18,7 +18,7 @@ namespace crawler
   double
   heap_bytes();
 
-  /// Measures settings one after the other; what those of one mesh share is chosen once.
+  /// Measures settings one after the other.
   class TradeoffMeasurement
   {
   public:
@@ -41,8 +41,6 @@ namespace crawler
   private:
     using KeepGoing = std::function<bool()>;
 
-    bool
-    choose(const Parameters &own, double end);
     SimulationResult
     run(const Parameters &own, const Numerics &numerics, const KeepGoing &keep_going) const;
     bool
@@ -54,9 +52,7 @@ namespace crawler
     const Scene &scene_;
     const double size_;
     const std::function<bool()> interrupted_;
-    TradeoffSetting setting_; ///< the last one
-    std::optional<NumericsChoice> choice_;
-    double choice_seconds_ = TradeoffRow::unknown;
-    bool took_too_long_    = false; ///< a looser tolerance on this mesh
+    TradeoffSetting setting_;    ///< the last one
+    bool took_too_long_ = false; ///< a looser tolerance on this mesh
   };
 } // namespace crawler
