@@ -510,8 +510,10 @@ namespace crawler
                            return !result.was_interrupted;
                          },
                          [&]() {
-                           return fmt::format(
-                             "{}, best {} {:.6g}", counted(state.evaluations, "evaluation"), own.objective, state.best);
+                           const std::string evaluations = counted(state.evaluations, "evaluation");
+                           return std::isnan(state.best)
+                                    ? evaluations + ", no gait within the limits yet"
+                                    : fmt::format("{}, best {} {:.6g}", evaluations, own.objective, state.best);
                          }},
                         log);
     };

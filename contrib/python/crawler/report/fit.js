@@ -7,6 +7,7 @@ const sentence = text => `${text[0].toUpperCase()}${text.slice(1)}.`;
 const told = () => Object.entries(summary.variables ?? {}).filter(([, one]) => one.determined);
 
 function showValues() {
+  if (!summary.variables) return; // a fit that was killed
   const unit = entry => unitText(page.parameters.entries.find(one => one.entry === entry.replace(/\[\d+\]$/, ''))?.unit), between = (ends, one) => !ends ? '–'
     : [0, 1].flatMap(i => [i ? ' to ' : '', ends[i] === null ? 'the limit' : exactly(ends[i], showWith(ends[i], one.deviation))]);
   const box = section('Values'), rows = Object.entries(summary.variables ?? {}).map(([entry, one]) => [[...brokenAtSlashes(entry)],
