@@ -299,23 +299,6 @@ namespace crawler
     RowFile::create(path, group, columns, n_rows, all, {columns.size(), value});
   }
 
-  namespace
-  {
-    /// Several ranks write by MPI. One rank alone writes itself, each row at once, without a lock that would keep
-    /// readers out: MPI would leave a file of its own behind if the process is killed.
-    void
-    set_driver(const hid_t access, MPI_Comm communicator, const std::filesystem::path &path)
-    {
-      if (size_of(communicator) > 1)
-        hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
-      else
-      {
-        H5Pset_sieve_buf_size(access, 0);
-        H5Pset_file_locking(access, /*use=*/0, /*ignore_when_disabled=*/1);
-      }
-    }
-  } // namespace
-
   struct RowFile::Handles
   {
     Hdf5Handle file, transfer;
@@ -332,13 +315,12 @@ namespace crawler
   {
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    set_driver(access, communicator, path);
+    hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
     handles_.reset(new Handles{{hdf5::checked(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), path, "open"), H5Fclose},
                                {H5Pcreate(H5P_DATASET_XFER), H5Pclose},
                                {},
                                nullptr});
-    if (size_of(communicator) > 1)
-      H5Pset_dxpl_mpio(handles_->transfer, H5FD_MPIO_INDEPENDENT);
+    H5Pset_dxpl_mpio(handles_->transfer, H5FD_MPIO_INDEPENDENT);
     for (const Column &column : columns_)
     {
       const std::string name = "/" + group + "/" + dataset_name(column.name);
@@ -392,7 +374,7 @@ namespace crawler
     });
     H5Eset_auto(H5E_DEFAULT, nullptr, nullptr);
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    set_driver(access, communicator, path);
+    hdf5::checked(H5Pset_fapl_mpio(access, communicator, MPI_INFO_NULL), path, "open");
     open(access, group_name);
   }
 

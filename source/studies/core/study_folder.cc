@@ -51,6 +51,23 @@ namespace crawler
   }
 
   void
+  StudyFolder::remove_locks_of_mpi() const
+  {
+    const auto is_lock = [&](const std::string &name) {
+      return name.ends_with(".lock") && std::any_of(kind_.results.begin(),
+                                                    kind_.results.end(),
+                                                    [&](const auto &result) { return name.starts_with(result + "-"); });
+    };
+    std::vector<fs::path> locks;
+    for (const auto &file : fs::directory_iterator(path_))
+      if (is_lock(file.path().filename().string()))
+        locks.push_back(file.path());
+    std::error_code ignored; // they disturb nothing
+    for (const auto &file : locks)
+      fs::remove(file, ignored);
+  }
+
+  void
   StudyFolder::lock()
   {
     constexpr std::chrono::milliseconds longest_wait(5000), pause(100);
@@ -106,6 +123,7 @@ namespace crawler
     if (error)
       throw FileError("cannot make the output folder \"" + path_.string() + "\": " + error.message());
     lock();
+    remove_locks_of_mpi();
     leaving_if_refused(require_own); // the one that had the lock may have changed it
     if (options_.resume && state() == State::computed)
       return true;

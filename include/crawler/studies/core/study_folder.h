@@ -82,6 +82,10 @@ namespace crawler
     void
     lock();
 
+    /// MPI leaves a file beside the table, FILE-1-NUMBER.lock, where the only process of a study is killed.
+    void
+    remove_locks_of_mpi() const;
+
     void
     leaving_if_refused(const std::function<void()> &work);
 
