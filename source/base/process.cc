@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -32,7 +33,10 @@ namespace crawler
       }
     }
 
-    volatile std::sig_atomic_t child = 0;
+    /// The child, 0 if there is none yet, and the last signal for it. Any thread may get a signal: it notes the signal
+    /// and then looks for the child, and who starts the child does both in the other order, so none is lost.
+    std::atomic<pid_t> child  = 0;
+    std::atomic<int> awaiting = 0;
 
     void
     pass_on(const int number, siginfo_t *const info, void *)
@@ -40,7 +44,11 @@ namespace crawler
       const int error       = errno;
       const bool is_process = info->si_code <= 0; // a terminal sends its signals to the child, too
       if (is_process)
-        kill(child, number);
+      {
+        awaiting = number;
+        if (const pid_t id = child; id > 0)
+          kill(id, number);
+      }
       errno = error;
     }
 
@@ -51,6 +59,8 @@ namespace crawler
     public:
       SignalsForChild()
       {
+        child    = 0;
+        awaiting = 0;
         sigset_t ours;
         sigemptyset(&ours);
         for (const int number : numbers)
@@ -89,6 +99,8 @@ namespace crawler
         if (started)
         {
           child = id;
+          if (const int number = awaiting)
+            kill(id, number);
           sigprocmask(SIG_SETMASK, &mask_, nullptr);
         }
         return started;
