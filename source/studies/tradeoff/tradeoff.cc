@@ -205,10 +205,11 @@ namespace crawler
       log.line(in_words(results, course));
       for (const std::string &line : recommendation_lines(results))
         log.line(line);
-      const auto &blocks = results.recommendations;
-      if (!blocks.empty()) // there is something to draw
+      const auto is_on_front = [](const TradeoffRow &row) { return row.pareto == "true"; };
+      if (std::any_of(results.rows.begin(), results.rows.end(), is_on_front)) // there is something to draw
         draw("tradeoff", folder, log);
-      else if (course.status == "finished")
+      const auto &blocks = results.recommendations;
+      if (blocks.empty() && course.status == "finished")
         log.line("No setting has a displacement that is good for 1e-2: there is nothing to recommend.");
       log.line(fmt::format("Results are in {}/{}.",
                            folder.string(),

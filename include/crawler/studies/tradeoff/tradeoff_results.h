@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <crawler/base/table.h>
 #include <crawler/studies/tradeoff/tradeoff_table.h>
 
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace crawler
