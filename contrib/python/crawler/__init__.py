@@ -209,12 +209,13 @@ def optimize(scene, variables=None, *, set=None, output=None, overwrite=False, v
         return read(os.path.join(folder, "optimum"))
 
 
-def fit(scene, data=None, variables=None, *, set=None, verbose=False, **keywords):
+def fit(scene, data=None, variables=None, *, set=None, workers=1, verbose=False, **keywords):
     """Numbers of a scene, with their uncertainty, from what was measured, as `crawler fit` finds them (doc/fit.md): a Fit.
 
     data: the name of a file, or measured.Samples; None: that of the scene (Fit/Data). variables: {entry: (from, to), ...};
-    None: Fit/Variables. starts=8, standard_deviation=0.01, ... are entries of section Fit. Fit.variables has, for each, value,
-    deviation, intervals and numerical error; Fit.undetermined what the data cannot tell. Raises InputError and FileError.
+    None: Fit/Variables. starts=8, standard_deviation=0.01, ... are entries of section Fit. workers: so many processes share the
+    starts; the result does not depend on it. Fit.variables has, for each, value, deviation, intervals and numerical error;
+    Fit.undetermined what the data cannot tell. Raises InputError, FileError, and RuntimeError where the fit fails.
     """
     own = {_keyword(entry): entry for entry in entries() if entry.startswith("Fit/")}
     overrides = _overrides({**(set or {}), **{own[name]: keywords.pop(name) for name in list(keywords) if name in own}}, keywords)
@@ -222,7 +223,7 @@ def fit(scene, data=None, variables=None, *, set=None, verbose=False, **keywords
         overrides.append(f"Fit/Variables={_ranges(variables)}")
     fitting = importlib.import_module(".fitting", __name__)
     model, notes = fitting.prepared(scene, overrides, data)
-    found = fitting.find(model, print if verbose else lambda text: None)
+    found = fitting.find(model, print if verbose else lambda text: None, workers=workers)
     _warn([*notes, *found.notes])
     return found
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.optimize import least_squares
 
-from ..needs import Failed
+from ..needs import Failed, InputError
 from .result import MOST_STEPS, NEAR, SHARE, Best, described, unfinished
 from .starts import best_of_starts, table_of_starts
 from .uncertainty import undetermined_directions
@@ -124,6 +124,8 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
     workers: so many processes share the starts. Raises InputError if no start can be run, Failed where there are no derivatives,
     Interrupted, and Stopped if one of several processes is killed.
     """
+    if workers < 1:
+        raise InputError(f'"workers" is {workers}, but a number of processes from 1 is expected')
     problem, kept = Problem(model, model.data), {} if kept is None else kept
     model.accuracy = min(max(float(model.parameters["Accuracy"]), LEAST_ACCURACY), LARGEST_ACCURACY)
     try:

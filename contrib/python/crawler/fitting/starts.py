@@ -6,7 +6,9 @@ import math
 import multiprocessing
 import os
 import signal
+import sys
 import threading
+import types
 
 import numpy as np
 
@@ -90,10 +92,15 @@ def _searched_by_others(problem, missing, workers):
     """The same by other processes, in the order in which they end."""
     with concurrent.futures.ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _begin_worker, (type(problem), problem.model)) as pool:
         try:
-            for future in concurrent.futures.as_completed([pool.submit(_search_in_worker, number, z) for number, z in missing.items()]):
+            main, sys.modules["__main__"] = sys.modules["__main__"], types.ModuleType("__main__")  # they are not to begin with a user's script
+            try:
+                futures = [pool.submit(_search_in_worker, number, z) for number, z in missing.items()]
+            finally:
+                sys.modules["__main__"] = main
+            for future in concurrent.futures.as_completed(futures):
                 yield future.result()
         except concurrent.futures.process.BrokenProcessPool:
-            raise Stopped("a process of the fit was killed, perhaps for want of memory; --resume goes on") from None
+            raise Stopped("a process of the fit was killed, perhaps for want of memory") from None
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             for worker in multiprocessing.active_children():
