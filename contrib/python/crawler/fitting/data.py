@@ -2,10 +2,11 @@
 """What was measured, as a fit compares it with a run."""
 import dataclasses
 import math
+import pathlib
 
 import numpy as np
 
-from ..measured.samples import Samples, read_samples
+from ..measured.samples import Samples, bytes_of, read_samples
 from ..measured.sheet import read_sheet
 from ..needs import FileError, InputError
 
@@ -62,10 +63,13 @@ class Data:
 def read_data(data, parameters, **reading):
     """The Data of a file or of Samples, as section Fit of a scene says.
 
-    data: a name, or Samples, whose quantity may be "centre" or "speed" too. parameters: all entries of the scene. reading: options of measured.read_samples(). Raises
-    InputError and FileError.
+    data: a name, or Samples, whose quantity may be "centre" or "speed" too. parameters: all entries of the scene. reading: options
+    of measured.read_samples(). Raises InputError, also for a file that cannot be read, as for those of other entries.
     """
-    samples = data if isinstance(data, Samples) else _read(data, reading)
+    try:
+        samples = data if isinstance(data, Samples) else _read(data, reading)
+    except FileError as error:
+        raise InputError(str(error)) from None
     kind = {"x": "markers", "strain": "strain", "centre": "centre", "speed": "speed"}.get(samples.quantity)
     name = "the data" if isinstance(data, Samples) else f'"{data}"'
     if kind is None:
@@ -94,11 +98,7 @@ def read_data(data, parameters, **reading):
 def _read(name, reading):
     """Samples; of a path or a speed with one place."""
     if not str(name).lower().endswith((".h5", ".hdf5")):
-        try:
-            with open(name, "rb") as file:
-                sheet = read_sheet(file.read(), str(name), reading.get("decimal", ""))
-        except OSError as error:
-            raise FileError(f'cannot read "{name}": {error.strerror}') from None
+        sheet = read_sheet(bytes_of(pathlib.Path(name)), str(name), reading.get("decimal", ""))
         names = [one.lower() for one in sheet.names]
         for kind, known in PATHS.items():
             column = next((i for i, one in enumerate(names) if one in known), None)

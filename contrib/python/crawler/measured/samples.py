@@ -55,7 +55,7 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
     if quantity and quantity not in QUANTITIES:
         raise InputError(f'"--quantity" is "{quantity}", but "m", "strain", "stretch" or "markers" is expected')
     path = pathlib.Path(path)
-    data = _bytes_of(path)
+    data = bytes_of(path)
     if data.startswith(b"\x89HDF"):
         found, units = read_hdf5(path, animal), ("", "", "")
     else:
@@ -100,7 +100,8 @@ def read_samples(path, *, quantity="", columns="", unit_of_s="", unit_of_t="", u
     return samples
 
 
-def _bytes_of(path):
+def bytes_of(path):
+    """What a file has. Raises FileError."""
     if path.exists() and not path.is_file():
         raise FileError(f'"{path}" is {"a folder" if path.is_dir() else "a device"}, but a file is expected')
     try:
