@@ -9,11 +9,13 @@ import contextlib
 import ctypes
 import difflib
 import importlib
+import logging
 import os
 import pathlib
 import re
 import signal
 import sys
+import warnings
 
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)
 DEBIANS_PYTHON, LACKING = "/usr/bin/python3", "CRAWLER_LACKING_PYTHON"  # the latter: what another Python lacks
@@ -52,7 +54,10 @@ def complain(sentence):
 
 def need(*modules):
     """Sees to it that all modules are there: if this Python lacks one, Debian's Python goes on with the script. If that
-    lacks one too, or is not there, the script ends and says which Python lacks what. Pictures need no screen."""
+    lacks one too, or is not there, the script ends and says which Python lacks what. Pictures need no screen. What modules
+    warn of is not shown: standard error has the sentences of the program only."""
+    warnings.simplefilter("ignore")
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     missing = []
     for name in modules:
         try:
