@@ -8,6 +8,7 @@
 #include <crawler/base/mpi_session.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/base/stop_place.h>
+#include <crawler/base/versions.h>
 #include <crawler/output/kymograph_writer.h>
 #include <crawler/output/statistics_writer.h>
 #include <crawler/parameters/entry_lists.h>
@@ -423,4 +424,5 @@ PYBIND11_MODULE(_core, module)
   module.def("entries", all_entries);
   module.def("end", &Libraries::end);
   module.attr("n_points") = Kymograph::n_points;
+  module.attr("versions") = versions();
 }

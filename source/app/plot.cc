@@ -34,7 +34,7 @@ namespace crawler
         {"atlas", "an atlas", {"atlas.csv", "atlas.h5"}},
         {"tradeoff", "a tradeoff", {"tradeoff.csv", "tradeoff.h5"}},
         {"optimize", "an optimisation", {"starts.csv"}},
-        {"fit", "a fit", {"residuals.csv"}},
+        {"fit", "a fit", {"residuals.csv", "inputs.json", "comparison.csv"}},
         {"sweep", "a sweep", {"results.h5"}},
         {"calibration", "a calibration", {"calibration.csv"}},
         {"table", "a table of crawler table", {}},

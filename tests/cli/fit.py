@@ -24,7 +24,7 @@ STUDIES = pathlib.Path(__file__).resolve().parents[2] / "prm/studies"
 TRUTH = {"Body/Anchoring exponent": 2.4, "Body/Elastic modulus": 1.3, "Active stress/Travelling wave/Amplitude": 0.25}
 # Arguments, exit code, what the one sentence has.
 REFUSED = [
-    ([], 2, "FILE"), (["nowhere.prm"], 6, "nowhere.prm"), (["fit_worm.prm"], 2, "--overwrite"), (["fit_worm.prm", "--data", "no.csv"], 6, "no.csv"),
+    ([], 2, "FILE"), (["nowhere.prm"], 6, "nowhere.prm"), (["fit_worm.prm"], 2, "--overwrite"), (["fit_worm.prm", "--data", "no.csv"], 2, "no.csv"),
     (["fit_worm.prm", "--outptu", "x"], 2, "--output"), (["fit_worm.prm", "--set", "Body/Length"], 2, "Section/Entry=value"),
     (["fit_worm.prm", "--set", "Body/Lenght=3"], 2, "Length"), (["fit_worm.prm", "--set", "Fit/Data="], 2, "Fit/Data is empty"),
     (["fit_worm.prm", "--set", "Fit/Variables="], 2, "Variables is empty"), (["fit_worm.prm", "--unit-of-t", "1000"], 2, "Time/End time"),
@@ -32,7 +32,7 @@ REFUSED = [
     (["fit_worm.prm", "--set", "Fit/Variables=Active stress/Travelling wave/Amplitude : 5 to 6", "--set",
       "Active stress/Travelling wave/Amplitude=5.5"], 2, "cannot be run"),
     (["fit_worm.prm", "--workers", "0"], 2, "from 1"), (["fit_worm.prm", "--workers", "two"], 2, "whole number"),
-    (["fit_worm.prm", "--set", "Fit/Markers at=0,1"], 2, "9 markers"), (["fit_worm.prm", "other/fit_worm.prm"], 2, "same name")]
+    (["fit_worm.prm", "three.prm", "--output", "output-fit_worm"], 2, "something else"), (["fit_worm.prm", "--set", "Fit/Markers at=0,1"], 2, "9 markers"), (["fit_worm.prm", "other/fit_worm.prm"], 2, "same name")]
 THREE = ("fit", "three.prm")
 checks = Checks()
 check = checks.expect
@@ -44,9 +44,9 @@ def crawler(*arguments, stop_at=None):
 
 
 def contents(folder):
-    """The files of a fit but for picture and page, those of its starts too; of summary.json without how it was called."""
+    """The files of a fit but for picture and page, those of its starts too; of summary.json without call and time."""
     files = {str(file.relative_to(folder)): file.read_bytes() for file in pathlib.Path(folder).rglob("*") if file.is_file() and file.suffix not in (".png", ".html")}
-    files["summary.json"] = {key: value for key, value in json.loads(files["summary.json"]).items() if key != "command_line"}
+    files["summary.json"] = {key: value for key, value in json.loads(files["summary.json"]).items() if key not in ("command_line", "seconds")}
     return files
 
 
@@ -60,7 +60,7 @@ def resumes():
     whole = contents("whole")
     n_steps = 3000  # in the third start
     for place, code, status in ((f"step:{n_steps}:TERM", 5, "stopped"), ("step:500:USR1", 5, "stopped"), (f"step:{n_steps}:KILL", 3, None),
-                                ("step:1:TERM", 5, None)):
+                                ("step:1:TERM", 5, "stopped")):
         shutil.rmtree("part", ignore_errors=True)
         ended = crawler(*THREE, "--output", "part", stop_at=place)
         check(ended.returncode == code and ended.stderr.count("\n") == 1, f"{place}: {ended.returncode}, {ended.stderr}")
@@ -71,15 +71,17 @@ def resumes():
             check(len(left["starts"]) == 2 and all(one["value"] is not None and one["deviation"] is None for one in left["variables"].values())
                   and "(so far)" in ended.stdout, f"{place}: {left}")
         for command in ("report", "plot") if status else ():
-            ended = crawler(command, "part")
-            check(ended.returncode == 0, f"{command} of a fit that was stopped: {ended.stderr}")
+            ended, has_values = crawler(command, "part"), "variables" in left
+            check(ended.returncode == 0 if has_values or command == "report" else ended.returncode == 2 and left["message"] in ended.stderr,
+                  f"{command} of a fit that was stopped: {ended.stderr}")
         ended = crawler(*THREE, "--output", "part")
         check(ended.returncode == 2 and "--resume goes on" in ended.stderr, f"{place}, called again: {ended.stderr}")
         ended = crawler(*THREE, "--output", "part", "--resume")
         check(ended.returncode == 0 and contents("part") == whole, f"{place} and --resume: {ended.stderr}")
         check(("2 of 3 starts" in ended.stdout) == (str(n_steps) in place), f"{place}: --resume searches again: {ended.stdout}")
     ended = crawler(*THREE, "--output", "shared", "--workers", "2", stop_at="step:1200:KILL")  # in a second start
-    check(ended.returncode == 5 and "--resume goes on" in ended.stderr, f"a process that is killed: {ended.returncode}, {ended.stderr}")
+    check(ended.returncode == 5 and json.loads(pathlib.Path("shared/summary.json").read_text(encoding="utf-8"))["message"] in ended.stderr
+          and "--resume goes on" in ended.stderr, f"a process that is killed: {ended.returncode}, {ended.stderr}")
     ended = crawler(*THREE, "--output", "shared", "--workers", "2", "--resume")
     check(ended.returncode == 0 and contents("shared") == whole, f"two processes find something else: {ended.stderr}")
     with subprocess.Popen([PROGRAM, *THREE, "--output", "orphan"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
@@ -156,6 +158,19 @@ def main():
     both = crawler("fit", "plain.prm", "fit_worm.prm", "--output", "both")
     order = re.findall(r"^(plain|fit_worm)\.prm +\d", both.stdout, re.M)
     check(both.returncode == 0 and order == ["fit_worm", "plain"] and "does not fit" in both.stdout, f"the comparison is {order}: {both.stderr}")
+    with open("both/comparison.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    summary = json.loads(pathlib.Path("both/summary.json").read_text(encoding="utf-8"))
+    inner = json.loads(pathlib.Path("both/plain/summary.json").read_text(encoding="utf-8"))
+    check([one["scene"] for one in rows] == ["fit_worm.prm", "plain.prm"] and float(rows[1]["aic"]) == inner["information"]["aic"]
+          and float(rows[0]["bic_less_least"]) == 0 and summary["comparison"][1]["chi_square"] == inner["goodness"]["chi_square"], f"its table is {rows}")
+    check(all({"seconds", "versions", "command_line"} <= one.keys() and "crawler" in one["versions"] for one in (summary, inner)), "what was run is not said")
+    pathlib.Path("both/comparison.png").unlink()
+    for arguments, code, phrase in ((("plot", "both"), 0, "comparison.png"), (("report", "both"), 0, "comparison"), (("plot", "both", "--output", "x.xyz"), 2, ".xyz"),
+                                    (("fit", "plain.prm", "again/fitted.prm", "--output", "both"), 2, "--overwrite")):
+        ended = crawler(*arguments)
+        check(ended.returncode == code and phrase in ended.stdout + ended.stderr, f"{arguments}: {ended.returncode}, {ended.stderr}")
+    check(matplotlib.image.imread("both/comparison.png").shape[0] > 200, "there is no picture of the comparison")
     quiet = crawler("fit", "fit_worm.prm", "--overwrite", "--quiet")
     check(quiet.returncode == 0 and quiet.stdout == "", "--quiet prints")
     ended = crawler("run", "fit_worm.prm", "--output", "run")

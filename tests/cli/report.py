@@ -56,7 +56,7 @@ subsection Optimize
   set Largest strain  = 0.3
 end
 """
-FOLDERS = ("run", "sweep", "atlas", "tradeoff", "optimisation", "fit")
+FOLDERS = ("run", "sweep", "atlas", "tradeoff", "optimisation", "fit", "comparison")
 STUDIES = pathlib.Path(__file__).resolve().parents[2] / "prm/studies"
 checks = Checks()
 check = checks.expect
@@ -93,6 +93,9 @@ def make_studies(program):
     shutil.copy(STUDIES / "fit_worm.csv", program.folder)
     program.study("fit", (STUDIES / "fit_worm.prm").read_text(encoding="utf-8"), "fit", Fit__Starts="2",
                   Fit__Variables=f"{P} : 0.5 to 5; Body/Friction coefficient : 0.5 to 2")
+    shutil.copy(program.folder / "fit.prm", program.folder / "same.prm")
+    result = program("fit", "fit.prm", "same.prm", "--quiet", "--output", "comparison", "--set", f"Fit/Variables={P} : 0.5 to 5")
+    check(result.returncode == 0, f"a comparison is made {result.stderr}")
     program.study("run", WAVE.replace("wave speed", "wave speed # <b>"), "<b>inverted", Body__Anchoring_exponent="0",
                   **{CHI.replace("/", "__").replace(" ", "_"): "0.6"})
     program.study("run", FORMULAS, "sudden", Active_stress__Expression__Active_stress="0.2*sin(2*pi*(s+t))",
@@ -332,6 +335,12 @@ def test_fit_in_browser(browser, folder):
     check(summary["correlation"][0][1] in shown and all(one["residuals"] in shown for one in summary["starts"]), "correlation and starts")
     captions = browser.ask("[...document.querySelectorAll('figcaption')].map(one => one.textContent)")
     check(any("540 measured numbers, dots" in text for text in captions) and any("a map" in text for text in captions), f"data and residuals: {captions}")
+    browser.open(folder / "comparison/report.html")
+    shown = browser.ask("[...document.querySelectorAll('td data')].map(one => Number(one.value))")
+    for row in json.loads((folder / "comparison/summary.json").read_text(encoding="utf-8"))["comparison"]:
+        fit = json.loads((folder / "comparison" / row["folder"] / "summary.json").read_text(encoding="utf-8"))
+        check({row["aic"], row["bic_less_least"], fit["variables"][P]["value"]} <= set(shown), f"{row} is shown")
+    check(browser.ask(BLANK) == 0 and not browser.complaints, f"bars of the criteria {browser.complaints}")
 
 
 def test_map_in_browser(browser, folder):

@@ -4,11 +4,14 @@ import os
 import pathlib
 import shlex
 import sys
+import time
 
+from .. import _compiled
 from ..measured.options import add_reading_options, reading_of
 from ..needs import Failed, InputError, Parser, Stopped
 from . import Interrupted, find, prepared
-from .folder import Folder
+from .comparison import Comparison
+from .folder import Folder, drawn
 from .result import value_in_words
 
 DESCRIPTION = """Finds numbers of a parameter file, with their uncertainty, from measured data (section Fit; doc/fit.md). With several
@@ -21,7 +24,8 @@ def command_line():
     parser.add_argument("files", metavar="FILE", nargs="+", help="parameter file with a section Fit")
     parser.add_argument("--data", metavar="FILE", help="what was measured (default: Fit/Data)")
     parser.add_argument("--set", action="append", default=[], metavar="ENTRY=VALUE", help="sets an entry (repeatable)")
-    parser.add_argument("--output", metavar="DIR", help="output folder (default: output-NAME for NAME.prm)")
+    parser.add_argument("--output", metavar="DIR", help="output folder (default: output-NAME for NAME.prm; of several "
+                        "files output-comparison, with a folder NAME for each)")
     parser.add_argument("--resume", action="store_true", help="goes on with a fit that was stopped or killed; begins it if there is nothing yet")
     parser.add_argument("--overwrite", action="store_true", help="replaces the results in the output folder")
     parser.add_argument("--workers", metavar="N", type=int, default=1, help="so many processes share the starts (Fit/Starts)")
@@ -33,9 +37,9 @@ def command_line():
 def path_of(name, options):
     """The output folder of a parameter file."""
     stem = pathlib.Path(name).stem
-    if options.output is None:
-        return pathlib.Path(f"output-{stem}")
-    return pathlib.Path(options.output) / stem if len(options.files) > 1 else pathlib.Path(options.output)
+    if len(options.files) > 1:
+        return pathlib.Path(options.output or "output-comparison") / stem
+    return pathlib.Path(options.output or f"output-{stem}")
 
 
 def lines_of(found):
@@ -55,26 +59,35 @@ def lines_of(found):
         yield f"{sentence[0].upper()}{sentence[1:]}."
 
 
+def origin_of(model, options, start):
+    """What every summary.json has: which data, how long it took since start (time.monotonic()) [s], versions, command."""
+    measured = options.data if options.data is not None else model.parameters["Fit/Data"]
+    return {"measured": {"file": os.path.abspath(measured), "reading": reading_of(options)}, "seconds": time.monotonic() - start,
+            "versions": _compiled().versions,
+            "command_line": shlex.join(["crawler", *(word for word in sys.argv[1:] if word not in ("--resume", "--overwrite", "--quiet"))])}
+
+
 def found_and_written(name, folder, model, options, say):
     """The Fit, whose files are in the folder then. Raises Stopped when it was interrupted; the files are there, too."""
+    start = time.monotonic()
+
     def write(found):
-        measured = options.data if options.data is not None else model.parameters["Fit/Data"]
-        found["measured"] = {"file": os.path.abspath(measured), "reading": reading_of(options)}
-        found["command_line"] = shlex.join(["crawler", *(word for word in sys.argv[1:] if word not in ("--resume", "--overwrite", "--quiet"))])
+        found.update(origin_of(model, options, start))
         folder.write(found, options.set, name)
 
     kept = folder.begin(name, model)
     try:
         found = find(model, say, kept, options.workers)
         write(found)
-        problem = folder.draw()
-        for line in [*lines_of(found), *filter(None, [problem]), f"Files in {folder.path}/"]:
+        for line in [*lines_of(found), *filter(None, [drawn(folder.path)]), f"Files in {folder.path}/"]:
             say(line)
         return found
-    except Interrupted as interrupted:
-        so_far = interrupted.so_far
+    except (Interrupted, Stopped) as stop:
+        so_far = getattr(stop, "so_far", None)
         if so_far is None:
-            raise Stopped("stopped by a signal before there were values; --resume goes on") from None
+            message = f"{str(stop) or 'stopped by a signal before there were values'}; --resume goes on"
+            folder.write_summary({"status": "stopped", "reason": "signal", "message": message, **origin_of(model, options, start)})
+            raise Stopped(message) from None
         write(so_far)
         for line in [*lines_of(so_far), f"Files in {folder.path}/"]:
             say(line)
@@ -84,21 +97,6 @@ def found_and_written(name, folder, model, options, say):
         raise
     finally:
         folder.leave()
-
-
-def compared(fits):
-    """Scenes in the order in which the data prefer them (Akaike): a list of dicts."""
-    best = {key: min(found.information[key] for found in fits.values()) for key in ("aic", "bic")}
-    return [{"scene": name, "variables": len(found.variables), "chi_square": found.goodness.chi_square,
-             **{key: found.information[key] - best[key] for key in best}} for name, found in sorted(fits.items(), key=lambda one: one[1].information.aic)]
-
-
-def table_of(rows):
-    """The same as lines."""
-    width = max(len(row["scene"]) for row in rows)
-    yield f"{'scene':{width}}  variables  chi-square  AIC - least  BIC - least"
-    for row in rows:
-        yield f"{row['scene']:{width}}  {row['variables']:9}  {row['chi_square']:10.5g}  {row['aic']:11.4g}  {row['bic']:11.4g}"
 
 
 def require_sense(options):
@@ -138,9 +136,11 @@ class Screen:
 
 def main():
     """Fits, writes and tells."""
+    start = time.monotonic()
     options = command_line().parse_args(sys.argv[2:])
     say = Screen(options.quiet)
     require_sense(options)
+    comparison = Comparison(path_of(options.files[0], options).parent, options) if len(options.files) > 1 else None
     folders = {name: Folder(path_of(name, options), options.resume, options.overwrite) for name in options.files}
     models = {name: prepared(name, options.set, options.data, **reading_of(options)) for name in folders}
     if len({int(model.data.is_there.sum()) for model, _ in models.values()}) > 1:
@@ -150,12 +150,8 @@ def main():
         model, notes = models[name]
         say("\n  ".join([f"{name}:", *notes]))
         fits[name] = found_and_written(name, folder, model, options, lambda text: say(f"  {text}"))
-    if len(fits) > 1:
-        rows = compared(fits)
-        for name, found in fits.items():
-            found["comparison"] = rows
-            folders[name].write_summary(found)
-        for line in table_of(rows):
+    if comparison:
+        for line in comparison.written(fits, origin_of(model, options, start)):
             say(line)
     for name, found in fits.items():
         if found.status != "finished":

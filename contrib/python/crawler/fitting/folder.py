@@ -73,7 +73,7 @@ class Folder:
                 (self.path / "starts").mkdir()
                 write_whole(self.path / "original.prm", pathlib.Path(name).read_bytes())
                 write_whole(self.path / "parameters.prm", model.effective.encode())
-                write_whole(self.path / INPUTS, _bytes(inputs))
+                write_whole(self.path / INPUTS, bytes_of(inputs))
             return Starts(self.path / "starts", len(model.names), len(model.data.places))
         except (OSError, InputError) as error:
             self.leave()
@@ -136,12 +136,13 @@ class Folder:
 
     def write_summary(self, found):
         """summary.json."""
-        write_whole(self.path / "summary.json", _bytes(found))
+        write_whole(self.path / "summary.json", bytes_of(found))
 
-    def draw(self):
-        """The picture; a sentence if there is none."""
-        drawn = subprocess.run([sys.executable, PICTURE, self.path], capture_output=True, text=True, check=False)
-        return "" if drawn.returncode == 0 else f"There is no picture: {drawn.stderr.strip()}. Draw it later with: crawler plot {self.path}"
+
+def drawn(path):
+    """Draws the picture of a folder; a sentence if there is none."""
+    ended = subprocess.run([sys.executable, PICTURE, path], capture_output=True, text=True, check=False)
+    return "" if ended.returncode == 0 else f"There is no picture: {ended.stderr.strip()}. Draw it later with: crawler plot {path}"
 
 
 class Starts(dict):
@@ -163,11 +164,12 @@ class Starts(dict):
                 super().__setitem__(one["start"], one)
 
     def __setitem__(self, number, one):
-        write_whole(self.folder / f"{number}.json", _bytes({**one, "squares": one["squares"] if math.isfinite(one["squares"]) else None}))
+        write_whole(self.folder / f"{number}.json", bytes_of({**one, "squares": one["squares"] if math.isfinite(one["squares"]) else None}))
         super().__setitem__(number, one)
 
 
-def _bytes(content):
+def bytes_of(content):
+    """Of a JSON file."""
     return (json.dumps(content, indent=2) + "\n").encode()
 
 

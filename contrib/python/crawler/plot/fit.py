@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Draws the output folder of crawler fit: the data and the run that fits best, the residuals, and the variables.
+"""Draws the output folder of crawler fit: the data and the run that fits best, the residuals, and the variables; of a comparison
+of scenes, which of them the data prefer, and how far each is from the data over time.
 
     contrib/python/crawler/plot/fit.py OUTPUT_FOLDER [--output PICTURE]
 
 Left dots are data and lines the run (of many places some); in the middle the residuals over place and time, or over time; right
-each variable in its range: its value, thick its interval of 68 %, thin that of 95 %. The picture is fit.png in the folder, unless
---output names another one. Needs numpy and matplotlib.
+each variable in its range: its value, thick its interval of 68 %, thin that of 95 %. The picture is fit.png (comparison.png) in the
+folder, unless --output names another one. Needs numpy and matplotlib.
 """
-from plotting import COLOURS, INK, NAMES, colour_limits, existing, need, number, parser, read_rows, read_summary, run_script, save
+from plotting import (COLOURS, INK, LINES, NAMES, InputError, colour_limits, existing, need, number, parser, read_rows, read_summary,
+                      run_script, save)
 
 need("numpy", "matplotlib")
 import matplotlib.pyplot as plt
@@ -75,13 +77,44 @@ def draw_variables(axes, variables):
     axes.axis("off")
 
 
+def columns_of(folder, *names):
+    """Columns of residuals.csv."""
+    rows = read_rows(existing(folder / "residuals.csv", "the output folder of crawler fit"))
+    return [np.array([number(row[name]) for row in rows]) for name in names]
+
+
+def comparison_of(folder, rows):
+    """Left bars of the criteria of Akaike and Bayes, less the least; right the residuals of each scene over time."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 2.6 + 0.5 * len(rows)), layout="constrained")
+    for k, key in enumerate(("aic", "bic")):
+        bars = left.barh(np.arange(len(rows)) + 0.36 * k - 0.18, [row[f"{key}_less_least"] for row in rows], 0.36, color=COLOURS[k], label=key.upper())
+        left.bar_label(bars, [f"{row[f'{key}_less_least']:.4g}" for row in rows], fontsize=8, padding=2)
+    left.axvline(10, color=INK, linewidth=0.8, linestyle=":")
+    left.set_xscale("symlog", linthresh=10)
+    left.set(xlim=(0, 5 * max(10, *(row[f"{key}_less_least"] for row in rows for key in ("aic", "bic")))), ylim=(len(rows) - 0.5, -0.5),
+             yticks=range(len(rows)), yticklabels=[row["scene"] for row in rows], xlabel="criterion less the least (dotted: 10, strong evidence)",
+             title="which scene the data prefer")
+    left.legend(frameon=False)
+    for k, row in enumerate(rows):
+        t, residuals = columns_of(folder / row["folder"], "t", "residual")
+        times, where = np.unique(t, return_inverse=True)
+        right.plot(times, np.sqrt(np.bincount(where, residuals ** 2) / np.bincount(where)), LINES[k % len(LINES)], color=COLOURS[k % len(COLOURS)], label=row["scene"])
+    right.set(xlabel=NAMES["t"], ylabel="residuals (root mean square)", title="how far each is from the data", ylim=(0, None))
+    right.legend(frameon=False)
+    return figure
+
+
 def main():
     """Command line."""
-    options = parser(__doc__, "fit.png").parse_args()
+    options = parser(__doc__, "fit.png (of a comparison comparison.png)").parse_args()
     summary = read_summary(options.folder, "the output folder of crawler fit")
-    rows = read_rows(existing(options.folder / "residuals.csv", "the output folder of crawler fit"))
-    t, place, data, model, residuals = (np.array([number(row[name]) for row in rows])
-                                        for name in ("t", "place", "data", "model", "residual"))
+    if "comparison" in summary:
+        figure = comparison_of(options.folder, summary["comparison"])
+        save(figure, options.output or options.folder / "comparison.png", dpi=110, few_colours=True)
+        return
+    if not summary.get("variables"):
+        raise InputError(f"{options.folder} has no values to draw: {summary.get('message')}")
+    t, place, data, model, residuals = columns_of(options.folder, "t", "place", "data", "model", "residual")
     place = np.nan_to_num(place)
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
     draw_data(left, t, place, data, model, summary["goodness"]["kind"])

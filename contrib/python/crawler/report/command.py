@@ -8,7 +8,7 @@ import sys
 
 from ..needs import InputError, Parser, write_whole
 from ..results import entries_of
-from .folder import data_of_fit, parameters_in, run_in, runs_within, summary_in, table_in, text_of, units_of
+from .folder import data_of_fit, fits_within, parameters_in, run_in, runs_within, summary_in, table_in, text_of, units_of
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCRIPTS = ("base.js", "plot.js", "body.js", "run.js", "explorer.js", "fit.js", "studies.js")
@@ -16,14 +16,14 @@ TIMES, FEWEST_TIMES = 640, 64  # of all kymographs of a page together, and of ea
 
 # What a folder may be: its kind, a file or folder that only it has, its table, and the group in it.
 KINDS = (("atlas", "atlas.h5", "atlas.h5", "atlas"), ("tradeoff", "tradeoff.h5", "tradeoff.h5", "tradeoff"),
-         ("fit", "inputs.json", "residuals.csv", None), ("optimisation", "starts", "results.h5", "optimize"),
+         ("comparison", "comparison.csv", "comparison.csv", None), ("fit", "inputs.json", "residuals.csv", None), ("optimisation", "starts", "results.h5", "optimize"),
          ("sweep", "results.h5", "results.h5", "results"), ("run", "summary.json", None, None),
          ("run", "statistics.csv", None, None))
 
 
 def kind_of(folder):
     """One of KINDS. Raises InputError if the folder is none of a command."""
-    expected = "the output folder of a run, sweep, atlas, tradeoff, optimisation or fit is expected"
+    expected = "the output folder of a run, sweep, atlas, tradeoff, optimisation, fit or comparison of fits is expected"
     if not os.path.isdir(folder):
         raise InputError(f'"{folder}" is {"a file" if os.path.exists(folder) else "not there"}, but {expected}')
     for kind in KINDS:
@@ -59,6 +59,8 @@ def data_of(folder, kind):
     data = {"kind": name, "folder": folder.resolve().name, "path": str(folder), "program": own["versions"],
             "summary": summary_in(folder), "parameters": parameters_in(folder, effective, entries),
             "entries": own["numbers"], "units": units_of(entries), "reasons": reasons(), "table": None, "more_runs": []}
+    if name == "comparison":
+        return {**data, "runs": [], "fits": fits_within(folder, data["summary"] or {})}
     if table and (folder / table).exists():
         data["table"] = table_in(folder / table, group) if group else data_of_fit(folder / table, data["summary"] or {})
     if name == "run":

@@ -70,9 +70,28 @@ function showFit() {
     new Explorer(section('Residuals', el('p', {class: 'soft'}, 'Data less run. Patches or stripes are what the scene does not describe; noise has none.')), page.table,
       {axes: ['t', 'place'], details, first: {x: ['place', 't'], y: page.table.columns.some(column => column.name === 'place') ? ['t'] : ['residual'], colour: ['residual']}});
   }
-  const starts = summary.starts ?? [], {comparison} = summary;
+  const starts = summary.starts ?? [];
   if (starts.length > 1) section('Starts', tableOf(['start', 'residuals (root mean square)', ...Object.keys(starts[0].values).map(shortName)],
     starts.map(one => [String(one.start + 1), one.reason || exactly(one.residuals), ...Object.values(one.values).map(value => exactly(value))])));
-  if (comparison) section('Which scene the data prefer', el('p', {class: 'soft'}, 'Information criteria of Akaike and Bayes, less the least one; a difference of 10 is strong evidence.'),
-    tableOf(['scene', 'variables', 'chi-square', 'AIC', 'BIC'], comparison.map(one => [one.scene, ...[one.variables, one.chi_square, one.aic, one.bic].map(value => exactly(value))])));
+}
+
+/** Which of several scenes the data prefer: the criteria, as bars too, and what each fit has found. */
+function showComparison() {
+  const rows = summary.comparison ?? [], criteria = [['aic', 'AIC'], ['bic', 'BIC']], far = Math.max(10, ...rows.flatMap(one => criteria.map(([key]) => one[`${key}_less_least`])));
+  const box = section('Which scene the data prefer', el('p', {class: 'soft'}, 'Information criteria of Akaike and Bayes, and by how much they are above the least one; a difference of 10 is strong evidence.'),
+    tableOf(['scene', 'variables', 'chi-square', 'degrees of freedom', 'AIC', 'BIC', 'AIC less least', 'BIC less least'], rows.map(one => [el('a', {href: `${one.folder}/`}, one.scene),
+      ...[one.variables, one.chi_square, one.degrees_of_freedom, one.aic, one.bic, one.aic_less_least, one.bic_less_least].map(value => exactly(value))]), [1, 3, 4, 5]));
+  const chart = figure('Criteria.', 'One more than the difference from the least; grey: a difference of 10.');
+  box.append(chart);
+  new Chart(chart, {height: 60 + 50 * rows.length, label: 'information criteria', axes: () => ({x: {low: 1, high: 1.3 * (1 + far), log: true, title: '1 + difference from the least'},
+    y: {low: rows.length - 0.5, high: -0.5, texts: rows.map(one => one.scene), title: ''}}),
+  paint: c => {
+    c.polyline([11, 11], [rows.length, -1], ink('grid'), {width: 2});
+    rows.forEach((one, row) => criteria.forEach(([key], i) => c.polyline([1, Math.max(1.02, 1 + one[`${key}_less_least`])], [row + 0.3 * i - 0.15, row + 0.3 * i - 0.15], series(i), {width: 10})));
+  }});
+  legend(chart, criteria.map(([, name], i) => [name, `var(--c${i + 1})`]));
+  const entries = [...new Set(rows.flatMap(one => Object.keys(page.fits[one.folder].variables ?? {})))];
+  const words = one => !one ? '–' : one.determined === false ? 'not told by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : ''];
+  section('Values', tableOf(['entry', ...rows.map(one => one.scene)], entries.map(entry => [[...brokenAtSlashes(entry)], ...rows.map(one => words(page.fits[one.folder].variables?.[entry]))])));
+  for (const {scene, folder} of rows) for (const text of page.fits[folder].notes ?? []) main.append(el('div', {class: 'notice unfinished', role: 'note'}, el('p', {}, el('b', {}, scene), ` ${sentence(text)}`)));
 }

@@ -90,6 +90,13 @@ def data_of_fit(path, summary):
             "columns": [Column(name, *meanings[name], column[rows], digits).json() for name, column in columns.items() if np.any(np.isfinite(column))]}
 
 
+def fits_within(folder, summary):
+    """What a comparison says of each fit: {its folder: status, variables and notes of its summary.json}; none where that is gone."""
+    folders = [row["folder"] for row in summary.get("comparison", [])]
+    return {name: {key: value for key, value in (summary_in(folder / name) or {}).items() if key in ("status", "variables", "notes")}
+            for name in folders}
+
+
 def runs_within(folder, inner):
     """The runs within a study, as "points/5" or "best-2": its optima, or in the folder @p inner the points whose fields
     were kept, by their numbers."""

@@ -252,5 +252,5 @@ function showOptimisation() {
 header();
 notices();
 if (page.kind === 'run') showRun(main, page.runs[0]);
-else ({sweep: showPoints, atlas: showPoints, tradeoff: showTradeoff, optimisation: showOptimisation, fit: showFit})[page.kind]();
+else ({sweep: showPoints, atlas: showPoints, tradeoff: showTradeoff, optimisation: showOptimisation, fit: showFit, comparison: showComparison})[page.kind]();
 parameters();

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Which of several scenes the data prefer: the folder of a comparison, in which each fit has a folder of its own."""
+import csv
+import io
+import pathlib
+
+from ..needs import InputError, write_whole
+from .folder import bytes_of, drawn
+
+TABLE, SUMMARY = "comparison.csv", "summary.json"
+
+
+class Comparison:
+    """The files of a comparison."""
+
+    def __init__(self, path, options):
+        """Writes nothing yet. Raises InputError if there is something that is not to be replaced."""
+        self.path = path
+        if (path / TABLE).exists() and not (options.resume or options.overwrite):
+            raise InputError(f'the output folder "{path}" is not empty; give another one with --output, or --overwrite to replace the results in it')
+        if (path / SUMMARY).exists() and not (path / TABLE).exists():
+            raise InputError(f'"{path}" has the results of something else; another folder is expected for --output')
+
+    def written(self, fits, origin):
+        """Lines for the screen; the files are there then. fits: {name of a parameter file: Fit}; origin: what summary.json has besides."""
+        rows = compared(fits)
+        open_ends = [row["scene"] for row in rows if fits[row["scene"]].status != "finished"]
+        summary = {"status": "failed" if open_ends else "finished", "reason": "no_convergence" if open_ends else "converged",
+                   "message": f"the search did not end for {', '.join(open_ends)}" if open_ends else "", "comparison": rows, **origin}
+        (self.path / "report.html").unlink(missing_ok=True)
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerows([rows[0], *(row.values() for row in rows)])
+        write_whole(self.path / TABLE, text.getvalue().encode())
+        write_whole(self.path / SUMMARY, bytes_of(summary))
+        return [*table_of(rows), *filter(None, [drawn(self.path)]), f"Files in {self.path}/"]
+
+
+def compared(fits):
+    """Scenes in the order in which the data prefer them (Akaike), a list of dicts: their folder, chi-square, the criteria of Akaike
+    and Bayes, and by how much these are above the least."""
+    best = {key: min(found.information[key] for found in fits.values()) for key in ("aic", "bic")}
+    return [{"scene": name, "folder": pathlib.Path(name).stem, "variables": len(found.variables), "chi_square": found.goodness.chi_square,
+             "degrees_of_freedom": found.goodness.degrees_of_freedom, **found.information,
+             **{f"{key}_less_least": found.information[key] - best[key] for key in best}}
+            for name, found in sorted(fits.items(), key=lambda one: one[1].information.aic)]
+
+
+def table_of(rows):
+    """The same as lines."""
+    width = max(len(row["scene"]) for row in rows)
+    yield f"{'scene':{width}}  variables  chi-square  AIC - least  BIC - least"
+    for row in rows:
+        yield f"{row['scene']:{width}}  {row['variables']:9}  {row['chi_square']:10.5g}  {row['aic_less_least']:11.4g}  {row['bic_less_least']:11.4g}"
