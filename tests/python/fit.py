@@ -78,6 +78,7 @@ class Values(unittest.TestCase):
         variables = {WAVE + "Frequency": (0.6, 3), AMPLITUDE: (0.02, 5)}
         few, many = (crawler.fit(STRESS, data, variables, standard_deviation=NOISE, starts=n) for n in (1, 5))
         self.assertGreater(max(one["residuals"] or 1 for one in many.starts), 2 * many.starts[0]["residuals"])
+        self.assertEqual(many, crawler.fit(STRESS, data, variables, standard_deviation=NOISE, starts=5, workers=2))
         for name in variables:
             self.assertLess(abs(few.variables[name]["value"] - many.variables[name]["value"]), 1e-2 * few.variables[name]["deviation"])
 
@@ -130,6 +131,18 @@ class Values(unittest.TestCase):
         found = crawler.fit(modes, tracks({**modes, "Active stress/Modes/Coefficients": "0, 0.2, 0.1, 0, 0.05"}, 1e-3), {name: (-0.1, 0.2)},
                             set={"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)}, standard_deviation=1e-3)
         self.assertLess(abs(found.variables[name]["value"] - 0.05), 4 * found.variables[name]["deviation"])
+
+    def test_stress_as_splines(self):
+        """An active stress of which nothing is known but that it is smooth in time; it starts at nothing."""
+        coefficients = 0.15 * np.random.default_rng(1).standard_normal(9)
+        splines = {**STRESS, "Active stress/Generator": "modes", "Active stress/Modes/In time": "splines", "Active stress/Modes/Harmonics": 1,
+                   "Active stress/Modes/Time cells": 1, "Active stress/Modes/Coefficients": ", ".join(map(repr, coefficients.tolist()))}
+        found = crawler.fit({**splines, "Active stress/Modes/Coefficients": ", ".join(["0"] * 9)}, tracks(splines),
+                            {"Active stress/Modes/Coefficients[1-9]": (-1, 1)}, standard_deviation=NOISE,
+                            set={"Fit/Markers at": ", ".join(f"{s:.17g}" for s in S)})
+        self.assertEqual((found.undetermined, len(found.variables)), ([], 9))
+        for one, truth in zip(found.variables.values(), coefficients):
+            self.assertLess(abs(one["value"] - truth), 4 * one["deviation"])
 
     def test_places_of_the_first_frame(self):
         """Also of a body that has strain in the first frame, where markers are not where they are at rest."""
