@@ -15,6 +15,7 @@ sys.path.insert(0, sys.argv.pop(1))
 import numpy as np  # noqa: E402
 
 import crawler  # noqa: E402
+from crawler.fitting.uncertainty import curvature_bias  # noqa: E402
 from crawler.measured import Samples  # noqa: E402
 
 BODY, WAVE = "Body/", "Active stress/Travelling wave/"
@@ -94,6 +95,12 @@ class Values(unittest.TestCase):
         for name in (P, K, AMPLITUDE):
             self.assertAlmostEqual(large.variables[name]["deviation"] / small.variables[name]["deviation"], 10, delta=0.05)
 
+    def test_bias_of_an_inverse(self):
+        """With n data y = c/k and noise sigma, the mean of the values of k is sigma^2 k^3/(n c^2) too large, to second order."""
+        n, c, k, sigma = 50, 3.0, 0.4, 0.2
+        bias = curvature_bias(lambda x: np.full(n, c / x[0] - c / k) / sigma, np.full((n, 1), -c / k ** 2 / sigma), 1, np.array([k]))
+        self.assertAlmostEqual(bias[0] / (sigma ** 2 * k ** 3 / (n * c ** 2)), 1, delta=1e-4)
+
     def test_noise_is_found(self):
         found = fit(STRESS, tracks(STRESS), P, K, AMPLITUDE)
         n = found.goodness.degrees_of_freedom
@@ -104,6 +111,7 @@ class Values(unittest.TestCase):
         """With the variable held at an end and the others free, chi-square is larger by 1, and by 1.96 squared."""
         data = tracks(STRESS, noise=0.03)
         found = fit(STRESS, data, P, K, AMPLITUDE, standard_deviation=0.03)
+        self.assertTrue(0 < found.variables[K]["bias"] < found.variables[K]["deviation"])  # the tracks tell 1/k
         for level, rise in (("interval_68", 1), ("interval_95", 3.8415)):
             for end in found.variables[P][level]:
                 held = fit({**STRESS, P: end}, data, K, AMPLITUDE, standard_deviation=0.03)

@@ -6,8 +6,9 @@ import math
 import numpy as np
 
 from ..results import Numbers
-from .uncertainty import LEVELS, Profile, correlation_in_time, covariance, in_words, probability
+from .uncertainty import LEVELS, Profile, correlation_in_time, covariance, curvature_bias, in_words, probability
 
+BIASED = 0.2          # bias, of the deviation, that is said
 SHARE = 0.1           # largest numerical error, of the statistical one
 MOST_STEPS = 60       # of a search
 NEAR = 1e-3           # to a limit, in ranges
@@ -73,8 +74,9 @@ def unfinished(problem, starts):
     squares, z, _ = problem.least
     values, grid = problem.real(z), np.full(data.values.shape, np.nan)
     grid[data.is_there] = problem.residuals(z)[:data.is_there.sum()]
-    variables = {name: {"value": float(value), "used": float(value), "deviation": None, "numerical_error": None, **{level: None for level in LEVELS}, "profile": [],
-                        "from": float(low), "to": float(high), "determined": None, "at_limit": ""}
+    variables = {name: {"value": float(value), "used": float(value), "deviation": None, "numerical_error": None, "bias": None,
+                        **{level: None for level in LEVELS}, "profile": [], "from": float(low), "to": float(high), "determined": None,
+                        "at_limit": ""}
                  for name, value, low, high in zip(model.names, values, model.low, model.high)}
     goodness = {"kind": data.kind, "n_data": int(data.is_there.sum()), "n_variables": len(z), "n_constants": data.n_constants}
     found = {"status": "stopped", "reason": "signal", "message": f"stopped by a signal after {len(starts)} of "
@@ -110,9 +112,11 @@ def _variables(problem, best, values):
     model, spread, width, variables = problem.model, best.spread, problem.width, {}
     profile = Profile(lambda z: problem.residuals(z) / best.deviation, lambda z: problem.jacobian(z) / best.deviation, best.z,
                       best.jacobian / best.deviation)
+    at_best, basis = problem.run(best.z)
+    bias = curvature_bias(lambda z: problem.scaled(model(problem.real(z))[0] - at_best, basis), best.jacobian, best.deviation, best.z)
     for j, name in enumerate(model.names):
         at, is_told = best.z[j], not best.involved[j]
-        one = {"value": float(values[j]) if is_told else None, "used": float(values[j]), "deviation": None, "numerical_error": None,
+        one = {"value": float(values[j]) if is_told else None, "used": float(values[j]), "deviation": None, "numerical_error": None, "bias": None,
                **{level: None for level in LEVELS}, "profile": [], "from": float(model.low[j]), "to": float(model.high[j]), "determined": is_told,
                "at_limit": "from" if at < NEAR else "to" if at > 1 - NEAR else ""}
         variables[name] = one
@@ -120,6 +124,7 @@ def _variables(problem, best, values):
             ends, curve = profile.interval(j, spread[j])
             one["deviation"] = float(spread[j] * width[j])
             one["numerical_error"] = float(best.numerical[j] * width[j]) if math.isfinite(best.numerical[j]) else None
+            one["bias"] = float(bias[j] * width[j]) if math.isfinite(bias[j]) else None
             one.update({level: [None if end is None else float(model.low[j] + end * width[j]) for end in ends[level]] for level in LEVELS})
             one["profile"] = [[float(model.low[j] + x * width[j]), float(rise)] for x, rise in curve]
     return variables
@@ -140,6 +145,9 @@ def _notes(best, variables, goodness):
     for name, one in variables.items():
         if one["at_limit"] and one["determined"]:
             yield f"{name} is at its limit, {one['value']:.6g}: the best value may lie beyond it"
+        if abs(one["bias"] or 0) > BIASED * (one["deviation"] or math.inf):
+            yield (f"of many such data the mean of {name} would be about {abs(one['bias']):.2g} too {'large' if one['bias'] > 0 else 'small'}, as the run "
+                   "is not linear in it; the interval allows for that")
     chi_square, freedom, p_value = (goodness[key] for key in ("chi_square", "degrees_of_freedom", "probability"))
     if p_value is not None and p_value < UNLIKELY:
         units = ' (units? see "--unit-of-s" and "--unit-of-t")' if chi_square > MUCH * freedom else ""

@@ -13,6 +13,7 @@ from scipy.optimize import least_squares
 WIDE = 0.5          # a standard deviation in ranges beyond which the data do not tell a value
 PART = 0.01         # of a direction, from which on a variable may belong to it
 LEVELS = {"interval_68": 1.0, "interval_95": 1.959963984540054}  # standard deviations of a normal distribution
+STEP = 0.5          # standard deviations, of second differences
 FAR = 2.0           # standard deviations at which the profile is looked at
 ROUGH = 0.25        # relative difference of a profile from a parabola beyond which it is followed further
 CURVE = 11          # points at one side of a profile that is nearly a parabola
@@ -35,6 +36,23 @@ def covariance(jacobian):
     """Of the variables, by Gauss and Newton; directions that the data do not tell are wide, but finite."""
     _, sizes, directions = np.linalg.svd(jacobian, full_matrices=False)
     return (directions.T / np.maximum(sizes, 1e-9 * sizes.max(initial=1.0)) ** 2) @ directions
+
+
+def curvature_bias(change, jacobian, deviation, z):
+    """By how much the mean of the best values is beside the truth, to second order [variable] (Box, J. R. Stat. Soc. B 33, 171,
+    1971): -(J'J)^-1 J'c/2, where c has the second differences of the model along the axes of the covariance. NaN if there is no run,
+    a value is at its limit, or something is not told.
+
+    change(x): of the model from z to x, as scaled residuals; jacobian: there; deviation: of a residual.
+    """
+    inverse, curvature = covariance(jacobian), np.zeros(len(jacobian))
+    sizes, axes = np.linalg.eigh(inverse)
+    for step in (axes * np.sqrt(np.maximum(sizes, 0)) * deviation).T:
+        part = min(STEP, *(0.9 * np.minimum(z, 1 - z) / np.maximum(np.abs(step), 1e-300)))  # within the ranges
+        if part < 0.1 * STEP:
+            return np.full(len(z), math.nan)
+        curvature += (change(z + part * step) + change(z - part * step)) / part ** 2
+    return -0.5 * inverse @ (jacobian.T @ curvature)
 
 
 def in_words(direction, members, names, values, widths):

@@ -12,8 +12,8 @@ function showValues() {
     : [0, 1].flatMap(i => [i ? ' to ' : '', ends[i] === null ? 'the limit' : exactly(ends[i], showWith(ends[i], one.deviation))]);
   const box = section('Values'), rows = Object.entries(summary.variables ?? {}).map(([entry, one]) => [[...brokenAtSlashes(entry)],
     one.determined === false ? 'not told by the data' : [exactly(one.value, showWith(one.value, one.deviation)), known(one.deviation) ? ` ± ${show(one.deviation, 2)}` : '', el('span', {class: 'unit'}, ' ' + unit(entry))],
-    show(one.numerical_error, 2), between(one.interval_68, one), between(one.interval_95, one), `${show(one.from)} to ${show(one.to)}`]);
-  box.append(tableOf(['entry', 'value ± deviation', 'numerical error', '68 %', '95 %', 'range'], rows, [2, 3, 5]));
+    show(one.numerical_error, 2), show(one.bias, 2), between(one.interval_68, one), between(one.interval_95, one), `${show(one.from)} to ${show(one.to)}`]);
+  box.append(tableOf(['entry', 'value ± deviation', 'numerical error', 'bias', '68 %', '95 %', 'range'], rows, [2, 3, 4, 6]));
   const {goodness: fit = {}} = summary;
   if (known(fit.chi_square)) box.append(el('p', {}, `${plural(fit.n_data, 'measured number')}, ${plural(fit.degrees_of_freedom, 'degree')} of freedom. `, fit.deviation_is_given
     ? `Chi-square is ${show(fit.chi_square, 5)}; noise alone gives as much or more with the probability ${show(fit.probability, 2)}.`
