@@ -5,6 +5,8 @@
 #include <crawler/base/communication.h>
 #include <crawler/run/accuracy_rule.h>
 #include <crawler/run/batch.h>
+#include <crawler/run/gait_efficiency.h>
+#include <crawler/run/result_table.h>
 #include <crawler/run/self_check.h>
 #include <crawler/time/failure.h>
 
@@ -13,6 +15,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace crawler
 {
@@ -82,6 +85,20 @@ namespace crawler
 
     /// The run with more cells and its own steps: where nothing is promised it tells both parts of the error apart,
     /// since their sum may be small by chance.
+    /// Efficiencies are relative to what the extreme stretches allow.
+    void
+    set_errors_of_efficiencies(const Scene &scene, SimulationResult &result)
+    {
+      if (!result.gait_efficiency)
+        return;
+      const double part = error_of_efficiencies(scene, result);
+      const auto stride = result.gait ? result.gait->efficiency : std::nullopt;
+      for (const auto &[key, value] :
+           {std::pair("gait.efficiency", result.gait_efficiency), {"gait.stride_efficiency", stride}})
+        if (const auto known = error_bound(result, key); known && value)
+          set_error_bound(result, key, std::max(*known, part * *value));
+    }
+
     SimulationResult
     run_on_finer_mesh(MPI_Comm communicator,
                       const RunParameters &parameters,
@@ -238,6 +255,7 @@ namespace crawler
       }
     }
     if (!std::isfinite(total))
+      set_errors_of_efficiencies(scene, result);
       return;
     const double cycles = result.cycles ? result.cycles->bound : 0.;
     const double rest   = std::max(total, round_off * scene.body.length);

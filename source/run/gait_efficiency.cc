@@ -2,6 +2,7 @@
 #include <crawler/run/gait_efficiency.h>
 
 #include <cmath>
+#include <limits>
 
 namespace crawler
 {
@@ -51,6 +52,16 @@ namespace crawler
       return std::nullopt;
     const Gait &gait = *result.gait;
     return part_of_bound(scene, result, gait.displacement, gait.energy_balance->dissipation, gait.period);
+  }
+
+  double
+  error_of_efficiencies(const Scene &scene, const SimulationResult &result)
+  {
+    const Extreme &low = result.min_stretch, &high = result.max_stretch;
+    const double from = low.value + low.jump, to = high.value - high.jump;
+    return from < to
+             ? largest_merit(*scene.friction, low.value, high.value) / largest_merit(*scene.friction, from, to) - 1.
+             : std::numeric_limits<double>::infinity();
   }
 
   void

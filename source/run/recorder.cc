@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace crawler
@@ -14,6 +15,8 @@ namespace crawler
   {
     /// Times that differ by less are one, in units of the duration.
     constexpr double same_time = 1e-12;
+    /// Extremes that are beaten by less than this part may be beaten between times.
+    constexpr double near = 0.2;
   } // namespace
 
   Recorder::Recorder(
@@ -58,18 +61,31 @@ namespace crawler
                     cycle_stop_ ? cycle_stop_->next_time() : HUGE_VAL);
   }
 
+  /// At an end of the body the stretch is known: beyond it, as it were, are the cells of the body mirrored, whose error
+  /// is the opposite.
   void
-  Recorder::see_stretch(const Extreme &smallest, const Extreme &largest)
+  Recorder::compare_with_end(Extreme &now, const ExtremeHistory &history)
+  {
+    if (!sudden_changes_ || !history.is_beyond(now.value, 1. + (1. - near) * (history.extreme().value - 1.)))
+      return;
+    if (const auto known = sudden_changes_->stretch_at_end(now.s, now.t))
+      now.jump = std::max(now.jump, 2. * std::abs(now.value - *known));
+  }
+
+  void
+  Recorder::see_stretch(Extreme smallest, Extreme largest)
   {
     if (started_)
     {
       const auto known = sudden_changes_ ? sudden_changes_->extremes_if_thin(smallest.t) : std::nullopt;
       if (known)
+        std::tie(smallest, largest) = *known;
+      else
       {
-        smallest_.add_alone(known->first);
-        largest_.add_alone(known->second);
+        compare_with_end(smallest, smallest_);
+        compare_with_end(largest, largest_);
       }
-      else if (were_known_)
+      if (known || were_known_)
       {
         smallest_.add_alone(smallest);
         largest_.add_alone(largest);

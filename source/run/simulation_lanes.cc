@@ -41,18 +41,32 @@ namespace crawler
             {end.max_stretch, lanes.tables().place_of_sample(end.max_sample)}};
   }
 
+  /// Of stage @p i of an accepted step. Where others look, too, they have seen its end.
+  void
+  Simulation::see_stretch_of_lanes(const unsigned int i)
+  {
+    const LaneStepper &lanes       = *integrators_.lanes;
+    const SimulationResult &record = result();
+    auto [smallest, largest] =
+      LaneExtremes(lanes.tables())
+        .look(lanes.step(), i, record.min_stretch.value, record.max_stretch.value, run_->breaks);
+    if (run_->has_observers && i + 1 == lanes.tables().setup.n_stages)
+    {
+      const auto &[min, max] = run_->stretch;
+      smallest               = {min.value, min.s, smallest.t, smallest.jump};
+      largest                = {max.value, max.s, largest.t, largest.jump};
+    }
+    run_->recorder.see_stretch(smallest, largest);
+  }
+
   /// Stretch and rates of stage @p i of an accepted step.
   void
   Simulation::take_stage_of_lanes(const Step &step, const unsigned int i)
   {
-    const LaneStepper &lanes       = *integrators_.lanes;
-    const LaneStage &stage         = lanes.step().stages[i];
-    const double place             = lanes.tables().setup.c[i];
-    const SimulationResult &record = result();
-    const auto [smallest, largest] =
-      LaneExtremes(lanes.tables())
-        .look(lanes.step(), i, record.min_stretch.value, record.max_stretch.value, run_->breaks);
-    run_->recorder.see_stretch(smallest, largest);
+    const LaneStepper &lanes = *integrators_.lanes;
+    const LaneStage &stage   = lanes.step().stages[i];
+    const double place       = lanes.tables().setup.c[i];
+    see_stretch_of_lanes(i);
     if (!mesh_.end_power)
       mesh_.end_power = std::make_unique<EndPower>(*mesh_.assembler);
     const double end_power = mesh_.end_power->of_ends({step.time - (1. - place) * step.size,

@@ -62,7 +62,10 @@ namespace crawler
     {
       if (!compute_integrals(step, y))
         return false;
-      look_at_extremes(step.time, stretch);
+      if (takes_looks_of_lanes(step))
+        see_stretch_of_lanes(integrators_.lanes->tables().setup.n_stages - 1);
+      else
+        look_at_extremes(step.time, stretch);
     }
     if (run_->options.resolution != ResolutionWish::none)
       look_at_resolution(step, y);

@@ -91,4 +91,14 @@ namespace crawler
     const Extreme at_left{left, 0., t}, at_right{right, 1., t};
     return left < right ? std::pair(at_left, at_right) : std::pair(at_right, at_left);
   }
+
+  std::optional<double>
+  SuddenChanges::stretch_at_end(const double s, const double t)
+  {
+    const bool is_left = s <= beside;
+    if (!stress_ || (!is_left && s < 1. - beside))
+      return std::nullopt;
+    const auto [left, right] = at(std::max(t - beside, 0.)).end_stretch; // before the stress jumps
+    return is_left ? left : right;
+  }
 } // namespace crawler

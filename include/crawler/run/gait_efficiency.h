@@ -23,6 +23,10 @@ namespace crawler
   std::optional<double>
   stride_efficiency(const Scene &scene, const SimulationResult &result);
 
+  /// The error of both, relative, that the jumps of the extreme stretches make (Extreme::jump).
+  double
+  error_of_efficiencies(const Scene &scene, const SimulationResult &result);
+
   /// Sets both in the result of a run that finished.
   void
   set_efficiencies(const Scene &scene, SimulationResult &result);

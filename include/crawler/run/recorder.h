@@ -87,7 +87,7 @@ namespace crawler
 
     /// The extreme stretches of a state within or at the end of the step; the first call starts the run.
     void
-    see_stretch(const Extreme &smallest, const Extreme &largest);
+    see_stretch(Extreme smallest, Extreme largest);
     /// int |g v| ds, and |int g v ds| where the velocity balances all forces.
     void
     see_friction(double sum_of_sizes, double size_of_sum);
@@ -124,6 +124,8 @@ namespace crawler
     SimulationResult result; ///< whoever runs adds what only it knows
 
   private:
+    void
+    compare_with_end(Extreme &now, const ExtremeHistory &history);
     bool
     see_cycles(double time, bool is_step_end, const Sampler &sample);
     const EnergyBalance *

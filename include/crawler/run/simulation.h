@@ -209,6 +209,8 @@ namespace crawler
     StretchRange
     stretch_of_lanes() const;
     void
+    see_stretch_of_lanes(unsigned int i);
+    void
     take_stage_of_lanes(const Step &step, unsigned int i);
     void
     take_looks_of_lanes(const Step &step);

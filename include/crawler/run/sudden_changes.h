@@ -29,6 +29,10 @@ namespace crawler
     std::optional<std::pair<Extreme, Extreme>>
     extremes_if_thin(double t);
 
+    /// What the conditions at an end of the body make of the stretch there, if @p s is one; nothing with feedback.
+    std::optional<double>
+    stretch_at_end(double s, double t);
+
   private:
     struct Stresses
     {
