@@ -47,6 +47,8 @@ namespace crawler
     {
       Numerics n          = choice.numerics;
       const bool promised = is_promised(choice, scene);
+      // Where the friction switches its direction kinks move through cells and steps: errors fall by low powers.
+      const bool much_finer = !promised || scene.ground.direction.ratio != 1.;
       if (n.mesh.tolerance > 0.)
       {
         n.mesh.tolerance *= finer_mesh_tolerance;
@@ -58,13 +60,13 @@ namespace crawler
         n.parts *= 2; // one family of meshes
       else
       {
-        const double factor = !promised         ? more_cells_without_promise
+        const double factor = much_finer        ? more_cells_without_promise
                               : choice.is_rough ? more_cells_if_rough
                                                 : more_cells;
         n.n_cells           = finer_n_cells(factor, n.n_cells, scene.breaks_in_space().size(), n.grading);
       }
       change_steps(n,
-                   !promised                       ? finer_tolerance_without_promise
+                   much_finer                      ? finer_tolerance_without_promise
                    : integrator == best_integrator ? finer_tolerance
                                                    : finer_tolerance_than_others);
       n.integrator = best_integrator;
@@ -83,8 +85,6 @@ namespace crawler
       return n;
     }
 
-    /// The run with more cells and its own steps: where nothing is promised it tells both parts of the error apart,
-    /// since their sum may be small by chance.
     /// Efficiencies are relative to what the extreme stretches allow.
     void
     set_errors_of_efficiencies(const Scene &scene, SimulationResult &result)
@@ -99,6 +99,8 @@ namespace crawler
           set_error_bound(result, key, std::max(*known, part * *value));
     }
 
+    /// The run with more cells and its own steps: where nothing is promised it tells both parts of the error apart,
+    /// since their sum may be small by chance.
     SimulationResult
     run_on_finer_mesh(MPI_Comm communicator,
                       const RunParameters &parameters,
@@ -253,9 +255,9 @@ namespace crawler
         for (std::size_t i = 0; i < NumberErrors::n; ++i)
           result.errors->values[i] += in_time.values[i];
       }
+      set_errors_of_efficiencies(scene, result);
     }
     if (!std::isfinite(total))
-      set_errors_of_efficiencies(scene, result);
       return;
     const double cycles = result.cycles ? result.cycles->bound : 0.;
     const double rest   = std::max(total, round_off * scene.body.length);

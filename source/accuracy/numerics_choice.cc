@@ -624,7 +624,8 @@ namespace crawler
       {
         const std::string &own  = parameters_.time.integrator;
         const std::string &name = own == "automatic" ? choice_.numerics.integrator : own;
-        if (choice_.numerics.mesh.tolerance > 0. || pilot_.min_stretch.value < emptied)
+        if (choice_.numerics.mesh.tolerance > 0. || pilot_.min_stretch.value < emptied ||
+            scene_.ground.direction.ratio != 1.) // whose kinks pass through the steps
           return 1.;
         return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
       }

@@ -251,6 +251,47 @@ TEST(HardAnswers, ExtremesOfSteepFriction)
   }
 }
 
+/// Kinks that move through cells and steps, where the velocity changes its sign, have errors that two runs may share.
+TEST(HardAnswers, FrictionThatSwitchesItsDirection)
+{
+  struct
+  {
+    const char *p, *k, *chi, *c, *end_time, *ratio, *speed, *accuracy;
+    double exact;
+  } const scenes[] = {{"2.415091944989272",
+                       "7.178644708013535",
+                       "0.27075758664442684",
+                       "-0.7330326605464842",
+                       "2.671621976749931",
+                       "2.3431502664302823",
+                       "0.003715704143340024",
+                       "1e-3",
+                       -0.0341699916},
+                      {"2.4101482147847175",
+                       "5.004464838563605",
+                       "0.2634700921241963",
+                       "-0.835259758152571",
+                       "3.083289411874688",
+                       "5.1386627396813065",
+                       "0.01845967356880094",
+                       "1e-4",
+                       0.1963942115}};
+  for (const auto &scene : scenes)
+    expect_within(answer_to({{"Model", "nonlinear"},
+                             {"Body/Anchoring exponent", scene.p},
+                             {"Body/Elastic modulus", scene.k},
+                             {"Active stress/Optimal wave/Perturbation parameter", scene.chi},
+                             {"Active stress/Optimal wave/Choose wave by", "wave speed"},
+                             {"Active stress/Optimal wave/Wave speed", scene.c},
+                             {"Time/End time", scene.end_time},
+                             {"Ground/Backward ratio", scene.ratio},
+                             {"Ground/Switching velocity", scene.speed},
+                             {"Accuracy", scene.accuracy}}),
+                  scene.exact,
+                  std::stod(scene.accuracy),
+                  scene.p);
+}
+
 /// Errors in space and time may cancel in two runs, but not in three.
 TEST(HardAnswers, NumericsOfTheUser)
 {
