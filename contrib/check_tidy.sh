@@ -30,7 +30,7 @@ fi
 # The compile commands without the options of g++ that clang does not know. headers.cc, and sources that are compiled
 # together with others of their room, take that of main.cc.
 python3 - "$build/compile_commands.json" "$work" "${files[@]}" <<'END'
-import json, os, sys
+import json, os, re, sys
 commands = json.load(open(sys.argv[1]))
 main = next(c for c in commands if c["file"].endswith("source/main.cc"))
 known = {c["file"] for c in commands}
@@ -40,7 +40,9 @@ for file in map(os.path.abspath, sys.argv[3:]):
 lanes = [c for c in commands if c["file"].endswith("/lanes.cc")]
 commands = [c for c in commands if c not in lanes[1:]]  # of one instruction set
 for c in commands:
-    c["command"] = " ".join(w for w in c["command"].split() if w not in ("-fcx-limited-range", "-funroll-all-loops"))
+    words = re.sub(r"-include \S+/cmake_pch.hxx", "", c["command"]).split()  # headers that g++ has compiled
+    only_gcc = "-fcx-limited-range", "-funroll-all-loops", "-fno-unroll-all-loops", "-fno-ipa-cp-clone", "-fpch-preprocess"
+    c["command"] = " ".join(w for w in words if w not in only_gcc)
 json.dump(commands, open(sys.argv[2] + "/compile_commands.json", "w"))
 END
 echo "clang-tidy: ${#files[@]} sources"
