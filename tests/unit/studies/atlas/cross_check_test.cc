@@ -20,7 +20,7 @@ namespace
   }
 
   const Claim failed{.run = "failed one", .status = "failed"}, not_run{.run = "nobody", .status = ""};
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double no_number = std::numeric_limits<double>::quiet_NaN();
 
   Verdict::Kind
   kind(const std::vector<Claim> &runs, const Claim &refined, const InversionFacts &facts = {})
@@ -36,13 +36,14 @@ TEST(CrossCheck, DisplacementsMayDifferByTheSumOfThePromises)
   EXPECT_EQ(kind({finished(1.)}, finished(1.000105, 1e-5)), Verdict::agree);
   EXPECT_EQ(kind({finished(1.)}, finished(1.000115, 1e-5)), Verdict::silent_wrong_answer);
   EXPECT_EQ(kind({finished(1.), finished(2.)}, finished(1.)), Verdict::silent_wrong_answer);
-  EXPECT_EQ(kind({finished(nan)}, finished(1.)), Verdict::silent_wrong_answer); // a finished run has a displacement
+  EXPECT_EQ(kind({finished(no_number)}, finished(1.)),
+            Verdict::silent_wrong_answer); // a finished run has a displacement
 }
 
 TEST(CrossCheck, WithoutAPromiseThereIsNothingToCheck)
 {
-  EXPECT_EQ(kind({finished(1., nan)}, finished(2.)), Verdict::unchecked);
-  EXPECT_EQ(kind({finished(1., nan), finished(2.)}, finished(2.)), Verdict::agree);
+  EXPECT_EQ(kind({finished(1., no_number)}, finished(2.)), Verdict::unchecked);
+  EXPECT_EQ(kind({finished(1., no_number), finished(2.)}, finished(2.)), Verdict::agree);
 }
 
 TEST(CrossCheck, FinishedAndInvertedContradictEachOther)
