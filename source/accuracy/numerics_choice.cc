@@ -618,14 +618,20 @@ namespace crawler
         return least_error * L_ / accuracy_;
       }
 
+      /// Where the friction switches its direction kinks pass through the steps.
+      bool
+      kinks_move() const
+      {
+        return scene_.ground.direction.ratio != 1.;
+      }
+
       /// How much larger than by the rule the tolerance may be.
       double
       superconvergence() const
       {
         const std::string &own  = parameters_.time.integrator;
         const std::string &name = own == "automatic" ? choice_.numerics.integrator : own;
-        if (choice_.numerics.mesh.tolerance > 0. || pilot_.min_stretch.value < emptied ||
-            scene_.ground.direction.ratio != 1.) // whose kinks pass through the steps
+        if (choice_.numerics.mesh.tolerance > 0. || pilot_.min_stretch.value < emptied || kinks_move())
           return 1.;
         return name == "radau 9" ? radau_9_superconvergence : name == "radau 5" ? radau_5_superconvergence : 1.;
       }
@@ -650,11 +656,12 @@ namespace crawler
           n.initial_step = std::min(n.initial_step, first_step_on_graded_mesh(scene_, n));
         // The number of steps goes up as tolerance^(-1/(order+1)); error = time_factor * steps * tolerance = accuracy *
         // size.
-        const double r       = 1. / (1. + estimated_order());
-        const double wanted  = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
-        const double by_rule = std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
-                                        std::max(1e-15 * scale_, smallest()));
-        n.tolerance          = user_tolerance_.value_or(jumps_move_ ? tolerance_ : is_graded ? n.tolerance : by_rule);
+        const double r      = 1. / (1. + estimated_order());
+        const double wanted = accuracy_ * size_ / (time_factor * steps_to_the_end() * std::pow(tolerance_, r));
+        const double by_rule =
+          std::max(superconvergence() * std::min(std::pow(wanted, 1. / (1. - r)), tolerance_),
+                   std::max((kinks_move() ? least_tolerance_if_kinks : least_tolerance) * scale_, smallest()));
+        n.tolerance = user_tolerance_.value_or(jumps_move_ ? tolerance_ : is_graded ? n.tolerance : by_rule);
         if (predicts && !jumps_move_ && !user_cells_ && !user_tolerance_ && !fixed &&
             !parameters_.discretization.mesh_tolerance)
         {

@@ -34,7 +34,9 @@ namespace crawler
         return;
       const double value = run.displacement + swept->time + swept->space;
       const double bound = std::max(swept->bound_of_corrected(), finer_run::round_off * scene.body.length);
-      error.total        = std::max(error.total, std::abs(result.displacement - value));
+      const double found = std::abs(result.displacement - value);
+      if (bound < found) // else it may be the sweep's own error
+        error.total = std::max(error.total, found);
       if (bound < error.total)
         result.corrected = {value, bound};
       const double all = swept->time_sum + swept->space_sum;

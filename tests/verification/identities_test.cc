@@ -80,7 +80,7 @@ TEST(Identities, LedgerOfStiffBodies)
         const auto &result  = test::run_with(settings).result;
         const std::string what =
           fmt::format("k = {:g}, a = {:g}, {}", k, a, more.empty() ? "automatic" : more.front().first);
-        ASSERT_EQ(result.time.status, Status::finished) << what;
+        ASSERT_EQ(result.time.status, Status::finished) << what << ": " << result.time.message;
         EXPECT_LT(result.energy_balance->residual(), 1e-7) << what;
         EXPECT_LT(result.net_friction, 1e-7) << what;
       }

@@ -46,6 +46,8 @@ namespace crawler::accuracy_rule
     /// The steps of radau 5 and 9 on uniform meshes in the position form end much more accurately than their tolerance
     /// says: the tolerance is so many times the one of that rule.
     inline constexpr double radau_5_superconvergence = 50., radau_9_superconvergence = 2000.;
+    /// The least tolerance relative to the motion; below the second, kinks in the friction of stiff bodies stop a run.
+    inline constexpr double least_tolerance = 1e-15, least_tolerance_if_kinks = 1e-10;
     /// On uniform meshes runs for a smaller Accuracy than this are by radau 9, others by radau 5.
     inline constexpr double radau_9_accuracy = 1.1e-4;
     /// The same on graded meshes, where starts take many steps that are short for any method.
