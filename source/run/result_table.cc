@@ -107,7 +107,9 @@ namespace crawler
         number("ledger_residual",
                one,
                "what the energy balance lacks, relative to the exchanged work",
-               CRAWLER_PART(energy_balance, part.residual())),
+               [](const Result &r) -> ResultValue {
+                 return known(r.energy_balance ? r.energy_balance->residual() : r.residual_of_unknown_works);
+               }),
         number("paper_energy",
                energy,
                "energy of the paper",

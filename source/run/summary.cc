@@ -172,6 +172,9 @@ namespace crawler
         result.energy_balance->residual(),
         std::isfinite(result.net_friction) ? fmt::format("{:.2e} (relative)", result.net_friction) : "unknown"));
     }
+    if (result.residual_of_unknown_works)
+      lines.push_back(fmt::format("  works             unknown: the energy balance lacks {:.2g} of the exchanged work",
+                                  *result.residual_of_unknown_works));
     lines.push_back(
       fmt::format("  stretch           {:.4g} (s = {:.4g}, t = {:.4g}) to {:.4g} (s = {:.4g}, t = {:.4g})",
                   result.min_stretch.value,

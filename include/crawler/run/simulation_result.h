@@ -77,6 +77,8 @@ namespace crawler
     double unresolved = 0.; ///< Resolution: largest highest_mode over largest strain, if looked at
     double strain     = 0.; ///< largest int (w - 1)^2 ds over time, if the resolution is looked at [length]
     std::optional<EnergyBalance> energy_balance;
+    /// The residual of an energy balance that is not kept, since works that do not balance are not known [1].
+    std::optional<double> residual_of_unknown_works;
     bool jumps_move     = false; ///< the energy balance's integrals in time are not those of a smooth active stress
     double net_friction = 0.;    ///< largest |int g v ds| over largest int |g v| ds, both over time [1]
 
