@@ -143,7 +143,7 @@ def test_content(program):
           "entries that differ from their defaults")
     for name, file, columns in (("sweep", "results.csv", (P, CHI, "displacement", "errors.stress_power", "status", "reason")),
                                 ("atlas", "atlas.csv", (CHI, P, "outcome", "run displacement")),
-                                ("tradeoff", "tradeoff.csv", ("error", "seconds", "pareto")),
+                                ("tradeoff", "tradeoff.csv", ("error", "seconds", "entries")),
                                 ("optimisation", "results.csv", ("evaluation", "objective", "violation")),
                                 ("fit", "residuals.csv", ("t", "place", "data", "model", "residual"))):
         rows = rows_of(folder / name / file)
