@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace crawler
 {
@@ -102,44 +103,40 @@ namespace crawler
       return "";
     }
 
+    /// Each setting with each value.
+    std::vector<TradeoffSetting>
+    combined(const std::vector<TradeoffSetting> &settings, const std::string &column, const Texts &values)
+    {
+      std::vector<TradeoffSetting> list;
+      for (const TradeoffSetting &setting : settings)
+        for (const std::string &value : values)
+        {
+          list.push_back(setting);
+          list.back().values[column] = value;
+        }
+      return list;
+    }
+
     /// A level without a mesh: one setting, or several of different Accuracy.
-    void
-    add_reduced(std::vector<TradeoffSetting> &list, Parameters parameters, const Texts &tolerances, const Scene &scene)
+    std::vector<TradeoffSetting>
+    reduced(const Parameters &parameters, const Texts &tolerances, const Scene &scene)
     {
       TradeoffSetting setting{{{"model", word_of(parameters.model)}}, ""};
       try
       {
         choose_model(parameters, scene);
-        setting.values["tolerance"] = to_text(loosest_accuracy);
       }
       catch (const InputError &error)
       {
         setting.not_offered = error.what();
+        return {setting};
       }
-      list.push_back(setting);
-      if (parameters.model == Model::kinematic && setting.not_offered.empty()) // a closed form has no tolerance
-        for (const std::string &tolerance : tolerances)
-          if (*to_number(tolerance) < loosest_accuracy)
-          {
-            setting.values["tolerance"] = tolerance;
-            list.push_back(setting);
-          }
-    }
-
-    /// Every mesh with every tolerance.
-    void
-    add_meshes(std::vector<TradeoffSetting> &list, TradeoffSetting setting, std::map<std::string, Texts> &lists)
-    {
-      const std::string size = setting["mesh"] == "adaptive" ? "mesh tolerance" : "cells";
-      for (const std::string &degree : setting["formulation"] == "stretch" ? Texts{"1"} : lists["degree"])
-        for (const std::string &mesh : lists[size])
-          for (const std::string &tolerance : lists["tolerance"])
-          {
-            setting.values["degree"]    = degree;
-            setting.values[size]        = mesh;
-            setting.values["tolerance"] = tolerance;
-            list.push_back(setting);
-          }
+      Texts accuracies = {to_text(loosest_accuracy)};
+      if (parameters.model == Model::kinematic) // a closed form has no tolerance
+        std::ranges::copy_if(tolerances, std::back_inserter(accuracies), [](const std::string &tolerance) {
+          return *to_number(tolerance) < loosest_accuracy;
+        });
+      return combined({setting}, "tolerance", accuracies);
     }
   } // namespace
 
@@ -186,30 +183,26 @@ namespace crawler
     choose_model(own, scene);
     auto lists = read_lists(own.tradeoff);
     std::vector<TradeoffSetting> list, ways;
+    const auto add = [&list](const std::vector<TradeoffSetting> &more) {
+      list.insert(list.end(), more.begin(), more.end());
+    };
     for (const std::string &model : lists["model"])
-    {
-      own.model = from_word<Model>(model).value();
-      if (own.model == Model::nonlinear)
+      if (own.model = from_word<Model>(model).value(); own.model == Model::nonlinear)
         ways.push_back({{{"model", model}}, ""});
       else
-        add_reduced(list, own, lists["tolerance"], scene);
-    }
+        add(reduced(own, lists["tolerance"], scene));
     for (const char *column : {"formulation", "mesh", "engine", "integrator"}) // the last one varies fastest
-    {
-      std::vector<TradeoffSetting> finer;
-      for (const TradeoffSetting &way : ways)
-        for (const std::string &value : lists[column])
-        {
-          finer.push_back(way);
-          finer.back().values[column] = value;
-        }
-      ways = std::move(finer);
-    }
+      ways = combined(ways, column, lists[column]);
     for (TradeoffSetting &way : ways)
-      if (way.not_offered = refusal(way, scene); way.not_offered.empty())
-        add_meshes(list, way, lists);
+    {
+      way.not_offered        = refusal(way, scene);
+      const std::string size = way["mesh"] == "adaptive" ? "mesh tolerance" : "cells";
+      const Texts degrees    = way["formulation"] == "stretch" ? Texts{"1"} : lists["degree"];
+      if (way.not_offered.empty())
+        add(combined(combined(combined({way}, "degree", degrees), size, lists[size]), "tolerance", lists["tolerance"]));
       else
-        list.push_back(way);
+        add({way});
+    }
     return list;
   }
   catch (const InputError &error)
