@@ -5,6 +5,7 @@
     python3 tradeoff.py PATH_TO_CRAWLER MPIRUN
 """
 import math
+import os
 import pathlib
 import re
 import shutil
@@ -277,6 +278,18 @@ def check_time_limit(output, expected):
           and len(summary_of(output)["advice"]) > 4, f"crawler plot makes it: {made}")
 
 
+def check_lacking_python(output):
+    """All rows are kept, and a sentence says what is missing."""
+    (output.parent / "bin").mkdir()
+    python = output.parent / "bin/python3"
+    python.write_text("#!/bin/sh\necho it has no numpy >&2\nexit 69\n", encoding="utf-8")
+    python.chmod(0o755)
+    result = call([PROGRAM, "tradeoff", "small.prm", "--output", output.name, "--set", "Tradeoff/Models=kinematic"], output.parent, None,
+                  {"PATH": f"{python.parent}:{os.environ['PATH']}"})
+    check(result.returncode == 0 and result.stdout.count("it has no numpy. Make them later with: crawler plot") == 1
+          and len(table(output)) == summary_of(output)["points"] > 3, f"a Python that lacks something: {result}")
+
+
 def check_old_folder(output, whole):
     """The table of another version is refused in a sentence."""
     shutil.copytree(whole, output)
@@ -314,6 +327,7 @@ def main():
         check_crashes(folder / "crashed", table(folder / "on-1"))
         check_stops(folder / "stopped", all_answers[1])
         check_time_limit(folder / "late", all_answers[1])
+        check_lacking_python(folder / "lacking")
         check_old_folder(folder / "old", folder / "on-1")
     checks.end()
 

@@ -259,14 +259,15 @@ namespace crawler
         if (python.status == static_cast<int>(ExitCode::file_error))
           throw FileError(python.problem);
         if (python.status != 0)
-          study.log.line(
-            fmt::format("There are no fronts and no recommendations: {}. Make them later with: crawler plot {}",
-                        python.problem,
-                        path.string()));
+          study.log.line(fmt::format(
+            "There are no fronts, no recommendations and no picture: {}. Make them later with: crawler plot {}",
+            python.problem,
+            path.string()));
+        else
+          draw("tradeoff", path, study.log);
         const auto whole = nlohmann::json::parse(read_whole_file(path / "summary.json"));
         for (const auto &line : whole.value("advice", nlohmann::json::array()))
           study.log.line(line.get<std::string>());
-        draw("tradeoff", path, study.log);
       }
       study.log.line(fmt::format("{:.1f} s. Results are in {}/.", end.seconds, path.string()));
       if (end.status == "stopped" && reference.status == "finished")
