@@ -5,13 +5,16 @@
     python3 tradeoff.py PATH_TO_CRAWLER MPIRUN
 """
 import math
+import os
 import pathlib
 import re
+import shutil
 import signal
 import sys
 import tempfile
 
 import h5py
+import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import NO_PICTURES, Checks, call, on_ranks, ranks_that_stop  # noqa: E402
@@ -64,9 +67,14 @@ def answers(rows):
     return {tuple(row[name] for name in KEY): tuple(row[name] for name in DETERMINISTIC) for row in rows}
 
 
+def tried(summary):
+    """How many settings have a row."""
+    return summary["points"] - summary["statuses"].get("missing", 0)
+
+
 def check_rows(rows, summary):
     """Every setting is one row, with cost and error or a reason."""
-    check(len(answers(rows)) == len(rows) == summary["tried"] == summary["settings"], f"{len(rows)} different settings")
+    check(len(answers(rows)) == len(rows) == tried(summary) == summary["points"], f"{len(rows)} different settings")
     check(len({row["index"] for row in rows}) == len(rows), "each with a number of its own")
     reference = summary["reference"]
     check(abs(reference["displacement"] - REFERENCE) < 1e-11 and reference["relative_bar"] < 1e-10,
@@ -81,7 +89,7 @@ def check_rows(rows, summary):
     check(all(number(row["seconds"]) > 0 and number(row["memory"]) >= (row["model"] == "nonlinear")
               and number(row["repetitions"]) >= 1 and number(row["spread"]) >= 0 for row in finished), "all that finished have a cost")
     gaps = [row for row in rows if row["status"] != "finished"]
-    check(all(row["reason"] and row["message"] and not row["seconds"] and row["pareto"] == "false" for row in gaps),
+    check(all(row["reason"] and row["message"] and not row["seconds"] for row in gaps),
           f"{len(gaps)} gaps have a reason, and no cost")
     # fused: all but radau 5 on uniform meshes; batch: that in the position form only; petsc: the position form
     n_missing = sum(row["status"] == "not offered" for row in rows)
@@ -95,11 +103,11 @@ def check_rows(rows, summary):
           and {row["formulation"] for row in finished} == {"position", "stretch"}, "all ways have finished")
 
 
-def check_pareto(rows):
+def check_pareto(rows, summary):
     """By the definition: no other row is as cheap and as good, and better in one."""
     good = True
     for batch in False, True:
-        own = [(number(row["seconds"]), number(row["shown error"]), row["pareto"] == "true") for row in rows
+        own = [(number(row["seconds"]), number(row["shown error"]), int(row["index"]) in summary["pareto"]) for row in rows
                if row["status"] == "finished" and (row["engine"] == "batch") == batch]
         for cost, error, on_front in own:
             beaten = any(c <= cost and e <= error and (c, e) != (cost, error) for c, e, _ in own)
@@ -176,8 +184,8 @@ def check_reference(output):
     summary = summary_of(output)
     check(stopped.returncode == 5 and summary["status"] == "stopped" and summary["reference"] is None and not table(output),
           f"stopped in the reference: {stopped}")
-    done = study(output, *quick, "--resume")
-    check(done.returncode == 0 and len(table(output)) == summary["settings"] and "nothing to recommend" in done.stdout,
+    done = study(output, *quick, "--resume", picture=True)
+    check(done.returncode == 0 and len(table(output)) == summary["points"] and "nothing to recommend" in done.stdout,
           f"and goes on: {done}")
     inverts = study(output, *quick, "--overwrite", "--set", "Active stress/Optimal wave/Perturbation parameter=1.5")
     summary = summary_of(output)
@@ -198,7 +206,7 @@ def check_strides(folder):
     few = ("Tradeoff/Models=nonlinear", "Tradeoff/Engines=fused", "Tradeoff/Meshes=uniform", "Tradeoff/Formulations=position",
            "Tradeoff/Integrators=radau 5", "Tradeoff/Degrees=4", "Tradeoff/Cells=4", "Tradeoff/Tolerances=1e-2", "Time/End time=3",
            "Model=auto")
-    result = study(folder / "strides", *(word for entry in few for word in ("--set", entry)))
+    result = study(folder / "strides", *(word for entry in few for word in ("--set", entry)), picture=True)
     advice = summary_of(folder / "strides")["recommendations"][0]
     pathlib.Path(folder, "strides.prm").write_text(BODY + advice["prm"], encoding="utf-8")
     call([PROGRAM, "run", "strides.prm", "--quiet", "--output", "pasted", "--set", "Time/End time=3"], folder)
@@ -226,7 +234,7 @@ def check_stops(output, expected):
         stopped = study(output, "--resume", *more, stop_at=stop_at)
         rows, summary = table(output), summary_of(output)
         check(stopped.returncode == 5 and summary["status"] == "stopped" and summary["reason"] == reason
-              and "--resume goes on" in stopped.stderr and len(rows) == summary["tried"] < len(expected)
+              and "--resume goes on" in stopped.stderr and len(rows) == tried(summary) < len(expected)
               and len(rows) >= len(lines) + (3 if reason == "signal" else 0) and answers(rows).items() <= expected.items(),
               f"stopped by {stop_at}{more} after {len(rows)} settings: {stopped}")
     before = written(output)
@@ -254,6 +262,45 @@ def check_stops(output, expected):
     check(result.returncode == 2 and "no tradeoff that could be resumed" in result.stderr, "a strange folder is refused")
 
 
+def check_time_limit(output, expected):
+    """Settings that took too long are tried again if they may take longer; without Python for the rest, crawler plot makes it."""
+    study(output, stop_at="row:20:TERM")
+    result = study(output, "--resume", "--set", "Tradeoff/Time limit per run=1e-6")
+    late = [row for row in table(output) if row["reason"] == "time_limit"]
+    check(result.returncode == 0 and len(late) > 50 and all(row["time limit"] == "1e-06" and row["entries"] for row in late)
+          and any("not tried" in row["message"] for row in late), f"settings that took too long: {result}, {late[:2]}")
+    result = study(output, "--resume")
+    check(result.returncode == 0 and answers(table(output)) == expected, f"and may take longer: {result}")
+    summary = summary_of(output)
+    check("advice" not in summary and not (output / "recommendations.prm").exists(), "without Python there is no advice yet")
+    made = call([PROGRAM, "plot", output.name], output.parent)
+    check(made.returncode == 0 and {**summary_of(output), **summary} == summary_of(output) and (output / "recommendations.prm").exists()
+          and len(summary_of(output)["advice"]) > 4, f"crawler plot makes it: {made}")
+
+
+def check_lacking_python(output):
+    """All rows are kept, and a sentence says what is missing."""
+    (output.parent / "bin").mkdir()
+    python = output.parent / "bin/python3"
+    python.write_text("#!/bin/sh\necho it has no numpy >&2\nexit 69\n", encoding="utf-8")
+    python.chmod(0o755)
+    result = call([PROGRAM, "tradeoff", "small.prm", "--output", output.name, "--set", "Tradeoff/Models=kinematic"], output.parent, None,
+                  {"PATH": f"{python.parent}:{os.environ['PATH']}"})
+    check(result.returncode == 0 and result.stdout.count("it has no numpy. Make them later with: crawler plot") == 1
+          and len(table(output)) == summary_of(output)["points"] > 3, f"a Python that lacks something: {result}")
+
+
+def check_old_folder(output, whole):
+    """The table of another version is refused in a sentence."""
+    shutil.copytree(whole, output)
+    with h5py.File(output / "tradeoff.h5", "r+") as file:
+        for data in file["tradeoff"].values():
+            if data.attrs["name"] == b"entries":
+                data.attrs["name"] = np.bytes_("pareto")
+    refused = study(output, "--resume")
+    check(refused.returncode == 2 and "another version of the program" in refused.stderr, f"a table of another version: {refused}")
+
+
 def main():
     """All checks in a folder of their own."""
     with tempfile.TemporaryDirectory() as name:
@@ -270,7 +317,7 @@ def main():
             check(summary["status"] == "finished" and summary["ranks"] == ranks, f"summary {summary}")
             check_files(output)
             check_rows(rows, summary)
-            check_pareto(rows)
+            check_pareto(rows, summary)
             check_hdf5(output, rows)
             if ranks == 1:
                 check_advice(folder, output, result.stdout)
@@ -279,6 +326,9 @@ def main():
         check_strides(folder)
         check_crashes(folder / "crashed", table(folder / "on-1"))
         check_stops(folder / "stopped", all_answers[1])
+        check_time_limit(folder / "late", all_answers[1])
+        check_lacking_python(folder / "lacking")
+        check_old_folder(folder / "old", folder / "on-1")
     checks.end()
 
 

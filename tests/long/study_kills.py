@@ -108,7 +108,7 @@ class TradeoffStudy(PointStudy):
         return {row: seconds for row, seconds in super().done(output).items() if seconds == seconds}
 
     def answers(self, output):
-        costs = ("seconds", "spread", "repetitions", "memory", "pareto")
+        costs = ("seconds", "spread", "repetitions", "memory")
         return {name: column for name, column in super().answers(output).items() if not name.endswith(costs)}
 
 

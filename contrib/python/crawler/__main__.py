@@ -10,7 +10,8 @@ import sys
 HERE = pathlib.Path(__file__).absolute().parent  # in the build folder, or installed
 COMMANDS = {"fit": ("fitting.command", ("numpy", "scipy")),  # module and what it needs
             "report": ("report.command", ("numpy", "h5py")),
-            "table": ("measured.command", ("numpy", "scipy"))}
+            "table": ("measured.command", ("numpy", "scipy")),
+            "tradeoff": ("tradeoff", ("numpy",))}  # what the program leaves to do
 
 
 def place_of_package():

@@ -30,11 +30,17 @@ namespace crawler
       return to_text(std::get<std::vector<double>>(column.values)[row]);
     }
 
-    /// The first point whose value on an axis is not that of the table, in words; nothing if there is none.
     std::string
-    changed_value(const RowReader &table, const std::vector<RowFile::Column> &columns, const SweepDesign &design)
+    text_of(const RowFile::Value &value)
     {
-      const RowFile::Known known = known_columns(columns, design);
+      const auto *text = std::get_if<std::string>(&value);
+      return text != nullptr ? *text : to_text(std::get<double>(value));
+    }
+
+    /// The first row whose known value is not that of the table, in words; nothing if there is none.
+    std::string
+    changed_value(const RowReader &table, const std::vector<RowFile::Column> &columns, const RowFile::Known &known)
+    {
       for (std::size_t i = 1; i < known.n_columns; ++i)
         for (unsigned long first = 0; first < table.n_rows(); first += rows_together)
         {
@@ -42,16 +48,68 @@ namespace crawler
           const Column column   = table.read(table.index_of(columns[i].name), first, n);
           for (unsigned long row = 0; row < n; ++row)
           {
-            const std::string was = text_of(column, row);
-            std::string is        = design.value(i - 1, first + row);
-            if (columns[i].width == 0)
-              is = to_text(*to_number(is));
+            const std::string was = text_of(column, row), is = text_of(known.value(i, first + row));
             // A text that is longer than its column was cut.
             if (was != is && !(columns[i].width > 0 && is.size() > columns[i].width && is.starts_with(was)))
               return fmt::format("{} of point {} was \"{}\" and is \"{}\"", columns[i].name, first + row, was, is);
           }
         }
       return "";
+    }
+
+    /// Which rows of @p table are there and whole; the log gets a warning of those that are damaged.
+    std::vector<bool>
+    rows_done(const RowReader &rows, const PointTable &table, Log &log)
+    {
+      unsigned long n_damaged = 0;
+      constexpr double larger = 1.2;
+      std::vector<bool> done;
+      for (unsigned long first = 0; first < rows.n_rows(); first += rows_together)
+      {
+        const unsigned long n = std::min(rows_together, rows.n_rows() - first);
+        const auto column     = [&](const std::string &name) { return rows.read(rows.index_of(name), first, n); };
+        const Column is_done  = column(table.done);
+        for (unsigned long i = 0; i < n; ++i)
+          done.push_back(!text_of(is_done, i).empty());
+        if (const auto intact = rows.intact(table.written_columns(), first, n))
+          for (unsigned long i = 0; i < n; ++i)
+            if (done[first + i] && !(*intact)[i])
+            {
+              done[first + i] = false;
+              ++n_damaged;
+            }
+        for (const auto &[reason_name, seconds_name] : table.reasons_and_seconds)
+        {
+          const Column reason = column(reason_name), seconds = column(seconds_name);
+          for (unsigned long i = 0; i < n; ++i)
+            if (text_of(reason, i) == time_limit_reason &&
+                table.time_limit > larger * std::get<std::vector<double>>(seconds.values)[i])
+              done[first + i] = false;
+        }
+      }
+      if (n_damaged > 0)
+        log.warn(
+          fmt::format("warning: {} of the table {} not what was written, so the file was damaged; {} computed anew",
+                      counted(n_damaged, "row"),
+                      n_damaged == 1 ? "is" : "are",
+                      n_damaged == 1 ? "it is" : "they are"));
+      return done;
+    }
+
+    /// Rows of other versions of the libraries may differ from those that are computed now.
+    void
+    warn_of_other_versions(StudyFolder &folder, const PointTable &table)
+    {
+      for (const auto &[name, version] : provenance("", ""))
+        if (name.starts_with("version of "))
+          if (const std::string was = read_attribute(folder.path() / table.file, table.group, name); was != version)
+            folder.log().warn(
+              fmt::format("warning: the {} was {} when the {} began and is {}: new rows may differ from "
+                          "old ones by round-off or more",
+                          name,
+                          was,
+                          folder.kind().name,
+                          version));
     }
   } // namespace
 
@@ -61,44 +119,6 @@ namespace crawler
     std::vector<RowFile::Column> list(columns.begin() + static_cast<std::ptrdiff_t>(n_known), columns.end());
     std::stable_partition(list.begin(), list.end(), [&](const RowFile::Column &column) { return column.name != done; });
     return list;
-  }
-
-  std::vector<bool>
-  rows_done(const RowReader &rows, const PointTable &table, Log &log)
-  {
-    unsigned long n_damaged = 0;
-    constexpr double larger = 1.2;
-    std::vector<bool> done;
-    for (unsigned long first = 0; first < rows.n_rows(); first += rows_together)
-    {
-      const unsigned long n = std::min(rows_together, rows.n_rows() - first);
-      const auto column     = [&](const std::string &name) { return rows.read(rows.index_of(name), first, n); };
-      const Column is_done  = column(table.done);
-      for (unsigned long i = 0; i < n; ++i)
-        done.push_back(!text_of(is_done, i).empty());
-      if (const auto intact = rows.intact(table.written_columns(), first, n))
-        for (unsigned long i = 0; i < n; ++i)
-          if (done[first + i] && !(*intact)[i])
-          {
-            done[first + i] = false;
-            ++n_damaged;
-          }
-      for (const auto &[reason_name, seconds_name] : table.reasons_and_seconds)
-      {
-        const Column reason = column(reason_name), seconds = column(seconds_name);
-        for (unsigned long i = 0; i < n; ++i)
-          if (text_of(reason, i) == time_limit_reason &&
-              table.time_limit > larger * std::get<std::vector<double>>(seconds.values)[i])
-            done[first + i] = false;
-      }
-    }
-    if (n_damaged > 0)
-      log.warn(
-        fmt::format("warning: {} of the table {} not what was written, so the file was damaged; {} computed anew",
-                    counted(n_damaged, "row"),
-                    n_damaged == 1 ? "is" : "are",
-                    n_damaged == 1 ? "it is" : "they are"));
-    return done;
   }
 
   std::vector<RowFile::Column>
@@ -136,17 +156,58 @@ namespace crawler
   }
 
   void
-  warn_of_other_versions(StudyFolder &folder, const PointTable &table)
+  create_table(const std::filesystem::path &folder,
+               const PointTable &table,
+               const PlannedRows &plan,
+               const std::string &command_line)
   {
-    for (const auto &[name, version] : provenance("", ""))
-      if (name.starts_with("version of "))
-        if (const std::string was = read_attribute(folder.path() / table.file, table.group, name); was != version)
-          folder.log().warn(fmt::format("warning: the {} was {} when the {} began and is {}: new rows may differ from "
-                                        "old ones by round-off or more",
-                                        name,
-                                        was,
-                                        folder.kind().name,
-                                        version));
+    auto attributes = provenance(plan.effective, command_line);
+    attributes["not known"] =
+      fmt::format("NaN in numbers, an empty text in texts; an empty {}: not computed yet", table.done);
+    attributes.merge(plan.inputs.attributes());
+    attributes.insert(plan.more.begin(), plan.more.end());
+    RowFile::create(folder / table.file, table.group, table.columns, plan.n, attributes, plan.known);
+  }
+
+  std::vector<bool>
+  begin_or_resume(StudyFolder &folder,
+                  const PointTable &table,
+                  const ParameterFile &file,
+                  const PlannedRows &plan,
+                  const std::string &command_line)
+  {
+    const auto path = folder.path() / table.file;
+    if (!folder.begin(file.text(), plan.effective))
+    {
+      create_table(folder.path(), table, plan, command_line);
+      return std::vector<bool>(plan.n, false);
+    }
+    std::optional<RowReader> rows;
+    folder.resume([&]() {
+      rows.emplace(MPI_COMM_SELF, path, table.group);
+      const auto attribute = [&](const std::string &name) { return read_attribute(path, table.group, name); };
+      const auto &free     = folder.kind().free_entries;
+      const auto has_columns =
+        std::ranges::equal(rows->read(0, 0), table.columns, {}, &Column::name, &RowFile::Column::name);
+      std::vector<std::string> changes;
+      if (has_columns)
+      {
+        std::map<std::string, std::string> attributes;
+        for (const auto &[name, text] : plan.inputs.attributes())
+          attributes.emplace(name, attribute(name));
+        changes = differences(SweepInputs::from_attributes(attributes), plan.inputs, free);
+      }
+      else if (changes = differences(attribute("parameters.prm"), plan.inputs.effective, free); changes.empty())
+        changes.emplace_back("its table has the columns of another version of the program");
+      if (changes.empty() && rows->n_rows() != plan.n)
+        changes.push_back(fmt::format("the number of points was {} and is {}", rows->n_rows(), plan.n));
+      if (changes.empty())
+        if (const std::string changed = changed_value(*rows, table.columns, plan.known); !changed.empty())
+          changes.push_back(changed);
+      return changes;
+    });
+    warn_of_other_versions(folder, table);
+    return rows_done(*rows, table, folder.log());
   }
 
   std::vector<bool>
@@ -156,34 +217,11 @@ namespace crawler
                   const SweepPoints &points,
                   const std::string &command_line)
   {
-    const SweepInputs inputs = sweep_inputs(points); // before a file is touched
-    const auto path          = folder.path() / table.file;
-    const unsigned long n    = points.design().n_points();
-    if (!folder.begin(file.text(), points.effective()))
-    {
-      auto attributes = provenance(points.effective(), command_line);
-      attributes["not known"] =
-        fmt::format("NaN in numbers, an empty text in texts; an empty {}: not computed yet", table.done);
-      attributes.merge(inputs.attributes());
-      RowFile::create(path, table.group, table.columns, n, attributes, known_columns(table.columns, points.design()));
-      return std::vector<bool>(n, false);
-    }
-    std::optional<RowReader> rows;
-    folder.resume([&]() {
-      std::map<std::string, std::string> attributes;
-      for (const auto &[name, text] : inputs.attributes())
-        attributes.emplace(name, read_attribute(path, table.group, name));
-      auto changes = differences(SweepInputs::from_attributes(attributes), inputs, folder.kind().free_entries);
-      rows.emplace(MPI_COMM_SELF, path, table.group);
-      if (changes.empty() && rows->n_rows() != n)
-        changes.push_back(fmt::format("the number of points was {} and is {}", rows->n_rows(), n));
-      if (changes.empty())
-        if (const std::string changed = changed_value(*rows, table.columns, points.design()); !changed.empty())
-          changes.push_back(changed);
-      return changes;
-    });
-    warn_of_other_versions(folder, table);
-    return rows_done(*rows, table, folder.log());
+    const PlannedRows plan{points.design().n_points(),
+                           known_columns(table.columns, points.design()),
+                           sweep_inputs(points), // before a file is touched
+                           points.effective()};
+    return begin_or_resume(folder, table, file, plan, command_line);
   }
 
   std::vector<bool>

@@ -174,13 +174,18 @@ namespace crawler
   }
 
   SweepCounts
-  write_results_csv(MPI_Comm communicator, const std::filesystem::path &folder)
+  write_results_csv(MPI_Comm communicator,
+                    const std::filesystem::path &folder,
+                    const std::string &file,
+                    const std::string &group)
   {
+    const auto path = folder / file;
     SweepCounts counts;
-    counts.n_points = RowReader(communicator, folder / sweep_file, sweep_group).n_rows();
-    write_table_csv(communicator, folder / sweep_file, sweep_group, folder / "results.csv", [&](const Table &part) {
-      count(part, counts);
-    });
+    counts.n_points = RowReader(communicator, path, group).n_rows();
+    write_table_csv(
+      communicator, path, group, std::filesystem::path(path).replace_extension("csv"), [&](const Table &part) {
+        count(part, counts);
+      });
     return sum(communicator, counts);
   }
 

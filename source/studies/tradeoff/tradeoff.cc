@@ -1,68 +1,124 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/accuracy/model_choice.h>
 #include <crawler/base/clock.h>
 #include <crawler/base/communication.h>
+#include <crawler/base/exceptions.h>
 #include <crawler/base/files.h>
 #include <crawler/base/plain_numbers.h>
 #include <crawler/base/stop_signal.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/crash_file.h>
 #include <crawler/studies/core/input.h>
-#include <crawler/studies/core/log.h>
 #include <crawler/studies/core/output_folder.h>
 #include <crawler/studies/core/python.h>
 #include <crawler/studies/core/study.h>
-#include <crawler/studies/core/study_folder.h>
-#include <crawler/studies/core/table_csv.h>
+#include <crawler/studies/sweep/point_table.h>
+#include <crawler/studies/sweep/sweep_rows.h>
 #include <crawler/studies/tradeoff/tradeoff.h>
 #include <crawler/studies/tradeoff/tradeoff_measurement.h>
-#include <crawler/studies/tradeoff/tradeoff_results.h>
+#include <crawler/studies/tradeoff/tradeoff_reference.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <optional>
+#include <cmath>
+#include <limits>
 #include <span>
-#include <utility>
 
 namespace crawler
 {
   namespace
   {
-    namespace fs = std::filesystem;
+    /// A row for each setting, which are known from the beginning; the columns are a contract (doc/user_guide.md,
+    /// "Trading accuracy for speed").
+    PointTable
+    tradeoff_table(const double time_limit)
+    {
+      PointTable table = {"tradeoff.h5",
+                          "tradeoff",
+                          {{"index", "1", "number of the setting"}},
+                          0,
+                          "status",
+                          {{"reason", "time limit"}},
+                          time_limit};
+      for (const SettingColumn &one : setting_columns())
+        table.columns.push_back(one.column);
+      table.n_known                              = table.columns.size();
+      const std::vector<RowFile::Column> results = {
+        {"entries", "", "the setting as entries of the parameter file", 512},
+        {"status", "", "finished, inverted, failed, stopped, refused, or not offered; empty: not tried yet", 16},
+        {"reason", "", "name of what went wrong", 32},
+        {"message", "", "what went wrong, or what the level says about its error, in words", 256},
+        {"time limit", "s", "after which the setting was given up"},
+        {"displacement", "length", "of the centre of mass at the end time"},
+        {"error", "1", "distance of the displacement to the reference, over the size of the displacement"},
+        {"shown error", "1", "the same, but no smaller than the reference's bar"},
+        {"below bar", "", "true if the error cannot be told from 0: it is below the reference's bar", 8},
+        {"seconds", "s", "processor time to build the simulation and run it, median; of a body, in a batch"},
+        {"spread", "1", "largest minus smallest measurement over the median"},
+        {"repetitions", "1", "runs that were timed"},
+        {"choice seconds", "s", "processor time of the pilot runs of an adaptive mesh, which is not in seconds"},
+        {"memory", "byte", "largest heap in use by the simulation at the ends of steps; of a batch: by all bodies"},
+        {"steps", "1", "accepted time steps"},
+        {"rejected steps", "1", "time steps that were done again"},
+        {"newton iterations", "1", "of all steps"},
+        {"most cells", "1", "of an adaptive mesh, largest over time"}};
+      table.columns.insert(table.columns.end(), results.begin(), results.end());
+      return table;
+    }
+
+    /// What stands in a column; what is not known is an empty text or not a number.
+    RowFile::Value
+    value_in(const TradeoffTexts &texts, const RowFile::Column &column)
+    {
+      const auto found       = texts.find(column.name);
+      const std::string text = found == texts.end() ? "" : found->second;
+      if (column.width > 0)
+        return shortened(text, column.width);
+      return to_number(text).value_or(std::numeric_limits<double>::quiet_NaN());
+    }
+
+    /// Adds the errors, if there is a displacement.
+    void
+    compare(TradeoffTexts &row, const TradeoffReference &reference)
+    {
+      const auto displacement = to_number(row["displacement"]);
+      if (!displacement)
+        return;
+      const double error = std::abs(*displacement - reference.displacement) / reference.size;
+      row["error"]       = to_text(error);
+      row["shown error"] = to_text(std::max(error, reference.relative_bar));
+      row["below bar"]   = error < reference.relative_bar ? "true" : "false";
+    }
 
     /// What all parts of the study need.
     struct Study
     {
-      const Parameters &parameters;
-      const Scene &scene;
-      const TradeoffReference &reference;
+      MPI_Comm communicator;
+      const Input &input;
+      const PointTable &table;
       const std::vector<TradeoffSetting> &settings;
-      std::vector<bool> done; ///< settings that have a row
+      const std::function<bool()> &interrupted;
+      const std::string &command_line;
+      StudyFolder &folder;
+      Log &log;
+      std::vector<bool> done = {}; ///< settings that have a row
     };
 
-    /// Settings first, first + 1, ... before `end` share a mesh.
-    struct MeshSettings
-    {
-      unsigned long first, end;
-    };
-
-    /// The meshes with settings that are not done, spread out.
-    std::vector<MeshSettings>
+    /// The first settings of all meshes that are not done, and those behind their last ones; spread out.
+    std::vector<std::pair<unsigned long, unsigned long>>
     meshes_to_do(const Study &study)
     {
-      std::vector<MeshSettings> all;
-      const auto &settings = study.settings;
-      for (unsigned long first = 0, end; first < settings.size(); first = end)
+      std::vector<std::pair<unsigned long, unsigned long>> all, spread;
+      for (unsigned long first = 0, end; first < study.settings.size(); first = end)
       {
-        for (end = first + 1; end < settings.size() && same_mesh(settings[first], settings[end]);)
-          ++end;
-        const auto done = study.done.begin();
-        if (std::find(done + static_cast<long>(first), done + static_cast<long>(end), false) !=
-            done + static_cast<long>(end))
-          all.push_back({first, end});
+        bool is_done = study.done[first];
+        for (end = first + 1; end < study.settings.size() && same_mesh(study.settings[first], study.settings[end]);
+             ++end)
+          is_done = is_done && study.done[end];
+        if (!is_done)
+          all.emplace_back(first, end);
       }
-      std::vector<MeshSettings> spread;
       const unsigned long n = all.size(), stride = golden_stride(std::max(1ul, n));
       for (unsigned long i = 0; i < n; ++i)
         spread.push_back(all[i * stride % n]);
@@ -71,149 +127,153 @@ namespace crawler
 
     /// The rows that are missing, by all ranks. Returns false if some rank was interrupted.
     bool
-    measure_all(MPI_Comm communicator,
-                const Study &study,
-                const fs::path &folder,
-                const std::function<bool()> &interrupted,
-                Log &log)
+    measure_all(const Study &study, const TradeoffReference &reference)
     {
-      const PointTable table = tradeoff_table();
-      RowFile rows(communicator, folder / table.file, table.group, table.written_columns());
-      CrashNote note(folder);
-      const Crashes crashes = crashes_in(folder);
-      const auto meshes     = meshes_to_do(study);
-      const auto row_of     = [&](const unsigned long setting, TradeoffMeasurement &measurement) {
-        if (!is_given_up(setting, crashes))
-          return measurement.measure(study.settings[setting]);
-        TradeoffRow row;
-        row.setting = study.settings[setting];
-        row.not_computed("failed", "crashed", crash_message);
-        return std::optional(row);
+      const auto path    = study.folder.path();
+      const auto columns = study.table.written_columns();
+      const auto meshes  = meshes_to_do(study);
+      RowFile rows(study.communicator, path / study.table.file, study.table.group, columns);
+      CrashNote note(path);
+      const Crashes crashes   = crashes_in(path);
+      const auto measure_mesh = [&](const unsigned long number, const auto &stops, const auto &see) {
+        const char *const not_tried = "not tried: a looser tolerance on this mesh took too long";
+        bool took_too_long          = false;
+        for (unsigned long i = meshes[number].first; i < meshes[number].second; ++i)
+        {
+          if (study.done[i])
+            continue;
+          const TradeoffSetting &setting = study.settings[i];
+          const auto entries             = overrides(setting, study.input.parameters, reference.size);
+          note.at_work_on(std::span(&i, 1));
+          auto row = stops()                   ? std::nullopt
+                     : is_given_up(i, crashes) ? std::optional(gap("failed", "crashed", crash_message))
+                     : took_too_long
+                       ? std::optional(gap("stopped", time_limit_reason, not_tried, study.table.time_limit))
+                       : measure(study.input, setting, entries, stops);
+          if (!row)
+            return false;
+          took_too_long = (*row)["reason"] == time_limit_reason;
+          compare(*row, reference);
+          (*row)["entries"] = fmt::format("{}", fmt::join(entries, "; "));
+          RowFile::Row values;
+          for (const RowFile::Column &column : columns)
+            values.push_back(value_in(*row, column));
+          rows.write(i, {{values}});
+          note.at_work_on({});
+          see(1, (*row)["status"] != "finished");
+        }
+        return true;
       };
-      return share_work(communicator,
-                        {meshes.size(),
-                         static_cast<unsigned long>(std::count(study.done.begin(), study.done.end(), false)),
-                         "settings",
-                         interrupted,
-                         [&](const unsigned long number, const auto &stops, const auto &see) {
-                           TradeoffMeasurement measurement(study.parameters, study.scene, study.reference.size, stops);
-                           for (unsigned long i = meshes[number].first; i < meshes[number].end; ++i)
-                             if (!study.done[i])
-                             {
-                               note.at_work_on(std::span(&i, 1));
-                               auto row = stops() ? std::nullopt : row_of(i, measurement);
-                               if (!row)
-                                 return false;
-                               row->compare(study.reference);
-                               rows.write(i, {{written_row(*row)}});
-                               note.at_work_on({});
-                               see(1, !row->is_finished());
-                             }
-                           return true;
-                         }},
-                        log);
+      const auto n_missing = static_cast<unsigned long>(std::ranges::count(study.done, false));
+      return share_work(
+        study.communicator, {meshes.size(), n_missing, "settings", study.interrupted, measure_mesh}, study.log);
     }
 
-    void
-    report_reference(const TradeoffReference &reference, const Parameters &parameters, Log &log)
-    {
-      log.line(
-        fmt::format("Reference: displacement {:.15g} by {}.", reference.answer.displacement, reference.answer.method));
-      if (reference.is_checked())
-        log.line(
-          fmt::format("  Checked by {}: it differs by {:.1e}. Errors below the bar of {:.1e} cannot be told from 0.",
-                      reference.check.method,
-                      std::abs(reference.check.displacement - reference.answer.displacement) / reference.size,
-                      reference.relative_bar()));
-      else
-        log.warn(fmt::format("no second method could check the reference; its own error bound gives the bar, {:.1e}",
-                             reference.relative_bar()));
-      if (reference.relative_bar() > parameters.accuracy)
-        log.warn(fmt::format("the reference is known to {:.1e} only, but Accuracy is {:g}: nothing can be said about "
-                             "settings that are as good as that",
-                             reference.relative_bar(),
-                             parameters.accuracy));
-    }
-
-    /// Without a reference there is nothing to measure against.
+    /// How good the reference is; without one there is nothing to measure against.
     ExitCode
-    no_reference(const TradeoffReference &reference, Log &log)
+    report(const TradeoffReference &reference, const double accuracy, Log &log)
     {
-      if (reference.status == "stopped")
-      {
-        log.warn(reference.message + "; --resume starts with the reference");
-        return ExitCode::stopped;
-      }
-      log.warn("the nonlinear model gives no displacement to measure errors against: " + reference.message);
-      return reference.status == "inverted" ? ExitCode::inverted : ExitCode::numerical_failure;
+      const auto &[answer, check, displacement, bar, size, relative_bar, status, message] = reference;
+      if (status == "stopped")
+        log.warn("stopped while the reference was made; --resume starts with it");
+      else if (status != "finished")
+        log.warn("the nonlinear model gives no displacement to measure errors against: " + message);
+      if (status != "finished")
+        return status == "stopped"    ? ExitCode::stopped
+               : status == "inverted" ? ExitCode::inverted
+                                      : ExitCode::numerical_failure;
+      log.line(
+        fmt::format("Reference: displacement {:.15g} by {}; errors below the bar of {:.1e} cannot be told from 0.",
+                    displacement,
+                    answer.method,
+                    relative_bar));
+      if (check.method.empty())
+        log.warn("no second method could check the reference; its own error bound gives the bar");
+      else
+        log.line(fmt::format(
+          "  Checked by {}: it differs by {:.1e}.", check.method, std::abs(check.displacement - displacement) / size));
+      if (relative_bar > accuracy)
+        log.warn(fmt::format(
+          "the bar is above Accuracy, {:g}: nothing can be said about settings that are as good as that", accuracy));
+      return ExitCode::finished;
     }
 
-    std::vector<TradeoffSetting>
-    settings_of(const Input &input)
+    /// Which settings have a row already, and the reference (collective).
+    TradeoffReference
+    begin(Study &study)
     {
-      try
-      {
-        // The reference needs the whole equation.
-        Parameters whole = input.parameters;
-        whole.model      = Model::nonlinear;
-        choose_model(whole, input.scene);
-        return settings_to_try(input.parameters, input.scene);
-      }
-      catch (const InputError &error)
-      {
-        throw input.file.with_place(error);
-      }
-    }
-
-    constexpr const char *reference_attribute = "reference";
-
-    /// What an earlier start has left, known to all ranks: which settings are done, and the reference as a text, empty
-    /// if there is none.
-    std::pair<std::vector<bool>, std::string>
-    begin_or_resume(MPI_Comm communicator, StudyFolder &folder, const Input &input, const std::size_t n_settings)
-    {
-      std::string reference;
-      const auto done = points_done(communicator, [&]() {
-        const PointTable table = tradeoff_table();
-        if (!folder.begin(input.file.text(), input.effective))
-          return std::vector<bool>(n_settings, false);
-        folder.resume([&]() {
-          return differences(
-            read_whole_file(folder.path() / "parameters.prm"), input.effective, folder.kind().free_entries);
-        });
-        warn_of_other_versions(folder, table);
-        reference = read_attribute(folder.path() / table.file, table.group, reference_attribute);
-        return rows_done(RowReader(MPI_COMM_SELF, folder.path() / table.file, table.group), table, folder.log());
+      const auto known = [&](const std::size_t i, const unsigned long row) -> RowFile::Value {
+        if (i == 0)
+          return static_cast<double>(row);
+        return value_in(study.settings[row].values, study.table.columns[i]);
+      };
+      const Input &input = study.input;
+      PlannedRows plan{study.settings.size(),
+                       {study.table.n_known, known},
+                       {without_comments(input.effective), {}, {}},
+                       input.effective,
+                       {{"reference", ""}}};
+      std::string text;
+      study.done        = points_done(study.communicator, [&]() {
+        auto done = begin_or_resume(study.folder, study.table, input.file, plan, study.command_line);
+        text      = read_attribute(study.folder.path() / study.table.file, study.table.group, "reference");
+        return done;
       });
-      return {done, broadcast(reference, communicator)};
+      text              = broadcast(text, study.communicator);
+      const auto n_done = std::ranges::count(study.done, true);
+      study.log.line(fmt::format("Tradeoff of {}: {} settings on {}{}",
+                                 input.file.name(),
+                                 study.settings.size(),
+                                 counted(size_of(study.communicator), "rank"),
+                                 n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
+      for (const std::string &note : input.notes)
+        study.log.line(note);
+      if (!text.empty())
+        if (const TradeoffReference reference = nlohmann::json::parse(text); reference.status == "finished")
+          return reference;
+      // On every rank alike, so that none has an idle core beside it; the first one's is used.
+      study.log.line("Making the reference ...");
+      const nlohmann::json made = make_reference(input.parameters, study.interrupted);
+      text = broadcast(made.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), study.communicator);
+      on_first_rank(study.communicator, [&]() {
+        plan.more["reference"] = text;
+        create_table(study.folder.path(), study.table, plan, study.command_line);
+        return "";
+      });
+      return nlohmann::json::parse(text);
     }
 
-    /// All files of the results; tradeoff.h5 then knows the fronts (one process).
+    /// Writes summary.json. Python adds what the rows mean together, and draws them (one process).
     void
-    write_results(const fs::path &folder, const TradeoffResults &results, const TradeoffCourse &course, Log &log)
+    conclude(const Study &study, const TradeoffReference &reference, const SweepCounts &counts, const SweepEnd &end)
     {
-      const PointTable table = tradeoff_table();
+      const auto path    = study.folder.path();
+      auto summary       = nlohmann::ordered_json::parse(sweep_json(counts, end));
+      summary["message"] = reference.message.empty() ? nullptr : nlohmann::ordered_json(reference.message);
+      summary["reference"] =
+        reference.status == "finished" ? nlohmann::ordered_json(nlohmann::json(reference)) : nullptr;
+      write_file(path / "summary.json", summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+      if (counts.statuses.contains("finished"))
       {
-        RowFile rows(MPI_COMM_SELF, folder / table.file, table.group, table.written_columns());
-        for (std::size_t i = 0; i < results.rows.size(); ++i)
-          if (!results.rows[i].status.empty())
-            rows.write(i, {{written_row(results.rows[i])}});
+        const PythonEnd python = call_python("__main__.py", {"tradeoff", path.string()}, /*shown=*/false);
+        if (python.status == static_cast<int>(ExitCode::file_error))
+          throw FileError(python.problem);
+        if (python.status != 0)
+          study.log.line(fmt::format(
+            "There are no fronts, no recommendations and no picture: {}. Make them later with: crawler plot {}",
+            python.problem,
+            path.string()));
+        else
+          draw("tradeoff", path, study.log);
+        const auto whole = nlohmann::json::parse(read_whole_file(path / "summary.json"));
+        for (const auto &line : whole.value("advice", nlohmann::json::array()))
+          study.log.line(line.get<std::string>());
       }
-      write_table_csv(MPI_COMM_SELF, folder / table.file, table.group, folder / "tradeoff.csv", [](const Table &) {});
-      write_file(folder / "recommendations.prm", recommendations_prm(results));
-      write_file(folder / "summary.json", tradeoff_json(results, course));
-      log.line(in_words(results, course));
-      for (const std::string &line : recommendation_lines(results))
-        log.line(line);
-      const auto is_on_front = [](const TradeoffRow &row) { return row.pareto == "true"; };
-      if (std::any_of(results.rows.begin(), results.rows.end(), is_on_front)) // there is something to draw
-        draw("tradeoff", folder, log);
-      const auto &blocks = results.recommendations;
-      if (blocks.empty() && course.status == "finished")
-        log.line("No setting has a displacement that is good for 1e-2: there is nothing to recommend.");
-      log.line(fmt::format("Results are in {}/{}.",
-                           folder.string(),
-                           blocks.empty() ? "" : "; recommendations.prm has the blocks to paste"));
+      study.log.line(fmt::format("{:.1f} s. Results are in {}/.", end.seconds, path.string()));
+      if (end.status == "stopped" && reference.status == "finished")
+        study.log.warn(fmt::format("stopped by {} after {} settings; --resume goes on",
+                                   end.reason == "signal" ? "a signal" : "Tradeoff/Time limit",
+                                   end.n_before + n_computed(counts, end)));
     }
   } // namespace
 
@@ -224,63 +284,35 @@ namespace crawler
     const double start = now();
     Log log(rank_of(communicator) == 0, options);
     const Input input = read_input(read_file(communicator, options.file, options.overrides), /*command=*/"tradeoff");
-    const Parameters &parameters            = input.parameters;
-    const auto settings                     = settings_of(input);
+    const TradeoffParameters &own           = input.parameters.tradeoff;
+    const auto settings                     = settings_to_try(input);
     const auto path                         = output_folder(options.output, options.file);
-    const auto is_out_of_time               = [&]() { return now() - start > parameters.tradeoff.time_limit; };
+    const PointTable table                  = tradeoff_table(own.run_time_limit);
     const std::function<bool()> interrupted = [&]() {
-      return stop_signal.arrived_anywhere(MPI_COMM_SELF) || is_out_of_time();
+      return stop_signal.arrived_anywhere(MPI_COMM_SELF) || now() - start > own.time_limit;
     };
-    StudyFolder folder({"tradeoff", {"tradeoff.h5"}, {"Tradeoff/Time limit"}}, path, options, log);
-    auto [done, text] = begin_or_resume(communicator, folder, input, settings.size());
-    const auto n_done = std::count(done.begin(), done.end(), true);
-    log.line(fmt::format("Tradeoff of {}: {} settings on {}{}",
-                         input.file.name(),
-                         settings.size(),
-                         counted(size_of(communicator), "rank"),
-                         n_done > 0 ? fmt::format("; {} are done already", n_done) : ""));
-    for (const std::string &note : input.notes)
-      log.line(note);
-    if (text.empty() || unpack_reference(text).status != "finished")
+    const StudyKind kind = {"tradeoff", {table.file}, {"Tradeoff/Time limit", "Tradeoff/Time limit per run"}};
+    StudyFolder folder(kind, path, options, log);
+    Study study{communicator, input, table, settings, interrupted, options.command_line, folder, log};
+    const TradeoffReference reference = begin(study);
+    const auto n_before               = static_cast<unsigned long>(std::ranges::count(study.done, true));
+    SweepEnd end{reference.status, "", 0., size_of(communicator), n_before, options.command_line};
+    ExitCode code = report(reference, input.parameters.accuracy, log);
+    if (code == ExitCode::finished && !measure_all(study, reference))
+      code = ExitCode::stopped;
+    if (code == ExitCode::stopped)
     {
-      // On every rank alike, so that none has an idle core beside it; the first one's is used.
-      log.line("Making the reference ...");
-      const auto report = [&log](const std::string &line) { log.line(line); };
-      text              = broadcast(pack(make_reference(parameters, interrupted, report)), communicator);
+      end.status = "stopped";
+      end.reason = stop_signal.arrived_anywhere(communicator) ? "signal" : "time_limit";
     }
-    const TradeoffReference reference = unpack_reference(text);
-    const bool has_reference          = reference.status == "finished";
-    if (has_reference)
-      report_reference(reference, parameters, log);
-    if (n_done == 0)
-      on_first_rank(communicator, [&]() {
-        auto attributes                 = provenance(input.effective, options.command_line);
-        attributes[reference_attribute] = text;
-        create_tradeoff_table(path, settings, attributes);
-        return "";
-      });
-
-    const Study study{parameters, input.scene, reference, settings, std::move(done)};
-    const bool is_whole = has_reference && measure_all(communicator, study, path, interrupted, log);
-    ExitCode code       = is_whole ? ExitCode::finished : ExitCode::stopped;
-    if (!has_reference)
-      code = no_reference(reference, log);
     on_first_rank(communicator, [&]() {
       folder.require_in_place();
-      const TradeoffResults results = evaluate(parameters, reference, read_rows(path, settings));
-      const std::string reason      = code != ExitCode::stopped ? "" : is_out_of_time() ? "time_limit" : "signal";
-      write_results(path,
-                    results,
-                    {has_reference && !is_whole ? "stopped" : reference.status,
-                     reason,
-                     now() - start,
-                     static_cast<unsigned int>(size_of(communicator)),
-                     options.command_line},
-                    log);
-      if (has_reference && !is_whole)
-        log.warn(fmt::format("stopped by {} after {} settings; --resume goes on",
-                             reason == "signal" ? "a signal" : "Tradeoff/Time limit",
-                             results.n_tried()));
+      return "";
+    });
+    const SweepCounts counts = write_results_csv(communicator, path, table.file, table.group);
+    end.seconds              = now() - start;
+    on_first_rank(communicator, [&]() {
+      conclude(study, reference, counts, end);
       folder.leave();
       return "";
     });

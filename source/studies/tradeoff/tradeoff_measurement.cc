@@ -4,7 +4,8 @@
 #include <crawler/run/batch.h>
 #include <crawler/run/reduced_model.h>
 #include <crawler/run/self_check.h>
-#include <crawler/studies/core/study.h>
+#include <crawler/studies/core/form.h>
+#include <crawler/studies/sweep/point_table.h>
 #include <crawler/studies/tradeoff/tradeoff_measurement.h>
 #include <crawler/time/failure.h>
 
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <utility>
 
 #ifdef __GLIBC__
 #  include <malloc.h>
@@ -31,199 +31,187 @@ namespace crawler
     constexpr std::size_t batch_size = 8;
     /// The heap is looked at after each of so many steps, and then after every so many.
     constexpr unsigned long looks_at_heap = 64, steps_between_looks = 16;
+
+    /// Processor time of this process [s].
+    double
+    processor_seconds()
+    {
+      return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    }
+
+    /// Bytes of the heap that are in use; not a number where the C library does not say (it does with glibc).
+    double
+    heap_bytes()
+    {
+#ifdef __GLIBC__
+      const struct mallinfo2 info = mallinfo2();
+      return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
+#else
+      return std::nan("");
+#endif
+    }
+
+    /// A setting as it is run.
+    struct Run
+    {
+      const Scene &scene;
+      Parameters parameters;
+      bool is_batch;
+      Numerics numerics = {};
+
+      /// One run on this level or mesh, or a batch of runs that are all alike, of which the first is returned.
+      SimulationResult
+      operator()(const std::function<bool()> &keep_going) const
+      {
+        const bool energy_balance = parameters.output.energy_balance;
+        if (parameters.model != Model::nonlinear)
+          return ReducedModel(scene, parameters.model).compute(parameters.accuracy, energy_balance, keep_going);
+        // A single run is that of crawler run, whose steps end where the last stride begins.
+        const auto gait                   = is_batch ? Simulation::GaitWish::none : Simulation::GaitWish::any;
+        const Simulation::Options options = {.energy_balance = energy_balance, .gait = gait};
+        if (!is_batch)
+          return Simulation(MPI_COMM_SELF, scene, parameters.time, numerics).run({}, options, {}, keep_going);
+        const std::vector<BatchRun> runs(batch_size, {&scene, &parameters.time, &numerics});
+        if (auto results = run_batch(runs, options, keep_going); results[0])
+          return std::move(*results[0]);
+        SimulationResult given_up;
+        given_up.time.status  = Status::failed;
+        given_up.time.reason  = "gave_up";
+        given_up.time.message = "the batch engine gave the run up, which then is for a single run";
+        return given_up;
+      }
+    };
+
+    TradeoffTexts
+    row_of(const TimeOutcome &outcome)
+    {
+      return gap(word_of(outcome.status), outcome.reason, outcome.message);
+    }
+
+    /// The timing; false if it was interrupted.
+    bool
+    time_runs(TradeoffTexts &row, const Run &run, const double first_seconds, const std::function<bool()> &interrupted)
+    {
+      const double n_bodies = run.is_batch ? batch_size : 1.;
+      const bool is_long    = first_seconds > long_run;
+      std::vector<double> seconds(is_long ? 1 : 0, first_seconds / n_bodies);
+      auto repetitions = static_cast<double>(seconds.size());
+      // Short runs are not asked anything: that would be a part of their cost.
+      const auto keep_going = is_long ? std::function<bool()>([&]() { return !interrupted(); }) : nullptr;
+      while (seconds.size() < run.parameters.tradeoff.repetitions)
+      {
+        const double start = processor_seconds();
+        double n           = 0.;
+        double passed      = 0.;
+        for (; passed < shortest_measurement; passed = processor_seconds() - start)
+        {
+          run(keep_going);
+          ++n;
+        }
+        seconds.push_back(passed / (n * n_bodies));
+        repetitions += n;
+        if (interrupted())
+          return false;
+      }
+      std::ranges::sort(seconds);
+      const std::size_t n = seconds.size();
+      const double median = 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]);
+      row["repetitions"]  = to_text(repetitions);
+      row["seconds"]      = to_text(median);
+      row["spread"]       = to_text((seconds.back() - seconds.front()) / median);
+      return true;
+    }
+
+    /// The row, without the entries. Throws what goes wrong.
+    std::optional<TradeoffTexts>
+    measured(Run run, const bool is_adaptive, const std::function<bool()> &interrupted)
+    {
+      const double limit = run.parameters.tradeoff.run_time_limit, end = now() + limit;
+      const auto late = [&]() {
+        auto row = gap("stopped", time_limit_reason, fmt::format("stopped after {:g} s", limit), limit);
+        return interrupted() ? std::nullopt : std::optional(row);
+      };
+      const double start = processor_seconds();
+      if (run.parameters.model == Model::nonlinear)
+      {
+        const auto in_time = [&]() { return now() < end && !interrupted(); };
+        const auto choice  = choose_numerics(MPI_COMM_SELF, run.parameters, run.scene, in_time);
+        if (!choice)
+          return late();
+        run.numerics = choice->numerics;
+      }
+      const double heap_before = heap_bytes(), start_of_run = processor_seconds();
+      double most_heap           = heap_before;
+      unsigned long n_steps      = 0;
+      bool is_out_of_time        = false;
+      auto result                = run([&]() {
+        if (++n_steps <= looks_at_heap || n_steps % steps_between_looks == 0)
+          most_heap = std::fmax(most_heap, heap_bytes());
+        is_out_of_time = now() > end;
+        return !is_out_of_time && !interrupted();
+      });
+      const double first_seconds = processor_seconds() - start_of_run;
+      if (is_out_of_time)
+        return late();
+      if (interrupted())
+        return std::nullopt;
+      check_identities(result, run.parameters);
+      TradeoffTexts row = row_of(result.time);
+      if (is_adaptive)
+        row["choice seconds"] = to_text(start_of_run - start);
+      if (run.parameters.model == Model::nonlinear)
+      {
+        row["steps"]             = to_text(result.time.steps);
+        row["rejected steps"]    = to_text(result.time.rejected_steps);
+        row["newton iterations"] = to_text(result.time.newton_iterations);
+        row["most cells"]        = to_text(std::max(result.most_cells, run.numerics.n_cells));
+      }
+      // A level that does not promise what was asked for has an answer all the same; its message says so.
+      const bool breaks_promise = result.time.reason == "accuracy_not_met" && std::isfinite(result.displacement);
+      if (result.time.status != Status::finished && !breaks_promise)
+        return row;
+      row["status"]       = "finished";
+      row["reason"]       = "";
+      row["message"]      = breaks_promise ? result.time.message : "";
+      row["displacement"] = to_text(result.displacement);
+      row["memory"]       = to_text(most_heap - heap_before);
+      return time_runs(row, run, first_seconds, interrupted) ? std::optional(row) : std::nullopt;
+    }
   } // namespace
 
-  double
-  processor_seconds()
+  TradeoffTexts
+  gap(const std::string &status, const std::string &reason, const std::string &message, const double limit)
   {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+    return {{"status", status},
+            {"reason", reason},
+            {"message", message},
+            {"time limit", to_text(limit)},
+            {"below bar", "false"}};
   }
 
-  double
-  heap_bytes()
+  std::optional<TradeoffTexts>
+  measure(const Input &input,
+          const TradeoffSetting &setting,
+          const std::vector<std::string> &overrides,
+          const std::function<bool()> &interrupted)
   {
-#ifdef __GLIBC__
-    const struct mallinfo2 info = mallinfo2();
-    return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
-#else
-    return TradeoffRow::unknown;
-#endif
-  }
-
-  TradeoffMeasurement::TradeoffMeasurement(const Parameters &parameters,
-                                           const Scene &scene,
-                                           const double size,
-                                           std::function<bool()> interrupted)
-    : parameters_(parameters)
-    , scene_(scene)
-    , size_(size)
-    , interrupted_(std::move(interrupted))
-  {
-  }
-
-  /// One run on this level or mesh, or a batch of runs that are all alike, of which the first is returned.
-  SimulationResult
-  TradeoffMeasurement::run(const Parameters &own, const Numerics &numerics, const KeepGoing &keep_going) const
-  {
-    // A single run is that of crawler run, whose steps end where the last stride begins.
-    const Simulation::Options options = {.energy_balance = own.output.energy_balance,
-                                         .gait           = setting_.is_batch() ? Simulation::GaitWish::none
-                                                                               : Simulation::GaitWish::any};
-    if (setting_.has_no_mesh())
-      return ReducedModel(scene_, own.model).compute(own.accuracy, own.output.energy_balance, keep_going);
-    if (!setting_.is_batch())
-    {
-      Simulation simulation(MPI_COMM_SELF, scene_, own.time, numerics);
-      return simulation.run({}, options, {}, keep_going);
-    }
-    const std::vector<BatchRun> runs(batch_size, {&scene_, &own.time, &numerics});
-    auto results = run_batch(runs, options, keep_going);
-    if (results[0])
-      return std::move(*results[0]);
-    SimulationResult given_up;
-    given_up.time.status  = Status::failed;
-    given_up.time.reason  = "gave_up";
-    given_up.time.message = "the batch engine gave the run up, which then is for a single run";
-    return given_up;
-  }
-
-  std::optional<TradeoffRow>
-  TradeoffMeasurement::measure(const TradeoffSetting &setting)
-  {
-    took_too_long_ = took_too_long_ && same_mesh(setting, setting_);
-    setting_       = setting;
-    TradeoffRow row;
-    row.setting = setting;
     if (!setting.not_offered.empty())
-    {
-      row.not_computed("not offered", "not_offered", setting.not_offered);
-      return row;
-    }
-    if (took_too_long_)
-    {
-      row.not_computed("stopped", time_limit_reason, "not tried: a looser tolerance on this mesh took too long");
-      return row;
-    }
+      return gap("not offered", "not_offered", setting.not_offered);
     try
     {
-      if (!measure(row))
-        return std::nullopt;
+      ParameterFile file = input.file;
+      for (const std::string &one : overrides)
+        file.add_override(one);
+      const Run run{input.scene, Form(file).parameters, setting["engine"] == "batch"};
+      return measured(run, setting["mesh"] == "adaptive", interrupted);
     }
     catch (const InputError &error)
     {
-      row.not_computed("refused", "inadmissible", error.what());
-    }
-    catch (const FileError &error)
-    {
-      row.not_computed("failed", "exception", error.what());
+      return gap("refused", "inadmissible", error.what());
     }
     catch (...)
     {
-      const TimeOutcome failure = failure_of(std::current_exception());
-      row.not_computed(word_of(failure.status), failure.reason, failure.message);
+      return row_of(failure_of(std::current_exception()));
     }
-    return row;
-  }
-
-  /// Fills the row; false if it was interrupted.
-  bool
-  TradeoffMeasurement::measure(TradeoffRow &row)
-  {
-    const double limit = parameters_.tradeoff.run_time_limit, end = now() + limit;
-    const Parameters own = with_setting(parameters_, row.setting, size_);
-    const auto too_long  = [&]() {
-      row.not_computed("stopped", time_limit_reason, fmt::format("stopped after {:g} s", limit));
-      took_too_long_ = true;
-      return !interrupted_();
-    };
-    Numerics numerics;
-    if (!setting_.has_no_mesh())
-    {
-      const double start_of_choice = processor_seconds();
-      const auto choice = choose_numerics(MPI_COMM_SELF, own, scene_, [&]() { return now() < end && !interrupted_(); });
-      if (!choice)
-        return too_long();
-      numerics = choice->numerics;
-      if (setting_.mesh == "adaptive")
-        row.choice_seconds = processor_seconds() - start_of_choice;
-    }
-
-    const double heap_before   = heap_bytes();
-    double most_heap           = heap_before;
-    unsigned long n_steps      = 0;
-    bool is_out_of_time        = false;
-    const double start         = processor_seconds();
-    SimulationResult result    = run(own, numerics, [&]() {
-      if (++n_steps <= looks_at_heap || n_steps % steps_between_looks == 0)
-        most_heap = std::fmax(most_heap, heap_bytes());
-      is_out_of_time = now() > end;
-      return !is_out_of_time && !interrupted_();
-    });
-    const double first_seconds = processor_seconds() - start;
-    if (is_out_of_time)
-      return too_long();
-    if (interrupted_())
-      return false;
-    check_identities(result, own);
-    row.status  = word_of(result.time.status);
-    row.reason  = result.time.reason;
-    row.message = result.time.message;
-    if (!setting_.has_no_mesh())
-    {
-      row.steps             = result.time.steps;
-      row.rejected_steps    = result.time.rejected_steps;
-      row.newton_iterations = result.time.newton_iterations;
-      row.most_cells        = std::max(result.most_cells, numerics.n_cells);
-    }
-    // A level that does not promise what was asked for has an answer all the same.
-    const bool breaks_promise = row.reason == "accuracy_not_met" && std::isfinite(result.displacement);
-    if (row.status != "finished" && !breaks_promise)
-      return true;
-    row.status = "finished";
-    row.reason.clear();
-    if (!breaks_promise)
-      row.message.clear();
-    row.displacement = result.displacement;
-    row.memory       = most_heap - heap_before;
-    return time_runs(row, own, numerics, first_seconds);
-  }
-
-  /// The timing; false if it was interrupted.
-  bool
-  TradeoffMeasurement::time_runs(TradeoffRow &row,
-                                 const Parameters &own,
-                                 const Numerics &numerics,
-                                 const double first_seconds) const
-  {
-    const double n_bodies = row.setting.is_batch() ? batch_size : 1.;
-    const double n_runs   = std::max(1., std::ceil(shortest_measurement / std::max(first_seconds, 1e-9)));
-    std::vector<double> seconds;
-    if (first_seconds > long_run)
-      seconds.push_back(first_seconds / n_bodies);
-    row.repetitions = static_cast<double>(seconds.size());
-    // Short runs are not asked anything: that would be a part of their cost.
-    const KeepGoing keep_going =
-      first_seconds > long_run ? KeepGoing([this]() { return !interrupted_(); }) : KeepGoing();
-    while (seconds.size() < parameters_.tradeoff.repetitions)
-    {
-      const double start = processor_seconds();
-      double n           = 0.;
-      do // the first run may have been slower than the others
-      {
-        run(own, numerics, keep_going);
-        ++n;
-      } while (n < n_runs || processor_seconds() - start < 0.5 * shortest_measurement);
-      seconds.push_back((processor_seconds() - start) / (n * n_bodies));
-      row.repetitions += n;
-      if (interrupted_())
-        return false;
-    }
-    std::sort(seconds.begin(), seconds.end());
-    const std::size_t n = seconds.size();
-    row.seconds         = 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]);
-    row.spread          = (seconds.back() - seconds.front()) / row.seconds;
-    return true;
   }
 } // namespace crawler

@@ -2,7 +2,6 @@
 #include <crawler/accuracy/model_choice.h>
 #include <crawler/base/exceptions.h>
 #include <crawler/base/nearest_name.h>
-#include <crawler/base/plain_numbers.h>
 #include <crawler/mesh/reference_element.h>
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
@@ -11,335 +10,228 @@
 #include <crawler/time/integrators.h>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace crawler
 {
   namespace
   {
+    using Texts = std::vector<std::string>;
+
     /// First steps, relative to the duration, as numerics_choice.cc has them.
     constexpr double multistep_start = 1e-5, one_step_start = 1e-2;
 
-    /// The largest Accuracy.
-    constexpr double loosest_accuracy = 0.1;
+    /// The largest Accuracy, and the largest number in the list Cells.
+    constexpr double loosest_accuracy = 0.1, most_cells = 1e7;
 
-    /// The list of the entry @p entry: what @p read makes of each value; values of which it makes nothing are refused
-    /// with @p expected and a hint.
-    template <typename Read>
-    auto
-    list_of(const std::string &text,
-            const std::string &entry,
-            const std::string &expected,
-            const Read &read,
-            const std::vector<std::string> &known = {})
+    /// The list of this entry: some of these words, or without words numbers below 1, or whole ones up to the largest;
+    /// numbers go from the coarsest mesh or the loosest tolerance on.
+    Texts
+    list_of(const std::string &entry, const std::string &text, const Texts &words, const double largest = 1.)
     {
-      const std::string name = "Tradeoff/" + entry;
-      std::vector<typename decltype(read(text))::value_type> result;
-      for (const std::string &value : parse_values(text, name))
+      const bool is_whole        = largest > 1.;
+      const std::string name     = "Tradeoff/" + entry;
+      const std::string expected = !words.empty() ? quoted_list(words)
+                                   : is_whole     ? fmt::format("a whole number from 1 to {}", largest)
+                                                  : "a number between 0 and 1";
+      Texts values               = parse_values(text, name);
+      for (std::string &value : values)
       {
-        const auto one = read(value);
-        if (!one)
-        {
-          const auto near = nearest_names(value, known, 1);
-          throw InputError(fmt::format("\"{}\": found \"{}\", but {} is expected{}",
-                                       name,
-                                       value,
-                                       expected,
-                                       near.empty() ? "" : "; the nearest is " + quoted_list(near)),
-                           name);
-        }
-        result.push_back(*one);
+        const double x  = to_number(value).value_or(0.);
+        const bool fits = !words.empty() ? std::ranges::find(words, value) != words.end()
+                                         : x > 0. && (is_whole ? x <= largest && x == std::round(x) : x < 1.);
+        const auto near = nearest_names(value, words, 1);
+        std::string why = reason_against(value);
+        if (!why.empty())
+          why = "; it is refused: " + why;
+        else if (!near.empty())
+          why = "; the nearest is " + quoted_list(near);
+        if (!fits)
+          throw InputError(fmt::format("\"{}\": found \"{}\", but {} is expected{}", name, value, expected, why), name);
+        if (words.empty())
+          value = to_text(x);
       }
-      return result;
-    }
-
-    std::vector<std::string>
-    words(const std::string &text, const std::string &entry, const std::vector<std::string> &known)
-    {
-      const auto read = [&](const std::string &value) {
-        return std::find(known.begin(), known.end(), value) != known.end() ? std::optional(value) : std::nullopt;
-      };
-      return list_of(text, entry, quoted_list(known), read, known);
-    }
-
-    std::vector<double>
-    numbers(const std::string &text, const std::string &entry)
-    {
-      auto result = list_of(text, entry, "a number between 0 and 1", [](const std::string &value) {
-        const auto number = to_number(value);
-        return number && *number > 0. && *number < 1. ? number : std::nullopt;
-      });
-      std::sort(result.rbegin(), result.rend());
-      return result;
-    }
-
-    std::vector<unsigned int>
-    whole_numbers(const std::string &text, const std::string &entry, const unsigned int largest)
-    {
-      const auto read = [largest](const std::string &value) {
-        const auto number = to_number(value);
-        return number && *number == std::round(*number) && *number >= 1 && *number <= largest
-                 ? std::optional(static_cast<unsigned int>(*number))
-                 : std::nullopt;
-      };
-      auto result = list_of(text, entry, fmt::format("a whole number from 1 to {}", largest), read);
-      std::sort(result.begin(), result.end());
-      return result;
-    }
-
-    /// The lists of the section, read and sorted.
-    struct Lists
-    {
-      std::vector<std::string> models, formulations, meshes, engines, integrators;
-      std::vector<unsigned int> degrees, cells;
-      std::vector<double> mesh_tolerances, tolerances;
-    };
-
-    /// Names of integrators. What is known against others is said.
-    std::vector<std::string>
-    read_integrators(const Parameters &parameters)
-    {
-      const std::string name = "Tradeoff/Integrators";
-      const auto values      = parse_values(parameters.tradeoff.integrators, name);
-      for (const std::string &value : values)
-        try
-        {
-          if (value == "automatic")
-            throw InputError("\"automatic\" is no integrator, but the name of one is expected");
-          TimeParameters time;
-          time.integrator = value;
-          time.validate();
-        }
-        catch (const InputError &error)
-        {
-          throw InputError(fmt::format("\"{}\": {}", name, error.what()), name);
-        }
+      if (words.empty())
+        std::ranges::sort(values, [&](const std::string &a, const std::string &b) {
+          return is_whole == (*to_number(a) < *to_number(b));
+        });
       return values;
     }
 
-    Formulation
-    formulation_of(const std::string &name)
+    /// The lists of the section by the columns that they fill.
+    std::map<std::string, Texts>
+    read_lists(const TradeoffParameters &texts)
     {
-      return name == "position" ? Formulation::position : Formulation::stretch;
+      Texts names;
+      for (const Integrator &one : integrators())
+        names.push_back(one.name);
+      return {{"model", list_of("Models", texts.models, {"perturbation", "kinematic", "nonlinear"})},
+              {"formulation", list_of("Formulations", texts.formulations, {"position", "stretch"})},
+              {"mesh", list_of("Meshes", texts.meshes, {"uniform", "adaptive"})},
+              {"engine", list_of("Engines", texts.engines, {"fused", "petsc", "batch"})},
+              {"integrator", list_of("Integrators", texts.integrators, names)},
+              {"degree", list_of("Degrees", texts.degrees, {}, ReferenceElement::highest_degree)},
+              {"cells", list_of("Cells", texts.cells, {}, most_cells)},
+              {"mesh tolerance", list_of("Mesh tolerances", texts.mesh_tolerances, {})},
+              {"tolerance", list_of("Tolerances", texts.tolerances, {})}};
     }
 
     /// Why the program cannot do this; empty if it can.
     std::string
     refusal(const TradeoffSetting &setting, const Scene &scene)
     {
-      const bool is_stretch = setting.formulation == "stretch";
+      const bool is_stretch = setting["formulation"] == "stretch", is_adaptive = setting["mesh"] == "adaptive";
       if (const std::string reason = reason_against_stretch_form(scene); is_stretch && !reason.empty())
         return "the stretch form cannot compute this: " + reason;
-      if (is_stretch && (setting.engine != "fused" || setting.mesh != "uniform"))
+      if (is_stretch && (setting["engine"] != "fused" || is_adaptive))
         return "the stretch form is for the fused engine, one run at a time, and for meshes that do not change";
-      if (setting.engine == "petsc")
+      if (setting["engine"] == "petsc")
         return "";
       Numerics numerics;
       numerics.degree         = 1;
       numerics.n_cells        = 1;
-      numerics.formulation    = formulation_of(setting.formulation);
-      numerics.mesh.tolerance = setting.mesh == "adaptive" ? 1. : 0.;
+      numerics.formulation    = is_stretch ? Formulation::stretch : Formulation::position;
+      numerics.mesh.tolerance = is_adaptive ? 1. : 0.;
       TimeParameters time;
-      time.integrator = setting.integrator;
+      time.integrator = setting["integrator"];
       if (!lane_method(scene, time, numerics))
         return fmt::format("the fused engine{} has the radau integrators, on uniform meshes",
-                           setting.is_batch() ? ", which computes batches," : "");
+                           setting["engine"] == "batch" ? ", which computes batches," : "");
       return "";
     }
 
-    /// A level without a mesh: one setting, or several of different Accuracy.
-    void
-    add_reduced(std::vector<TradeoffSetting> &list,
-                const std::string &model,
-                const Lists &lists,
-                const Parameters &parameters,
-                const Scene &scene)
+    /// Each setting with each value.
+    std::vector<TradeoffSetting>
+    combined(const std::vector<TradeoffSetting> &settings, const std::string &column, const Texts &values)
     {
-      TradeoffSetting setting;
-      setting.model = model;
+      std::vector<TradeoffSetting> list;
+      for (const TradeoffSetting &setting : settings)
+        for (const std::string &value : values)
+        {
+          list.push_back(setting);
+          list.back().values[column] = value;
+        }
+      return list;
+    }
+
+    /// A level without a mesh: one setting, or several of different Accuracy.
+    std::vector<TradeoffSetting>
+    reduced(const Parameters &parameters, const Texts &tolerances, const Scene &scene)
+    {
+      TradeoffSetting setting{{{"model", word_of(parameters.model)}}, ""};
       try
       {
-        Parameters own = parameters;
-        own.model      = from_word<Model>(model).value();
-        choose_model(own, scene);
+        choose_model(parameters, scene);
       }
       catch (const InputError &error)
       {
         setting.not_offered = error.what();
-        list.push_back(setting);
-        return;
+        return {setting};
       }
-      setting.tolerance = loosest_accuracy;
-      list.push_back(setting);
-      if (model == "kinematic") // a closed form has no tolerance
-        for (const double tolerance : lists.tolerances)
-          if (tolerance < loosest_accuracy)
-          {
-            setting.tolerance = tolerance;
-            list.push_back(setting);
-          }
-    }
-
-    /// Every mesh of one degree with every tolerance.
-    void
-    add_meshes(std::vector<TradeoffSetting> &list, TradeoffSetting setting, const Lists &lists)
-    {
-      const bool is_adaptive = setting.mesh == "adaptive";
-      for (std::size_t i = 0; i < (is_adaptive ? lists.mesh_tolerances.size() : lists.cells.size()); ++i)
-        for (const double tolerance : lists.tolerances)
-        {
-          if (is_adaptive)
-            setting.mesh_tolerance = lists.mesh_tolerances[i];
-          else
-            setting.cells = lists.cells[i];
-          setting.tolerance = tolerance;
-          list.push_back(setting);
-        }
-    }
-
-    Lists
-    read_lists(const Parameters &parameters)
-    {
-      const TradeoffParameters &texts = parameters.tradeoff;
-      Lists lists;
-      lists.models          = words(texts.models, "Models", {"perturbation", "kinematic", "nonlinear"});
-      lists.formulations    = words(texts.formulations, "Formulations", {"position", "stretch"});
-      lists.meshes          = words(texts.meshes, "Meshes", {"uniform", "adaptive"});
-      lists.engines         = words(texts.engines, "Engines", {"fused", "petsc", "batch"});
-      lists.integrators     = read_integrators(parameters);
-      lists.degrees         = whole_numbers(texts.degrees, "Degrees", ReferenceElement::highest_degree);
-      lists.cells           = whole_numbers(texts.cells, "Cells", 10000000);
-      lists.mesh_tolerances = numbers(texts.mesh_tolerances, "Mesh tolerances");
-      lists.tolerances      = numbers(texts.tolerances, "Tolerances");
-      return lists;
+      Texts accuracies = {to_text(loosest_accuracy)};
+      if (parameters.model == Model::kinematic) // a closed form has no tolerance
+        std::ranges::copy_if(tolerances, std::back_inserter(accuracies), [](const std::string &tolerance) {
+          return *to_number(tolerance) < loosest_accuracy;
+        });
+      return combined({setting}, "tolerance", accuracies);
     }
   } // namespace
 
-  bool
-  same_mesh(const TradeoffSetting &a, const TradeoffSetting &b)
+  const std::vector<SettingColumn> &
+  setting_columns()
   {
-    const auto same = [](const double x, const double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
-    return a.model == b.model && a.formulation == b.formulation && a.mesh == b.mesh && a.engine == b.engine &&
-           a.integrator == b.integrator && a.degree == b.degree && a.cells == b.cells &&
-           same(a.mesh_tolerance, b.mesh_tolerance);
+    static const std::vector<SettingColumn> columns = {
+      {{"model", "", "level of the model", 16}, "Model"},
+      {{"formulation", "", "position or stretch", 16}, "Discretization/Formulation"},
+      {{"mesh", "", "uniform or adaptive", 16}, "Discretization/Mesh"},
+      {{"engine", "", "fused, petsc, or batch: 8 bodies side by side by the fused engine", 16}, "Time/Engine"},
+      {{"integrator", "", "time integrator", 24}, "Time/Integrator"},
+      {{"degree", "1", "polynomial degree"}, "Discretization/Degree"},
+      {{"cells", "1", "cells of a uniform mesh"}, "Discretization/Number of cells"},
+      {{"mesh tolerance", "1", "of an adaptive mesh, relative to the square of the strain"},
+       "Discretization/Mesh tolerance"},
+      {{"tolerance", "1", "time tolerance over the size of the displacement; of a level without a mesh: Accuracy"},
+       "Time/Tolerance"}};
+    return columns;
   }
 
   std::string
-  in_words(const TradeoffSetting &s)
+  TradeoffSetting::operator[](const std::string &column) const
   {
-    if (s.has_no_mesh())
-      return fmt::format(
-        "model {}{}", s.model, std::isnan(s.tolerance) ? "" : fmt::format(", Accuracy {:g}", s.tolerance));
-    std::vector<std::string> parts;
-    for (const std::string &word : {s.formulation, s.engine, s.integrator})
-      if (!word.empty())
-        parts.push_back(word);
-    if (s.degree > 0)
-      parts.push_back(fmt::format("degree {}", s.degree));
-    if (s.cells > 0)
-      parts.push_back(counted(s.cells, "cell"));
-    if (s.mesh == "adaptive")
-      parts.push_back(std::isnan(s.mesh_tolerance) ? std::string("adaptive mesh")
-                                                   : fmt::format("adaptive mesh of tolerance {:g}", s.mesh_tolerance));
-    if (!std::isnan(s.tolerance))
-      parts.push_back(fmt::format("tolerance {:g} of the displacement", s.tolerance));
-    return fmt::format("{}", fmt::join(parts, ", "));
+    const auto found = values.find(column);
+    return found == values.end() ? "" : found->second;
+  }
+
+  bool
+  same_mesh(TradeoffSetting a, TradeoffSetting b)
+  {
+    a.values.erase("tolerance");
+    b.values.erase("tolerance");
+    return a.values == b.values;
   }
 
   std::vector<TradeoffSetting>
-  settings_to_try(const Parameters &parameters, const Scene &scene)
+  settings_to_try(const Input &input)
+  try
   {
-    const Lists lists = read_lists(parameters);
-    std::vector<TradeoffSetting> list;
-    for (const std::string &model : lists.models)
-      if (model != "nonlinear")
-        add_reduced(list, model, lists, parameters, scene);
-    if (std::find(lists.models.begin(), lists.models.end(), "nonlinear") == lists.models.end())
-      return list;
-    for (const std::string &formulation : lists.formulations)
-      for (const std::string &mesh : lists.meshes)
-        for (const std::string &engine : lists.engines)
-          for (const std::string &integrator : lists.integrators)
-          {
-            TradeoffSetting setting;
-            setting.formulation = formulation;
-            setting.mesh        = mesh;
-            setting.engine      = engine;
-            setting.integrator  = integrator;
-            setting.not_offered = refusal(setting, scene);
-            if (!setting.not_offered.empty())
-            {
-              list.push_back(setting);
-              continue;
-            }
-            for (const unsigned int degree : formulation == "stretch" ? std::vector<unsigned int>{1} : lists.degrees)
-            {
-              setting.degree = degree;
-              add_meshes(list, setting, lists);
-            }
-          }
+    const Scene &scene = input.scene;
+    Parameters own     = input.parameters;
+    own.model          = Model::nonlinear; // the reference needs the whole equation
+    choose_model(own, scene);
+    auto lists = read_lists(own.tradeoff);
+    std::vector<TradeoffSetting> list, ways;
+    const auto add = [&list](const std::vector<TradeoffSetting> &more) {
+      list.insert(list.end(), more.begin(), more.end());
+    };
+    for (const std::string &model : lists["model"])
+      if (own.model = from_word<Model>(model).value(); own.model == Model::nonlinear)
+        ways.push_back({{{"model", model}}, ""});
+      else
+        add(reduced(own, lists["tolerance"], scene));
+    for (const char *column : {"formulation", "mesh", "engine", "integrator"}) // the last one varies fastest
+      ways = combined(ways, column, lists[column]);
+    for (TradeoffSetting &way : ways)
+    {
+      way.not_offered        = refusal(way, scene);
+      const std::string size = way["mesh"] == "adaptive" ? "mesh tolerance" : "cells";
+      const Texts degrees    = way["formulation"] == "stretch" ? Texts{"1"} : lists["degree"];
+      if (way.not_offered.empty())
+        add(combined(combined(combined({way}, "degree", degrees), size, lists[size]), "tolerance", lists["tolerance"]));
+      else
+        add({way});
+    }
     return list;
   }
-
-  Parameters
-  with_setting(const Parameters &parameters, const TradeoffSetting &setting, const double size)
+  catch (const InputError &error)
   {
-    Parameters result = parameters;
-    result.model      = from_word<Model>(setting.model).value();
-    if (setting.has_no_mesh())
-    {
-      result.accuracy = setting.tolerance;
-      return result;
-    }
-    result.discretization.formulation = from_word<FormulationEntry>(setting.formulation).value();
-    result.discretization.mesh        = from_word<MeshKind>(setting.mesh).value();
-    result.discretization.degree      = setting.degree;
-    if (setting.mesh == "adaptive")
-      result.discretization.mesh_tolerance = setting.mesh_tolerance;
-    else
-      result.discretization.n_cells = setting.cells;
-    result.time.integrator   = setting.integrator;
-    result.time.engine       = setting.engine == "petsc" ? Engine::petsc : Engine::automatic;
-    result.time.step_control = StepControl::adaptive;
-    result.time.cycle_stop   = CycleStopMode::off; // its error is no matter of the setting
-    result.time.tolerance    = std::stod(fmt::format("{:.5e}", setting.tolerance * size));
-    if (!result.time.initial_step)
-      result.time.initial_step =
-        (setting.integrator.starts_with("radau") ? one_step_start : multistep_start) * parameters.time.end_time;
-    return result;
+    throw input.file.with_place(error);
   }
 
-  std::string
-  as_prm(const Parameters &parameters, const TradeoffSetting &setting)
+  Texts
+  overrides(const TradeoffSetting &setting, const Parameters &parameters, const double size)
   {
-    if (setting.has_no_mesh())
-      return fmt::format(
-        "set Model    = {}\nset Accuracy = {}\n", word_of(parameters.model), to_text(parameters.accuracy));
-    const DiscretizationParameters &d = parameters.discretization;
-    const TimeParameters &t           = parameters.time;
-    std::string text                  = fmt::format("subsection Discretization\n"
-                                                    "  set Formulation     = {}\n  set Mesh            = {}\n"
-                                                    "  set Degree          = {}\n",
-                                   word_of(d.formulation),
-                                   word_of(d.mesh),
-                                   d.degree.value());
-    if (setting.mesh == "adaptive")
-      text += fmt::format("  set Mesh tolerance  = {}\n", to_text(d.mesh_tolerance.value()));
-    if (d.n_cells)
-      text += fmt::format("  set Number of cells = {}\n", *d.n_cells);
-    text += fmt::format("end\nsubsection Time\n  set Integrator      = {}\n  set Engine          = {}\n",
-                        t.integrator,
-                        word_of(t.engine));
-    if (t.integrator == "bdf")
-      text += fmt::format("  set Order           = {}\n", t.order);
-    return text + fmt::format("  set Step control    = {}\n  set Cycle stop      = {}\n  set Tolerance       = {}\n  "
-                              "set Initial step    = {}\nend\n",
-                              word_of(t.step_control),
-                              word_of(t.cycle_stop),
-                              to_text(t.tolerance.value()),
-                              to_text(t.initial_step.value()));
+    if (!setting.not_offered.empty())
+      return {};
+    if (setting["model"] != "nonlinear")
+      return {"Model=" + setting["model"], "Accuracy=" + setting["tolerance"]};
+    Texts list = {"Time/Step control=adaptive", "Time/Cycle stop=off"}; // its error is no matter of the setting
+    for (const auto &[column, entry] : setting_columns())
+    {
+      std::string value = setting[column.name];
+      if (value.empty())
+        continue;
+      if (entry == "Time/Tolerance")
+        value = to_text(std::stod(fmt::format("{:.5e}", *to_number(value) * size)));
+      else if (entry == "Time/Engine" && value != "petsc")
+        value = "automatic";
+      list.push_back(entry + "=" + value);
+    }
+    const double start = setting["integrator"].starts_with("radau") ? one_step_start : multistep_start;
+    if (!parameters.time.initial_step)
+      list.push_back("Time/Initial step=" + to_text(start * parameters.time.end_time));
+    return list;
   }
 } // namespace crawler

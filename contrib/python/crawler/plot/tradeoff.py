@@ -4,20 +4,22 @@
 
     contrib/python/crawler/plot/tradeoff.py OUTPUT_FOLDER [--output PICTURE]
 
-Reads tradeoff.csv and summary.json of the folder and writes tradeoff.png and tradeoff.svg there (or PICTURE); needs
-numpy and matplotlib. Colours are formulation, mesh and engine; integrators differ by their markers.
+Reads tradeoff.csv and summary.json of the folder and writes tradeoff.png and tradeoff.svg there (or PICTURE), and before
+that, where they are missing, the recommendations: into summary.json and recommendations.prm. Needs numpy and matplotlib.
+Colours are formulation, mesh and engine; integrators differ by their markers.
 """
 import collections
-import json
-import math
 
-from plotting import INK, InputError, existing, need, number, parser, read_rows, run_script, save
+from plotting import INK, InputError, need, parser, results, run_script, save
 
 need("numpy", "matplotlib")
+results()  # where the package is
 import matplotlib.pyplot as plt
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator, NullLocator
+
+from crawler.tradeoff import complete, number, pareto_front, read_rows
 
 # What computes: colour. Names are (formulation, mesh, engine) of the table.
 WAYS = {("position", "uniform", "fused"): ("position, fused engine", "#0072B2"),
@@ -35,13 +37,10 @@ class Tradeoff:
     """The rows of tradeoff.csv, and the summary."""
 
     def __init__(self, folder):
-        path = existing(folder / "tradeoff.csv", "the output folder of crawler tradeoff")
-        self.rows = read_rows(path)
-        summary = folder / "summary.json"
-        self.summary = json.loads(summary.read_text(encoding="utf-8")) if summary.is_file() else {}
+        self.rows, self.summary = read_rows(folder), complete(folder)
         self.finished = [row for row in self.rows if row["status"] == "finished"]
         if not self.finished:
-            raise InputError(f"{path} has no setting that finished")
+            raise InputError(f"{folder / 'tradeoff.csv'} has no setting that finished")
         self.integrators = list(dict.fromkeys(row["integrator"] for row in self.finished if row["integrator"]))
 
     def gaps(self):
@@ -50,18 +49,13 @@ class Tradeoff:
 
     def front(self, batch):
         """Times and errors on the Pareto front of single runs or batches, the cheapest first."""
-        return sorted((number(row["seconds"]), number(row["shown error"])) for row in self.finished
-                      if row["pareto"] == "true" and (row["engine"] == "batch") == batch)
+        rows = [self.rows[i] for i in self.summary.get("pareto", [])]
+        return sorted((number(row["seconds"]), number(row["shown error"])) for row in rows if (row["engine"] == "batch") == batch)
 
 
 def envelope(points):
     """Of points (time, error) those that no other one beats, the cheapest first."""
-    best, result = math.inf, []
-    for time, error in sorted(points):
-        if error < best:
-            best = error
-            result.append((time, error))
-    return result
+    return [points[i] for i in pareto_front(*zip(*points))]
 
 
 def way_of(row):
@@ -107,7 +101,7 @@ def draw_fronts(axes, tradeoff):
 
 def draw_bar(axes, tradeoff):
     """The errors that cannot be told from 0."""
-    bar = tradeoff.summary.get("reference", {}).get("relative_bar")
+    bar = (tradeoff.summary.get("reference") or {}).get("relative_bar")
     if not bar:
         return []
     low = min(bar / 3, min(number(row["shown error"]) for row in tradeoff.finished) / 2)

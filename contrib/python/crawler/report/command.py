@@ -8,6 +8,7 @@ import sys
 
 from ..needs import InputError, Parser, write_whole
 from ..results import entries_of
+from ..tradeoff import evaluate, read_rows
 from .folder import data_of_fit, fits_within, parameters_in, run_in, runs_within, summary_in, table_in, text_of, units_of
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -63,6 +64,8 @@ def data_of(folder, kind):
         return {**data, "runs": [], "fits": fits_within(folder, data["summary"] or {})}
     if table and (folder / table).exists():
         data["table"] = table_in(folder / table, group) if group else data_of_fit(folder / table, data["summary"] or {})
+    if name == "tradeoff" and (folder / "tradeoff.csv").exists() and "advice" not in (data["summary"] or {"advice": []}):
+        data["summary"].update(evaluate(read_rows(folder)))
     if name == "run":
         return {**data, "runs": [run_in(folder, "", TIMES)]}
     within = runs_within(folder, "points" if name in ("sweep", "atlas") else "")

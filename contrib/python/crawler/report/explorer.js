@@ -4,11 +4,11 @@ const NOUN = {tradeoff: 'setting', optimisation: 'gait', fit: 'measured number'}
 const GOOD = ['finished', 'agree']; // green
 
 class Explorer {
-  /** @p table: that of the page; axes: names of what was varied; first: {x, y, colour}; frame(explorer) may know better
+  /** @p table: that of the page; axes: names of what was varied; first: {x, y, colour}; logarithmic: names of columns; frame(explorer) may know better
    *  axes, decorate(chart, explorer) draws more, details(panel, row, explorer) says what a row is; rows that fades(row, explorer)
    *  are grey. */
-  constructor(parent, table, {axes, first, frame, fades, decorate, details, status}) {
-    Object.assign(this, {parent, rows: table.rows, axes, frame, fades, decorate, details, columns: columnsOf(table.columns), filters: {}, selected: null});
+  constructor(parent, table, {axes, first, frame, fades, decorate, details, status, logarithmic = []}) {
+    Object.assign(this, {parent, rows: table.rows, axes, logarithmic, frame, fades, decorate, details, columns: columnsOf(table.columns), filters: {}, selected: null});
     this.statusName = status;
     this.index = this.columns.get('index');
     const numeric = [...this.columns.values()].filter(column => column.different().length > 1 || axes.includes(column.name));
@@ -127,7 +127,7 @@ class Explorer {
       const [low, high] = range(this.list.map(row => column.number(row)));
       const list = column.different(), n = list.length - 1, step = Math.log(list[n] / list[0]) / n;
       const geometric = n > 1 && list.every((value, i) => i === 0 || Math.abs(Math.log(value / list[i - 1]) / step - 1) < 0.01);
-      const log = low > 0 && (geometric || high / low > 1000);
+      const log = low > 0 && (geometric || high / low > 1000 || this.logarithmic.includes(column.name));
       const part = this.cells ? 0.5 / (key === 'x' ? this.cells.xs : this.cells.ys).length : 0.04;
       return {...padded([low, high], log, part), title};
     };

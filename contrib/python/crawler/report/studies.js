@@ -155,13 +155,13 @@ const inTime = seconds => !known(seconds) ? '–' : seconds < 1e-3 ? `${show(sec
 /** Pareto fronts, and the errors that cannot be told from 0. */
 function drawFronts(chart, explorer) {
   if (explorer.x !== 'seconds' || explorer.y !== 'shown error') return;
-  const [x, y, front, engine] = ['seconds', 'shown error', 'pareto', 'engine'].map(name => explorer.columns.get(name)), bar = at(summary, 'reference.relative_bar');
+  const [x, y, engine] = ['seconds', 'shown error', 'engine'].map(name => explorer.columns.get(name)), front = new Set(summary.pareto ?? []), bar = at(summary, 'reference.relative_bar');
   if (known(bar)) {
     chart.context.fillStyle = ink('raised');
     chart.context.fillRect(0, chart.y(bar), chart.width, chart.height);
   }
   [false, true].forEach((batch, i) => {
-    const rows = explorer.list.filter(row => front.value(row) === 'true' && (engine.value(row) === 'batch') === batch).sort((a, b) => x.number(a) - x.number(b));
+    const rows = explorer.list.filter(row => front.has(explorer.index.value(row)) && (engine.value(row) === 'batch') === batch).sort((a, b) => x.number(a) - x.number(b));
     chart.context.setLineDash(i ? [6, 4] : []);
     chart.polyline(rows.map(row => x.number(row)), rows.map(row => y.number(row)), ink('ink'), {steps: true, width: 1.3});
     chart.context.setLineDash([]);
@@ -171,15 +171,16 @@ function drawFronts(chart, explorer) {
 function showTradeoff() {
   const {reference} = summary, all = [...(summary.recommendations ?? []).map(one => [one, false]), ...(summary.batch_recommendations ?? []).map(one => [one, true])];
   if (reference) section('', el('p', {}, 'Reference: displacement ', exactly(reference.displacement, showWith(reference.displacement, reference.bar)), ` ± ${show(reference.bar, 2)}`,
-    ` by ${reference.answer?.method ?? '?'}${reference.check ? `, checked by ${reference.check.method}` : ' alone'}. ${summary.tried} of ${summary.settings} settings were tried.`));
+    ` by ${reference.answer?.method ?? '?'}${reference.check.method ? `, checked by ${reference.check.method}` : ' alone'}. ${summary.points - (summary.statuses.missing ?? 0)} of ${summary.points} settings were tried.`));
   if (all.length) section('What to use', el('p', {class: 'soft'}, 'The cheapest setting that is good enough; click for its lines of the parameter file.'), el('div', {class: 'scroll'}, el('table', {},
     el('thead', {}, el('tr', {}, ...['for', 'setting', 'error', 'time of a run'].map(name => el('th', {}, name)))), el('tbody', {}, ...all.map(([one, batch]) => el('tr', {},
       el('td', {class: 'value'}, tickText(one.accuracy, true), batch ? ' in a batch' : ''), el('td', {class: 'entry'}, one.prm ? el('details', {style: 'margin:0'}, el('summary', {}, one.setting), el('pre', {}, one.prm)) : one.setting),
       el('td', {class: 'value'}, exactly(one.error, show(one.error, 2))), el('td', {class: 'value'}, exactly(one.seconds, inTime(one.seconds)))))))));
   const box = section('All settings');
   if (!page.table) { box.append(el('p', {}, 'There is no table of settings: it is written at the end.')); return; }
-  const explorer = new Explorer(box, page.table, {axes: [], status: 'status', decorate: drawFronts, first: {x: ['seconds'], y: ['shown error'], colour: ['engine', 'model']},
-    details: (panel, row, own) => panel.append(el('p', {}, ['model', 'formulation', 'mesh', 'engine', 'integrator'].map(name => own.columns.get(name)?.value(row)).filter(Boolean).join(', '), '; ', own.columns.get('message')?.value(row) ?? ''))});
+  const explorer = new Explorer(box, page.table, {axes: [], status: 'status', decorate: drawFronts, logarithmic: ['seconds', 'shown error', 'memory'], first: {x: ['seconds'], y: ['shown error'], colour: ['engine', 'model']},
+    details: (panel, row, own) => panel.append(el('p', {}, ['model', 'formulation', 'mesh', 'engine', 'integrator'].map(name => own.columns.get(name)?.value(row)).filter(Boolean).join(', '), '; ', own.columns.get('message')?.value(row) ?? ''),
+      el('pre', {tabindex: 0}, (own.columns.get('entries')?.value(row) ?? '').replaceAll('; ', '\n')))});
   box.append(el('p', {class: 'soft small'}, 'Lines: the Pareto fronts of single runs and (dashed) of batches. Shaded: errors below the uncertainty of the reference.'));
   reasonsOfRows(explorer, 'reason');
 }

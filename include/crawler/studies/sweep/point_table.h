@@ -3,11 +3,14 @@
 
 #include <crawler/base/row_file.h>
 #include <crawler/studies/core/study_folder.h>
+#include <crawler/studies/sweep/sweep_inputs.h>
 #include <crawler/studies/sweep/sweep_points.h>
 
 #include <mpi.h>
 
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,16 +46,31 @@ namespace crawler
   RowFile::Known
   known_columns(const std::vector<RowFile::Column> &columns, const SweepDesign &design);
 
-  /// Which rows of @p table are there and whole; the log gets a warning of those that are damaged (one process).
-  std::vector<bool>
-  rows_done(const RowReader &rows, const PointTable &table, Log &log);
+  /// What a study knows of its rows before it computes any.
+  struct PlannedRows
+  {
+    unsigned long n;
+    RowFile::Known known;                         ///< index and axes
+    SweepInputs inputs;                           ///< what the rows depend on
+    std::string effective;                        ///< all entries as they are used, as a .prm file
+    std::map<std::string, std::string> more = {}; ///< attributes that are kept with them
+  };
 
-  /// Rows of other versions of the libraries may differ from those that are computed now.
+  /// Makes the table without rows (one process).
   void
-  warn_of_other_versions(StudyFolder &folder, const PointTable &table);
+  create_table(const std::filesystem::path &folder,
+               const PointTable &table,
+               const PlannedRows &plan,
+               const std::string &command_line);
 
-  /// Makes the files of a new study, or, with --resume, looks for one that is the same. Returns which points have a
-  /// row. Throws as StudyFolder::begin() and resume() (one process).
+  /// Makes the files of a new study, or, with --resume, looks for one that is the same. Returns which rows are there.
+  /// Throws as StudyFolder::begin() and resume() (one process).
+  std::vector<bool>
+  begin_or_resume(StudyFolder &folder,
+                  const PointTable &table,
+                  const ParameterFile &file,
+                  const PlannedRows &plan,
+                  const std::string &command_line);
   std::vector<bool>
   begin_or_resume(StudyFolder &folder,
                   const PointTable &table,

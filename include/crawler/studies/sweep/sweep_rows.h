@@ -45,10 +45,13 @@ namespace crawler
     unsigned long n_points = 0;
   };
 
-  /// Writes results.csv from results.h5, in parts of some rows each, which the ranks share (collective); the counts are
-  /// known on rank 0. Throws FileError, on all ranks.
+  /// Writes the table as comma-separated values beside it (results.csv of results.h5), in parts of some rows each,
+  /// which the ranks share (collective); the counts are known on rank 0. Throws FileError, on all ranks.
   SweepCounts
-  write_results_csv(MPI_Comm communicator, const std::filesystem::path &folder);
+  write_results_csv(MPI_Comm communicator,
+                    const std::filesystem::path &folder,
+                    const std::string &file  = sweep_file,
+                    const std::string &group = sweep_group);
 
   /// How a sweep ended.
   struct SweepEnd

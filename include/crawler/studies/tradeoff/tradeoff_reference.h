@@ -3,6 +3,8 @@
 
 #include <crawler/studies/core/parameters.h>
 
+#include <nlohmann/json.hpp>
+
 #include <functional>
 #include <string>
 
@@ -16,41 +18,27 @@ namespace crawler
     double error_bound  = 0.; ///< [length]
   };
 
-  /// The displacement that the errors of a tradeoff are measured against.
+  /// The displacement that the errors of a tradeoff are measured against; also as JSON.
   struct TradeoffReference
   {
     TradeoffAnswer answer, check; ///< the reference, and what a method gives that shares as little with it as possible
-    double bar  = 0.;             ///< errors below this cannot be told from 0 [length]
-    double size = 0.;             ///< errors are relative to this [length]
-    // Without a reference: status (failed, inverted, stopped) and why.
+    double displacement = 0.;     ///< that of the answer [length]
+    double bar          = 0.;     ///< errors below this cannot be told from 0 [length]
+    double size         = 0.;     ///< errors are relative to this [length]
+    double relative_bar = 0.;
+    // Without a reference: failed or inverted, and why, or stopped.
     std::string status = "finished", message;
-
-    bool
-    is_checked() const
-    {
-      return !check.method.empty();
-    }
-    double
-    relative_bar() const
-    {
-      return bar / size;
-    }
   };
+  NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TradeoffAnswer, method, displacement, error_bound)
+  NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(
+    TradeoffReference, answer, check, displacement, bar, size, relative_bar, status, message)
 
   /**
    * The reference of the nonlinear model: the answer with numerics that the program chooses, for the smallest Accuracy
    * from 1e-12 on that it reaches within twice the time limit of a run; checked by the position form of degree 7 by
    * radau 5 on PETSc, from 1e-10 on. The bar is the distance of the two, plus the error bound of the reference, plus
-   * 1e-14 for round-off. Errors are relative to what Accuracy is relative to. @p report gets a line for each answer.
+   * 1e-14 for round-off. Errors are relative to what Accuracy is relative to.
    */
   TradeoffReference
-  make_reference(const Parameters &parameters,
-                 const std::function<bool()> &interrupted,
-                 const std::function<void(const std::string &)> &report);
-
-  /// As a text (JSON), and back.
-  std::string
-  pack(const TradeoffReference &reference);
-  TradeoffReference
-  unpack_reference(const std::string &text);
+  make_reference(const Parameters &parameters, const std::function<bool()> &interrupted);
 } // namespace crawler

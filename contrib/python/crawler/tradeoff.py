@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the rows of a tradeoff mean together: Pareto fronts, and which setting to use for which accuracy.
+
+    python3 contrib/python/crawler tradeoff FOLDER
+
+adds that to the files of the folder. A row is a dict of the texts in tradeoff.csv; rows of one mesh follow each other, from the loosest tolerance on.
+"""
+import collections
+import csv
+import json
+import math
+import pathlib
+import sys
+
+from . import to_prm
+from .needs import InputError, write_whole
+
+EXPONENTS = range(2, 15)  # recommendations are for errors of 1e-2, 1e-3, ...
+OF_A_SETTING = ("model", "formulation", "mesh", "engine", "integrator", "degree", "cells", "mesh tolerance")  # and the tolerance
+
+
+def number(text):
+    """What is not known is not a number."""
+    return float(text) if text not in ("", None) else math.nan
+
+
+def pareto_front(costs, errors):
+    """The places of those points that no other one beats, the cheapest first: none is as cheap and as good and better in one
+    of the two. Of equal points the first counts; points that are not numbers are never on the front."""
+    best, front = math.inf, []
+    for cost, error, i in sorted((*point, i) for i, point in enumerate(zip(costs, errors)) if not any(map(math.isnan, point))):
+        if error < best:
+            best = error
+            front.append(i)
+    return front
+
+
+def safe_errors(rows):
+    """For each row the largest error of it and of all tighter tolerances on its mesh; infinite if one of them failed."""
+    def mesh(row):
+        return [row[name] for name in OF_A_SETTING]
+
+    safe, last = [], None
+    for row in reversed(rows):
+        # A tighter tolerance for which there was no time says nothing against the looser ones.
+        own = number(row["shown error"]) if row["status"] == "finished" else 0.0 if row["reason"] == "time_limit" else math.inf
+        safe.append(max(own, safe[-1]) if last is not None and mesh(row) == mesh(last) else own)
+        last = row
+    return safe[::-1]
+
+
+def recommend(rows, batch=False):
+    """[(exponent, place of the row)]: for errors of 10^-exponent the cheapest setting that is safe, as far as there is one. A
+    lucky error is not recommended, nor a level whose own estimate of its error (the message) is larger than it promises."""
+    candidates = [(number(row["seconds"]), i, safe) for i, (row, safe) in enumerate(zip(rows, safe_errors(rows)))
+                  if row["status"] == "finished" and not row["message"] and (row["engine"] == "batch") == batch]
+    found = []
+    for exponent in EXPONENTS:
+        good = [(seconds, i) for seconds, i, safe in candidates if safe <= float(f"1e-{exponent}")]
+        if not good:
+            break
+        found.append((exponent, min(good)[1]))
+    return found
+
+
+def setting_in_words(row):
+    """ "position, fused, radau 5, degree 4, 8 cells, tolerance 1e-05 of the displacement" """
+    tolerance = number(row["tolerance"])
+    if row["model"] != "nonlinear":
+        return f"model {row['model']}, Accuracy {tolerance:g}"
+    cells = number(row["cells"])
+    mesh = f"adaptive mesh of tolerance {number(row['mesh tolerance']):g}" if row["mesh"] == "adaptive" else \
+        f"{cells:g} cell{'s' if cells != 1 else ''}"
+    return f"{row['formulation']}, {row['engine']}, {row['integrator']}, degree {number(row['degree']):g}, {mesh}, " \
+           f"tolerance {tolerance:g} of the displacement"
+
+
+def cost_in_words(row):
+    """ "error 1.2e-05, 0.2 ms, 34 kB" """
+    seconds, memory = number(row["seconds"]), number(row["memory"])
+    bar = "below the bar of " if row["below bar"] == "true" else ""
+    time = f"{1e6 * seconds:.3g} us" if seconds < 1e-3 else f"{1e3 * seconds:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
+    return f"error {bar}{number(row['shown error']):.1e}, {time}{' a body' if row['engine'] == 'batch' else ''}" + (
+        "" if math.isnan(memory) else f", {memory / 1e3:.0f} kB")
+
+
+def block(row):
+    """The setting as lines of a parameter file."""
+    return to_prm(dict(entry.split("=", 1) for entry in row["entries"].split("; ")))
+
+
+def items(rows, found):
+    """Recommendations as summary.json has them; batches have no parameter file."""
+    def known(value):
+        return None if math.isnan(value) else value
+
+    return [{"accuracy": float(f"1e-{exponent}"), "index": i, "setting": setting_in_words(rows[i]),
+             **{name: known(number(rows[i][name])) for name in ("error", "seconds", "memory")},
+             "prm": None if rows[i]["engine"] == "batch" else block(rows[i])} for exponent, i in found]
+
+
+def lines(rows, found, words):
+    """A line for each setting that is recommended, whose accuracies stand at the place of {}."""
+    exponents = collections.defaultdict(list)
+    for exponent, i in found:
+        exponents[i].append(f"1e-{exponent}")
+    return [f"{words.format(' and '.join(of))}{setting_in_words(rows[i])}: {cost_in_words(rows[i])}" for i, of in exponents.items()]
+
+
+def evaluate(rows):
+    """What summary.json has besides what the program writes: pareto, the places of the rows on the front of single runs and on
+    that of batches; recommendations and batch_recommendations; advice, sentences."""
+    fronts, found = [], []
+    for batch in (False, True):
+        own = [i for i, row in enumerate(rows) if row["status"] == "finished" and (row["engine"] == "batch") == batch]
+        front = pareto_front(*([number(rows[i][name]) for i in own] for name in ("seconds", "shown error")))
+        fronts += [own[place] for place in front]
+        found.append(recommend(rows, batch))
+    below = sum(row["below bar"] == "true" for row in rows)
+    gaps = collections.Counter(row["reason"] for row in rows if row["reason"])
+    advice = [f"{sum(row['status'] == 'finished' for row in rows)} settings finished, {below} of them below the bar, {len(fronts)} on the "
+              f"Pareto fronts; gaps: {', '.join(f'{reason} {n}' for reason, n in sorted(gaps.items())) or 'none'}.",
+              *lines(rows, found[0], "For {} use "), *lines(rows, found[1], "Many bodies, for {}: ")]
+    if not found[0]:
+        advice.append("No single run has a displacement that is good for 1e-2: there is nothing to recommend.")
+    return {"pareto": sorted(fronts), "recommendations": items(rows, found[0]), "batch_recommendations": items(rows, found[1]),
+            "advice": advice}
+
+
+def recommendations_prm(rows):
+    """Blocks for a parameter file, each with a comment that says what it costs."""
+    text = ("# The cheapest settings that crawler tradeoff has found for this scene. Copy the block that you want into the\n"
+            "# parameter file; errors are relative, costs are processor time of a run without snapshots.\n")
+    return text + "".join(f"\n# For 1e-{exponent}: {cost_in_words(rows[i])}\n{block(rows[i])}" for exponent, i in recommend(rows))
+
+
+def read_rows(folder):
+    """The rows of tradeoff.csv. Raises InputError if it is not there or of another version."""
+    path = folder / "tradeoff.csv"
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+    except (OSError, ValueError, csv.Error) as error:
+        raise InputError(f'cannot read "{path}" ({getattr(error, "strerror", None) or error}); the output folder of crawler '
+                         "tradeoff is expected") from None
+    if not rows or "entries" not in rows[0]:
+        raise InputError(f'"{path}" has no column "entries": it is of another version of crawler, or not whole; the output folder of '
+                         "crawler tradeoff is expected")
+    return rows
+
+
+def complete(folder):
+    """The summary of a folder, as a dict, with what evaluate() gives. Where summary.json does not have that yet, it is written,
+    and recommendations.prm. Raises InputError, FileError."""
+    path = folder / "summary.json"
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    except ValueError as error:
+        raise InputError(f'"{path}" is damaged ({error}); a summary of crawler is expected') from None
+    if summary and "advice" not in summary:
+        rows = read_rows(folder)
+        summary.update(evaluate(rows))
+        write_whole(folder / "recommendations.prm", recommendations_prm(rows).encode())
+        write_whole(path, (json.dumps(summary, indent=2, ensure_ascii=False) + "\n").encode())
+    return summary
+
+
+def main():
+    """What crawler tradeoff calls at its end."""
+    complete(pathlib.Path(sys.argv[2]))
