@@ -14,6 +14,7 @@
 #include <crawler/parameters/entry_lists.h>
 #include <crawler/run/summary.h>
 #include <crawler/studies/core/compute.h>
+#include <crawler/studies/core/differentiated_numbers.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/core/variables.h>
 #include <crawler/studies/optimize/optimize.h>
@@ -425,4 +426,8 @@ PYBIND11_MODULE(_core, module)
   module.def("end", &Libraries::end);
   module.attr("n_points") = Kymograph::n_points;
   module.attr("versions") = versions();
+  py::list numbers;
+  for (const DifferentiatedNumber &one : differentiated_numbers)
+    numbers.append(one.key);
+  module.attr("differentiated_numbers") = numbers;
 }

@@ -48,7 +48,7 @@ namespace crawler
       Numerics n          = choice.numerics;
       const bool promised = is_promised(choice, scene);
       // Where the friction switches its direction kinks move through cells and steps: errors fall by low powers.
-      const bool much_finer = !promised || scene.ground.direction.ratio != 1.;
+      const bool much_finer = !promised || scene.ground.direction.is_uneven();
       if (n.mesh.tolerance > 0.)
       {
         n.mesh.tolerance *= finer_mesh_tolerance;
@@ -232,7 +232,7 @@ namespace crawler
         space = factor * std::abs(finer_mesh->displacement - result.displacement);
         // A kink that moves with the place where the velocity changes its sign makes errors that change their sign from
         // mesh to mesh: a difference may be small by chance, and so may be that which ended the search.
-        if (scene.ground.direction.ratio != 1. && choice.numerics.grading.levels > 0 &&
+        if (scene.ground.direction.is_uneven() && choice.numerics.grading.levels > 0 &&
             std::isfinite(choice.promised_error))
           space = std::max(*space, accuracy_rule::graded::part * choice.promised_error);
         total = *space + factor * std::abs(finer->displacement - finer_mesh->displacement);

@@ -258,9 +258,9 @@ namespace crawler
       fast_layer() const
       {
         const auto &direction = scene_.ground.direction;
-        return direction.ratio == 1. ? 0.
-                                     : scales_.sudden * scales_.stress /
-                                         (scene_.body.friction_coefficient * direction.switching_velocity * L_);
+        return direction.is_uneven() ? scales_.sudden * scales_.stress /
+                                         (scene_.body.friction_coefficient * direction.switching_velocity * L_)
+                                     : 0.;
       }
 
       /// A mesh that is graded towards the ends and breaks in space; returns whether there is one that is enough.
@@ -622,7 +622,7 @@ namespace crawler
       bool
       kinks_move() const
       {
-        return scene_.ground.direction.ratio != 1.;
+        return scene_.ground.direction.is_uneven();
       }
 
       /// How much larger than by the rule the tolerance may be.

@@ -21,7 +21,7 @@ namespace crawler
   {
     using namespace accuracy_rule;
     if (result.time.status != Status::finished || !result.error || !std::isfinite(result.error->total) ||
-        result.cycles || scene.ground.direction.ratio != 1. || // kinks that move have no higher orders
+        result.cycles || scene.ground.direction.is_uneven() || // kinks that move have no higher orders
         !RecordedRun::is_possible(scene, parameters.time, choice.numerics) ||
         static_cast<double>(result.time.steps) * result.most_cells > sweep::most_work)
       return;

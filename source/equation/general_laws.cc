@@ -27,7 +27,7 @@ namespace crawler
   {
     const std::size_t n    = points_.size();
     const Ground &ground   = scene_.ground;
-    const bool directional = ground.direction.ratio != 1.;
+    const bool directional = ground.direction.is_uneven();
     if (ground.profile)
     {
       for (std::size_t i = 0; i < n; ++i)

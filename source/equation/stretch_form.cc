@@ -46,7 +46,7 @@ namespace crawler
     if (scene.ground.profile)
       return "the friction of the ground depends on the place of each cell, and so on the stretches of all others";
     const StretchFeedback *feedback = scene.active_stress->feedback();
-    if (feedback != nullptr && feedback->uses_rate() && scene.ground.direction.ratio != 1.)
+    if (feedback != nullptr && feedback->uses_rate() && scene.ground.direction.is_uneven())
       return "the active stress depends on the rate of the stretch, and friction on the direction: the method for the "
              "equations of a step does not converge";
     if (feedback != nullptr && (feedback->sees_near() || feedback->delay() > 0.))

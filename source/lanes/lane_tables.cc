@@ -130,7 +130,7 @@ namespace crawler
     const StretchFeedback *feedback = scene.active_stress->feedback();
     unsigned int bits               = LaneLaws::general;
     const auto add = [&bits](const bool has, const LaneLaws::Bits bit) { bits |= has ? bit : LaneLaws::plain; };
-    add(scene.ground.direction.ratio != 1., LaneLaws::direction);
+    add(scene.ground.direction.is_uneven(), LaneLaws::direction);
     add(!scene.has_power_law(), LaneLaws::host_friction);
     add(scene.ground.profile != nullptr, LaneLaws::host_ground);
     add(feedback != nullptr, LaneLaws::feedback);

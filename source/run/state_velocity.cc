@@ -106,7 +106,7 @@ namespace crawler
   void
   StateVelocity::remove_rigid_motion(const double t, const ConstVector y, const std::span<double> v)
   {
-    const bool is_linear       = assembler_.scene().ground.direction.ratio == 1.;
+    const bool is_linear       = !assembler_.scene().ground.direction.is_uneven();
     const unsigned int n_tries = is_linear ? 1 : 4;
     const std::vector<double> rigid(v.size(), 1.);
     double friction = assembler_.integrals(t, y, v).net_friction;

@@ -221,7 +221,7 @@ namespace crawler
   {
     return listed({{profiles.initial_stretch != nullptr, "Body/Initial stretch"},
                    {ground.profile != nullptr, "Ground/Profile"},
-                   {ground.direction.ratio != 1., "Ground/Backward ratio"},
+                   {ground.direction.is_uneven(), "Ground/Backward ratio"},
                    {active_stress && active_stress->feedback() != nullptr, "an active stress with feedback"}});
   }
 

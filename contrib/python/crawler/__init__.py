@@ -160,21 +160,20 @@ class Gradient(NamedTuple):
     result: Result
 
 
-DIFFERENTIATED = ("displacement", "stress_power", "dissipation", "positive_power", "paper_energy", "gait.displacement", "gait.speed")
-
-
 def gradient(scene, by, *, of="displacement", set=None, **keywords):
     """A number of a run and its derivatives, as a Gradient: for objectives and fits of one's own.
 
-    by: entries by their full names, or one. of: one of DIFFERENTIATED. The derivatives are those of Output/Sensitivities
+    by: entries by their full names, or one. of: displacement, stress_power, dissipation,
+    positive_power, paper_energy, gait.displacement, or gait.speed. The derivatives are those of Output/Sensitivities
     (doc/sensitivities.md): by the adjoint, whose cost hardly depends on the number of entries, or by differences of runs.
     Raises InputError as run() does, and where a derivative does not exist; RunFailed if the run does not finish.
     """
     by = [by] if isinstance(by, str) else list(by) if isinstance(by, (list, tuple)) else []
     if not by or not all(isinstance(entry, str) for entry in by):
         raise InputError("the entries are missing; a list of full names is expected, as [\"Body/Elastic modulus\"]")
-    if of not in DIFFERENTIATED:
-        raise InputError(f'of is "{of}", but one of {", ".join(DIFFERENTIATED)} is expected')
+    known = _compiled().differentiated_numbers
+    if of not in known:
+        raise InputError(f'of is "{of}", but one of {", ".join(known)} is expected')
     result = run(scene, set={**(set or {}), "Output/Sensitivities": ", ".join(by)}, fields=False, check=True, **keywords)
     found = []
     for entry in by:

@@ -36,6 +36,11 @@ namespace crawler
     double ratio              = 1.; ///< r, resistance for v < 0 over that for v > 0
     double switching_velocity = 1.; ///< v_s [length/time]
 
+    bool
+    is_uneven() const
+    {
+      return ratio != 1.;
+    }
     double
     factor(double v) const;
     /// d/dv (d(v) v)
@@ -52,7 +57,7 @@ namespace crawler
     bool
     is_plain() const
     {
-      return !profile && direction.ratio == 1.;
+      return !profile && !direction.is_uneven();
     }
   };
 
