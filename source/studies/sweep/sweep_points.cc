@@ -3,6 +3,7 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
+#include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/sweep_points.h>
 
 #include <fmt/format.h>
@@ -25,19 +26,6 @@ namespace crawler
   {
     auto base = std::make_unique<Form>(file);
     sweep_    = base->parameters.sweep;
-    build(communicator, std::move(base));
-  }
-
-  SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file, const SweepParameters &design)
-    : file_(file)
-    , sweep_(design)
-  {
-    build(communicator, std::make_unique<Form>(file));
-  }
-
-  void
-  SweepPoints::build(MPI_Comm communicator, std::unique_ptr<Form> base)
-  {
     std::ostringstream text;
     base->declarations.print_prm(text);
     effective_ = text.str();
@@ -87,10 +75,10 @@ namespace crawler
   }
 
   std::vector<std::string>
-  SweepPoints::notes(const std::string &command, const std::string &by) const
+  SweepPoints::notes() const
   {
-    const VariedEntries varied = this->varied(by);
-    auto notes                 = notes_on_entries(file_, declarations(), command, varied);
+    const VariedEntries varied = this->varied();
+    auto notes                 = notes_on_entries(file_, declarations(), "sweep", varied);
     const bool may_differ =
       varied.may_be_all || std::ranges::any_of(varied.paths, [](const std::string &path) {
         return path.starts_with("Active stress/") || path.starts_with("Ground/") || path.starts_with("Time/");
@@ -132,10 +120,10 @@ namespace crawler
   }
 
   VariedEntries
-  SweepPoints::varied(const std::string &by) const
+  SweepPoints::varied() const
   {
     VariedEntries varied;
-    if (const Assignment *const axes = file_.assignment_of(by))
+    if (const Assignment *const axes = file_.assignment_of(axes_entry))
       varied.by = axes->place;
     for (const SweepAxis &axis : design_->axes())
       if (axis.is_file())
@@ -153,7 +141,7 @@ namespace crawler
       const SweepAxis &axis = design_->axes()[number];
       if (axis.is_file())
         continue;
-      for (const char *section : {"Sweep/", "Atlas/", "Tradeoff/", "Output/Sensitivities", "Output/Uncertainty"})
+      for (const char *section : {"Sweep/", "Tradeoff/", "Output/Sensitivities", "Output/Uncertainty"})
         if (axis.entry.starts_with(section))
           throw InputError(
             fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),
@@ -210,6 +198,21 @@ namespace crawler
           wrong.emplace(error);
       }
     throw InputError(*wrong);
+  }
+
+  void
+  SweepPoints::require_checkable()
+  {
+    if (!sweep_.cross_check)
+      return;
+    try
+    {
+      crawler::require_checkable(parameters(0));
+    }
+    catch (const InputError &error)
+    {
+      throw file_.with_place(error);
+    }
   }
 
   Form &
