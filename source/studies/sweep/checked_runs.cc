@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <crawler/accuracy/answer.h>
-#include <crawler/base/exceptions.h>
 #include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/cross_check.h>
 #include <crawler/studies/sweep/sweep_rows.h>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -210,19 +207,6 @@ namespace crawler
       return status.status + ": " + status.reason;
     }
 
-    bool
-    has_feedback(const Parameters &parameters)
-    {
-      try
-      {
-        return parameters.create_scene().active_stress->feedback() != nullptr;
-      }
-      catch (const InputError &) // its row says so
-      {
-        return false;
-      }
-    }
-
     RowFile::Row
     values_of(const Checked &point)
     {
@@ -261,21 +245,6 @@ namespace crawler
       return row;
     }
   } // namespace
-
-  void
-  require_checkable(const Parameters &parameters)
-  {
-    if (parameters.model != Model::nonlinear)
-      throw InputError(
-        fmt::format("Model is {}, but Sweep/Cross-check compares answers of the nonlinear model; Model = "
-                    "nonlinear is expected",
-                    word_of(parameters.model)),
-        "Model");
-    if (has_feedback(parameters))
-      throw InputError("Generator is strain feedback, or a sum with it, but Sweep/Cross-check must know the stretch of "
-                       "the ends beforehand; another one is expected",
-                       "Active stress/Generator");
-  }
 
   std::vector<RowFile::Column>
   checked_columns()

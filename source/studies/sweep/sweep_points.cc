@@ -3,7 +3,6 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/sweep_points.h>
 
 #include <fmt/format.h>
@@ -19,6 +18,19 @@ namespace crawler
   namespace
   {
     const std::string axes_entry = "Sweep/Axes";
+
+    bool
+    has_feedback(const Parameters &parameters)
+    {
+      try
+      {
+        return parameters.create_scene().active_stress->feedback() != nullptr;
+      }
+      catch (const InputError &) // its row says so
+      {
+        return false;
+      }
+    }
   }
 
   SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file)
@@ -205,14 +217,18 @@ namespace crawler
   {
     if (!sweep_.cross_check)
       return;
-    try
-    {
-      crawler::require_checkable(parameters(0));
-    }
-    catch (const InputError &error)
-    {
-      throw file_.with_place(error);
-    }
+    const Parameters &first = parameters(0);
+    if (first.model != Model::nonlinear)
+      throw file_.with_place(
+        InputError(fmt::format("Model is {}, but Sweep/Cross-check compares answers of the nonlinear "
+                               "model; Model = nonlinear is expected",
+                               word_of(first.model)),
+                   "Model"));
+    if (has_feedback(first))
+      throw file_.with_place(
+        InputError("Generator is strain feedback, or a sum with it, but Sweep/Cross-check must know "
+                   "the stretch of the ends beforehand; another one is expected",
+                   "Active stress/Generator"));
   }
 
   Form &

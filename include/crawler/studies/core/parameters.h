@@ -26,7 +26,7 @@ namespace crawler
     unsigned int seed       = 1;
     std::string keep_fields = "";
     bool cross_check        = false;
-    double refinement       = 10.; ///< of the cross-check
+    double refinement       = 10.;          ///< of the cross-check
     std::optional<double> point_time_limit; ///< [s]
     std::optional<double> time_limit;       ///< [s]
 

@@ -11,10 +11,6 @@ namespace crawler
 {
   /// Sweep/Cross-check: the other runs of a point, in both forms and refined, and what cross_check() says of them all.
 
-  /// Throws InputError if points with these parameters cannot be checked.
-  void
-  require_checkable(const Parameters &parameters);
-
   /// Their columns in the table of a sweep (a contract, doc/user_guide.md, "Sweep").
   std::vector<RowFile::Column>
   checked_columns();
