@@ -2,7 +2,7 @@
 #include <crawler/accuracy/answer.h>
 #include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/cross_check.h>
-#include <crawler/studies/sweep/sweep_rows.h>
+#include <crawler/studies/sweep/run_values.h>
 
 #include <algorithm>
 #include <array>

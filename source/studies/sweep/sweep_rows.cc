@@ -98,26 +98,6 @@ namespace crawler
     }
   } // namespace
 
-  const ResultEntry &
-  entry_of(const std::string &key)
-  {
-    return *std::ranges::find(result_table(), key, &ResultEntry::key);
-  }
-
-  RowFile::Value
-  value_in_row(const Task &task, const ResultEntry &entry)
-  {
-    const SimulationResult &result = task.computed.result;
-    const ResultValue value = task.error || result.time.status == Status::none ? ResultValue() : entry.value_in(result);
-    if (entry.is_word)
-      return std::get<std::string>(value.index() == 0 ? ResultValue(std::string()) : value);
-    if (const auto *number = std::get_if<double>(&value))
-      return std::isfinite(*number) ? *number : not_known;
-    if (const auto *count = std::get_if<unsigned long>(&value))
-      return static_cast<double>(*count);
-    return not_known;
-  }
-
   std::vector<RowFile::Column>
   sweep_columns(const SweepPoints &points)
   {
@@ -148,30 +128,6 @@ namespace crawler
     columns.push_back({"message", "", "what went wrong, in a sentence", message_width});
     columns.push_back({"status", "", "finished, inverted, failed or stopped; empty: not computed yet", word_width});
     return columns;
-  }
-
-  PointStatus
-  status_of(const Task &task)
-  {
-    if (task.error)
-      try
-      {
-        std::rethrow_exception(task.error);
-      }
-      catch (const InputError &error)
-      {
-        return {"failed", "refused", error.what()};
-      }
-    if (task.is_out_of_time)
-      return {
-        "stopped",
-        time_limit_reason,
-        task.computed.result.time.status == Status::finished
-          ? "it took longer than Sweep/Time limit per point when its errors were measured; the run itself is whole"
-          : "it took longer than Sweep/Time limit per point"};
-    const TimeOutcome &time = task.computed.result.time;
-    return time.status == Status::finished ? PointStatus{word_of(time.status), "", ""}
-                                           : PointStatus{word_of(time.status), time.reason, time.message};
   }
 
   RowFile::Row

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <crawler/base/row_file.h>
-#include <crawler/run/result_table.h>
-#include <crawler/studies/core/compute.h>
 #include <crawler/studies/sweep/cross_check.h>
+#include <crawler/studies/sweep/run_values.h>
 #include <crawler/studies/sweep/sweep_points.h>
 
 #include <mpi.h>
@@ -27,24 +26,10 @@ namespace crawler
 
   extern const std::string sweep_file, sweep_group; ///< results.h5, and the group in it
 
-  /// The number or word of a run under this key, and its value in a row; not a number or empty where it is not known.
-  const ResultEntry &
-  entry_of(const std::string &key);
-  RowFile::Value
-  value_in_row(const Task &task, const ResultEntry &entry);
-
   /// The row of a point that has been computed, in the columns after the known ones.
   /// @p sensitivities: the entries by which it was differentiated; @p checked: of checked_columns(), if it has them.
   RowFile::Row
   sweep_row(const Task &task, const std::vector<SensitivityEntry> &sensitivities, const RowFile::Row &checked = {});
-
-  /// What has become of a point, in a word, and why.
-  struct PointStatus
-  {
-    std::string status, reason, message;
-  };
-  PointStatus
-  status_of(const Task &task);
 
   /// How often which status, reason and verdict stands in the table.
   struct SweepCounts
