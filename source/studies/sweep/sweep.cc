@@ -153,6 +153,8 @@ namespace crawler
     {
       for (const auto &[point, why] : counts.wrong_answers)
         log.line(fmt::format("Silent wrong answer at point {}: {}", point, why));
+      if (const auto n = counts.number_of(Verdict::silent_wrong_answer); n > counts.wrong_answers.size())
+        log.line(fmt::format("... and {} more (column verdict of results.csv)", n - counts.wrong_answers.size()));
       log.line(fmt::format(
         "Cross-check: {} with two answers at least, {}{}.",
         counted(counts.checked(), "point"),

@@ -40,11 +40,12 @@ namespace crawler
       return std::ranges::any_of(entries, [](const SensitivityEntry &one) { return one.deviation > 0.; });
     }
 
+    constexpr std::size_t most_wrong_answers = 10;
+
     void
     count(const Table &table, SweepCounts &counts)
     {
-      constexpr std::size_t most_wrong_answers = 10;
-      const auto column                        = [&](const std::string &name) {
+      const auto column = [&](const std::string &name) {
         const auto found = std::ranges::find(table, name, &Column::name);
         return found == table.end() ? nullptr : &found->values;
       };
@@ -91,6 +92,8 @@ namespace crawler
         add(json[1], all.reasons);
         add(json[2], all.verdicts);
         all.wrong_answers.merge(json[3].get<std::map<unsigned long, std::string>>());
+        while (all.wrong_answers.size() > most_wrong_answers)
+          all.wrong_answers.erase(std::prev(all.wrong_answers.end()));
         if (json[4].is_number()) // null: not known
           all.largest_error_ratio = std::fmax(all.largest_error_ratio, json[4].get<double>());
       }
