@@ -9,7 +9,7 @@ import sys
 
 # From the lowest room to the highest.
 ROOMS = ["base", "parameters", "formula", "scene", "mesh", "deal_ii", "time", "equation", "lanes", "reduced_models", "output", "run",
-         "adjoint", "accuracy", "studies/core", "studies/run", "studies/sweep", "studies/atlas", "studies/tradeoff", "studies/optimize", "app"]
+         "adjoint", "accuracy", "studies/core", "studies/run", "studies/sweep", "studies/tradeoff", "studies/optimize", "app"]
 # What else may not enter: a pattern of includes, and the rooms.
 FORBIDDEN = [(r"<deal\.II", [room for room in ROOMS if room != "deal_ii"]),
              (r"<petsc", ["formula", "scene", "mesh", "equation", "lanes", "reduced_models", "run", "adjoint", "accuracy"]),

@@ -18,7 +18,7 @@ mkdir -p build-fuzz/findings
 # What parameter files and command lines may have in them.
 sed -nE 's/^ *(set|subsection) ([^=]*[^ =]).*/\1 \2/p' prm/default.prm | sort -u |
   awk '{print "\"" $0 "\""} END {print "\"end\\x0a\"\n\"include \""}' >build-fuzz/parameters.dict
-printf '"%s"\n' run check sweep atlas tradeoff optimize report plot table parameters init completion man --set --output \
+printf '"%s"\n' run check sweep tradeoff optimize report plot table parameters init completion man --set --output \
   --resume --overwrite --quiet --help --format --kind json prm bash robot >build-fuzz/command_line.dict
 printf '"%s"\n' sin cos tan exp sqrt log abs min max sum avg sign rint pow floor ceil mod erf erfc pi L T '?' : '&&' '||' \
   '<=' '!=' >build-fuzz/formulas.dict

@@ -309,6 +309,7 @@ namespace crawler
         Libraries::start();
         const ParameterFile file = source.file();
         SweepPoints points(MPI_COMM_SELF, file);
+        points.require_checkable();
         notes                      = points.notes();
         columns                    = sweep_columns(points);
         rows                       = std::vector<RowFile::Row>(points.design().n_points());

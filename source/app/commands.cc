@@ -11,7 +11,6 @@
 #include <crawler/base/communication.h>
 #include <crawler/base/process.h>
 #include <crawler/base/versions.h>
-#include <crawler/studies/atlas/atlas.h>
 #include <crawler/studies/core/python.h>
 #include <crawler/studies/optimize/optimize.h>
 #include <crawler/studies/run/run.h>
@@ -62,12 +61,6 @@ namespace crawler
        /*writes=*/false,
        /*resumes=*/false,
        /*takes_petsc_options=*/true},
-      {"atlas",
-       "Maps two entries of a parameter file: runs every point in all forms and compares",
-       atlas,
-       /*writes=*/true,
-       /*resumes=*/true,
-       /*takes_petsc_options=*/false},
       {"tradeoff",
        "Measures cost against error of many settings on the scene of a parameter file",
        tradeoff,
@@ -120,7 +113,7 @@ namespace crawler
         own->add_flag("--resume",
                       options.resume,
                       fmt::format("Goes on with {} {} that was stopped or killed",
-                                  command.name[0] == 'a' || command.name[0] == 'o' ? "an" : "a",
+                                  command.name[0] == 'o' ? "an" : "a",
                                   command.name));
       if (command.function == optimize)
         own->add_flag("--check-gradient",
@@ -155,7 +148,7 @@ namespace crawler
     for (const auto &[name, description] : commands_in_python)
       if (CLI::App *const command = app_.add_subcommand(name, description); command->get_name() == "report")
       {
-        command->add_option("DIR", options_.file, "Output folder of a run, sweep, atlas, tradeoff, optimisation or fit")
+        command->add_option("DIR", options_.file, "Output folder of a run, sweep, tradeoff, optimisation or fit")
           ->required();
         command->add_flag("--quiet", options_.quiet, "Prints nothing but errors");
       }

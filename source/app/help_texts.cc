@@ -26,7 +26,7 @@ namespace crawler
       {"crawler sweep sweep.prm --resume", "goes on with one that was stopped"},
       {"crawler optimize gait.prm", "the best gait within limits"},
       {"crawler fit worm.prm --data tracks.csv", "what measured data say about numbers of a scene"},
-      {"crawler atlas map.prm", "a map over two entries, every answer cross-checked"},
+      {"crawler sweep sweep.prm --set Sweep/Cross-check=true", "with every answer checked by others"},
       {"crawler tradeoff scene.prm", "what accuracy costs on this scene"},
       {"crawler plot output-worm", "a picture into the folder"},
       {"crawler plot output-worm --last-stride", "of the last stride; or of --from TIME --to TIME"},

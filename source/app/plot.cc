@@ -31,7 +31,6 @@ namespace crawler
     kinds()
     {
       static const std::vector<Kind> list = {
-        {"atlas", "an atlas", {"atlas.csv", "atlas.h5"}},
         {"tradeoff", "a tradeoff", {"tradeoff.csv", "tradeoff.h5"}},
         {"optimize", "an optimisation", {"starts.csv"}},
         {"fit", "a fit", {"residuals.csv", "inputs.json", "comparison.csv"}},

@@ -85,6 +85,8 @@ namespace crawler
     if (arguments[0].ends_with(".prm"))
       throw InputError(
         fmt::format("the command is missing before \"{0}\"; did you mean \"crawler run {0}\"?", arguments[0]));
+    if (const std::string now = successor_of(arguments[0]); !now.empty())
+      throw InputError(fmt::format("the command \"{}\" is gone; {} is expected", arguments[0], now));
     const auto near = nearest_names(arguments[0], names, 1);
     throw InputError(fmt::format("unknown command \"{}\"; {} is expected{}",
                                  arguments[0],

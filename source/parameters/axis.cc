@@ -13,9 +13,6 @@
 
 namespace crawler
 {
-  const std::string axis_syntax = "\"Section/Entry : linspace(first, last, count)\", \"... : logspace(first exponent, "
-                                  "last exponent, count)\" or \"... : value, value, ...\"";
-
   namespace
   {
     constexpr double most_values = 100000;
@@ -218,17 +215,6 @@ namespace crawler
     }
   }
 
-  Axis
-  parse_axis(const std::string &text, const std::string &name)
-  {
-    const std::size_t colon = text.find(':');
-    const std::string entry = trimmed(text.substr(0, colon));
-    const std::string rest  = colon == std::string::npos ? "" : trimmed(text.substr(colon + 1));
-    if (entry.empty() || rest.empty())
-      throw InputError(fmt::format("\"{}\" is \"{}\", but {} is expected", name, text, axis_syntax), name);
-    return {normal_path(entry), parse_values(rest, name)};
-  }
-
   void
   require_valid(const Axis &axis,
                 const std::string &name,
@@ -244,17 +230,5 @@ namespace crawler
     {
       throw InputError(fmt::format("\"{}\": {}", name, error.what()), name);
     }
-  }
-
-  std::vector<double>
-  numbers_of(const Axis &axis, const std::string &name)
-  {
-    std::vector<double> numbers;
-    for (const std::string &value : axis.values)
-      if (const auto number = to_number(value))
-        numbers.push_back(*number);
-      else
-        throw InputError(fmt::format("\"{}\": found \"{}\", but a number is expected", name, value), name);
-    return numbers;
   }
 } // namespace crawler

@@ -488,6 +488,8 @@ namespace crawler
   {
     if (std::find(sections_.begin(), sections_.end(), path) != sections_.end())
       return;
+    if (const std::string now = successor_of(path); !now.empty())
+      throw InputError(fmt::format("the section \"{}\" is gone; {} is expected", path, now), path);
     const auto near = nearest_names(path, sections_);
     if (near.empty())
     {

@@ -66,4 +66,16 @@ namespace crawler
                        file,
                        home == nullptr ? "" : fmt::format(": {}{}", home, file.substr(1)));
   }
+
+  std::string
+  successor_of(const std::string &former)
+  {
+    if (former == "atlas")
+      return "\"crawler sweep\" with the entry \"Sweep/Cross-check = true\"";
+    if (former == "Atlas")
+      return "\"Sweep/Axes = FIRST AXIS; SECOND AXIS\" with \"Sweep/Cross-check = true\", \"Sweep/Cross-check "
+             "refinement\" "
+             "(was Refinement) and \"Sweep/Time limit per point\" (was Time limit per run)";
+    return "";
+  }
 } // namespace crawler

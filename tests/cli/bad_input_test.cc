@@ -338,17 +338,6 @@ namespace
     };
   }
 
-  BadInput
-  bad_atlas(const std::string &name, const std::string &lines, const Words &message)
-  {
-    std::string both = lines;
-    if (lines.find("First axis") == lines.npos)
-      both += "\nset First axis = Active stress/Optimal wave/Perturbation parameter : 0.1, 0.2";
-    if (lines.find("Second axis") == lines.npos)
-      both += "\nset Second axis = Body/Anchoring exponent : 1, 2";
-    return {name, in_section("Atlas", both), message, 2, {"atlas", "bad.prm", "--output", "results"}};
-  }
-
   /// A sum with the lines @p first in its first term.
   BadInput
   bad_sum(const std::string &name, const std::string &first, const Words &message, const std::string &more = "")
@@ -407,50 +396,48 @@ namespace
     };
   }
 
+  BadInput
+  bad_sweep(const std::string &name, const std::string &lines, const Words &message)
+  {
+    return {name, in_section("Sweep", lines), message, 2, {"sweep", "bad.prm", "--output", "results"}};
+  }
+
   std::vector<BadInput>
-  atlases()
+  sweeps()
   {
     return {
-      bad_atlas("AxisOfUnknownEntry",
-                "set First axis = Body/Lenght : 1, 2",
-                {"bad.prm, line 2", "\"Atlas/First axis\"", "in section \"Body\"", "nearest name is \"Length\""}),
-      bad_atlas("AxisOfUnknownSection",
-                "set Second axis = Boddy/Length : 1, 2",
-                {"bad.prm, line 2", "\"Atlas/Second axis\"", "\"Boddy\"", "\"Body\""}),
-      bad_atlas("AxisValueOutOfRange",
-                "set Second axis = Body/Anchoring exponent : linspace(0, 200, 3)",
+      bad_sweep("AxisOfUnknownEntry",
+                "set Axes = Body/Lenght : 1, 2",
+                {"bad.prm, line 2", "\"Sweep/Axes\"", "in section \"Body\"", "nearest name is \"Length\""}),
+      bad_sweep("AxisOfUnknownSection",
+                "set Axes = Boddy/Length : 1, 2",
+                {"bad.prm, line 2", "\"Sweep/Axes\"", "\"Boddy\"", "\"Body\""}),
+      bad_sweep("AxisValueOutOfRange",
+                "set Axes = Body/Anchoring exponent : linspace(0, 200, 3)",
                 {"bad.prm, line 2", "\"200\"", "a number from -100 to 100 is expected"}),
-      bad_atlas("AxisOfHalfCells",
-                "set First axis = Discretization/Number of cells : linspace(2, 5, 3)",
+      bad_sweep("AxisOfHalfCells",
+                "set Axes = Discretization/Number of cells : linspace(2, 5, 3)",
                 {"bad.prm, line 2", "\"3.5\"", "a whole number"}),
-      bad_atlas("AxisOfWords",
-                "set First axis = Active stress/Generator : none, optimal wave",
-                {"bad.prm, line 2", "\"none\"", "a number is expected"}),
-      bad_atlas(
-        "AxisWithoutValues", "set First axis = Body/Length", {"bad.prm, line 2", "linspace(first, last, count)"}),
-      bad_atlas("AxisWithUnknownFunction",
-                "set First axis = Body/Length : lospace(0, 1, 3)",
+      bad_sweep("AxisWithoutValues", "set Axes = Body/Length", {"bad.prm, line 2", "Section/Entry : VALUES"}),
+      bad_sweep("AxisWithUnknownFunction",
+                "set Axes = Body/Length : lospace(0, 1, 3)",
                 {"bad.prm, line 2", "\"lospace\"", "the nearest is \"logspace\""}),
-      bad_atlas("AxisOfTheAtlasItself",
-                "set First axis = Atlas/Refinement : 2, 3",
+      bad_sweep("AxisOfTheSweepItself",
+                "set Axes = Sweep/Seed : 2, 3",
                 {"bad.prm, line 2", "cannot vary", "another section is expected"}),
-      bad_atlas("SameAxisTwice",
-                "set First axis = Body/Anchoring exponent : 1, 2",
-                {"bad.prm", "\"Body/Anchoring exponent\" is on both axes"}),
-      bad_atlas("RefinementThatIsNone", "set Refinement = 0.1", {"bad.prm, line 2", "a number from 1"}),
-      bad_arguments("AtlasWithoutFile", {"atlas"}, {"the parameter file is missing", "crawler atlas FILE.prm"}),
-      bad_arguments("AtlasWithoutAxes",
-                    {"atlas", "good.prm", "--output", "results"},
-                    {"good.prm", "\"Atlas/First axis\" is \"\"", "linspace(first, last, count)", "is expected"}),
-      bad_arguments("AtlasInFullFolder",
-                    {"atlas",
-                     "good.prm",
-                     "--set",
-                     "Atlas/First axis=Body/Length : 1, 2",
-                     "--set",
-                     "Atlas/Second axis=Body/Elastic modulus : 1, 2",
-                     "--output",
-                     "full"},
+      bad_sweep("RefinementThatIsNone", "set Cross-check refinement = 0.1", {"bad.prm, line 2", "a number from 1"}),
+      {"FormerSection",
+       in_section("Atlas", "set First axis = Body/Length : 1, 2"),
+       {"bad.prm, line 1", "\"Atlas\" is gone", "Sweep/Axes = FIRST AXIS; SECOND AXIS", "Sweep/Cross-check = true"},
+       2,
+       {"sweep", "bad.prm", "--output", "results"}},
+      bad_arguments("FormerCommand", {"atlas", "good.prm"}, {"\"crawler sweep\"", "\"Sweep/Cross-check = true\""}),
+      bad_arguments("FormerEntry",
+                    {"run", "good.prm", "--set", "Atlas/Time limit per run=1", "--output", "results"},
+                    {"\"Atlas\" is gone", "Sweep/Time limit per point"}),
+      bad_arguments("SweepWithoutFile", {"sweep"}, {"the parameter file is missing", "crawler sweep FILE.prm"}),
+      bad_arguments("SweepInFullFolder",
+                    {"sweep", "good.prm", "--set", "Sweep/Axes=Body/Length : 1, 2", "--output", "full"},
                     {"\"full\" is not empty"}),
     };
   }
@@ -738,7 +725,7 @@ INSTANTIATE_TEST_SUITE_P(Waves, BadInputTest, testing::ValuesIn(waves()), name_o
 INSTANTIATE_TEST_SUITE_P(Generators, BadInputTest, testing::ValuesIn(generators()), name_of);
 INSTANTIATE_TEST_SUITE_P(StretchForm, BadInputTest, testing::ValuesIn(stretch_form()), name_of);
 INSTANTIATE_TEST_SUITE_P(Sums, BadInputTest, testing::ValuesIn(sums()), name_of);
-INSTANTIATE_TEST_SUITE_P(Atlases, BadInputTest, testing::ValuesIn(atlases()), name_of);
+INSTANTIATE_TEST_SUITE_P(Sweeps, BadInputTest, testing::ValuesIn(sweeps()), name_of);
 INSTANTIATE_TEST_SUITE_P(Tradeoffs, BadInputTest, testing::ValuesIn(tradeoffs()), name_of);
 INSTANTIATE_TEST_SUITE_P(Files, BadInputTest, testing::ValuesIn(files()), name_of);
 INSTANTIATE_TEST_SUITE_P(Slips, BadInputTest, testing::ValuesIn(slips()), name_of);

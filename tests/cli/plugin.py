@@ -173,13 +173,13 @@ end
            f"the installed gallery: {result.stdout} {result.stderr}")
 
     # The installed program finds the installed plot scripts: this one says that it is the one.
-    with open(os.path.join(share, "python/crawler/plot", "atlas.py"), "w") as file:
+    with open(os.path.join(share, "python/crawler/plot", "sweep.py"), "w") as file:
         file.write("import sys, pathlib\n(pathlib.Path(sys.argv[1]) / 'installed_script').touch()\n")
-    with open("small.prm", "w") as file:
-        file.write("subsection Atlas\nset First axis = Body/Anchoring exponent : 2, 3\n"
-                   "set Second axis = Body/Elastic modulus : 1, 2\nend\n")
-    result = subprocess.run([PROGRAM, "atlas", "small.prm", "--output", "atlas"], env=ENVIRONMENT, capture_output=True, text=True)
-    expect(result.returncode == 0 and os.path.exists("atlas/installed_script"), f"atlas: {result.stdout} {result.stderr}")
+    os.mkdir("drawn")
+    with open("drawn/results.h5", "w"):
+        pass
+    result = subprocess.run([PROGRAM, "plot", "drawn"], env=ENVIRONMENT, capture_output=True, text=True)
+    expect(result.returncode == 0 and os.path.exists("drawn/installed_script"), f"plot: {result.stdout} {result.stderr}")
 
     # What does not even start.
     FAULTY = os.path.join(folder, "faulty.so")

@@ -56,7 +56,7 @@ subsection Optimize
   set Largest strain  = 0.3
 end
 """
-FOLDERS = ("run", "sweep", "atlas", "tradeoff", "optimisation", "fit", "comparison")
+FOLDERS = ("run", "sweep", "checked", "tradeoff", "optimisation", "fit", "comparison")
 STUDIES = pathlib.Path(__file__).resolve().parents[2] / "prm/studies"
 checks = Checks()
 check = checks.expect
@@ -85,7 +85,7 @@ def make_studies(program):
     program.study("run", WAVE, "run", Output__Sensitivities="all", Ground__Profile="1 + 0.5*sin(6*x)")
     axes = f"{P} : 0, 2, 3; {CHI} : 0.1, 0.3, 0.6, 0.65"
     program.study("sweep", WAVE, "sweep", Sweep__Axes=axes, Sweep__Keep_fields="5")
-    program.study("atlas", WAVE, "atlas", Atlas__First_axis=f"{CHI} : 0.1, 0.6", Atlas__Second_axis=f"{P} : 0, 2")
+    program.study("sweep", WAVE, "checked", Sweep__Axes=f"{CHI} : 0.1, 0.6; {P} : 0, 2", **{"Sweep__Cross-check": "true"})
     program.study("tradeoff", WAVE, "tradeoff", Tradeoff__Models="perturbation, nonlinear", Tradeoff__Formulations="position",
                   Tradeoff__Meshes="uniform", Tradeoff__Engines="fused, batch", Tradeoff__Integrators="radau 5",
                   Tradeoff__Degrees="4", Tradeoff__Tolerances="1e-2, 1e-5", Tradeoff__Repetitions="1")
@@ -133,7 +133,7 @@ def test_content(program):
     data = {name: page_data(folder / name) for name in (*FOLDERS, "<b>inverted", "formulas")}
     for name in FOLDERS:
         summary = json.loads((folder / name / "summary.json").read_text(encoding="utf-8"))
-        check(data[name]["kind"] == name and {**data[name]["summary"], **summary} == data[name]["summary"], f"the summary of the {name}")
+        check(data[name]["kind"] == name.replace("checked", "sweep") and {**data[name]["summary"], **summary} == data[name]["summary"], f"the summary of the {name}")
     check(data["tradeoff"]["summary"]["recommendations"] and data["tradeoff"]["summary"]["pareto"], "advice where the study could not call Python")
     check(data["run"]["runs"][0]["summary"] == data["run"]["summary"] and NASTY in data["run"]["parameters"]["original"],
           "the run and its parameter file, word for word")
@@ -143,7 +143,7 @@ def test_content(program):
     check(entries["Accuracy"]["value"] == "1e-3" and P not in entries and entries["Ground/Profile"]["default"] == "1",
           "entries that differ from their defaults")
     for name, file, columns in (("sweep", "results.csv", (P, CHI, "displacement", "errors.stress_power", "status", "reason")),
-                                ("atlas", "atlas.csv", (CHI, P, "outcome", "run displacement")),
+                                ("checked", "results.csv", (CHI, P, "outcome", "displacement")),
                                 ("tradeoff", "tradeoff.csv", ("error", "seconds", "entries")),
                                 ("optimisation", "results.csv", ("evaluation", "objective", "violation")),
                                 ("fit", "residuals.csv", ("t", "place", "data", "model", "residual"))):

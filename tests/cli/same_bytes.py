@@ -31,8 +31,7 @@ end
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
 STUDIES = {
     "run": [],
-    "sweep": [f"Sweep/Axes={P} : 1.5, 2.5; {CHI} : 0.1, 0.2, 0.3"],
-    "atlas": [f"Atlas/First axis={P} : 1.5, 2", f"Atlas/Second axis={CHI} : 0.1, 0.3", "Accuracy=1e-3"],
+    "sweep": [f"Sweep/Axes={P} : 1.5, 2.5; {CHI} : 0.1, 0.2, 0.3", "Sweep/Cross-check=true"],
 }
 SETS = ("baseline", "avx2", "avx512")
 # What may differ: seconds, moments, the folder's name; in tables, columns and rows of them.

@@ -20,7 +20,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from program import Checks, Paused, call, environment, on_ranks, ranks_that_stop, tests_of_part  # noqa: E402
-from tables import csv_rows, h5_columns, json_of, same_as_csv, same_columns  # noqa: E402
+from tables import csv_rows, h5_columns, json_of, number, same_as_csv, same_columns  # noqa: E402
 
 CHI, P = "Active stress/Optimal wave/Perturbation parameter", "Body/Anchoring exponent"
 BASE = """
@@ -433,6 +433,87 @@ def test_kills(folder):
            f"a changed parameter is refused, with the difference {changed.stderr}")
 
 
+RUNS = ("", "position ", "stretch ", "refined ")
+
+
+def checked(folder, output, axes, *more, **how):
+    """The finished process of a cross-checked sweep, and its rows."""
+    write(folder, axes, "set Cross-check = true")
+    done = sweep(folder, output, "--set", "Accuracy=1e-3", *more, **how)
+    return done, csv_rows(folder / output / "results.csv")
+
+
+def test_cross_check(folder):
+    """Other runs of each point agree with it, and small displacements with the theory, -a chi^2/2."""
+    done, rows = checked(folder, "grid", f"{CHI} : 0.1, 0.2, 0.3; {P} : 0, 2")
+    expect(done.returncode == 0 and "6 points with two answers at least, 0 silent wrong answers" in done.stdout,
+           f"a cross-check: {done}")
+    expect({(row["outcome"], row["verdict"], row["explanation"]) for row in rows} == {("finished", "agree", "")},
+           f"all answers agree {rows}")
+    runs = {"0": ("", "position ", "refined "), "2": RUNS}  # the stretch form is tried for a < 0, p > 1
+    expect(all(bool(row[f"{run}status"]) == (run in runs[row[P]]) for row in rows for run in RUNS), "no stretch form where a >= 0")
+    expect(all(abs(number(row[f"{run}displacement"]) / ((float(row[P]) - 1) * float(row[CHI]) ** 2 / 2) - 1) < 0.25
+               for row in rows for run in runs[row[P]]), "small displacements are those of the theory")
+    expect(all(0 <= number(row[f"{run}error ratio"]) <= 1 and abs(
+        abs(number(row[f"{run}displacement"]) - number(row["refined displacement"])) / number(row[f"{run}error ratio"])
+        / (number(row[f"{run}promised error"]) + number(row["refined promised error"])) - 1) < 1e-9
+               for row in rows for run in runs[row[P]][:-1]), "measured errors are below the promised ones")
+    summary = json_of(folder / "grid" / "summary.json")["cross_check"]
+    expect(summary == {"checked": 6, "silent_wrong_answers": 0, "largest_error_ratio": max(
+        number(row[f"{run}error ratio"]) for row in rows for run in runs[row[P]][:-1])}, f"summary.json {summary}")
+    single = call([PROGRAM, "run", "sweep.prm", "--output", "single", "--set", "Accuracy=1e-3", "--set", f"{CHI}=0.2", "--set",
+                   f"{P}=2", "--set", "Output/Number of snapshots=0"], folder)
+    single = json_of(folder / "single" / "summary.json")
+    # The lanes of a batch and a run alone add up in another order.
+    expect(math.isclose(single["displacement"], number(rows[3]["displacement"]), rel_tol=1e-13)
+           and single["steps"] == number(rows[3]["steps"]), "crawler run gives the same answer")
+    done, rows = checked(folder, "zip", f"{CHI} : 0.1, 0.3; {P} : 0, 3; Body/Length : 1, 2", "--set", "Sweep/Design=zip")
+    expect(done.returncode == 0 and [row["verdict"] for row in rows] == ["agree"] * 2, f"three axes of a zip: {rows}")
+
+
+def test_what_cannot_be_checked(folder):
+    """A scene that makes no sense, ends of stretch 1 - 2 t/k, which invert at t = k/2, a crash, other models."""
+    energy = "Active stress/Optimal wave/Energy : 0.4, 0.5"
+    done, rows = checked(folder, "refused", f"{energy}; Discretization/Number of cells : 4, 8", "--quiet", "--set",
+                         "Discretization/Formulation=position", "--set", "Active stress/Optimal wave/Choose wave by=energy")
+    expect(done.returncode == 0 and [row["outcome"] for row in rows] == ["refused"] * 2 + ["finished"] * 2
+           and "no wave spends the energy" in rows[0]["message"], f"an inadmissible scene is a row with its reason {done} {rows}")
+    expect(not any(row["position status"] + row["stretch status"] for row in rows), "only one form if one is set")
+    expect(rows[2]["verdict"] == "unchecked" and not rows[2]["promised error"], "no promise where cells are set")
+    expression = ("--set", "Active stress/Generator=expression", "--set", "Active stress/Expression/Active stress=2*t")
+    done, rows = checked(folder, "inverted", f"Body/Elastic modulus : 1, 4; {P} : 0, 1", *expression)
+    expect(done.returncode == 0 and [row["outcome"] for row in rows] == ["inverted at end"] * 2 + ["finished"] * 2,
+           f"outcomes {[row['outcome'] for row in rows]}")
+    expect(all(abs(number(row[f"{run}inversion.t"]) - 0.5) < 1e-3 and row["verdict"] == "agree"
+               for row in rows[:2] for run in ("", "position ", "refined ")), "the ends invert at t = k/2, and all runs say so")
+    write(folder, f"{P} : 2", "set Cross-check = true")
+    for _ in range(2):
+        sweep(folder, "crashed", "--resume", stop_at="step:5:SEGV")
+    done = sweep(folder, "crashed", "--resume")
+    rows = csv_rows(folder / "crashed" / "results.csv")
+    expect(done.returncode == 0 and rows[0]["outcome"] == "failed: crashed" and not rows[0]["refined status"], f"a crash: {done} {rows}")
+    for entry, words in (("Model=kinematic", "Model = nonlinear is expected"),
+                         ("Active stress/Generator=strain feedback", "Generator is strain feedback")):
+        bad = sweep(folder, "bad", "--set", entry)
+        expect(bad.returncode == 2 and words in bad.stderr and not (folder / "bad").exists(), f"{entry}: {bad}")
+
+
+def test_kill_of_cross_check(folder):
+    """Rank 1 of two is killed: what is computed is kept, and --resume makes the rest, bit for bit."""
+    # Rank 0 waits from its first row on, until mpirun ends it: it may make more rows in its last moments.
+    axes = f"{CHI} : linspace(0.1, 0.3, 12); {P} : 0, 2"
+    whole, _ = checked(folder, "whole", axes)
+    command = [PROGRAM, "sweep", "sweep.prm", "--output", "killed", "--resume", "--set", "Accuracy=1e-3"]
+    killed = call(ranks_that_stop(MPIRUN, command, "row:1:STOP", "row:4:KILL"), folder)
+    before = table(folder / "killed")
+    done = np.flatnonzero(computed(before))
+    last = call([*on_ranks(MPIRUN, 2), *command], folder)
+    rest = table(folder / "killed")
+    expect(whole.returncode == last.returncode == 0 and killed.returncode == 128 + signal.SIGKILL and len(done) >= 4
+           and same_columns(table(folder / "whole"), rest) and all(rest["seconds"][i] == before["seconds"][i] for i in done),
+           f"{len(done)} rows, then all: {killed} {last}")
+
+
 def test_full_disk(folder):
     """A disk that is full when the table begins, or when all but results.csv is written."""
     write(folder, f"{P} : linspace(1.5, 4, 12); {CHI} : linspace(0.05, 0.5, 12)")
@@ -512,7 +593,8 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         for test in tests_of_part((test_bad_input, test_damaged_table, test_places_of_files, test_rows_that_fail,
                                    test_time_limits, test_changed_inputs, test_killed_at_files, test_two_at_once,
-                                   test_crashes, test_full_disk), (test_grid, test_designs, test_signals, test_kills)):
+                                   test_crashes, test_full_disk, test_cross_check, test_what_cannot_be_checked),
+                                  (test_grid, test_designs, test_signals, test_kills, test_kill_of_cross_check)):
             folder = pathlib.Path(name, test.__name__)
             folder.mkdir()
             test(folder)

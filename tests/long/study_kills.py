@@ -4,8 +4,8 @@
 
     python3 study_kills.py PATH_TO_CRAWLER MPIRUN [KILLS [SEED]]
 
-KILLS: so many of a sweep (default: 20), and a quarter of it of an atlas, a tradeoff and an optimisation: of one rank, of
-mpirun, by SIGTERM. tests/cli/sweep.py, atlas.py, tradeoff.py and optimize.py are the short versions. Some minutes.
+KILLS: so many of a sweep (default: 20), and a quarter of it of a cross-checked one, a tradeoff and an optimisation: of one
+rank, of mpirun, by SIGTERM. tests/cli/sweep.py, tradeoff.py and optimize.py are the short versions. Some minutes.
 """
 import ctypes
 import json
@@ -33,10 +33,6 @@ subsection Active stress
     set Choose wave by = wave speed
   end
 end
-subsection Atlas
-  set First axis  = Active stress/Optimal wave/Perturbation parameter : linspace(0.1, 0.3, 60)
-  set Second axis = Body/Anchoring exponent : linspace(0, 2, 2)
-end
 subsection Tradeoff
   set Integrators     = radau 5, bdf
   set Degrees         = 2, 6
@@ -46,6 +42,7 @@ subsection Tradeoff
   set Repetitions     = 1
 end
 """
+CHECKED = ("--set", "Sweep/Cross-check=true")
 PROGRAM, MPIRUN = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
 PRM = pathlib.Path(__file__).resolve().parents[2] / "prm" / "studies"
 N_KILLS, SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 20, int(sys.argv[4]) if len(sys.argv) > 4 else 7
@@ -81,7 +78,7 @@ class Study:
 
 
 class PointStudy(Study):
-    """A sweep or an atlas."""
+    """A sweep."""
 
     def __init__(self, command, table, group, status, seconds):
         super().__init__(command, ("original.prm", "parameters.prm", f"{table}.h5", f"{table}.csv", "summary.json"), 300)
@@ -210,8 +207,9 @@ def write(folder, axes, more=""):
 def test_kills(folder):
     """Of each study."""
     point_study = {"sweep": PointStudy(("sweep", "scene.prm"), "results", "results", "status", "seconds"),
-                   "atlas": PointStudy(("atlas", "scene.prm", "--set", "Accuracy=1e-3"), "atlas", "atlas", "outcome",
-                                       "run seconds")}
+                   "cross-check": PointStudy(("sweep", "scene.prm", "--set", "Accuracy=1e-3", *CHECKED, "--set",
+                                              f"Sweep/Axes={CHI} : linspace(0.1, 0.3, 60); {P} : 0, 2"), "results", "results",
+                                             "status", "seconds")}
     budgets = ("--set", "Sweep/Axes=Optimize/Work : 0.001, 0.003", "--set", "Optimize/Objective=displacement",
                "--set", "Optimize/Starts=3")
     starts = [f"{case}-{start}.json" for case in (1, 2) for start in range(3)]
@@ -241,14 +239,13 @@ def test_error_bars(folder):
 def test_many_ranks(folder):
     """More ranks than points give the same table."""
     write(folder, f"{P} : 0, 2, 3; {CHI} : 0.1, 0.4")
-    few = ("--set", f"Atlas/First axis={CHI} : 0.1, 0.2, 0.3", "--set", "Accuracy=1e-3")
-    for study, table, ranks, more in (("sweep", "results", 16, ()), ("atlas", "atlas", 8, few)):
+    for study, ranks, more in (("sweep", 16, ()), ("cross-check", 8, (*CHECKED, "--set", "Accuracy=1e-3"))):
         tables = []
         for n in (1, ranks):
             output = folder / f"{study}-{n}"
-            done = call([*on_ranks(MPIRUN, n), PROGRAM, study, "scene.prm", "--output", output, *more], folder)
+            done = call([*on_ranks(MPIRUN, n), PROGRAM, "sweep", "scene.prm", "--output", output, *more], folder)
             expect(done.returncode == 0, f"{study} on {n} ranks {done.stderr}")
-            tables.append(h5_columns(output / f"{table}.h5", table))
+            tables.append(h5_columns(output / "results.h5", "results"))
         expect(len(tables[0]["index"]) == 6 and same_columns(*tables),
                f"{study}: {ranks} ranks give the same table, bit for bit")
 

@@ -184,10 +184,11 @@ def check_other_folders(folder):
     expect(of_the_scene(result) == of_the_scene(crawler.run(WAVE)) and (folder / "with_files/solution.pvd").exists() and
            (folder / "with_files/original.prm").read_text() == crawler.to_prm(WAVE), "a run with files")
     text = crawler.to_prm(WAVE)
-    program("atlas", "-", "--output", folder / "atlas", "--set", f"Atlas/First axis={K} : 1, 2",
-            "--set", f"Atlas/Second axis={P} : 2, 3", text=text)
-    atlas = crawler.read(folder / "atlas")
-    expect(atlas.kind == "atlas" and len(atlas.table["index"]) == 4 and "verdict" in atlas.table, f"{atlas!r}")
+    program("sweep", "-", "--output", folder / "checked", *settings({
+        "Sweep/Axes": f"{K} : 1, 2; {P} : 2, 3", "Sweep/Cross-check": "true"}), text=text)
+    checked = crawler.read(folder / "checked")
+    expect(checked.kind == "sweep" and checked.cross_check.checked == 4 and list(checked.table["verdict"]) == 4 * ["agree"],
+           f"{checked!r}")
     program("tradeoff", "-", "--output", folder / "tradeoff", *settings({
         "Tradeoff/Models": "nonlinear", "Tradeoff/Formulations": "position", "Tradeoff/Meshes": "uniform",
         "Tradeoff/Engines": "fused", "Tradeoff/Integrators": "radau 5", "Tradeoff/Degrees": 4, "Tradeoff/Cells": 8,

@@ -41,20 +41,6 @@ SWEEP = QUICK + """subsection Sweep
   set Keep fields = 1, 8
 end
 """
-ATLAS = """set Accuracy = 1e-3
-subsection Active stress
-  subsection Optimal wave
-    set Choose wave by = wave speed
-  end
-end
-subsection Atlas
-  set First axis  = Active stress/Optimal wave/Perturbation parameter : 0.1, 0.2
-  set Second axis = Body/Anchoring exponent : linspace(0, 2, 2)
-end
-subsection Time
-  set End time = 0.3
-end
-"""
 TRADEOFF = """subsection Active stress
   subsection Optimal wave
     set Perturbation parameter = 0.4
@@ -100,7 +86,7 @@ class Case:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))
 
         command = [self.program, *words, *options]
-        drawn = self.name not in ("atlas", "tradeoff")  # the pictures of an optimisation and of "plot" are enough
+        drawn = self.name != "tradeoff"  # the pictures of an optimisation and of "plot" are enough
         more = {"variables": {"MPLCONFIGDIR": str(inputs / "matplotlib"), **({} if drawn else NO_PICTURES)}}
         if not self.to_screen:
             return call(command, preexec_fn=limit, **more)
@@ -130,7 +116,7 @@ class Faults:
         free = {"log.txt", "restart.dat", "restart.old.dat"}
         self.checks.expect(set(ours) - free == set(whole) - free, f"{what}: other files: {sorted(set(ours) ^ set(whole))}")
         for name in set(ours) & set(whole) - free:
-            if name.endswith("results.csv") or name.endswith("atlas.csv") or name.endswith(("starts.csv", "optima.csv")):
+            if name.endswith(("results.csv", "starts.csv", "optima.csv")):
                 same = without_times(ours[name]) == without_times(whole[name])
             elif name.endswith(".prm") and "recommendations" not in name:  # comments stand behind names of folders
                 same = ours[name].split() == whole[name].split()
@@ -231,8 +217,8 @@ def prepare(program, prm, inputs):
     """The commands; their parameter files are written."""
     Case.program = program
     inputs.mkdir()
-    for file, text in [("run.prm", RUN), ("quick.prm", QUICK), ("sweep.prm", SWEEP), ("atlas.prm", ATLAS),
-                       ("tradeoff.prm", TRADEOFF), ("samples.csv", SAMPLES)]:
+    for file, text in [("run.prm", RUN), ("quick.prm", QUICK), ("sweep.prm", SWEEP), ("tradeoff.prm", TRADEOFF),
+                       ("samples.csv", SAMPLES)]:
         (inputs / file).write_text(text, encoding="utf-8")
     optimize = prm / "studies" / "optimize_harmonics.prm"
     return [Case("run", ["run", "{in}/run.prm", "--output", "{out}", "--quiet"]),
@@ -240,7 +226,6 @@ def prepare(program, prm, inputs):
                                "Output/Snapshot format=xdmf", "--set", "Output/Sensitivities="]),
             Case("run without a mesh", ["run", "{in}/quick.prm", "--output", "{out}", "--quiet"]),
             Case("sweep", ["sweep", "{in}/sweep.prm", "--output", "{out}", "--quiet"]),
-            Case("atlas", ["atlas", "{in}/atlas.prm", "--output", "{out}", "--quiet"]),
             Case("tradeoff", ["tradeoff", "{in}/tradeoff.prm", "--output", "{out}", "--quiet"]),
             Case("optimize", ["optimize", optimize, "--output", "{out}", "--quiet", "--set", "Optimize/Starts=1"]),
             Case("report", ["report", "{out}", "--quiet"], resumes=False, prepared="whole_run"),

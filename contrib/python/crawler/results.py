@@ -78,7 +78,7 @@ class Result(Numbers):
 
 
 class Study(Numbers):
-    """The folder of a sweep, atlas, tradeoff, optimisation, fit or comparison of fits: the keys of its summary.json.
+    """The folder of a sweep, tradeoff, optimisation, fit or comparison of fits: the keys of its summary.json.
 
     Besides: kind; table, a pandas.DataFrame (without pandas a dict of arrays); parameters; of an optimisation starts,
     a table, and best, the Results of the best gaits.
@@ -94,7 +94,7 @@ class Study(Numbers):
 
 
 def read(folder):
-    """The results in a folder of `crawler run`, sweep, atlas, tradeoff, optimize or fit: a Result or a Study."""
+    """The results in a folder of `crawler run`, sweep, tradeoff, optimize or fit: a Result or a Study."""
     folder = pathlib.Path(folder)
     summary_file = folder / "summary.json"
     if not summary_file.is_file():
@@ -102,7 +102,7 @@ def read(folder):
     summary = json.loads(summary_file.read_text(encoding="utf-8"))
     prm = folder / "parameters.prm"
     effective = prm.read_text(encoding="utf-8") if prm.exists() else ""
-    for kind, name in (("atlas", "atlas.csv"), ("comparison", "comparison.csv"), ("tradeoff", "tradeoff.csv"), ("optimize", "starts.csv"),
+    for kind, name in (("comparison", "comparison.csv"), ("tradeoff", "tradeoff.csv"), ("optimize", "starts.csv"),
                        ("fit", "residuals.csv"), ("sweep", "results.csv")):
         if not (folder / name).exists():
             continue

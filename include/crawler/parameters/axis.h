@@ -37,8 +37,12 @@ namespace crawler
   std::optional<Call>
   read_call(const std::string &text);
 
-  /// Reads VALUES as parse_axis() does, as they stand in a parameter file, no two alike if they must be @p distinct.
-  /// Throws InputError in the name of the entry @p name; it offers @p other_functions, too, which the caller reads.
+  /**
+   * Reads VALUES of an axis: linspace(first, last, count), logspace(first exponent, last exponent, count) (powers of
+   * ten), or a list of values separated by commas, no two alike if they must be @p distinct. Commas within parentheses,
+   * as in max(1, x), do not separate; a value in double quotes may have any characters but those. Throws InputError in
+   * the name of the entry @p name in which the text stands; it offers @p other_functions, too, which the caller reads.
+   */
   std::vector<std::string>
   parse_values(const std::string &text,
                const std::string &name,
@@ -50,18 +54,6 @@ namespace crawler
   void
   require_distinct(const std::vector<std::string> &values, const std::string &name, const std::string &where = "");
 
-  /// What parse_axis() reads, in words.
-  extern const std::string axis_syntax;
-
-  /**
-   * Reads "Section/Entry : VALUES", where VALUES is linspace(first, last, count), logspace(first exponent, last
-   * exponent, count) (powers of ten), or a list of values separated by commas. Commas within parentheses, as in
-   * max(1, x), do not separate; a value in double quotes may have any characters but those. Throws InputError in the
-   * name of the entry @p name in which the text stands.
-   */
-  Axis
-  parse_axis(const std::string &text, const std::string &name);
-
   /// Throws InputError, in the name of the entry @p name, unless the axis is that of an entry in @p declarations and
   /// all its values are admissible there; names of files count from @p folder. Leaves the entry at the last value.
   void
@@ -69,8 +61,4 @@ namespace crawler
                 const std::string &name,
                 Declarations &declarations,
                 const std::filesystem::path &folder = "");
-
-  /// The values as numbers. Throws InputError if one is something else.
-  std::vector<double>
-  numbers_of(const Axis &axis, const std::string &name);
 } // namespace crawler

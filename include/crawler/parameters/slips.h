@@ -13,4 +13,8 @@ namespace crawler
   /// What is wrong with the name of a file that begins with "~/", which shells only understand. Empty if it does not.
   std::string
   home_sign(const std::string &file);
+
+  /// What to write instead of a command or section of earlier versions, in words. Empty if there was none of this name.
+  std::string
+  successor_of(const std::string &former);
 } // namespace crawler

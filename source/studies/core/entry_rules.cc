@@ -173,14 +173,17 @@ namespace crawler
       const auto is_random = any_of({"random", "latin hypercube"});
       // What is there is used by the command of its section; check makes the plan of all.
       rules.push_back({{"Sweep/"}, {{command_entry, any_of({"sweep", "optimize", "check"})}}});
-      for (const auto &[section, command] : {std::pair("Atlas/", "atlas"),
-                                             std::pair("Tradeoff/", "tradeoff"),
-                                             std::pair("Optimize/", "optimize"),
-                                             std::pair("Fit/", "fit")})
+      for (const auto &[section, command] :
+           {std::pair("Tradeoff/", "tradeoff"), std::pair("Optimize/", "optimize"), std::pair("Fit/", "fit")})
         rules.push_back({{section}, {{command_entry, any_of({command, "check"})}}});
       rules.push_back({{"Sweep/Design", "Sweep/Number of points", "Sweep/Seed"}, {{"Sweep/Axes", is_set}}});
-      rules.push_back({{"Sweep/Keep fields", "Sweep/Time limit per point", "Sweep/Time limit"},
+      rules.push_back({{"Sweep/Keep fields",
+                        "Sweep/Cross-check",
+                        "Sweep/Cross-check refinement",
+                        "Sweep/Time limit per point",
+                        "Sweep/Time limit"},
                        {{command_entry, any_of({"sweep", "check"})}}});
+      rules.push_back({{"Sweep/Cross-check refinement"}, {{"Sweep/Cross-check", any_of({"true"})}}});
       rules.push_back({{"Sweep/Number of points", "Sweep/Seed"}, {{"Sweep/Design", is_random}}});
       rules.push_back({{"Output/Number of snapshots",
                         "Output/Snapshot format",
@@ -197,7 +200,7 @@ namespace crawler
                         "Time/Step control",
                         "Time/Tolerance",
                         "Time/Cycle stop"},
-                       {{command_entry, any_of({"run", "sweep", "atlas", "optimize", "fit", "check"})}}});
+                       {{command_entry, any_of({"run", "sweep", "optimize", "fit", "check"})}}});
       rules.push_back({{"Optimize/"}, {{"Optimize/Variables", is_set}, {command_entry, any_of({"optimize"})}}});
       rules.push_back({{"Optimize/Start spread", "Optimize/Seed"}, {{"Optimize/Starts", is_not(1.)}}});
       rules.push_back({{"Fit/"}, {{"Fit/Variables", is_set}, {command_entry, any_of({"fit"})}}});

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/parameters/axis.h>
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/parameters.h>
 
@@ -31,27 +30,16 @@ namespace crawler
       .means("Of the random numbers of a random or Latin hypercube design: the same seed gives the same points.");
     declarations.text("Keep fields", keep_fields, "a list of numbers of points, or nothing")
       .means("Points whose fields are kept: for each there is a folder points/NUMBER with all files of a run.");
+    declarations.flag("Cross-check", cross_check)
+      .means("Compares answers: each point is run in the position form, in the stretch form and refined, too, and its "
+             "row says whether all answers can be right, or one is silently wrong.");
+    declarations.number("Cross-check refinement", refinement, between(1, 1e6), "1")
+      .means("The refined run asks for Accuracy divided by this and chooses mesh and time steps itself.");
     declarations.number("Time limit per point", point_time_limit, positive(), "s")
-      .means(
-        "Wall time after which a point is given up; it becomes a row with the reason time_limit. Automatic: none.");
+      .means("Wall time after which a point is given up; it becomes a row with the reason time_limit. With Cross-check "
+             "it holds for each run of a point. Automatic: none.");
     declarations.number("Time limit", time_limit, positive(), "s")
       .means("Wall time after which no more points are computed; the rest is for --resume. Automatic: none.");
-    declarations.leave();
-  }
-
-  void
-  AtlasParameters::add_parameters(Declarations &declarations)
-  {
-    declarations.enter("Atlas");
-    declarations.text("First axis", first_axis, axis_syntax)
-      .means("The entry, and its values, that varies along the first axis of the map that crawler atlas makes. Any "
-             "entry that is a number will do.");
-    declarations.text("Second axis", second_axis, axis_syntax).means("The same for the second axis.");
-    declarations.number("Refinement", refinement, between(1, 1e6), "1")
-      .means("The refined run, with which the others are compared, asks for Accuracy divided by this and chooses mesh "
-             "and time steps itself.");
-    declarations.number("Time limit per run", time_limit, positive(), "s")
-      .means("A run at a point of the map that takes longer is stopped (reason time_limit).");
     declarations.leave();
   }
 
@@ -182,7 +170,6 @@ namespace crawler
   {
     RunParameters::add_parameters(declarations);
     sweep.add_parameters(declarations);
-    atlas.add_parameters(declarations);
     tradeoff.add_parameters(declarations);
     optimize.add_parameters(declarations);
     fit.add_parameters(declarations);

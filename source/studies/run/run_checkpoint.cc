@@ -100,7 +100,7 @@ namespace crawler
       bool is_begun                     = true;
       for (const auto &file : fs::directory_iterator(folder))
         is_begun = is_begun && early.contains(file.path().filename().string());
-      const bool is_study = has("results.h5") || has("atlas.h5") || has("tradeoff.h5");
+      const bool is_study = has("results.h5") || has("tradeoff.h5");
       if (!is_begun && (is_study || !has("parameters.prm") || !has("log.txt")))
         throw InputError(fmt::format(
           "\"{}\" has no run that could be resumed; another folder is expected for --output, or --overwrite",

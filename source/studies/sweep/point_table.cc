@@ -122,7 +122,7 @@ namespace crawler
   }
 
   std::vector<RowFile::Column>
-  axis_columns(const SweepDesign &design, const Declarations &declarations, const std::string &description)
+  axis_columns(const SweepDesign &design, const Declarations &declarations)
   {
     constexpr unsigned int most_axis_width = 256;
     std::vector<RowFile::Column> columns   = {{"index", "1", "number of the point", 0}};
@@ -136,8 +136,10 @@ namespace crawler
         is_number = is_number && to_number(value).has_value();
         widest    = std::max(widest, value.size());
       }
-      columns.push_back(
-        {axis.entry, unit, description, is_number ? 0 : std::min(static_cast<unsigned int>(widest), most_axis_width)});
+      columns.push_back({axis.entry,
+                         unit,
+                         "axis of the sweep",
+                         is_number ? 0 : std::min(static_cast<unsigned int>(widest), most_axis_width)});
     }
     return columns;
   }

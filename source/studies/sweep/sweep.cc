@@ -98,6 +98,24 @@ namespace crawler
       return on_all_ranks(communicator, all);
     }
 
+    PointTable
+    table_of(const SweepPoints &points)
+    {
+      PointTable table         = {sweep_file,
+                                  sweep_group,
+                                  sweep_columns(points),
+                                  1 + points.design().axes().size(),
+                                  "status",
+                                  {},
+                                  points.sweep().point_time_limit.value_or(HUGE_VAL)};
+      const std::string reason = "reason"; // of the point, and of each run of a cross-check
+      for (const RowFile::Column &column : table.columns)
+        if (column.name.ends_with(reason))
+          table.reasons_and_seconds.emplace_back(column.name,
+                                                 column.name.substr(0, column.name.size() - reason.size()) + "seconds");
+      return table;
+    }
+
     /// The rows that are missing, by all ranks. Returns false if some rank was interrupted.
     bool
     compute_rows(MPI_Comm communicator,
@@ -129,6 +147,23 @@ namespace crawler
         log);
     }
 
+    /// What a cross-check has found.
+    void
+    report_check(const SweepCounts &counts, Log &log)
+    {
+      for (const auto &[point, why] : counts.wrong_answers)
+        log.line(fmt::format("Silent wrong answer at point {}: {}", point, why));
+      if (const auto n = counts.number_of(Verdict::silent_wrong_answer); n > counts.wrong_answers.size())
+        log.line(fmt::format("... and {} more (column verdict of results.csv)", n - counts.wrong_answers.size()));
+      log.line(fmt::format(
+        "Cross-check: {} with two answers at least, {}{}.",
+        counted(counts.checked(), "point"),
+        counted(counts.number_of(Verdict::silent_wrong_answer), "silent wrong answer"),
+        std::isnan(counts.largest_error_ratio)
+          ? ""
+          : fmt::format("; the largest measured error is {:.2g} of the promised one", counts.largest_error_ratio)));
+    }
+
     /// What stands in the log at the end.
     void
     report(const SweepCounts &counts, const SweepEnd &end, const fs::path &folder, Log &log)
@@ -141,6 +176,8 @@ namespace crawler
                            fmt::join(words, ", "),
                            end.seconds,
                            static_cast<double>(n_computed(counts, end)) / end.seconds));
+      if (!counts.verdicts.empty())
+        report_check(counts, log);
       if (end.status != "finished")
         log.warn(
           fmt::format("stopped by {}; --resume goes on", end.reason == "signal" ? "a signal" : "Sweep/Time limit"));
@@ -163,17 +200,12 @@ namespace crawler
     const unsigned int n_ranks = size_of(communicator);
     Log log(rank_of(communicator) == 0, options);
     SweepPoints points(communicator, file);
+    points.require_checkable();
     const SweepDesign &design  = points.design();
     const SweepParameters &own = points.sweep();
     const auto kept            = points.kept_points();
     const fs::path path        = output_folder(options.output, options.file);
-    const PointTable table     = {sweep_file,
-                                  sweep_group,
-                                  sweep_columns(points),
-                                  1 + design.axes().size(),
-                                  "status",
-                                  {{"reason", "seconds"}},
-                                  own.point_time_limit.value_or(HUGE_VAL)};
+    const PointTable table     = table_of(points);
     StudyFolder folder({"sweep", {sweep_file}, {"Sweep/Time limit", "Sweep/Time limit per point", "Sweep/Keep fields"}},
                        path,
                        options,
@@ -259,6 +291,7 @@ namespace crawler
     if (axes == nullptr || axes->value.empty())
       return false;
     SweepPoints points(communicator, file);
+    points.require_checkable();
     const SweepDesign &design = points.design();
     std::size_t bytes         = 0;
     for (const RowFile::Column &column : sweep_columns(points))

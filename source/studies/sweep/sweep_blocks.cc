@@ -3,12 +3,12 @@
 #include <crawler/parameters/declarations.h>
 #include <crawler/studies/core/sensitivities.h>
 #include <crawler/studies/core/study.h>
+#include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/sweep_blocks.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace crawler
@@ -90,6 +90,7 @@ namespace crawler
   {
     unsigned long number;
     Task task;
+    RowFile::Row checked = {}; ///< of a cross-check
   };
 
   namespace
@@ -128,7 +129,7 @@ namespace crawler
       unsigned long failed = 0;
       for (std::size_t i = 0; i < points.size(); ++i)
       {
-        rows.push_back(sweep_row(points[i].task, sensitivities));
+        rows.push_back(sweep_row(points[i].task, sensitivities, points[i].checked));
         failed += status_of(points[i].task).status != "finished";
         if (i + 1 < points.size() && points[i + 1].number == points[i].number + 1)
           continue;
@@ -145,11 +146,12 @@ namespace crawler
     , blocks_(points.design())
     , order_(blocks_, points)
     , parts_of_block_([&]() {
-      // A rank that takes a part must measure what its block shares.
-      constexpr unsigned long parts_per_rank = 4, most = 64, most_if_alone = 8;
+      // A rank that takes a part must measure what its block shares. Points of a cross-check take long.
+      constexpr unsigned long most = 64, most_if_alone = 8;
+      const unsigned long parts_per_rank = points.sweep().cross_check ? 8 : 4;
       const unsigned long n = points.design().n_points(), largest = blocks_.largest();
       const unsigned long together =
-        std::clamp(n / (parts_per_rank * n_ranks), 1ul, SweepNumerics::are_shared(n) ? most : most_if_alone);
+        std::clamp(n / (parts_per_rank * n_ranks), 1ul, SweepNumerics::are_shared(points) ? most : most_if_alone);
       return (largest + together - 1) / together;
     }())
     , time_limit_(points.sweep().point_time_limit.value_or(HUGE_VAL))
@@ -169,13 +171,19 @@ namespace crawler
     return blocks_[order_[part / parts_of_block_]];
   }
 
-  SweepBlock
+  std::vector<unsigned long>
   SweepWork::part(const unsigned long number) const
   {
     const SweepBlock block   = block_of(number);
     const unsigned long part = number % parts_of_block_;
-    const unsigned long from = block.size * part / parts_of_block_, to = block.size * (part + 1) / parts_of_block_;
-    return {block.first + from, to - from};
+    std::vector<unsigned long> points;
+    if (points_.sweep().cross_check) // neighbours, which take long together, go to different ranks
+      for (unsigned long i = part; i < block.size; i += parts_of_block_)
+        points.push_back(block.first + i);
+    else
+      for (unsigned long i = block.size * part / parts_of_block_; i < block.size * (part + 1) / parts_of_block_; ++i)
+        points.push_back(block.first + i);
+    return points;
   }
 
   std::vector<SweepWork::Point>
@@ -231,21 +239,35 @@ namespace crawler
     }
   }
 
+  void
+  SweepWork::check(std::vector<Point> &points, const std::function<bool()> &interrupted) const
+  {
+    if (!points_.sweep().cross_check)
+      return;
+    std::vector<const Task *> tasks;
+    for (const Point &point : points)
+      tasks.push_back(&point.task);
+    std::vector<RowFile::Row> rows = checked_values(tasks, interrupted);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points[i].checked = std::move(rows[i]);
+  }
+
   unsigned long
   SweepWork::try_out(const unsigned long number)
   {
-    const auto never       = []() { return false; };
-    const SweepBlock block = part(number);
-    std::vector<unsigned long> points(block.size);
-    std::iota(points.begin(), points.end(), block.first);
+    const auto never    = []() { return false; };
+    auto points         = part(number);
+    const std::size_t n = points.size();
     for (const Point &done : compute_shared(block_of(number), points, never))
       std::erase(points, done.number);
     for (const unsigned long point : points)
     {
-      Task one = numerics_.task(point);
-      compute_all({&one, 1}, time_limit_, never);
+      std::vector<Point> one;
+      one.push_back({point, numerics_.task(point)});
+      compute_all({&one[0].task, 1}, time_limit_, never);
+      check(one, never);
     }
-    return block.size;
+    return n;
   }
 
   void
@@ -262,16 +284,14 @@ namespace crawler
                      const std::function<bool()> &interrupted,
                      const std::function<void(unsigned long n, unsigned long failed)> &see)
   {
-    const SweepBlock own = part(number);
-    std::vector<unsigned long> missing;
-    for (unsigned long point = own.first; point < own.first + own.size; ++point)
-      if (!done[point])
-        missing.push_back(point);
+    std::vector<unsigned long> missing = part(number);
+    std::erase_if(missing, [&](const unsigned long point) { return done[point]; });
     const PointsByCrashes sorted = by_crashes(missing, crashes_);
     missing                      = sorted.usual;
     std::vector<Point> given_up;
     for (const unsigned long point : sorted.given_up)
       given_up.push_back({point, crashed_task()});
+    check(given_up, interrupted);
     const auto at_work_on = [this](const std::span<const unsigned long> points) {
       if (note_ != nullptr)
         note_->at_work_on(points);
@@ -308,6 +328,7 @@ namespace crawler
       for (std::size_t i = from; i < to; ++i)
         ready.push_back({missing[i], std::move(few[i - from])});
       differentiate(ready, interrupted);
+      check(ready, interrupted);
       if (interrupted())
         return false;
       write_rows(ready, points_.sensitivities(), write, see);

@@ -78,7 +78,7 @@ namespace crawler
   SweepNumerics::measure(const SweepBlock &part, const std::function<bool()> &keep_going) const
   {
     Known known;
-    if (part.size < fewest || !are_shared(points_.design().n_points()))
+    if (part.size < fewest || !are_shared(points_))
       return known;
     std::vector<std::vector<double>> places;
     for (unsigned long i = 0; i < part.size; ++i)

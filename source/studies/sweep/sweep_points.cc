@@ -18,6 +18,19 @@ namespace crawler
   namespace
   {
     const std::string axes_entry = "Sweep/Axes";
+
+    bool
+    has_feedback(const Parameters &parameters)
+    {
+      try
+      {
+        return parameters.create_scene().active_stress->feedback() != nullptr;
+      }
+      catch (const InputError &) // its row says so
+      {
+        return false;
+      }
+    }
   }
 
   SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file)
@@ -25,19 +38,6 @@ namespace crawler
   {
     auto base = std::make_unique<Form>(file);
     sweep_    = base->parameters.sweep;
-    build(communicator, std::move(base));
-  }
-
-  SweepPoints::SweepPoints(MPI_Comm communicator, const ParameterFile &file, const SweepParameters &design)
-    : file_(file)
-    , sweep_(design)
-  {
-    build(communicator, std::make_unique<Form>(file));
-  }
-
-  void
-  SweepPoints::build(MPI_Comm communicator, std::unique_ptr<Form> base)
-  {
     std::ostringstream text;
     base->declarations.print_prm(text);
     effective_ = text.str();
@@ -87,10 +87,10 @@ namespace crawler
   }
 
   std::vector<std::string>
-  SweepPoints::notes(const std::string &command, const std::string &by) const
+  SweepPoints::notes() const
   {
-    const VariedEntries varied = this->varied(by);
-    auto notes                 = notes_on_entries(file_, declarations(), command, varied);
+    const VariedEntries varied = this->varied();
+    auto notes                 = notes_on_entries(file_, declarations(), "sweep", varied);
     const bool may_differ =
       varied.may_be_all || std::ranges::any_of(varied.paths, [](const std::string &path) {
         return path.starts_with("Active stress/") || path.starts_with("Ground/") || path.starts_with("Time/");
@@ -132,10 +132,10 @@ namespace crawler
   }
 
   VariedEntries
-  SweepPoints::varied(const std::string &by) const
+  SweepPoints::varied() const
   {
     VariedEntries varied;
-    if (const Assignment *const axes = file_.assignment_of(by))
+    if (const Assignment *const axes = file_.assignment_of(axes_entry))
       varied.by = axes->place;
     for (const SweepAxis &axis : design_->axes())
       if (axis.is_file())
@@ -153,7 +153,7 @@ namespace crawler
       const SweepAxis &axis = design_->axes()[number];
       if (axis.is_file())
         continue;
-      for (const char *section : {"Sweep/", "Atlas/", "Tradeoff/", "Output/Sensitivities", "Output/Uncertainty"})
+      for (const char *section : {"Sweep/", "Tradeoff/", "Output/Sensitivities", "Output/Uncertainty"})
         if (axis.entry.starts_with(section))
           throw InputError(
             fmt::format("\"{}\": \"{}\" cannot vary; an entry of another section is expected", axes_entry, axis.entry),
@@ -210,6 +210,25 @@ namespace crawler
           wrong.emplace(error);
       }
     throw InputError(*wrong);
+  }
+
+  void
+  SweepPoints::require_checkable()
+  {
+    if (!sweep_.cross_check)
+      return;
+    const Parameters &first = parameters(0);
+    if (first.model != Model::nonlinear)
+      throw file_.with_place(
+        InputError(fmt::format("Model is {}, but Sweep/Cross-check compares answers of the nonlinear "
+                               "model; Model = nonlinear is expected",
+                               word_of(first.model)),
+                   "Model"));
+    if (has_feedback(first))
+      throw file_.with_place(
+        InputError("Generator is strain feedback, or a sum with it, but Sweep/Cross-check must know "
+                   "the stretch of the ends beforehand; another one is expected",
+                   "Active stress/Generator"));
   }
 
   Form &

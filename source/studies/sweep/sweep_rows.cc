@@ -3,9 +3,9 @@
 #include <crawler/base/exceptions.h>
 #include <crawler/base/versions.h>
 #include <crawler/parameters/declarations.h>
-#include <crawler/run/result_table.h>
 #include <crawler/studies/core/differentiated_numbers.h>
 #include <crawler/studies/core/table_csv.h>
+#include <crawler/studies/sweep/checked_runs.h>
 #include <crawler/studies/sweep/point_table.h>
 #include <crawler/studies/sweep/sweep_rows.h>
 
@@ -27,24 +27,11 @@ namespace crawler
     constexpr double not_known        = std::numeric_limits<double>::quiet_NaN();
     constexpr unsigned int word_width = 24, reason_width = 32, message_width = 256;
 
-    RowFile::Value
-    value_of(const ResultEntry &entry, const SimulationResult &result)
-    {
-      const ResultValue value = entry.value_in(result);
-      if (entry.is_word)
-        return std::get<std::string>(value.index() == 0 ? ResultValue(std::string()) : value);
-      if (const auto *number = std::get_if<double>(&value))
-        return std::isfinite(*number) ? *number : not_known;
-      if (const auto *count = std::get_if<unsigned long>(&value))
-        return static_cast<double>(*count);
-      return not_known;
-    }
-
     /// Of a number by its key.
     std::string
     unit_of(const std::string &key)
     {
-      return std::ranges::find(result_table(), key, &ResultEntry::key)->unit;
+      return entry_of(key).unit;
     }
 
     bool
@@ -53,20 +40,36 @@ namespace crawler
       return std::ranges::any_of(entries, [](const SensitivityEntry &one) { return one.deviation > 0.; });
     }
 
+    constexpr std::size_t most_wrong_answers = 10;
+
     void
     count(const Table &table, SweepCounts &counts)
     {
-      for (const Column &column : table)
+      const auto column = [&](const std::string &name) {
+        const auto found = std::ranges::find(table, name, &Column::name);
+        return found == table.end() ? nullptr : &found->values;
+      };
+      const auto texts = [&](const std::string &name) {
+        const auto *values = column(name);
+        return values == nullptr ? std::vector<std::string>() : std::get<std::vector<std::string>>(*values);
+      };
+      for (const std::string &text : texts("status"))
+        ++counts.statuses[text.empty() ? "missing" : text];
+      for (const std::string &text : texts("reason"))
+        if (!text.empty())
+          ++counts.reasons[text];
+      const std::vector<std::string> verdicts = texts("verdict"), explanations = texts("explanation");
+      for (std::size_t i = 0; i < verdicts.size(); ++i)
       {
-        const auto *texts = std::get_if<std::vector<std::string>>(&column.values);
-        if (texts == nullptr || (column.name != "status" && column.name != "reason"))
-          continue;
-        for (const std::string &text : *texts)
-          if (column.name == "status")
-            ++counts.statuses[text.empty() ? "missing" : text];
-          else if (!text.empty())
-            ++counts.reasons[text];
+        if (!verdicts[i].empty())
+          ++counts.verdicts[verdicts[i]];
+        if (!explanations[i].empty() && counts.wrong_answers.size() < most_wrong_answers)
+          counts.wrong_answers.emplace(std::get<std::vector<double>>(*column("index"))[i], explanations[i]);
       }
+      for (const char *run : {"", "position ", "stretch "})
+        if (const auto *ratios = column(std::string(run) + "error ratio"))
+          for (const double ratio : std::get<std::vector<double>>(*ratios))
+            counts.largest_error_ratio = std::fmax(counts.largest_error_ratio, ratio);
     }
 
     /// The sum over all ranks, on rank 0.
@@ -75,15 +78,24 @@ namespace crawler
     {
       SweepCounts all;
       all.n_points              = counts.n_points;
-      const nlohmann::json mine = {counts.statuses, counts.reasons};
+      const nlohmann::json mine = {
+        counts.statuses, counts.reasons, counts.verdicts, counts.wrong_answers, counts.largest_error_ratio};
       for (const std::string &text :
            gather(mine.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace), communicator))
       {
         const auto json = nlohmann::json::parse(text);
-        for (const auto &[name, n] : json[0].items())
-          all.statuses[name] += n.get<unsigned long>();
-        for (const auto &[name, n] : json[1].items())
-          all.reasons[name] += n.get<unsigned long>();
+        const auto add  = [](const nlohmann::json &its, std::map<std::string, unsigned long> &sums) {
+          for (const auto &[name, n] : its.items())
+            sums[name] += n.get<unsigned long>();
+        };
+        add(json[0], all.statuses);
+        add(json[1], all.reasons);
+        add(json[2], all.verdicts);
+        all.wrong_answers.merge(json[3].get<std::map<unsigned long, std::string>>());
+        while (all.wrong_answers.size() > most_wrong_answers)
+          all.wrong_answers.erase(std::prev(all.wrong_answers.end()));
+        if (json[4].is_number()) // null: not known
+          all.largest_error_ratio = std::fmax(all.largest_error_ratio, json[4].get<double>());
       }
       return all;
     }
@@ -92,7 +104,7 @@ namespace crawler
   std::vector<RowFile::Column>
   sweep_columns(const SweepPoints &points)
   {
-    std::vector<RowFile::Column> columns = axis_columns(points.design(), points.declarations(), "axis of the sweep");
+    std::vector<RowFile::Column> columns = axis_columns(points.design(), points.declarations());
     for (const ResultEntry &entry : result_table())
       if (!entry.of_process)
         columns.push_back({entry.key, entry.unit, entry.meaning, entry.is_word ? word_width : 0});
@@ -111,6 +123,8 @@ namespace crawler
                            unit_of(number),
                            std::string("standard deviation of ") + number + " by that of uncertain entries",
                            0});
+    if (points.sweep().cross_check)
+      std::ranges::move(checked_columns(), std::back_inserter(columns));
     columns.push_back(
       {"seconds", "s", "wall time of the point; points that were computed side by side share theirs", 0});
     columns.push_back({"reason", "", "name of what went wrong", reason_width});
@@ -119,41 +133,14 @@ namespace crawler
     return columns;
   }
 
-  PointStatus
-  status_of(const Task &task)
-  {
-    if (task.error)
-      try
-      {
-        std::rethrow_exception(task.error);
-      }
-      catch (const InputError &error)
-      {
-        return {"failed", "refused", error.what()};
-      }
-    if (task.is_out_of_time)
-      return {
-        "stopped",
-        time_limit_reason,
-        task.computed.result.time.status == Status::finished
-          ? "it took longer than Sweep/Time limit per point when its errors were measured; the run itself is whole"
-          : "it took longer than Sweep/Time limit per point"};
-    const TimeOutcome &time = task.computed.result.time;
-    return time.status == Status::finished ? PointStatus{word_of(time.status), "", ""}
-                                           : PointStatus{word_of(time.status), time.reason, time.message};
-  }
-
   RowFile::Row
-  sweep_row(const Task &task, const std::vector<SensitivityEntry> &sensitivities)
+  sweep_row(const Task &task, const std::vector<SensitivityEntry> &sensitivities, const RowFile::Row &checked)
   {
     const PointStatus status = status_of(task);
-    const bool has_result    = !task.error && task.computed.result.time.status != Status::none;
     RowFile::Row row;
     for (const ResultEntry &entry : result_table())
       if (!entry.of_process)
-        row.push_back(has_result      ? value_of(entry, task.computed.result)
-                      : entry.is_word ? RowFile::Value(std::string())
-                                      : RowFile::Value(not_known));
+        row.push_back(value_in_row(task, entry));
     const SimulationResult &result = task.computed.result;
     const auto add                 = [&](const std::optional<double> &value) {
       row.emplace_back(std::in_place_type<double>, value.value_or(not_known));
@@ -169,6 +156,7 @@ namespace crawler
     if (are_uncertain(sensitivities))
       for (const auto &[number, of] : differentiated_numbers)
         add(result.standard_deviation(number));
+    row.insert(row.end(), checked.begin(), checked.end());
     row.insert(row.end(), {task.seconds, status.reason, shortened(status.message, message_width), status.status});
     return row;
   }
@@ -190,6 +178,13 @@ namespace crawler
   }
 
   unsigned long
+  SweepCounts::number_of(const Verdict::Kind kind) const
+  {
+    const auto found = verdicts.find(Verdict{kind, ""}.in_words());
+    return found == verdicts.end() ? 0 : found->second;
+  }
+
+  unsigned long
   n_computed(const SweepCounts &counts, const SweepEnd &end)
   {
     const auto missing = counts.statuses.find("missing");
@@ -199,7 +194,7 @@ namespace crawler
   std::string
   sweep_json(const SweepCounts &counts, const SweepEnd &end)
   {
-    const nlohmann::ordered_json json = {
+    nlohmann::ordered_json json = {
       {"status", end.status},
       {"reason", end.reason.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(end.reason)},
       {"points", counts.n_points},
@@ -210,6 +205,10 @@ namespace crawler
       {"ranks", end.n_ranks},
       {"versions", versions()},
       {"command_line", end.command_line}};
+    if (!counts.verdicts.empty())
+      json["cross_check"] = {{"checked", counts.checked()},
+                             {"silent_wrong_answers", counts.number_of(Verdict::silent_wrong_answer)},
+                             {"largest_error_ratio", counts.largest_error_ratio}};
     return json.dump(2, ' ', /*ensure_ascii=*/false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   }
 } // namespace crawler

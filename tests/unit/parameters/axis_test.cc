@@ -9,12 +9,12 @@ using namespace crawler;
 
 namespace
 {
-  const std::string name = "Atlas/First axis";
+  const std::string name = "Sweep/Axes";
 
   std::vector<std::string>
   values_of(const std::string &values)
   {
-    return parse_axis("Body/Length : " + values, name).values;
+    return parse_values(values, name);
   }
 
   void
@@ -22,7 +22,7 @@ namespace
   {
     try
     {
-      numbers_of(parse_axis(text, name), name);
+      values_of(text);
       ADD_FAILURE() << "\"" << text << "\" was accepted";
     }
     catch (const InputError &error)
@@ -50,10 +50,8 @@ TEST(Axis, LogspaceGivesPowersOfTen)
 
 TEST(Axis, ListsKeepTheTextOfTheValues)
 {
-  const Axis axis = parse_axis("  Active stress / Generator:none ,optimal wave ", name);
-  EXPECT_EQ(axis.entry, "Active stress/Generator");
-  EXPECT_EQ(axis.values, (std::vector<std::string>{"none", "optimal wave"}));
-  EXPECT_EQ(numbers_of(parse_axis("Body/Length : 1, 2.50", name), name), (std::vector<double>{1., 2.5}));
+  EXPECT_EQ(values_of("none ,optimal wave "), (std::vector<std::string>{"none", "optimal wave"}));
+  EXPECT_EQ(values_of("1, 2.50"), (std::vector<std::string>{"1", "2.50"}));
 }
 
 TEST(Axis, CommasWithinParenthesesOrQuotesDoNotSeparate)
@@ -74,25 +72,21 @@ TEST(Axis, CommasWithinParenthesesOrQuotesDoNotSeparate)
 
 TEST(Axis, WhatIsWrongIsSaid)
 {
-  expect_error("Body/Length", {"\"Body/Length\"", "linspace(first, last, count)"});
-  expect_error("Body/Length :", {"is expected"});
-  expect_error(": 1, 2", {"Section/Entry"});
-  expect_error("Body/Length : linspce(0, 1, 2)", {"\"linspce\"", "the nearest is \"linspace\""});
-  expect_error("Body/Length : max(1, x)", {"\"max\"", "\"linspace\" or \"logspace\"", "in double quotes"});
-  expect_error("Body/Length : 1, linspace(0, 1, 2)", {"\"linspace(0, 1, 2)\"", "nothing beside it"});
-  expect_error("Body/Length : 1, max(1, (x)", {"as many closing as opening parentheses"});
-  expect_error("Body/Length : 1, \"2", {"a second double quote is expected"});
-  expect_error("Body/Length : linspace(0, 1)", {"\"linspace(0, 1)\"", "three numbers"});
-  expect_error("Body/Length : linspace(0, x, 3)", {"three numbers"});
-  expect_error("Body/Length : linspace(0, 1, 3", {"three numbers"});
-  expect_error("Body/Length : linspace(0, 1, 3) 4", {"three numbers"});
-  expect_error("Body/Length : linspace(0, 1, 2.5)", {"\"2.5\"", "a whole number from 1 to 100000"});
-  expect_error("Body/Length : linspace(0, 1, 0)", {"a whole number from 1"});
-  expect_error("Body/Length : linspace(1, 1, 3)", {"the value 1 occurs twice"});
-  expect_error("Body/Length : 1, 2, 1.0", {"occurs twice"});
-  expect_error("Body/Length : 1,, 2", {"value 2 of the list", "empty"});
-  expect_error("Body/Length : logspace(0, 400, 2)", {"400"});
-  expect_error("Body/Length : 1, long", {"\"long\"", "a number is expected"});
+  expect_error("linspce(0, 1, 2)", {"\"linspce\"", "the nearest is \"linspace\""});
+  expect_error("max(1, x)", {"\"max\"", "\"linspace\" or \"logspace\"", "in double quotes"});
+  expect_error("1, linspace(0, 1, 2)", {"\"linspace(0, 1, 2)\"", "nothing beside it"});
+  expect_error("1, max(1, (x)", {"as many closing as opening parentheses"});
+  expect_error("1, \"2", {"a second double quote is expected"});
+  expect_error("linspace(0, 1)", {"\"linspace(0, 1)\"", "three numbers"});
+  expect_error("linspace(0, x, 3)", {"three numbers"});
+  expect_error("linspace(0, 1, 3", {"three numbers"});
+  expect_error("linspace(0, 1, 3) 4", {"three numbers"});
+  expect_error("linspace(0, 1, 2.5)", {"\"2.5\"", "a whole number from 1 to 100000"});
+  expect_error("linspace(0, 1, 0)", {"a whole number from 1"});
+  expect_error("linspace(1, 1, 3)", {"the value 1 occurs twice"});
+  expect_error("1, 2, 1.0", {"occurs twice"});
+  expect_error("1,, 2", {"value 2 of the list", "empty"});
+  expect_error("logspace(0, 400, 2)", {"400"});
 }
 
 TEST(Axis, AllValuesAreCheckedAgainstTheDeclarations)
@@ -102,14 +96,14 @@ TEST(Axis, AllValuesAreCheckedAgainstTheDeclarations)
   declarations.enter("Body");
   declarations.number("Length", length, positive(), "length").means("Length.");
   declarations.leave();
-  require_valid(parse_axis("Body/Length : 1, 3", name), name, declarations);
+  require_valid({"Body/Length", {"1", "3"}}, name, declarations);
   EXPECT_EQ(length, 3.);
-  for (const auto &[text, part] : {std::pair("Body/Length : 2, -1", "a positive number is expected"),
-                                   std::pair("Body/Lenght : 2", "nearest name is \"Length\"")})
+  for (const auto &[axis, part] : {std::pair(Axis{"Body/Length", {"2", "-1"}}, "a positive number is expected"),
+                                   std::pair(Axis{"Body/Lenght", {"2"}}, "nearest name is \"Length\"")})
     try
     {
-      require_valid(parse_axis(text, name), name, declarations);
-      ADD_FAILURE() << text;
+      require_valid(axis, name, declarations);
+      ADD_FAILURE() << axis.entry;
     }
     catch (const InputError &error)
     {

@@ -2,13 +2,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Draws the table of crawler sweep: a heat map over two axes, lines over one, points for random designs.
 
+With Sweep/Cross-check and two axes that is the map of outcomes, on which silent wrong answers are red.
+
     contrib/python/crawler/plot/sweep.py OUTPUT_FOLDER [--x AXIS] [--y AXIS | --lines] [--value COLUMN] [--where AXIS=VALUE ...]
                           [--scale auto|linear|log] [--fit] [--output PICTURE]
 
 Reads results.h5 of the folder and writes results.png and results.svg there (or PICTURE). AXIS is an axis of the sweep,
 as "Body/Length", or its last words. Without --x the last axis is x; without --y the one before it is y, the next two
 make the columns and rows of small pictures. --lines: x alone, a line for each value of the next axis. --where keeps the
-points with this value of an axis. COLUMN is any column of numbers (displacement), or status: what became of the points.
+points with this value of an axis. COLUMN is any column of numbers (displacement), or status or outcome: what became of
+the points.
 --scale is that of the values; auto: logarithmic if they are positive and differ by more than a factor of 1000. Axes whose
 values have equal ratios are logarithmic. --fit: the power law through the points of each line, in its label; lines that
 change sign are drawn without. Values of points that did not finish are not drawn, but which and why. Needs numpy,
@@ -35,7 +38,8 @@ from matplotlib.path import Path
 MARKS = (("0.88", "////", "x"), ("0.72", "....", "+"), ("0.80", "\\\\\\\\", "1"), ("0.60", "xxxx", "2"),
          ("0.94", "++", "3"), ("0.50", "oo", "4"))
 STATUS_COLOURS = {"finished": "#FFFFFF", "inverted": "#E69F00", "failed": "#D55E00", "stopped": "#CC79A7",
-                  "not": "0.75"}
+                  "not": "0.75", "refused": "#56B4E9", "silent": "#D40000"}
+WORDS = ("status", "outcome")  # columns that say what became of the points
 MOST_LINES, MOST_PANELS = 60, 4  # lines in a picture; small pictures in a row or column
 
 
@@ -133,9 +137,11 @@ class Sweep:
 class Marks:
     """What became of each chosen point that has no value to be drawn: an index into names, or -1."""
 
-    def __init__(self, sweep, values, alone):
-        self.alone = alone  # --value status
-        status, reason = sweep.column("status"), sweep.column("reason")
+    def __init__(self, sweep, values, column):
+        self.alone = column in WORDS
+        status, reason = sweep.column(column if self.alone else "status"), sweep.column("reason")
+        if column == "outcome":  # has its reason in it
+            reason = np.zeros_like(reason)
         finished = status == b"finished"
         known = np.isfinite(values)
         self.note = ""
@@ -158,7 +164,7 @@ class Marks:
 
     def face(self, i):
         """The colour of cells."""
-        return STATUS_COLOURS.get(self.names[i].split(" ")[0], "white") if self.alone else MARKS[i % len(MARKS)][0]
+        return STATUS_COLOURS.get(self.names[i].split(" ")[0].strip(":"), "white") if self.alone else MARKS[i % len(MARKS)][0]
 
     def hatch(self, i):
         """The hatch of cells."""
@@ -439,21 +445,26 @@ def title_of(sweep, options, x, y, marks):
     others = [axis for axis in sweep.varying() if axis not in (x.name, y and y.name)]
     if sweep.design != "grid" and others:
         words.append(f"{', '.join(sweep.label(axis, False) for axis in others)} var{'y' if len(others) > 1 else 'ies'}, too")
-    if marks.note and options.value != "status":
+    if marks.note and options.value not in WORDS:
         words.append(marks.note)
     return "; ".join(words)
 
 
 def draw(sweep, options):
     """The whole picture."""
-    by_status = options.value == "status"
+    if not options.value:
+        is_map = "verdict" in sweep.data and len(sweep.varying()) > 1 and not (options.lines or options.fit)
+        options.value = "outcome" if is_map else "displacement"
+    by_status = options.value in WORDS
     if by_status:
+        if options.value not in sweep.data:
+            raise InputError("only a sweep with Sweep/Cross-check = true has outcomes; --value status shows what became of the points")
         values = np.full(len(sweep.chosen), np.nan)
     else:
         numbers = [name for name in sweep.data if sweep.is_number(name)]
-        options.value = sweep.find(options.value, numbers, "column of numbers (or status)")
+        options.value = sweep.find(options.value, numbers, "column of numbers (or status, outcome)")
         values = sweep.column(options.value)
-    marks = Marks(sweep, values, by_status)
+    marks = Marks(sweep, values, options.value)
     if by_status:
         marks.names = [name.replace("finished, value not known", "finished") for name in marks.names]
     elif not marks.drawn.any():
@@ -464,7 +475,7 @@ def draw(sweep, options):
         if len(rest) > 1:
             raise InputError(f'{len(rest) + 2} axes are too many for lines; choose values of {rest[-1]} by --where AXIS=VALUE')
     elif by_status and as_lines:
-        raise InputError("--value status needs two axes")
+        raise InputError(f"--value {options.value} needs two axes")
     elif as_lines:
         y = None
     x, y, rest = Axis(sweep, x), Axis(sweep, y) if y else None, [Axis(sweep, name) for name in rest]
@@ -565,7 +576,7 @@ def main():
     own.add_argument("--x", metavar="AXIS")
     own.add_argument("--y", metavar="AXIS")
     own.add_argument("--lines", action="store_true")
-    own.add_argument("--value", metavar="COLUMN", default="displacement")
+    own.add_argument("--value", metavar="COLUMN")
     own.add_argument("--where", metavar="AXIS=VALUE", action="append", default=[])
     own.add_argument("--scale", choices=("auto", "linear", "log"), default="auto")
     own.add_argument("--fit", action="store_true")

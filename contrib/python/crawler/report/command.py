@@ -16,7 +16,7 @@ SCRIPTS = ("base.js", "plot.js", "body.js", "run.js", "explorer.js", "fit.js", "
 TIMES, FEWEST_TIMES = 640, 64  # of all kymographs of a page together, and of each
 
 # What a folder may be: its kind, a file or folder that only it has, its table, and the group in it.
-KINDS = (("atlas", "atlas.h5", "atlas.h5", "atlas"), ("tradeoff", "tradeoff.h5", "tradeoff.h5", "tradeoff"),
+KINDS = (("tradeoff", "tradeoff.h5", "tradeoff.h5", "tradeoff"),
          ("comparison", "comparison.csv", "comparison.csv", None), ("fit", "inputs.json", "residuals.csv", None), ("optimisation", "starts", "results.h5", "optimize"),
          ("sweep", "results.h5", "results.h5", "results"), ("run", "summary.json", None, None),
          ("run", "statistics.csv", None, None))
@@ -24,13 +24,13 @@ KINDS = (("atlas", "atlas.h5", "atlas.h5", "atlas"), ("tradeoff", "tradeoff.h5",
 
 def kind_of(folder):
     """One of KINDS. Raises InputError if the folder is none of a command."""
-    expected = "the output folder of a run, sweep, atlas, tradeoff, optimisation, fit or comparison of fits is expected"
+    expected = "the output folder of a run, sweep, tradeoff, optimisation, fit or comparison of fits is expected"
     if not os.path.isdir(folder):
         raise InputError(f'"{folder}" is {"a file" if os.path.exists(folder) else "not there"}, but {expected}')
     for kind in KINDS:
         if os.path.exists(os.path.join(folder, kind[1])):
             return kind
-    raise InputError(f'"{folder}" has no results: none of summary.json, statistics.csv, results.h5, atlas.h5, tradeoff.h5 '
+    raise InputError(f'"{folder}" has no results: none of summary.json, statistics.csv, results.h5, tradeoff.h5 '
                      f"is there; {expected}")
 
 
@@ -68,7 +68,7 @@ def data_of(folder, kind):
         data["summary"].update(evaluate(read_rows(folder)))
     if name == "run":
         return {**data, "runs": [run_in(folder, "", TIMES)]}
-    within = runs_within(folder, "points" if name in ("sweep", "atlas") else "")
+    within = runs_within(folder, "points" if name == "sweep" else "")
     shown = within[:2 * TIMES // FEWEST_TIMES]
     times = max(FEWEST_TIMES, TIMES // max(1, len(shown)))
     return {**data, "runs": [run_in(folder / one, one, times) for one in shown], "more_runs": within[len(shown):]}
@@ -86,7 +86,7 @@ def main():
     """crawler report DIR [--quiet]"""
     parser = Parser(prog="crawler report", description="Makes a page for browsers, report.html, of the output folder of "
                     "any other command.")
-    parser.add_argument("folder", metavar="DIR", help="Output folder of a run, sweep, atlas, tradeoff, optimisation or fit")
+    parser.add_argument("folder", metavar="DIR", help="Output folder of a run, sweep, tradeoff, optimisation or fit")
     parser.add_argument("--quiet", action="store_true", help="Prints nothing but errors")
     options = parser.parse_args(sys.argv[2:])
     kind, folder = kind_of(options.folder), pathlib.Path(options.folder)

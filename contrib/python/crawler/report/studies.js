@@ -75,7 +75,7 @@ function parameters() {
 }
 function own_command() { return (page.kind === 'optimisation' ? summary.optimize?.command_line : summary.command_line) ?? ''; }
 
-// Sweeps and atlases --------------------------------------------------------------------------------------------------
+// Sweeps -------------------------------------------------------------------------------------------------------------
 
 /** A row of a sweep as the object that summary.json is. */
 function summaryOf(explorer, row) {
@@ -104,48 +104,45 @@ function pointDetails(panel, row, explorer) {
   if (Clock.current) Clock.current.running = false;
   const number = explorer.index.value(row), name = `points/${number}`, run = page.runs.find(one => one.title === name);
   panel.append(el('p', {}, ...explorer.axes.map(axis => explorer.columns.get(axis)).filter(Boolean).flatMap((column, i) => [i ? ', ' : '', column.title + ' = ', el('b', {}, column.words(row))])));
-  const status = explorer.columns.get(page.kind === 'atlas' ? 'outcome' : 'status')?.value(row), message = explorer.columns.get(page.kind === 'atlas' ? 'explanation' : 'message')?.value(row);
+  const value = name => explorer.columns.get(name)?.value(row) ?? null, status = value('outcome') ?? value('status'), message = value('explanation') ?? value('message');
   if (status !== 'finished') panel.append(el('p', {}, el('b', {}, status ?? 'not computed yet'), message ? `: ${message}` : ''));
-  if (page.kind === 'atlas') panel.append(answersOf(explorer, row));
+  if (value('verdict')) panel.append(answersOf(value));
   if (run) { showRun(panel, run); return; }
-  if (page.kind === 'sweep') {
-    const one = summaryOf(explorer, row);
-    showTiles(panel, one);
-    panel.append(el('p', {}, gaitInWords(one).join(' ')));
-  }
+  const one = summaryOf(explorer, row);
+  showTiles(panel, one);
+  panel.append(el('p', {}, gaitInWords(one).join(' ')));
   if (explorer.columns.get('reason')?.value(row) === 'refused') return; // there is nothing to compute
   panel.append(page.more_runs.includes(name) ? el('p', {}, 'The files of this point are in ', el('a', {href: `${name}/`}, name), '; crawler report makes a page of them.')
     : el('p', {class: 'soft small'}, 'Body and kymograph of this point were not kept. This computes them; the next crawler report shows them here:'));
   if (!page.more_runs.includes(name)) panel.append(el('pre', {tabindex: 0}, pointCommand(explorer, row)));
 }
 
-/** What the runs of a point of an atlas say. */
-function answersOf(explorer, row) {
-  const value = name => explorer.columns.get(name)?.value(row) ?? null;
-  const body = ['run', 'position', 'stretch', 'refined'].filter(name => value(`${name} status`)).map(name => el('tr', {}, el('td', {}, name), el('td', {}, value(`${name} status`), value(`${name} reason`) ? `: ${value(`${name} reason`)}` : ''),
-    ...['displacement', 'promised error', 'measured error', 'inversion t', 'min stretch'].map(number => el('td', {class: 'value'}, exactly(value(`${name} ${number}`), show(value(`${name} ${number}`), number.includes('error') ? 2 : 8))))));
-  return el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, ...['answer', 'status', withUnit('displacement', 'length'), 'promised error', 'measured error', 'inverted at t', 'least stretch'].map(name => el('th', {}, name)))), el('tbody', {}, ...body)));
+/** What the runs of a point say that is cross-checked. */
+function answersOf(value) {
+  const body = ['', 'position ', 'stretch ', 'refined '].filter(run => value(`${run}status`)).map(run => el('tr', {}, el('td', {}, run || 'run'), el('td', {}, value(`${run}status`), value(`${run}reason`) ? `: ${value(`${run}reason`)}` : ''),
+    ...['displacement', 'promised error', 'error ratio', 'inversion.t', 'min_stretch.value'].map(number => el('td', {class: 'value'}, exactly(value(run + number), show(value(run + number), number.includes('error') ? 2 : 8))))));
+  return el('div', {class: 'scroll'}, el('table', {}, el('thead', {}, el('tr', {}, ...['answer', 'status', withUnit('displacement', 'length'), 'promised error', 'measured over promised', 'inverted at t', 'least stretch'].map(name => el('th', {}, name)))), el('tbody', {}, ...body)));
 }
 
 function showPoints() {
   const box = section(''), {table} = page;
   if (!table) { box.append(el('p', {}, 'There is no table of points yet.')); return; }
   const axes = table.columns.filter(column => column.meaning.startsWith('axis of the')).map(column => column.name), [last, before] = [...axes].reverse();
-  const isAtlas = page.kind === 'atlas', value = isAtlas ? ['outcome', 'run displacement'] : ['displacement', 'status'];
-  const explorer = new Explorer(box, table, {axes, status: isAtlas ? 'outcome' : 'status', details: pointDetails,
-    first: before ? {x: [last], y: [before], colour: value} : {x: [last, 'index'], y: isAtlas ? ['run displacement'] : value, colour: []}});
-  const status = explorer.columns.get(isAtlas ? 'outcome' : 'status');
+  const isChecked = table.columns.some(column => column.name === 'verdict'), value = ['displacement', 'status'];
+  const explorer = new Explorer(box, table, {axes, status: isChecked ? 'outcome' : 'status', details: pointDetails,
+    first: before ? {x: [last], y: [before], colour: isChecked ? ['outcome'] : value} : {x: [last, 'index'], y: value, colour: []}});
+  const status = explorer.columns.get('status');
   let computed = 0;
   for (let row = 0; status && row < table.rows; ++row) computed += status.value(row) !== null;
   const words = [`${plural(table.all_rows, 'point')} over ${axes.map(shortName).join(' and ')}`, computed < table.rows ? `${computed.toLocaleString('en')} of ${table.rows.toLocaleString('en')} are computed` : '',
     table.rows < table.all_rows ? `this page has ${table.rows.toLocaleString('en')} of them, evenly chosen` : ''].filter(Boolean).join('; ') + '.';
   box.prepend(el('p', {}, words));
   if (table.left_out.length) box.append(el('details', {class: 'small'}, el('summary', {}, `${plural(table.left_out.length, 'column')} left out, to keep this page small`), el('p', {class: 'soft'}, `${table.left_out.join(', ')}. The table in the folder has them.`)));
-  if (isAtlas && page.summary) {
-    const {checked, silent_wrong_answers: wrong, largest_error_ratio: ratio} = summary;
+  if (summary.cross_check) {
+    const {checked, silent_wrong_answers: wrong, largest_error_ratio: ratio} = summary.cross_check;
     box.prepend(el('p', {}, `${plural(checked ?? 0, 'point')} checked by a second answer; `, el('b', {}, wrong ? `${plural(wrong, 'silent wrong answer')}.` : 'no silent wrong answers.'), known(ratio) ? ` The largest measured error is ${show(ratio, 3)} of what was promised.` : ''));
   }
-  reasonsOfRows(explorer, isAtlas ? 'run reason' : 'reason');
+  reasonsOfRows(explorer, 'reason');
 }
 
 // Tradeoff --------------------------------------------------------------------------------------------------------------
@@ -253,5 +250,5 @@ function showOptimisation() {
 header();
 notices();
 if (page.kind === 'run') showRun(main, page.runs[0]);
-else ({sweep: showPoints, atlas: showPoints, tradeoff: showTradeoff, optimisation: showOptimisation, fit: showFit, comparison: showComparison})[page.kind]();
+else ({sweep: showPoints, tradeoff: showTradeoff, optimisation: showOptimisation, fit: showFit, comparison: showComparison})[page.kind]();
 parameters();

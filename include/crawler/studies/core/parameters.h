@@ -25,19 +25,10 @@ namespace crawler
     unsigned int n_points   = 100; ///< of a random or Latin hypercube design
     unsigned int seed       = 1;
     std::string keep_fields = "";
+    bool cross_check        = false;
+    double refinement       = 10.;          ///< of the cross-check
     std::optional<double> point_time_limit; ///< [s]
     std::optional<double> time_limit;       ///< [s]
-
-    void
-    add_parameters(Declarations &declarations);
-  };
-
-  /// Section "Atlas": the map that `crawler atlas` makes.
-  struct AtlasParameters
-  {
-    std::string first_axis, second_axis;
-    double refinement = 10.;
-    double time_limit = 30.; ///< [s]
 
     void
     add_parameters(Declarations &declarations);
@@ -99,7 +90,6 @@ namespace crawler
   struct Parameters : RunParameters
   {
     SweepParameters sweep;
-    AtlasParameters atlas;
     TradeoffParameters tradeoff;
     OptimizeParameters optimize;
     FitParameters fit;

@@ -38,9 +38,9 @@ namespace crawler
   /// The reason of a point that took longer than the time limit.
   extern const std::string time_limit_reason;
 
-  /// Index and axes, with this description of an axis.
+  /// Index and axes.
   std::vector<RowFile::Column>
-  axis_columns(const SweepDesign &design, const Declarations &declarations, const std::string &description);
+  axis_columns(const SweepDesign &design, const Declarations &declarations);
 
   /// Their values.
   RowFile::Known

@@ -97,7 +97,8 @@ namespace crawler
   private:
     SweepBlock
     block_of(unsigned long part) const;
-    SweepBlock
+    /// Its points, in order.
+    std::vector<unsigned long>
     part(unsigned long number) const;
 
     /// Computes points of one part with the numerics that they share; what it returns has been computed.
@@ -110,6 +111,10 @@ namespace crawler
     /// Adds the sensitivities that are wanted to those that finished.
     void
     differentiate(std::vector<Point> &points, const std::function<bool()> &interrupted);
+
+    /// Adds the other runs of a cross-check, if one is wanted.
+    void
+    check(std::vector<Point> &points, const std::function<bool()> &interrupted) const;
 
     SweepPoints &points_;
     const SweepBlocks blocks_;

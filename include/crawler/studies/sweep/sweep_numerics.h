@@ -23,18 +23,18 @@ namespace crawler
    * The numerics that the points of a block share, measured on a few of them that lie as far apart as they can. Where
    * these have nothing in common the halves of the block are tried, and so on. The answer for a point depends on its
    * block alone, not on who asks and in which order. Sweeps of few points share nothing: there each rank would measure
-   * for too few points.
+   * for too few points. With a cross-check each point chooses for itself, as `crawler run` does.
    */
   class SweepNumerics
   {
   public:
     explicit SweepNumerics(SweepPoints &points);
 
-    /// Does a sweep of so many points share anything?
+    /// Do the points of this sweep share anything?
     static bool
-    are_shared(const unsigned long n_points)
+    are_shared(const SweepPoints &points)
     {
-      return n_points >= 512;
+      return points.design().n_points() >= 512 && !points.sweep().cross_check;
     }
 
     struct Shared

@@ -22,8 +22,6 @@ namespace crawler
     /// Reads the design and looks at all names and values (collective: rank 0 looks at the files of a file axis, which
     /// are read again when their points need them). Throws InputError, with the place in the file.
     SweepPoints(MPI_Comm communicator, const ParameterFile &file);
-    /// Another study's design; its axes come from another entry.
-    SweepPoints(MPI_Comm communicator, const ParameterFile &file, const SweepParameters &design);
 
     const SweepDesign &
     design() const
@@ -54,13 +52,13 @@ namespace crawler
       return effective_;
     }
 
-    /// What the axes fill in; @p by is the entry that has them.
+    /// What the axes fill in.
     VariedEntries
-    varied(const std::string &by = "Sweep/Axes") const;
+    varied() const;
 
     /// On entries without an effect at any point.
     std::vector<std::string>
-    notes(const std::string &command = "sweep", const std::string &by = "Sweep/Axes") const;
+    notes() const;
 
     /// The entries of a point; good until the next call.
     Form &
@@ -86,10 +84,11 @@ namespace crawler
     std::vector<unsigned long>
     kept_points() const;
 
-  private:
+    /// Throws InputError, with the place in the file, if Sweep/Cross-check is wanted where answers cannot be compared.
     void
-    build(MPI_Comm communicator, std::unique_ptr<Form> base);
+    require_checkable();
 
+  private:
     void
     require_scene_files(MPI_Comm communicator) const;
     void

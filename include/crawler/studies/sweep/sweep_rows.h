@@ -2,12 +2,14 @@
 #pragma once
 
 #include <crawler/base/row_file.h>
-#include <crawler/studies/core/compute.h>
-#include <crawler/studies/sweep/sweep_design.h>
+#include <crawler/studies/sweep/cross_check.h>
+#include <crawler/studies/sweep/run_values.h>
+#include <crawler/studies/sweep/sweep_points.h>
 
 #include <mpi.h>
 
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,32 +19,35 @@ namespace crawler
   class Declarations;
 
   /// The columns of results.h5 (a contract, doc/user_guide.md, "Sweep"): index, the axes, the numbers of summary.json
-  /// with dots for nesting, those of the sensitivities that are wanted, seconds, reason, message, and status, which is
-  /// written last.
+  /// with dots for nesting, those of the sensitivities that are wanted, those of a cross-check (checked_runs.h),
+  /// seconds, reason, message, and status, which is written last.
   std::vector<RowFile::Column>
   sweep_columns(const SweepPoints &points);
 
   extern const std::string sweep_file, sweep_group; ///< results.h5, and the group in it
 
   /// The row of a point that has been computed, in the columns after the known ones.
-  /// @p sensitivities: the entries by which it was differentiated.
+  /// @p sensitivities: the entries by which it was differentiated; @p checked: of checked_columns(), if it has them.
   RowFile::Row
-  sweep_row(const Task &task, const std::vector<SensitivityEntry> &sensitivities);
+  sweep_row(const Task &task, const std::vector<SensitivityEntry> &sensitivities, const RowFile::Row &checked = {});
 
-  /// What has become of a point, in a word, and why.
-  struct PointStatus
-  {
-    std::string status, reason, message;
-  };
-  PointStatus
-  status_of(const Task &task);
-
-  /// How often which status and which reason stands in the table.
+  /// How often which status, reason and verdict stands in the table.
   struct SweepCounts
   {
     std::map<std::string, unsigned long> statuses, ///< "missing": not computed
-      reasons;
+      reasons, verdicts;
     unsigned long n_points = 0;
+    std::map<unsigned long, std::string> wrong_answers; ///< the first few by point, each in a sentence
+    double largest_error_ratio = std::numeric_limits<double>::quiet_NaN();
+
+    unsigned long
+    number_of(Verdict::Kind kind) const;
+    /// Points with two answers at least.
+    unsigned long
+    checked() const
+    {
+      return number_of(Verdict::agree) + number_of(Verdict::silent_wrong_answer);
+    }
   };
 
   /// Writes the table as comma-separated values beside it (results.csv of results.h5), in parts of some rows each,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <crawler/studies/atlas/cross_check.h>
+#include <crawler/studies/sweep/cross_check.h>
 
 #include <gtest/gtest.h>
 
