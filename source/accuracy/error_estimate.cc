@@ -48,7 +48,7 @@ namespace crawler
       Numerics n          = choice.numerics;
       const bool promised = is_promised(choice, scene);
       // Where the friction switches its direction kinks move through cells and steps: errors fall by low powers.
-      const bool much_finer = !promised || scene.ground.direction.is_uneven();
+      const bool much_finer = !promised || choice.is_steep || scene.ground.direction.is_uneven();
       if (n.mesh.tolerance > 0.)
       {
         n.mesh.tolerance *= finer_mesh_tolerance;
@@ -226,7 +226,7 @@ namespace crawler
                             : choice.numerics.mesh.tolerance > 0. ? promised_part_if_adaptive
                             : choice.numerics.grading.levels > 0  ? promised_part_if_graded
                                                                   : promised_part;
-      const double factor = promised ? measured_factor : factor_without_promise;
+      const double factor = promised && !choice.is_steep ? measured_factor : factor_without_promise;
       if (finer_mesh != nullptr)
       {
         space = factor * std::abs(finer_mesh->displacement - result.displacement);

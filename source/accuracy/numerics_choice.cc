@@ -419,6 +419,7 @@ namespace crawler
         }
         choice_.numerics.n_cells =
           static_cast<unsigned int>(std::clamp(std::ceil(cells), enough_cells, static_cast<double>(most_cells)));
+        choice_.is_steep = !choice_.is_rough && rate > 0. && std::min(rate, indicator_rate) < 0.5 * full_rate;
         // The rule's own idea of the error in space, relative to the wanted one.
         space_over_time_ = std::pow(cells / choice_.numerics.n_cells, rate > 0. ? rate : full_rate);
         return !may_be_steep || choice_.numerics.n_cells <= most_uniform_cells;

@@ -83,6 +83,7 @@ namespace crawler
           n.initial_step         = std::min(a.initial_step, b.initial_step);
           n.least_event          = std::min(a.least_event, b.least_event);
           found_.choice.is_rough = found_.choice.is_rough || choice->is_rough;
+          found_.choice.is_steep = found_.choice.is_steep || choice->is_steep;
         }
         return true;
       }

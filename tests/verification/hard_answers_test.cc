@@ -293,6 +293,30 @@ TEST(HardAnswers, WorksOfSteepFrictionAreUnknown)
   EXPECT_GT(n_unknown, 0);
 }
 
+/// Fronts of steep friction: the errors of high degrees fall slowly with the cells, alike in a run and a finer one.
+/// True values by the stretch form at Accuracy 2e-5.
+TEST(HardAnswers, FrontsOfSteepFriction)
+{
+  struct
+  {
+    const char *p, *chi;
+    double displacement;
+  } const scenes[] = {{"10", "0.81", 0.34721147}, {"10.5", "0.77", 0.33055991}, {"12", "0.83", 0.34544428}};
+  for (const auto &scene : scenes)
+    for (const char *accuracy : {"3e-3", "1e-3"})
+    {
+      const SimulationResult result = answer_to({{"Body/Anchoring exponent", scene.p},
+                                                 {"Active stress/Optimal wave/Perturbation parameter", scene.chi},
+                                                 {"Active stress/Optimal wave/Choose wave by", "wave speed"},
+                                                 {"Active stress/Optimal wave/Wave speed", "1"},
+                                                 {"Time/End time", "1"},
+                                                 {"Discretization/Formulation", "position"},
+                                                 {"Accuracy", accuracy}});
+      ASSERT_TRUE(result.error) << scene.p;
+      EXPECT_NEAR(result.displacement, scene.displacement, result.error->total) << scene.p << ", " << accuracy;
+    }
+}
+
 /// Kinks that move through cells and steps, where the velocity changes its sign, have errors that two runs may share.
 TEST(HardAnswers, FrictionThatSwitchesItsDirection)
 {
