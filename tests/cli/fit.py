@@ -50,6 +50,18 @@ def contents(folder):
     return files
 
 
+def compares_only_what_is_weighed_alike():
+    """Scenes of which the data are weighed differently have no common likelihood."""
+    data = pathlib.Path("fit_worm.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    pathlib.Path("fewer.csv").write_text("".join(data[:-9]), encoding="utf-8")
+    for entry, value in (("Standard deviation", "0.02"), ("Standard deviation", "automatic"), ("Origin", "tail"), ("First time", "0.1"),
+                         ("Place deviation", "0.01"), ("Data", "fewer.csv")):
+        pathlib.Path("weighed.prm").write_text(f"include fit_worm.prm\nsubsection Fit\n  set {entry} = {value}\nend\n", encoding="utf-8")
+        ended = crawler("fit", "fit_worm.prm", "weighed.prm", "--output", "weighed")
+        check(ended.returncode == 2 and all(word in ended.stderr for word in ("same data" if entry == "Data" else f"Fit/{entry}", '"fit_worm.prm"', '"weighed.prm"'))
+              and ended.stderr.count("\n") == 1 and not pathlib.Path("weighed").exists(), f"{entry} = {value} in one of two: {ended.stderr}")
+
+
 def resumes():
     """A fit that is stopped or killed leaves what it has found, and goes on to the result of an undisturbed one, as does one on
     several processes; nothing else is gone on with."""
@@ -152,6 +164,7 @@ def main():
     check(again.returncode == 0 and all(abs(other[name]["value"] - summary["variables"][name]["value"]) < 0.02 * other[name]["deviation"] for name in TRUTH),
           "the scene that was written fits otherwise")
     refuses()
+    compares_only_what_is_weighed_alike()
     pathlib.Path("plain.prm").write_text("include fit_worm.prm\nsubsection Body\n  set Anchoring exponent = 0\nend\nsubsection Fit\n"
                                          "  set Variables = Body/Elastic modulus : 0.3 to 4; Active stress/Travelling wave/Amplitude : 0.02 to 0.8\nend\n",
                                          encoding="utf-8")

@@ -10,7 +10,7 @@ from .. import _compiled
 from ..measured.options import add_reading_options, reading_of
 from ..needs import Failed, InputError, Parser, Stopped
 from . import Interrupted, find, prepared
-from .comparison import Comparison
+from .comparison import Comparison, require_comparable
 from .folder import Folder, drawn
 from .result import value_in_words
 
@@ -143,8 +143,8 @@ def main():
     comparison = Comparison(path_of(options.files[0], options).parent, options) if len(options.files) > 1 else None
     folders = {name: Folder(path_of(name, options), options.resume, options.overwrite) for name in options.files}
     models = {name: prepared(name, options.set, options.data, **reading_of(options)) for name in folders}
-    if len({int(model.data.is_there.sum()) for model, _ in models.values()}) > 1:
-        raise InputError("the parameter files do not fit the same data, so they cannot be compared")
+    if comparison:
+        require_comparable({name: model for name, (model, _) in models.items()})
     fits = {}
     for name, folder in folders.items():
         model, notes = models[name]

@@ -4,10 +4,13 @@ import csv
 import io
 import pathlib
 
+import numpy as np
+
 from ..needs import InputError, write_whole
 from .folder import bytes_of, drawn
 
 TABLE, SUMMARY = "comparison.csv", "summary.json"
+WEIGHED_BY = tuple(f"Fit/{name}" for name in ("Standard deviation", "Place deviation", "Origin", "First time"))  # what the data are worth
 
 
 class Comparison:
@@ -33,6 +36,25 @@ class Comparison:
         write_whole(self.path / TABLE, text.getvalue().encode())
         write_whole(self.path / SUMMARY, bytes_of(summary))
         return [*table_of(rows), *filter(None, [drawn(self.path)]), f"Files in {self.path}/"]
+
+
+def require_comparable(models):
+    """Raises InputError unless all scenes are judged by the same numbers in the same way: only then are the likelihoods, and with
+    them the criteria, those of the same data. models: {name of a parameter file: Model}."""
+    (first, one), *others = models.items()
+    for name, other in others:
+        for entry in WEIGHED_BY:
+            here, there = (model.parameters[entry] for model in (one, other))
+            if here != there:
+                raise InputError(f'"{entry}" is {_text(here)} in "{first}", but {_text(there)} in "{name}"; the same is expected of all scenes that are compared, '
+                                 "as the data are weighed by it")
+        if one.data.kind != other.data.kind or any(not np.array_equal(getattr(one.data, key), getattr(other.data, key), equal_nan=True)
+                                                   for key in ("t", "values")):
+            raise InputError(f'"{first}" and "{name}" do not fit the same data, which are expected of scenes that are compared (--data names those of all)')
+
+
+def _text(value):
+    return f"{value:g}" if isinstance(value, float) else value
 
 
 def compared(fits):
