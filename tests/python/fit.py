@@ -9,6 +9,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import warnings
 
 sys.path.insert(0, sys.argv.pop(1))
@@ -159,6 +160,38 @@ class Values(unittest.TestCase):
             self.assertEqual(found.goodness.n_constants, 8)
             self.assertLess(abs(found.variables[P]["value"] - 2), 4 * found.variables[P]["deviation"])
             self.assertGreater(found.goodness.probability, 1e-3)
+
+
+class Valley(unittest.TestCase):
+    """Exponent and amplitude change the path of the centre of mass in nearly the same way: along a curved valley."""
+    SCENE = {**STRESS, WAVE + "Frequency": 0.5, "Time/End time": 8}
+
+    @classmethod
+    def setUpClass(cls):
+        t = np.linspace(0, 8, 60)
+        centre = np.mean(crawler.run(cls.SCENE, fields=t, places=np.linspace(0.001, 1.999, 1000), accuracy=1e-8, check=True).fields.position, axis=1)
+        cls.data = Samples("centre", np.zeros(1), t, (centre + 1e-4 * np.random.default_rng(1).standard_normal(60))[:, None])
+
+    def from_start(self, exponent, amplitude):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return crawler.fit({**self.SCENE, P: exponent, AMPLITUDE: amplitude}, self.data, {P: (0.5, 5), AMPLITUDE: RANGES[AMPLITUDE]}, standard_deviation=1e-4)
+
+    def test_search_follows_it_to_its_end(self):
+        far, near = self.from_start(3, 0.15), self.from_start(2, 0.3)
+        for found in (far, near):
+            self.assertEqual(found.status, "finished")
+            self.assertLess(abs(found.variables[P]["value"] - 2), 3 * found.variables[P]["deviation"])
+        self.assertAlmostEqual(far.variables[P]["value"], near.variables[P]["value"], delta=0.03 * near.variables[P]["deviation"])
+
+    def test_search_that_does_not_end_has_values_so_far_only(self):
+        with unittest.mock.patch("crawler.fitting.fit.MOST_STEPS", 5):
+            found = self.from_start(3, 0.15)
+        self.assertEqual((found.status, found.undetermined), ("failed", []))
+        self.assertIn("did not end", found.message)
+        for one in found.variables.values():
+            self.assertEqual([one[key] for key in ("determined", "deviation", "interval_95", "profile")], [None, None, None, []])
+        self.assertNotIn("information", found)
 
 
 class Untold(unittest.TestCase):

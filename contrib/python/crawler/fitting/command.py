@@ -49,7 +49,7 @@ def lines_of(found):
         ends = one["interval_95"] or [None, None]
         interval = "" if not one["determined"] else " 95 %: " + " to ".join("the limit" if end is None else f"{end:.6g}" for end in ends)
         yield f"{name:{width}}  {value_in_words(one)}{interval}"
-    if found.status == "stopped":
+    if found.status != "finished":
         return
     fits = (f"chi-square {goodness.chi_square:.5g} with {goodness.degrees_of_freedom} degrees of freedom (probability {goodness.probability:.2g})"
             if goodness.deviation_is_given else f"standard deviation of a datum {goodness.deviation_of_data:.3g}, from the residuals")
@@ -155,5 +155,5 @@ def main():
             say(line)
     for name, found in fits.items():
         if found.status != "finished":
-            raise Failed(f'the search for "{name}" did not end: the result is not the best one')
+            raise Failed(f"{name}: {found.message}")
     say.require_written()

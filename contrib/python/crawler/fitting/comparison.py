@@ -25,17 +25,19 @@ class Comparison:
             raise InputError(f'"{path}" has the results of something else; another folder is expected for --output')
 
     def written(self, fits, origin):
-        """Lines for the screen; the files are there then. fits: {name of a parameter file: Fit}; origin: what summary.json has besides."""
-        rows = compared(fits)
-        open_ends = [row["scene"] for row in rows if fits[row["scene"]].status != "finished"]
+        """Lines for the screen; the files are there then. Scenes whose search did not end are left out of the table. fits: {name of a
+        parameter file: Fit}; origin: what summary.json has besides."""
+        rows = compared({name: found for name, found in fits.items() if found.status == "finished"})
+        open_ends = [name for name, found in fits.items() if found.status != "finished"]
+        message = f"the search did not end for {', '.join(open_ends)}: not in the comparison" if open_ends else ""
         summary = {"status": "failed" if open_ends else "finished", "reason": "no_convergence" if open_ends else "converged",
-                   "message": f"the search did not end for {', '.join(open_ends)}" if open_ends else "", "comparison": rows, **origin}
+                   "message": message, "comparison": rows, **origin}
         (self.path / "report.html").unlink(missing_ok=True)
         text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows([rows[0], *(row.values() for row in rows)])
+        csv.writer(text, lineterminator="\n").writerows([rows[0] if rows else ["scene"], *(row.values() for row in rows)])
         write_whole(self.path / TABLE, text.getvalue().encode())
         write_whole(self.path / SUMMARY, bytes_of(summary))
-        return [*table_of(rows), *filter(None, [drawn(self.path)]), f"Files in {self.path}/"]
+        return [*(table_of(rows) if rows else ()), *filter(None, [message, rows and drawn(self.path)]), f"Files in {self.path}/"]
 
 
 def require_comparable(models):
@@ -60,7 +62,7 @@ def _text(value):
 def compared(fits):
     """Scenes in the order in which the data prefer them (Akaike), a list of dicts: their folder, chi-square, the criteria of Akaike
     and Bayes, and by how much these are above the least."""
-    best = {key: min(found.information[key] for found in fits.values()) for key in ("aic", "bic")}
+    best = {key: min((found.information[key] for found in fits.values()), default=0.0) for key in ("aic", "bic")}
     return [{"scene": name, "folder": pathlib.Path(name).stem, "variables": len(found.variables), "chi_square": found.goodness.chi_square,
              "degrees_of_freedom": found.goodness.degrees_of_freedom, **found.information,
              **{f"{key}_less_least": found.information[key] - best[key] for key in best}}

@@ -131,7 +131,10 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
     try:
         z, ended = best_of_starts(problem, kept, workers, progress)
         for refinement in range(MOST_REFINEMENTS + 1):
-            best = _looked_at(problem, z, ended)
+            if not ended:
+                problem.go_to_least()
+                return unfinished(problem, table_of_starts(problem, kept), is_stopped=False)
+            best = _looked_at(problem, z)
             if best.worst <= SHARE or refinement == MOST_REFINEMENTS or model.accuracy <= LEAST_ACCURACY:
                 break
             model.accuracy = max(model.accuracy * min(0.3, 0.3 * SHARE / best.worst), LEAST_ACCURACY)
@@ -141,10 +144,10 @@ def find(model, progress=lambda text: None, kept=None, workers=1):
         return described(problem, best, table_of_starts(problem, kept))
     except KeyboardInterrupt:
         starts = table_of_starts(problem, kept)
-        raise Interrupted(unfinished(problem, starts) if problem.go_to_least() else None) from None
+        raise Interrupted(unfinished(problem, starts, is_stopped=True) if problem.go_to_least() else None) from None
 
 
-def _looked_at(problem, z, ended):
+def _looked_at(problem, z):
     """Where a search has ended, with one more step."""
     data, jacobian = problem.data, problem.jacobian(z, both_sides=True)
     z = problem.improved(z, jacobian)
@@ -152,7 +155,7 @@ def _looked_at(problem, z, ended):
     freedom = int(data.is_there.sum()) - len(z) - data.n_constants
     deviation = 1.0 if data.deviation else max(math.sqrt(float(residual @ residual) / freedom), LEAST_NOISE)
     loose, members = undetermined_directions(jacobian / deviation)
-    return Best(z, jacobian, deviation, _numerical_error(problem, z, jacobian), loose, members, ended)
+    return Best(z, jacobian, deviation, _numerical_error(problem, z, jacobian), loose, members)
 
 
 def _numerical_error(problem, z, jacobian):

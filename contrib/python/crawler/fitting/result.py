@@ -10,7 +10,7 @@ from .uncertainty import LEVELS, Profile, correlation_in_time, covariance, curva
 
 BIASED = 0.2          # bias, of the deviation, that is said
 SHARE = 0.1           # largest numerical error, of the statistical one
-MOST_STEPS = 60       # of a search
+MOST_STEPS = 1000     # of a search, which takes some hundred along a curved valley
 NEAR = 1e-3           # to a limit, in ranges
 UNLIKELY = 1e-3       # probability of chi-square below which the scene does not fit
 MUCH = 100            # chi-square per degree of freedom that no noise has
@@ -49,7 +49,6 @@ class Best:
     numerical: np.ndarray   # [variable], errors; NaN where they are not known
     loose: np.ndarray       # [direction, variable], what the data do not tell
     members: np.ndarray     # [direction, variable], which variables belong to it
-    ended: bool             # in order
 
     @property
     def involved(self):
@@ -68,8 +67,9 @@ class Best:
         return float(np.max(self.numerical[told] / np.maximum(self.spread[told], 1e-300), initial=0))
 
 
-def unfinished(problem, starts):
-    """The Fit of a search that was interrupted: the least sum of squares that was seen, without deviations."""
+def unfinished(problem, starts, is_stopped):
+    """The Fit of a search that was interrupted (is_stopped) or did not end: the least sum of squares that was seen, with values and
+    without deviations, as derivatives say nothing of a minimum that was not reached."""
     model, data = problem.model, problem.data
     squares, z, _ = problem.least
     values, grid = problem.real(z), np.full(data.values.shape, np.nan)
@@ -79,8 +79,11 @@ def unfinished(problem, starts):
                         "at_limit": ""}
                  for name, value, low, high in zip(model.names, values, model.low, model.high)}
     goodness = {"kind": data.kind, "n_data": int(data.is_there.sum()), "n_variables": len(z), "n_constants": data.n_constants}
-    found = {"status": "stopped", "reason": "signal", "message": f"stopped by a signal after {len(starts)} of "
-             f"{int(model.parameters['Fit/Starts'])} starts; --resume goes on", "variables": variables, "undetermined": [], "notes": [],
+    message = (f"stopped by a signal after {len(starts)} of {int(model.parameters['Fit/Starts'])} starts; --resume goes on" if is_stopped else
+               f"the search did not end within {MOST_STEPS} steps: the values are those so far, and not the best ones; a start that is nearer, "
+               "narrower ranges or fewer variables are expected")
+    found = {"status": "stopped" if is_stopped else "failed", "reason": "signal" if is_stopped else "no_convergence", "message": message,
+             "variables": variables, "undetermined": [], "notes": [] if is_stopped else [message],
              "goodness": goodness, "residuals": math.sqrt(squares / goodness["n_data"]) * problem.scale, "accuracy": model.accuracy,
              "n_runs": model.n_runs, "starts": starts}
     return Fit(found, data, data.values + grid * problem.scale, dict(one.split("=", 1) for one in model.overrides(values)), None)
@@ -96,8 +99,7 @@ def described(problem, best, starts):
     n, k = goodness["n_data"], len(values) + data.n_constants + (0 if data.deviation else 1)
     likelihood = goodness["chi_square"] if data.deviation else n * math.log(max(float(residual @ residual), 1e-300) * problem.scale ** 2 / n)
     matrix = covariance(best.jacobian)
-    found = {"status": "finished" if best.ended else "failed", "reason": "converged" if best.ended else "no_convergence",
-             "message": "" if best.ended else f"the search did not end within {MOST_STEPS} steps", "variables": variables,
+    found = {"status": "finished", "reason": "converged", "message": "", "variables": variables,
              "undetermined": [in_words(*one, model.names, values, problem.width) for one in zip(best.loose, best.members)],
              "notes": list(_notes(best, variables, goodness)),
              "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
@@ -156,8 +158,6 @@ def _notes(best, variables, goodness):
     if goodness["correlation_in_time"] > ALIKE / math.sqrt(goodness["n_data"]):
         yield (f"residuals that are neighbours in time are alike (correlation {goodness['correlation_in_time']:.2g}): the scene does not describe "
                "all that the data have, or their errors are not independent, and the deviations are too small")
-    if not best.ended:
-        yield f"the search did not end within {MOST_STEPS} steps"
     if not best.worst <= SHARE:
         yield ("the numerical error is not known" if math.isnan(best.worst) else
                f"the numerical error is up to {best.worst:.2g} of the statistical one")
