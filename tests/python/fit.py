@@ -74,6 +74,11 @@ class Values(unittest.TestCase):
             for name in names:  # the mean over points is good to 1e-5
                 self.assertAlmostEqual(found.variables[name]["used"], STRESS[name], delta=5e-4, msg=data.quantity)
 
+    def test_length_from_the_path_of_the_middle(self):
+        """With a known origin the centre of mass starts in the middle of the body."""
+        found = crawler.fit({**STRESS, BODY + "Length": 2.1}, path(STRESS, 0), {BODY + "Length": (1.5, 3)}, origin="tail")
+        self.assertAlmostEqual(found.variables[BODY + "Length"]["used"], 2, delta=5e-4)
+
     def test_more_starts_change_no_better_value(self):
         """The random starts of this seed end elsewhere or fail; places of markers stay those of the best one."""
         data = tracks(STRESS)
@@ -225,6 +230,14 @@ class Untold(unittest.TestCase):
             with self.subTest(names=names):
                 self.check(fit(scene, data, *names, standard_deviation=1e-4 if data.quantity == "centre" else NOISE), ())
 
+    def test_does_not_tell_what_may_be_anywhere_in_its_range(self):
+        """A range of less than two deviations at each side."""
+        data, settings = tracks(STRAIN), {"standard_deviation": NOISE, "markers_at": S}
+        best = crawler.fit(STRAIN, data, {P: RANGES[P]}, **settings).variables[P]
+        for width, untold in ((1.6, (P,)), (2.4, ())):
+            ends = [float(best["value"] + side * width * best["deviation"]) for side in (-1, 1)]
+            self.check(crawler.fit({**STRAIN, P: best["value"]}, data, {P: ends}, **settings), untold)
+
     def test_says_that_a_scene_does_not_fit(self):
         found = fit({**STRESS, WAVE + "Wave number": 1.3}, tracks(STRESS), P, K, standard_deviation=NOISE)
         self.assertIn("does not fit", " ".join(found.notes))
@@ -269,6 +282,8 @@ class Refusals(unittest.TestCase):
                 ("a list of numbers is expected", {"markers_at": "here"}), ("Variables is empty", {"variables": {}}),
                 ("Anchoring exponent", {"variables": {BODY + "Anchoring exponnent": (1, 2)}}), ("in its range", {"variables": {P: (3, 4)}}),
                 ("whose Body/Length is 3", {"set": {BODY + "Length": 3}}), ("Standard deviation", {"place_deviation": 0.1}),
+                ('"Body/Length" from 1.5 to 4, but the outermost marker is at 2', {"variables": {BODY + "Length": (1.5, 4)}, "markers_at": S}),
+                ("a list of places", {"variables": {BODY + "Length": (1.9, 4)}}), ("data do not depend", {"variables": {"Time/End time": (2, 4)}}),
                 ("cannot be run", {"scene": inverted, "variables": {AMPLITUDE: (4, 6)}})):
             with self.subTest(sentence=sentence):
                 self.refused(sentence, **more)

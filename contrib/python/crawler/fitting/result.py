@@ -100,7 +100,9 @@ def described(problem, best, starts):
     likelihood = goodness["chi_square"] if data.deviation else n * math.log(max(float(residual @ residual), 1e-300) * problem.scale ** 2 / n)
     matrix = covariance(best.jacobian)
     found = {"status": "finished", "reason": "converged", "message": "", "variables": variables,
-             "undetermined": [in_words(*one, model.names, values, problem.width) for one in zip(best.loose, best.members)],
+             "undetermined": [*(in_words(*one, model.names, values, problem.width) for one in zip(best.loose, best.members)),
+                              *(f"the data do not tell {name}: its interval of 95 % reaches both limits of its range"
+                                for name, one, involved in zip(variables, variables.values(), best.involved) if not one["determined"] and not involved)],
              "notes": list(_notes(best, variables, goodness)),
              "correlation": (matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).tolist(), "goodness": goodness,
              "information": {"aic": likelihood + 2 * k, "bic": likelihood + k * math.log(n)},
@@ -122,8 +124,10 @@ def _variables(problem, best, values):
                **{level: None for level in LEVELS}, "profile": [], "from": float(model.low[j]), "to": float(model.high[j]), "determined": is_told,
                "at_limit": "from" if at < NEAR else "to" if at > 1 - NEAR else ""}
         variables[name] = one
-        if is_told:
-            ends, curve = profile.interval(j, spread[j])
+        ends, curve = profile.interval(j, spread[j]) if is_told else (None, None)
+        if is_told and ends["interval_95"] == [None, None]:  # chi-square rises less within the range than its curvature says
+            one.update(value=None, determined=False)
+        elif is_told:
             one["deviation"] = float(spread[j] * width[j])
             one["numerical_error"] = float(best.numerical[j] * width[j]) if math.isfinite(best.numerical[j]) else None
             one["bias"] = float(bias[j] * width[j]) if math.isfinite(bias[j]) else None
